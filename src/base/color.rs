@@ -1,0 +1,64 @@
+//! Colours, as bytes and as factors.
+//!
+//! Colours are display values throughout: a byte from 0 to 255 stands for a factor from 0 to 1, and
+//! no curve is applied on the way in or out.
+
+use serde::{Deserialize, Serialize};
+
+/// Red, green and blue, each from 0 to 255.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Color(pub [u8; 3]);
+
+impl Color {
+    /// Nothing at all.
+    pub const BLACK: Self = Self([0, 0, 0]);
+    /// All there is of each.
+    pub const WHITE: Self = Self([255, 255, 255]);
+    /// Back faces, and edges of polygons that face away.
+    pub const BACK_FACE: Self = Self([255, 0, 0]);
+
+    /// The factors from 0 to 1 that the bytes stand for.
+    #[must_use]
+    pub fn factors(self) -> [f64; 3] {
+        self.0.map(|byte| f64::from(byte) / 255.0)
+    }
+
+    /// The nearest colour to three factors; what is outside 0 to 1 is brought to its border.
+    #[must_use]
+    pub fn from_factors(factors: [f64; 3]) -> Self {
+        Self(factors.map(byte))
+    }
+
+    /// The colour as an opaque pixel.
+    #[must_use]
+    pub fn opaque(self) -> [u8; 4] {
+        let [r, g, b] = self.0;
+        [r, g, b, 255]
+    }
+}
+
+/// The byte nearest to 255 times a factor: clamped once, rounded to nearest, NaN gives 0.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped just before")]
+pub fn byte(factor: f64) -> u8 {
+    // `max` takes the number where the other is NaN.
+    (factor.max(0.0).min(1.0) * 255.0 + 0.5) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_byte_survives_the_way_to_a_factor_and_back() {
+        for value in 0..=255 {
+            let color = Color([value; 3]);
+            assert_eq!(Color::from_factors(color.factors()), color);
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_black_and_what_is_infinite_is_full() {
+        assert_eq!([byte(f64::NAN), byte(f64::INFINITY), byte(f64::NEG_INFINITY)], [0, 255, 0]);
+    }
+}

@@ -1,0 +1,79 @@
+//! A picture in memory: what the renderer makes, what a texture holds.
+
+/// Rows of pixels from the top; each pixel is red, green, blue and alpha, not premultiplied.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Picture {
+    width: usize,
+    height: usize,
+    pixels: Vec<[u8; 4]>,
+}
+
+/// The width and height of a picture in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Size {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+impl Size {
+    /// A size of `width` by `height` pixels.
+    #[must_use]
+    pub const fn new(width: usize, height: usize) -> Self {
+        Self { width, height }
+    }
+
+    /// Pixels in all.
+    #[must_use]
+    pub const fn area(self) -> usize {
+        self.width * self.height
+    }
+}
+
+impl Picture {
+    /// A picture of one colour.
+    #[must_use]
+    pub fn filled(size: Size, pixel: [u8; 4]) -> Self {
+        Self { width: size.width, height: size.height, pixels: vec![pixel; size.area()] }
+    }
+
+    /// A picture of these pixels, row by row from the top; `None` where their number does not fit.
+    #[must_use]
+    pub fn from_pixels(size: Size, pixels: Vec<[u8; 4]>) -> Option<Self> {
+        (pixels.len() == size.area()).then_some(Self {
+            width: size.width,
+            height: size.height,
+            pixels,
+        })
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        Size::new(self.width, self.height)
+    }
+
+    /// All pixels, row by row from the top.
+    #[must_use]
+    pub fn pixels(&self) -> &[[u8; 4]] {
+        &self.pixels
+    }
+
+    /// All pixels, to be written.
+    pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
+        &mut self.pixels
+    }
+
+    /// The pixel in column `x` of row `y`, both counted from the upper left.
+    #[must_use]
+    pub fn pixel(&self, x: usize, y: usize) -> [u8; 4] {
+        self.pixels[y * self.width + x]
+    }
+
+    /// Gives the picture this size. What it showed is then of no meaning.
+    pub fn resize(&mut self, size: Size) {
+        (self.width, self.height) = (size.width, size.height);
+        self.pixels.resize(size.area(), [0, 0, 0, 255]);
+    }
+}

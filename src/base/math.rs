@@ -1,0 +1,242 @@
+//! The conventions of the mathematics, in one place.
+//!
+//! * Right-handed, Y up; vectors are columns, a matrix stands to their left: `p' = M p`.
+//! * Spaces, in the order of the pipeline: object, world, view (of the observer, who looks along
+//!   its own -Z), clip (homogeneous), screen (pixels, x to the right, y down, a pixel's centre at
+//!   one half). A matrix is named `to_from`: `clip_from_view * view_from_world`.
+//! * Depth after division is reversed: 1 at the near plane, 0 at the far one. Inside the view volume
+//!   `0 <= z <= w`, `-w <= x <= w`, `-w <= y <= w`.
+//! * A polygon's front is the side from which its corners run counter-clockwise.
+//! * Angles are radians here, degrees in the interface and in files.
+//!
+//! Sines and cosines come from the `libm` crate (glam's too, by its feature), so that they have the
+//! same bits on every machine.
+
+use glam::{DMat3, DMat4, DQuat, DVec2, DVec3, DVec4};
+use serde::{Deserialize, Serialize};
+
+use super::image::Size;
+
+/// One of the three axes of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Axis {
+    /// To the right.
+    X,
+    /// Up.
+    Y,
+    /// Towards the observer.
+    Z,
+}
+
+impl Axis {
+    /// All three, in order.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// The direction of the axis in its own frame.
+    #[must_use]
+    pub const fn unit(self) -> DVec3 {
+        match self {
+            Self::X => DVec3::X,
+            Self::Y => DVec3::Y,
+            Self::Z => DVec3::Z,
+        }
+    }
+
+    /// 0, 1 or 2.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// `v` at length 1, whatever its length was; `None` for zero and for what is not finite.
+///
+/// The largest component is brought to 1 first, so that squares neither overflow nor vanish.
+#[must_use]
+pub fn unit(v: DVec3) -> Option<DVec3> {
+    let largest = v.abs().max_element();
+    if !(largest > 0.0 && v.is_finite()) {
+        return None;
+    }
+    // Twice, for a subnormal largest component has no finite reciprocal.
+    let v = v / largest;
+    Some(v / v.length())
+}
+
+/// The turn about `axis` (of length 1) by the right-hand rule.
+///
+/// Rodrigues' formula: R = cos a I + sin a [k]x + (1 - cos a) k k'.
+#[must_use]
+pub fn rotation(axis: DVec3, radians: f64) -> DMat3 {
+    DMat3::from_axis_angle(axis, radians)
+}
+
+/// A right-handed frame whose Z is `z` and whose Y is as near to `y` as may be (Gram-Schmidt, Z
+/// first, X = Y x Z). Where both are parallel or one of them vanishes, the parts that cannot be had
+/// come from `fallback`, a frame that is orthonormal already.
+#[must_use]
+pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
+    let z = unit(z).unwrap_or(fallback.z_axis);
+    // A part of y across z that is shorter than its rounding error has no direction to speak of.
+    let across = |v: DVec3| {
+        let v = unit(v)?;
+        let rest = v - z * v.dot(z);
+        if rest.length() > 1e-12 { unit(rest - z * rest.dot(z)) } else { None }
+    };
+    let y = across(y).unwrap_or_else(|| {
+        // X = Y x Z, so Y = Z x X.
+        across(z.cross(fallback.x_axis))
+            .or_else(|| across(fallback.y_axis))
+            .unwrap_or_else(|| z.any_orthonormal_vector())
+    });
+    DMat3::from_cols(y.cross(z), y, z)
+}
+
+/// The frame of an observer at `eye` that looks at `target`, upright with respect to `up`.
+///
+/// Where it looks straight up or down, or where eye and target are one, what is not determined is
+/// kept from `last`: its right vector, or all of it. No NaN, no jump.
+#[must_use]
+pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
+    let Some(z) = unit(eye - target) else { return last };
+    let x = unit(up.cross(z)).filter(|_| unit(up).is_some_and(|up| up.cross(z).length() > 1e-6));
+    match x {
+        Some(x) => frame(z, z.cross(x), last),
+        None => frame(z, z.cross(last.x_axis), last),
+    }
+}
+
+/// The matrix that turns normals as `m` turns surfaces: sign(det m) times its cofactors.
+///
+/// The inverse transpose, but for a positive factor, and defined for singular `m` as well; the sign
+/// keeps the normals of a mirrored object on its outer side.
+#[must_use]
+pub fn normal_matrix(m: DMat3) -> DMat3 {
+    let cofactors = DMat3::from_cols(
+        m.y_axis.cross(m.z_axis),
+        m.z_axis.cross(m.x_axis),
+        m.x_axis.cross(m.y_axis),
+    );
+    if m.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }
+}
+
+/// Whether `m` keeps all three dimensions, judged against its own size.
+#[must_use]
+pub fn has_full_rank(m: DMat3) -> bool {
+    let size = m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element();
+    m.is_finite() && size > 0.0 && ((m * (1.0 / size)).determinant().abs() > 1e-15)
+}
+
+/// The projection in perspective: `half_angle` (radians) is seen to each side of the view's axis
+/// across the shorter side of the picture; the longer side sees more. Depth is 1 at `near`, 0 at
+/// `far`.
+#[must_use]
+pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
+    let focal = 1.0 / libm::tan(half_angle);
+    let DVec2 { x, y } = shorter_side(size) * focal;
+    let range = far - near;
+    DMat4::from_cols(
+        DVec4::new(x, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, y, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, near / range, -1.0),
+        DVec4::new(0.0, 0.0, near * far / range, 0.0),
+    )
+}
+
+/// The parallel projection: `half_size` is seen to each side of the view's axis across the shorter
+/// side of the picture. Depth is 1 at `near`, 0 at `far`.
+#[must_use]
+pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
+    let DVec2 { x, y } = shorter_side(size) / half_size;
+    let range = far - near;
+    DMat4::from_cols(
+        DVec4::new(x, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, y, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, 1.0 / range, 0.0),
+        DVec4::new(0.0, 0.0, far / range, 1.0),
+    )
+}
+
+/// What a coordinate is multiplied by, so that the shorter side of the picture spans -1 to 1.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+fn shorter_side(size: Size) -> DVec2 {
+    let (width, height) = (size.width as f64, size.height as f64);
+    let shorter = width.min(height);
+    DVec2::new(shorter / width, shorter / height)
+}
+
+/// The matrix of a frame at a place.
+#[must_use]
+pub fn placed(axes: DMat3, origin: DVec3) -> DMat4 {
+    DMat4::from_mat3_translation(axes, origin)
+}
+
+/// The turn of `m`'s frame, without scale and mirroring, as a quaternion; for showing angles only.
+#[must_use]
+pub fn turn_of(m: DMat3) -> DQuat {
+    DQuat::from_mat3(&frame(m.z_axis, m.y_axis, DMat3::IDENTITY))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vector_of_any_length_is_brought_to_length_one() {
+        for length in [1e-310, 1e-200, 1e-23, 1.0, 1e20, 1e300] {
+            let v = unit(DVec3::new(3.0, 0.0, -4.0) * length).unwrap();
+            assert!((v - DVec3::new(0.6, 0.0, -0.8)).length() < 1e-12, "{length}: {v}");
+        }
+        assert_eq!(unit(DVec3::ZERO), None);
+        assert_eq!(unit(DVec3::new(f64::NAN, 0.0, 1.0)), None);
+    }
+
+    #[test]
+    fn a_quarter_turn_about_y_takes_z_to_x() {
+        let turned = rotation(DVec3::Y, std::f64::consts::FRAC_PI_2) * DVec3::Z;
+        assert!((turned - DVec3::X).length() < 1e-15);
+    }
+
+    #[test]
+    fn depth_is_one_at_the_near_plane_and_zero_at_the_far_one() {
+        let size = Size::new(800, 600);
+        for clip_from_view in
+            [perspective(0.4, 1.0, 2000.0, size), orthographic(5.0, 1.0, 2000.0, size)]
+        {
+            let depth = |distance: f64| {
+                let p = clip_from_view * DVec4::new(0.0, 0.0, -distance, 1.0);
+                p.z / p.w
+            };
+            assert!((depth(1.0) - 1.0).abs() < 1e-12);
+            assert!(depth(2000.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_half_angle_spans_the_shorter_side() {
+        let clip_from_view = perspective(22.5_f64.to_radians(), 1.0, 2000.0, Size::new(1600, 800));
+        let edge = DVec4::new(0.0, 100.0 * libm::tan(22.5_f64.to_radians()), -100.0, 1.0);
+        let p = clip_from_view * edge;
+        assert!((p.y / p.w - 1.0).abs() < 1e-12);
+        let p = clip_from_view * DVec4::new(edge.y, 0.0, -100.0, 1.0);
+        assert!((p.x / p.w - 0.5).abs() < 1e-12, "the longer side sees more");
+    }
+
+    #[test]
+    fn looking_straight_down_keeps_the_last_right_vector() {
+        let last = rotation(DVec3::Y, 0.3);
+        let axes = look_at(DVec3::Y * 9.0, DVec3::ZERO, DVec3::Y, last);
+        assert!((axes.x_axis - last.x_axis).length() < 1e-12);
+        assert!((axes.z_axis - DVec3::Y).length() < 1e-12);
+        assert_eq!(look_at(DVec3::ONE, DVec3::ONE, DVec3::Y, last), last);
+    }
+
+    #[test]
+    fn normals_of_a_mirrored_and_stretched_surface_stay_across_it_and_outside() {
+        let m = DMat3::from_diagonal(DVec3::new(-2.0, 1.0, 10.0));
+        let (along, across) = (DVec3::new(1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0));
+        let n = normal_matrix(m) * across;
+        assert!((m * along).dot(n).abs() < 1e-12);
+        assert!(n.dot(m * across) > 0.0);
+    }
+}

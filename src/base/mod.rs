@@ -1,0 +1,8 @@
+//! What every floor stands on: mathematics, colours, pictures, shared values.
+
+pub mod color;
+pub mod image;
+pub mod math;
+mod shared;
+
+pub use shared::Shared;

@@ -1,0 +1,1 @@
+//! Which command a key means, and the history of commands.

@@ -1,0 +1,1 @@
+//! Models, textures, scene files and pictures, to and from the disk.

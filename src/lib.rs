@@ -1,0 +1,22 @@
+//! An editor for 3D scenes of `.obj` models whose pictures are drawn by the CPU alone.
+//!
+//! The folders are floors: a file uses its own floor and those below it, never one above
+//! (`tests/floors.rs` reads the sources and fails otherwise).
+//!
+//! ```text
+//! base  <  scene  <  { io, edit, render }  <  app
+//! ```
+//!
+//! * [`base`]: the conventions of the mathematics, colours, pictures.
+//! * [`scene`]: what there is to draw, how it is looked at, and the commands that change it.
+//! * [`io`]: models, textures, scene files and pictures, to and from the disk.
+//! * [`edit`]: which command a key means, and the history of commands.
+//! * [`render`]: from a scene to a picture: plan, geometry, bins, tiles, stages.
+//! * [`app`]: the window. The only floor that knows of egui.
+
+pub mod app;
+pub mod base;
+pub mod edit;
+pub mod io;
+pub mod render;
+pub mod scene;

@@ -1,0 +1,3 @@
+//! Arguments: the editor, or a headless command.
+
+fn main() {}

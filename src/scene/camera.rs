@@ -1,0 +1,132 @@
+//! A camera of the list: it looks along its own -Z.
+
+use glam::{DMat3, DMat4, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::{MaterialChoice, Model, ObjectId, Placed, Projection};
+use crate::base::image::Size;
+use crate::base::{Shared, math};
+
+/// A camera, with the model that marks it for other observers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// As the outline calls it.
+    pub name: String,
+    /// Whether its mark is drawn.
+    pub visible: bool,
+    /// The mark's shape.
+    pub model: Shared<Model>,
+    /// The mark's material.
+    pub material: MaterialChoice,
+    /// Where it is, and how it moves.
+    pub pose: Placed<Pose>,
+    /// What it sees.
+    pub lens: Lens,
+}
+
+/// Where a camera is, how it is turned, how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Its place in the world.
+    pub eye: DVec3,
+    /// Its axes as columns, orthonormal and right-handed.
+    pub axes: DMat3,
+    /// How it moves.
+    pub mode: CameraMode,
+}
+
+/// How a camera moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CameraMode {
+    /// In its own frame.
+    #[default]
+    Fly,
+    /// About the centre of an object, which it looks at.
+    Analysis {
+        /// The object.
+        target: ObjectId,
+    },
+}
+
+impl Pose {
+    /// At `eye`, looking along -Z.
+    #[must_use]
+    pub const fn facing_minus_z(eye: DVec3) -> Self {
+        Self { eye, axes: DMat3::IDENTITY, mode: CameraMode::Fly }
+    }
+
+    /// `world_from_camera`.
+    #[must_use]
+    pub fn world_from_camera(&self) -> DMat4 {
+        math::placed(self.axes, self.eye)
+    }
+
+    /// How the camera moves now: in analysis only while its target is the selected object.
+    #[must_use]
+    pub fn mode_with(&self, selected: Option<ObjectId>) -> CameraMode {
+        match self.mode {
+            CameraMode::Analysis { target } if Some(target) == selected => self.mode,
+            _ => CameraMode::Fly,
+        }
+    }
+}
+
+/// What a camera sees, in perspective and in parallel projection.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Lens {
+    /// Degrees to each side of the axis, across the shorter side of the picture: above 0, below 90.
+    pub half_angle: f64,
+    /// Where perspective begins: more than 0.
+    pub near: f64,
+    /// Where perspective ends: more than `near`.
+    pub far: f64,
+    /// Units to each side of the axis in parallel projection, across the shorter side: above 0.
+    pub half_size: f64,
+    /// Where parallel projection begins.
+    pub parallel_near: f64,
+    /// Where parallel projection ends: more than `parallel_near`.
+    pub parallel_far: f64,
+}
+
+impl Default for Lens {
+    fn default() -> Self {
+        Self {
+            half_angle: 22.5,
+            near: 1.0,
+            far: 2000.0,
+            half_size: 500.0,
+            parallel_near: 0.0,
+            parallel_far: 2000.0,
+        }
+    }
+}
+
+impl Lens {
+    /// Whether a picture can be made through it.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        let Self { half_angle, near, far, half_size, parallel_near, parallel_far } = *self;
+        let finite = [half_angle, near, far, half_size, parallel_near, parallel_far];
+        finite.iter().all(|x| x.is_finite())
+            && half_angle > 0.0
+            && half_angle < 90.0
+            && near > 0.0
+            && far > near
+            && half_size > 0.0
+            && parallel_far > parallel_near
+    }
+
+    /// `clip_from_view` for a picture of this size.
+    #[must_use]
+    pub fn clip_from_view(&self, projection: Projection, size: Size) -> DMat4 {
+        match projection {
+            Projection::Perspective => {
+                math::perspective(self.half_angle.to_radians(), self.near, self.far, size)
+            }
+            Projection::Orthographic => {
+                math::orthographic(self.half_size, self.parallel_near, self.parallel_far, size)
+            }
+        }
+    }
+}

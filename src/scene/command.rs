@@ -1,0 +1,243 @@
+//! The changes that can be made to a scene.
+//!
+//! There is no code that undoes: [`Command::apply`] gives back the command that does, so that a
+//! change and its undoing cannot drift apart. Since all that is large in a scene is shared, a change
+//! of an item holds the whole item as it will be, and its undoing the item as it was.
+
+use super::{
+    Camera, CameraId, ItemId, Light, LightId, LightKind, Object, ObjectId, Scene, SpotOwner,
+};
+use crate::base::color::Color;
+
+/// One change to a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Puts an item into its list, before the one that stands at `at`.
+    Insert {
+        /// Its place in the list; past the end means last.
+        at: usize,
+        /// The item, under an id that is not in use.
+        item: Item,
+    },
+    /// Takes an item out.
+    Remove(ItemId),
+    /// Makes an item what is given here.
+    Replace(Item),
+    /// Moves an item to another place in its list.
+    Reorder {
+        /// The item.
+        id: ItemId,
+        /// Its place afterwards.
+        to: usize,
+    },
+    /// Sets the background.
+    Background(Color),
+    /// Sets the id that the next new item gets.
+    NextId(u32),
+    /// All of these, in order, or none of them.
+    Batch(Vec<Self>),
+}
+
+/// An item of one of the lists, under its id.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// An object.
+    Object(ObjectId, Box<Object>),
+    /// A camera.
+    Camera(CameraId, Box<Camera>),
+    /// A light.
+    Light(LightId, Box<Light>),
+}
+
+impl Item {
+    /// Its id.
+    #[must_use]
+    pub const fn id(&self) -> ItemId {
+        match self {
+            Self::Object(id, _) => ItemId::Object(*id),
+            Self::Camera(id, _) => ItemId::Camera(*id),
+            Self::Light(id, _) => ItemId::Light(*id),
+        }
+    }
+
+    /// Why it may not be in a scene, where it may not.
+    fn fault(&self) -> Option<CommandError> {
+        let finite = match self {
+            Self::Object(_, object) => object.placement.now().is_finite(),
+            Self::Camera(_, camera) => {
+                let pose = camera.pose.now();
+                if !camera.lens.is_valid() {
+                    return Some(CommandError::Lens);
+                }
+                pose.eye.is_finite() && pose.axes.is_finite()
+            }
+            Self::Light(_, light) => {
+                if !light.attenuation.is_valid() {
+                    return Some(CommandError::Attenuation);
+                }
+                match &light.kind {
+                    LightKind::Ambient => true,
+                    LightKind::Sun { direction } => direction.now().is_finite(),
+                    LightKind::Bulb { position, .. } => position.now().is_finite(),
+                    LightKind::Spot { owner, half_aperture, exponent } => {
+                        let aim = match owner {
+                            SpotOwner::Fixed(aim) => {
+                                aim.now().position.is_finite() && aim.now().direction.is_finite()
+                            }
+                            _ => true,
+                        };
+                        aim && (0.0..=90.0).contains(half_aperture)
+                            && exponent.is_finite()
+                            && *exponent >= 0.0
+                    }
+                }
+            }
+        };
+        (!finite).then_some(CommandError::NotFinite)
+    }
+}
+
+/// Why a command could not be applied. The scene is then as it was before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CommandError {
+    /// The item that the command names is not there.
+    #[error("what should be changed is not in the scene any more")]
+    Missing(ItemId),
+    /// The item that the command would insert is already there.
+    #[error("what should be added is already in the scene")]
+    AlreadyThere(ItemId),
+    /// The last camera cannot be removed.
+    #[error("the last camera cannot be removed")]
+    LastCamera,
+    /// A number would be too large to be one.
+    #[error("a number would become too large")]
+    NotFinite,
+    /// No picture could be made through the lens.
+    #[error(
+        "the lens needs an angle between 0 and 90 degrees, a size above 0, and near before far"
+    )]
+    Lens,
+    /// The light would become infinite or negative.
+    #[error("a light's attenuation needs numbers of at least 0, and one above it")]
+    Attenuation,
+}
+
+impl Command {
+    /// Changes the scene, and gives back the command that changes it back.
+    ///
+    /// # Errors
+    /// Where the command does not fit the scene, which is then left as it was.
+    pub fn apply(self, scene: &mut Scene) -> Result<Self, CommandError> {
+        match self {
+            Self::Insert { at, item } => insert(scene, at, item),
+            Self::Remove(id) => remove(scene, id),
+            Self::Replace(item) => replace(scene, item),
+            Self::Reorder { id, to } => {
+                let Self::Insert { at, item } = remove_any(scene, id)? else {
+                    unreachable!("removing gives back an insertion")
+                };
+                insert(scene, to, item)?;
+                Ok(Self::Reorder { id, to: at })
+            }
+            Self::Background(to) => {
+                Ok(Self::Background(std::mem::replace(&mut scene.background, to)))
+            }
+            Self::NextId(to) => Ok(Self::NextId(std::mem::replace(&mut scene.next_id, to))),
+            Self::Batch(commands) => batch(scene, commands),
+        }
+    }
+
+    /// Whether applying `self` right after `earlier` leaves nothing of what `earlier` set.
+    #[must_use]
+    pub fn overwrites(&self, earlier: &Self) -> bool {
+        match (self, earlier) {
+            (Self::Replace(a), Self::Replace(b)) => a.id() == b.id(),
+            (Self::Background(_), Self::Background(_)) => true,
+            (Self::Batch(a), Self::Batch(b)) => {
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.overwrites(b))
+            }
+            _ => false,
+        }
+    }
+}
+
+fn insert(scene: &mut Scene, at: usize, item: Item) -> Result<Command, CommandError> {
+    let id = item.id();
+    if scene.contains(id) {
+        return Err(CommandError::AlreadyThere(id));
+    }
+    if let Some(fault) = item.fault() {
+        return Err(fault);
+    }
+    match item {
+        Item::Object(id, object) => scene.objects.insert(at, id, *object),
+        Item::Camera(id, camera) => scene.cameras.insert(at, id, *camera),
+        Item::Light(id, light) => scene.lights.insert(at, id, *light),
+    }
+    Ok(Command::Remove(id))
+}
+
+fn remove(scene: &mut Scene, id: ItemId) -> Result<Command, CommandError> {
+    if matches!(id, ItemId::Camera(_)) && scene.contains(id) && scene.cameras.len() == 1 {
+        return Err(CommandError::LastCamera);
+    }
+    remove_any(scene, id)
+}
+
+fn remove_any(scene: &mut Scene, id: ItemId) -> Result<Command, CommandError> {
+    let missing = CommandError::Missing(id);
+    let (at, item) = match id {
+        ItemId::Object(id) => {
+            let (at, object) = scene.objects.remove(id).ok_or(missing)?;
+            (at, Item::Object(id, Box::new(object)))
+        }
+        ItemId::Camera(id) => {
+            let (at, camera) = scene.cameras.remove(id).ok_or(missing)?;
+            (at, Item::Camera(id, Box::new(camera)))
+        }
+        ItemId::Light(id) => {
+            let (at, light) = scene.lights.remove(id).ok_or(missing)?;
+            (at, Item::Light(id, Box::new(light)))
+        }
+    };
+    Ok(Command::Insert { at, item })
+}
+
+fn replace(scene: &mut Scene, item: Item) -> Result<Command, CommandError> {
+    if let Some(fault) = item.fault() {
+        return Err(fault);
+    }
+    let missing = CommandError::Missing(item.id());
+    let before = match item {
+        Item::Object(id, mut object) => {
+            std::mem::swap(scene.objects.get_mut(id).ok_or(missing)?, &mut object);
+            Item::Object(id, object)
+        }
+        Item::Camera(id, mut camera) => {
+            std::mem::swap(scene.cameras.get_mut(id).ok_or(missing)?, &mut camera);
+            Item::Camera(id, camera)
+        }
+        Item::Light(id, mut light) => {
+            std::mem::swap(scene.lights.get_mut(id).ok_or(missing)?, &mut light);
+            Item::Light(id, light)
+        }
+    };
+    Ok(Command::Replace(before))
+}
+
+fn batch(scene: &mut Scene, commands: Vec<Command>) -> Result<Command, CommandError> {
+    let mut back = Vec::with_capacity(commands.len());
+    for command in commands {
+        match command.apply(scene) {
+            Ok(inverse) => back.push(inverse),
+            Err(error) => {
+                for inverse in back.into_iter().rev() {
+                    inverse.apply(scene).expect("what was just done can be taken back");
+                }
+                return Err(error);
+            }
+        }
+    }
+    back.reverse();
+    Ok(Command::Batch(back))
+}

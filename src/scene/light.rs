@@ -1,0 +1,164 @@
+//! The lights of a scene.
+
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::{CameraId, ObjectId, Placed};
+use crate::base::{color::Color, math};
+
+/// A light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// As the outline calls it.
+    pub name: String,
+    /// The number of its key: 0 to 9 have one. No two lights have the same.
+    pub slot: u32,
+    /// Whether it shines.
+    pub on: bool,
+    /// Its colour.
+    pub color: Color,
+    /// How its light fades; the sun's and ambient light do not.
+    pub attenuation: Attenuation,
+    /// What it is.
+    pub kind: LightKind,
+}
+
+/// How light fades with the distance d: 1 / (constant + linear d + quadratic d^2).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Attenuation {
+    /// Whatever the distance; more than 0 where the others are 0.
+    pub constant: f64,
+    /// For each unit of distance.
+    pub linear: f64,
+    /// For each square unit.
+    pub quadratic: f64,
+}
+
+impl Default for Attenuation {
+    fn default() -> Self {
+        Self { constant: 1.0, linear: 5e-6, quadratic: 5e-6 }
+    }
+}
+
+impl Attenuation {
+    /// Whether every distance gets a finite amount of light, and no negative one.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        let all = [self.constant, self.linear, self.quadratic];
+        all.iter().all(|x| x.is_finite() && *x >= 0.0) && all.iter().any(|x| *x > 0.0)
+    }
+}
+
+/// What a light is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightKind {
+    /// From everywhere.
+    Ambient,
+    /// From infinitely far away.
+    Sun {
+        /// The way its light goes, of length 1.
+        direction: Placed<DVec3>,
+    },
+    /// From a point, in all directions.
+    Bulb {
+        /// Where it is.
+        position: Placed<DVec3>,
+        /// Circling the world's Y axis.
+        orbit: Orbit,
+    },
+    /// From a point, in a cone.
+    Spot {
+        /// What it is fixed to.
+        owner: SpotOwner,
+        /// Degrees from the axis to the border of the cone: 0 to 90.
+        half_aperture: f64,
+        /// How much its light is gathered along the axis: at least 0.
+        exponent: f64,
+    },
+}
+
+/// What a spot is fixed to: it shines from there along -Z.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpotOwner {
+    /// The selected object, whichever it is.
+    SelectedObject,
+    /// The selected camera, whichever it is.
+    SelectedCamera,
+    /// This object.
+    Object(ObjectId),
+    /// This camera.
+    Camera(CameraId),
+    /// Nothing: a place and a direction of its own.
+    Fixed(Placed<Aim>),
+}
+
+/// A place and a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aim {
+    /// The place.
+    pub position: DVec3,
+    /// The direction, of length 1.
+    pub direction: DVec3,
+}
+
+/// Circling the world's Y axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Orbit {
+    /// Whether it circles.
+    pub on: bool,
+    /// Degrees a second.
+    pub speed: f64,
+    /// When it began, in seconds of the scene's clock.
+    pub since: f64,
+}
+
+impl Default for Orbit {
+    fn default() -> Self {
+        Self { on: false, speed: 30.0, since: 0.0 }
+    }
+}
+
+impl Orbit {
+    /// Where a bulb is at `time` (seconds of the scene's clock) that is placed at `position`.
+    #[must_use]
+    pub fn at(&self, position: DVec3, time: f64) -> DVec3 {
+        if !self.on {
+            return position;
+        }
+        let degrees = (self.speed * (time - self.since)) % 360.0;
+        let turn: DMat3 = math::rotation(DVec3::Y, degrees.to_radians());
+        turn * position
+    }
+}
+
+impl Light {
+    /// A white light that shines.
+    #[must_use]
+    pub fn new(name: &str, slot: u32, kind: LightKind) -> Self {
+        Self {
+            name: name.to_owned(),
+            slot,
+            on: true,
+            color: Color::WHITE,
+            attenuation: Attenuation::default(),
+            kind,
+        }
+    }
+
+    /// The five lights of the first scene: ambient, sun, bulb, and the spots of the selected object
+    /// and of the selected camera.
+    #[must_use]
+    pub fn five() -> [Self; 5] {
+        let spot = |owner| LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 };
+        let sun = LightKind::Sun { direction: Placed::new(DVec3::NEG_Y) };
+        let position = Placed::new(DVec3::new(0.0, 0.0, -200.0));
+        [
+            Self::new("ambient", 0, LightKind::Ambient),
+            Self::new("sun", 1, sun),
+            Self::new("bulb", 2, LightKind::Bulb { position, orbit: Orbit::default() }),
+            Self::new("object spot", 3, spot(SpotOwner::SelectedObject)),
+            Self::new("camera spot", 4, spot(SpotOwner::SelectedCamera)),
+        ]
+    }
+}

@@ -1,0 +1,624 @@
+//! The shape of a model: polygons of any size over shared vertices.
+//!
+//! A vertex is a `v` of the file; polygons that name the same `v` share it, whatever group they stand
+//! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
+//! polygon names the point it has with computed normals and the one it has with the file's.
+//!
+//! The fields are private and the constructor checks them, so that no index is ever out of range.
+
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+use glam::DVec3;
+
+use super::triangulate::triangulate;
+use crate::base::math;
+
+/// In place of an index: there is none.
+pub const NONE: u32 = u32::MAX;
+
+/// What a mesh is made of. Indices count from 0.
+#[derive(Clone, Debug, Default)]
+pub struct MeshSource {
+    /// Where vertices are, in object space; all finite.
+    pub positions: Vec<[f32; 3]>,
+    /// Red, green and blue of each vertex, 0 to 1; empty where the file has none.
+    pub colors: Vec<[f32; 3]>,
+    /// Places on the texture, (0, 0) lower left; all finite.
+    pub uvs: Vec<[f32; 2]>,
+    /// Normals of the file, of any length; all finite.
+    pub normals: Vec<[f32; 3]>,
+    /// Corners of all polygons, one after the other.
+    pub corners: Vec<SourceCorner>,
+    /// How many corners each polygon has: 3 or more.
+    pub arities: Vec<u32>,
+    /// The part that each polygon belongs to.
+    pub polygon_parts: Vec<u32>,
+    /// The parts; at least one where there is a polygon.
+    pub parts: Vec<Part>,
+}
+
+/// A corner of a polygon as the file names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SourceCorner {
+    /// Its vertex.
+    pub position: u32,
+    /// Its place on the texture, or [`NONE`].
+    pub uv: u32,
+    /// Its normal, or [`NONE`].
+    pub normal: u32,
+}
+
+/// A run of a file's `o`, `g` and `usemtl`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// As the file calls it.
+    pub name: String,
+    /// Its material, as a place in the model's list; `None` where the file names none that exists.
+    pub material: Option<u32>,
+}
+
+/// A corner of a polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Corner {
+    /// Its vertex.
+    pub position: u32,
+    /// Its place on the texture, or [`NONE`].
+    pub uv: u32,
+    /// Its point with the computed normal.
+    pub smooth: u32,
+    /// Its point with the file's normal where every corner of the polygon has one, else `smooth`.
+    pub filed: u32,
+}
+
+/// Where light is evaluated for vertices: a vertex with one of its normals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// The vertex.
+    pub position: u32,
+    /// The normal, of length 1, in object space.
+    pub normal: [f32; 3],
+}
+
+/// A triangle of a polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Triangle {
+    /// Its corners, as places in [`Mesh::corners`], in the polygon's own order of rotation.
+    pub corners: [u32; 3],
+    /// The polygon.
+    pub polygon: u32,
+}
+
+/// A side of one or more polygons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// The vertices at its ends, the smaller index first.
+    pub ends: [u32; 2],
+    /// Where its polygons begin in the list that [`Mesh::edge_polygons`] reads.
+    first: u32,
+    count: u32,
+}
+
+/// The sides of a mesh's polygons, each once, sorted by their ends.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Edges {
+    edges: Vec<Edge>,
+    polygons: Vec<u32>,
+}
+
+/// The extent of a set of points, in object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The smallest coordinates.
+    pub min: DVec3,
+    /// The largest coordinates.
+    pub max: DVec3,
+}
+
+/// The shape of a model. See the [module](self).
+#[derive(Debug)]
+pub struct Mesh {
+    positions: Vec<[f32; 3]>,
+    colors: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    points: Vec<Point>,
+    corners: Vec<Corner>,
+    starts: Vec<u32>,
+    polygon_parts: Vec<u32>,
+    polygon_normals: Vec<[f32; 3]>,
+    triangles: Vec<Triangle>,
+    triangle_starts: Vec<u32>,
+    parts: Vec<Part>,
+    has_file_normals: bool,
+    bounds: Option<Bounds>,
+    mean: DVec3,
+    edges: OnceLock<Edges>,
+}
+
+/// Why a mesh cannot be made.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// A list is not as long as another says it is.
+    #[error("the mesh's list of {0} has the wrong length")]
+    Length(&'static str),
+    /// A number is infinite or none.
+    #[error("the mesh has {0} that are not finite")]
+    NotFinite(&'static str),
+    /// An index points past the end.
+    #[error("the mesh names {0} number {1}, which it does not have")]
+    Index(&'static str, u32),
+    /// A polygon has fewer than three corners.
+    #[error("polygon {0} has fewer than three corners")]
+    Short(u32),
+    /// More than 2^32 - 2 of something.
+    #[error("the mesh has more {0} than can be numbered")]
+    TooMany(&'static str),
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.positions == other.positions
+            && self.colors == other.colors
+            && self.uvs == other.uvs
+            && self.points == other.points
+            && self.corners == other.corners
+            && self.starts == other.starts
+            && self.polygon_parts == other.polygon_parts
+            && self.parts == other.parts
+    }
+}
+
+impl Mesh {
+    /// Checks the parts, triangulates the polygons and computes their normals.
+    ///
+    /// # Errors
+    /// Where a number is not finite, an index out of range, or a list of the wrong length.
+    pub fn new(source: MeshSource) -> Result<Self, MeshError> {
+        check(&source)?;
+        let starts = running_sum(&source.arities);
+        let polygon = |i: usize| starts[i] as usize..starts[i + 1] as usize;
+        let polygons = source.arities.len();
+
+        let at = |corner: &SourceCorner| dvec3(source.positions[corner.position as usize]);
+        let normals: Vec<Option<DVec3>> = (0..polygons)
+            .map(|i| math::unit(newell(source.corners[polygon(i)].iter().map(at))))
+            .collect();
+
+        let (points, corners) = points_and_corners(&source, &starts, &normals);
+
+        let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * polygons));
+        let mut triangle_starts = vec![0];
+        for i in 0..polygons {
+            let range = polygon(i);
+            let outline: Vec<DVec3> = source.corners[range.clone()].iter().map(at).collect();
+            for [a, b, c] in triangulate(&outline, normals[i].unwrap_or(DVec3::Z)) {
+                let corners = [a, b, c].map(|corner| starts[i] + corner);
+                triangles.push(Triangle { corners, polygon: index(i) });
+            }
+            triangle_starts.push(index(triangles.len()));
+        }
+
+        let has_file_normals = corners.iter().any(|corner| corner.filed != corner.smooth);
+        let fallback = |normal: &Option<DVec3>| normal.unwrap_or(DVec3::Z).as_vec3().to_array();
+        Ok(Self {
+            bounds: Bounds::of(source.positions.iter().copied().map(dvec3)),
+            mean: mean(source.positions.iter().copied().map(dvec3)),
+            polygon_normals: normals.iter().map(fallback).collect(),
+            positions: source.positions,
+            colors: source.colors,
+            uvs: source.uvs,
+            points,
+            corners,
+            starts,
+            polygon_parts: source.polygon_parts,
+            triangles,
+            triangle_starts,
+            parts: source.parts,
+            has_file_normals,
+            edges: OnceLock::new(),
+        })
+    }
+
+    /// Where the vertices are, in object space.
+    #[must_use]
+    pub fn positions(&self) -> &[[f32; 3]] {
+        &self.positions
+    }
+
+    /// Red, green and blue of each vertex, or nothing where the file has no colours.
+    #[must_use]
+    pub fn colors(&self) -> &[[f32; 3]] {
+        &self.colors
+    }
+
+    /// Places on the texture.
+    #[must_use]
+    pub fn uvs(&self) -> &[[f32; 2]] {
+        &self.uvs
+    }
+
+    /// Vertices with their normals. The first are those with computed normals, one a vertex, in the
+    /// order of [`Self::positions`].
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The corners of all polygons, one after the other.
+    #[must_use]
+    pub fn corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    /// How many polygons there are.
+    #[must_use]
+    pub fn polygon_count(&self) -> usize {
+        self.polygon_parts.len()
+    }
+
+    /// The corners of one polygon.
+    #[must_use]
+    pub fn polygon(&self, polygon: u32) -> &[Corner] {
+        &self.corners[self.corners_of(polygon)]
+    }
+
+    /// Where the corners of one polygon stand in [`Self::corners`].
+    #[must_use]
+    pub fn corners_of(&self, polygon: u32) -> std::ops::Range<usize> {
+        self.starts[polygon as usize] as usize..self.starts[polygon as usize + 1] as usize
+    }
+
+    /// The part that each polygon belongs to.
+    #[must_use]
+    pub fn polygon_parts(&self) -> &[u32] {
+        &self.polygon_parts
+    }
+
+    /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
+    #[must_use]
+    pub fn polygon_normals(&self) -> &[[f32; 3]] {
+        &self.polygon_normals
+    }
+
+    /// The mean of a polygon's corners.
+    #[must_use]
+    pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
+        let corners = self.polygon(polygon).iter();
+        mean(corners.map(|corner| dvec3(self.positions[corner.position as usize])))
+    }
+
+    /// The triangles of all polygons, in the order of the polygons.
+    #[must_use]
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// Where the triangles of one polygon stand in [`Self::triangles`].
+    #[must_use]
+    pub fn triangles_of(&self, polygon: u32) -> std::ops::Range<usize> {
+        let polygon = polygon as usize;
+        self.triangle_starts[polygon] as usize..self.triangle_starts[polygon + 1] as usize
+    }
+
+    /// The runs of the file's `o`, `g` and `usemtl`.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// Whether any polygon has normals of the file's own.
+    #[must_use]
+    pub const fn has_file_normals(&self) -> bool {
+        self.has_file_normals
+    }
+
+    /// The extent of the vertices; `None` where there are none.
+    #[must_use]
+    pub const fn bounds(&self) -> Option<Bounds> {
+        self.bounds
+    }
+
+    /// The mean of the vertices: what cameras in analysis look at.
+    #[must_use]
+    pub const fn mean(&self) -> DVec3 {
+        self.mean
+    }
+
+    /// The sides of all polygons, each once. Found when first asked for.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        &self.edge_table().edges
+    }
+
+    /// The polygons that have this edge as a side.
+    #[must_use]
+    pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
+        &self.edge_table().polygons[edge.first as usize..(edge.first + edge.count) as usize]
+    }
+
+    fn edge_table(&self) -> &Edges {
+        self.edges.get_or_init(|| {
+            // Sides as (ends, polygon), sorted so that those with equal ends stand together.
+            let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(self.corners.len());
+            for polygon in 0..index(self.polygon_count()) {
+                let corners = self.polygon(polygon);
+                for (i, corner) in corners.iter().enumerate() {
+                    let (a, b) = (corner.position, corners[(i + 1) % corners.len()].position);
+                    if a != b {
+                        sides.push(([a.min(b), a.max(b)], polygon));
+                    }
+                }
+            }
+            sides.sort_unstable();
+            sides.dedup();
+            let polygons = sides.iter().map(|(_, polygon)| *polygon).collect();
+            let mut edges: Vec<Edge> = Vec::new();
+            for (i, (ends, _)) in sides.iter().enumerate() {
+                match edges.last_mut() {
+                    Some(last) if last.ends == *ends => last.count += 1,
+                    _ => edges.push(Edge { ends: *ends, first: index(i), count: 1 }),
+                }
+            }
+            Edges { edges, polygons }
+        })
+    }
+}
+
+impl Bounds {
+    /// The extent of points; `None` where there are none.
+    #[must_use]
+    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
+        points.into_iter().fold(None, |bounds: Option<Self>, p| {
+            Some(
+                bounds.map_or(Self { min: p, max: p }, |b| Self {
+                    min: b.min.min(p),
+                    max: b.max.max(p),
+                }),
+            )
+        })
+    }
+
+    /// The middle of the box.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Length, height and width of the box.
+    #[must_use]
+    pub fn extent(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// Its eight corners.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        let pick = |i: usize, bit: usize, axis: usize| {
+            if i & bit == 0 { self.min[axis] } else { self.max[axis] }
+        };
+        std::array::from_fn(|i| DVec3::new(pick(i, 1, 0), pick(i, 2, 1), pick(i, 4, 2)))
+    }
+}
+
+/// The normal of a polygon, as long as twice its area.
+///
+///   n = sum over sides p, q of (p - o) x (q - o),   o the first corner
+///
+/// Newell's method; taking the corners from the first one keeps small polygons far from the origin
+/// exact. Sutherland, Sproull and Schumacker, "A Characterization of Ten Hidden-Surface
+/// Algorithms", ACM Computing Surveys 1974.
+pub fn newell(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
+    let Some(origin) = corners.clone().next() else { return DVec3::ZERO };
+    let from = corners.clone().map(|p| p - origin);
+    let to = corners.skip(1).map(|p| p - origin);
+    from.zip(to).fold(DVec3::ZERO, |sum, (p, q)| sum + p.cross(q))
+}
+
+/// Three numbers of a file in double precision.
+#[must_use]
+pub fn dvec3(v: [f32; 3]) -> DVec3 {
+    DVec3::from_array(v.map(f64::from))
+}
+
+#[expect(clippy::cast_precision_loss, reason = "fewer than 2^32 points")]
+fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
+    let (sum, count) = points.fold((DVec3::ZERO, 0_usize), |(sum, n), p| (sum + p, n + 1));
+    sum / count.max(1) as f64
+}
+
+/// An index of 32 bits. `check` has made sure that it fits.
+fn index(i: usize) -> u32 {
+    u32::try_from(i).expect("the constructor has checked that everything can be numbered")
+}
+
+fn running_sum(counts: &[u32]) -> Vec<u32> {
+    let sums = counts.iter().scan(0, |sum, count| {
+        *sum += count;
+        Some(*sum)
+    });
+    std::iter::once(0).chain(sums).collect()
+}
+
+fn check(source: &MeshSource) -> Result<(), MeshError> {
+    let room = |what, length: usize| {
+        // A vertex may need one point a corner, and NONE is taken.
+        if length < NONE as usize / 4 { Ok(()) } else { Err(MeshError::TooMany(what)) }
+    };
+    room("vertices", source.positions.len())?;
+    room("corners", source.corners.len())?;
+    let length = |what, right: bool| if right { Ok(()) } else { Err(MeshError::Length(what)) };
+    let corners: u64 = source.arities.iter().map(|&n| u64::from(n)).sum();
+    length("corners", corners == source.corners.len() as u64)?;
+    length("parts of polygons", source.polygon_parts.len() == source.arities.len())?;
+    length("colours", [0, source.positions.len()].contains(&source.colors.len()))?;
+    let finite = |what, right: bool| if right { Ok(()) } else { Err(MeshError::NotFinite(what)) };
+    let all = |rows: &[[f32; 3]]| rows.iter().flatten().all(|x| x.is_finite());
+    finite("positions", all(&source.positions))?;
+    finite("colours", all(&source.colors))?;
+    finite("normals", all(&source.normals))?;
+    finite("places on the texture", source.uvs.iter().flatten().all(|x| x.is_finite()))?;
+    if let Some(short) = source.arities.iter().position(|&n| n < 3) {
+        return Err(MeshError::Short(index(short)));
+    }
+    let within = |what, i: u32, length: usize, optional: bool| {
+        let right = (i as usize) < length || (optional && i == NONE);
+        if right { Ok(()) } else { Err(MeshError::Index(what, i)) }
+    };
+    for corner in &source.corners {
+        within("vertex", corner.position, source.positions.len(), false)?;
+        within("place on the texture", corner.uv, source.uvs.len(), true)?;
+        within("normal", corner.normal, source.normals.len(), true)?;
+    }
+    for part in &source.polygon_parts {
+        within("part", *part, source.parts.len(), false)?;
+    }
+    Ok(())
+}
+
+/// The points of a mesh, and its corners, which name them.
+fn points_and_corners(
+    source: &MeshSource,
+    starts: &[u32],
+    polygon_normals: &[Option<DVec3>],
+) -> (Vec<Point>, Vec<Corner>) {
+    // The computed normal of a vertex is the mean of the unit normals of the polygons around it; a
+    // polygon that names the vertex twice is around it once.
+    let mut sums = vec![DVec3::ZERO; source.positions.len()];
+    let mut last_polygon = vec![NONE; source.positions.len()];
+    for (i, normal) in polygon_normals.iter().enumerate() {
+        for corner in &source.corners[starts[i] as usize..starts[i + 1] as usize] {
+            let position = corner.position as usize;
+            if std::mem::replace(&mut last_polygon[position], index(i)) != index(i) {
+                sums[position] += normal.unwrap_or(DVec3::ZERO);
+            }
+        }
+    }
+    // Unit normals that cancel out leave only their rounding errors.
+    let smooth: Vec<Option<DVec3>> = sums
+        .into_iter()
+        .map(|sum| if sum.length() > 1e-9 { math::unit(sum) } else { None })
+        .collect();
+
+    let mut points: Vec<Point> = smooth
+        .iter()
+        .enumerate()
+        .map(|(i, n)| Point { position: index(i), normal: narrow(n.unwrap_or(DVec3::Z)) })
+        .collect();
+    let mut filed_points: HashMap<(u32, u32), u32> = HashMap::new();
+    let mut corners = Vec::with_capacity(source.corners.len());
+    for (i, polygon_normal) in polygon_normals.iter().enumerate() {
+        let own = &source.corners[starts[i] as usize..starts[i + 1] as usize];
+        let file_normal = |corner: &SourceCorner| {
+            let normal = source.normals.get(corner.normal as usize)?;
+            math::unit(dvec3(*normal))
+        };
+        let filed = own.iter().all(|corner| file_normal(corner).is_some());
+        for corner in own {
+            let position = corner.position;
+            let mut add = |normal: DVec3| {
+                points.push(Point { position, normal: narrow(normal) });
+                index(points.len() - 1)
+            };
+            let smooth = match (smooth[position as usize], polygon_normal) {
+                (None, Some(normal)) => add(*normal),
+                _ => position,
+            };
+            let filed = match file_normal(corner) {
+                Some(normal) if filed => {
+                    *filed_points.entry((position, corner.normal)).or_insert_with(|| add(normal))
+                }
+                _ => smooth,
+            };
+            corners.push(Corner { position, uv: corner.uv, smooth, filed });
+        }
+    }
+    (points, corners)
+}
+
+fn narrow(v: DVec3) -> [f32; 3] {
+    v.as_vec3().to_array()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(position: u32) -> SourceCorner {
+        SourceCorner { position, uv: NONE, normal: NONE }
+    }
+
+    /// A roof: two squares that meet at a right angle along the side from vertex 0 to vertex 1.
+    fn roof() -> MeshSource {
+        MeshSource {
+            positions: vec![
+                [0.0, 1.0, 0.0],
+                [0.0, 1.0, 1.0],
+                [-1.0, 0.0, 1.0],
+                [-1.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [1.0, 0.0, 1.0],
+            ],
+            corners: [0, 3, 2, 1, 0, 1, 5, 4].map(corner).to_vec(),
+            arities: vec![4, 4],
+            polygon_parts: vec![0, 0],
+            parts: vec![Part { name: "roof".to_owned(), material: None }],
+            ..MeshSource::default()
+        }
+    }
+
+    #[test]
+    fn the_normal_on_the_ridge_is_the_mean_of_both_sides() {
+        let mesh = Mesh::new(roof()).unwrap();
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        assert_eq!(mesh.points()[0].normal, [0.0, 1.0, 0.0]);
+        assert_eq!(mesh.polygon_normals(), [[-half, half, 0.0], [half, half, 0.0]]);
+    }
+
+    #[test]
+    fn a_shared_side_is_one_edge_of_two_polygons() {
+        let mesh = Mesh::new(roof()).unwrap();
+        assert_eq!(mesh.edges().len(), 7);
+        let ridge = mesh.edges().iter().find(|edge| edge.ends == [0, 1]).unwrap();
+        assert_eq!(mesh.edge_polygons(ridge), [0, 1]);
+    }
+
+    #[test]
+    fn opposite_normals_give_each_corner_its_own_polygons_normal() {
+        let mut source = roof();
+        // The same square twice, once from each side.
+        source.corners = [0, 3, 2, 1, 1, 2, 3, 0].map(corner).to_vec();
+        let mesh = Mesh::new(source).unwrap();
+        for polygon in 0..2 {
+            for corner in mesh.polygon(polygon) {
+                let normal = mesh.points()[corner.smooth as usize].normal;
+                assert_eq!(normal, mesh.polygon_normals()[polygon as usize]);
+            }
+        }
+    }
+
+    #[test]
+    fn file_normals_count_only_where_every_corner_has_one() {
+        let mut source = roof();
+        source.normals = vec![[0.0, 0.0, 2.0]];
+        for corner in &mut source.corners[..5] {
+            corner.normal = 0;
+        }
+        let mesh = Mesh::new(source).unwrap();
+        assert!(
+            mesh.polygon(0)
+                .iter()
+                .all(|c| mesh.points()[c.filed as usize].normal == [0.0, 0.0, 1.0])
+        );
+        assert!(mesh.polygon(1).iter().all(|c| c.filed == c.smooth));
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_refused() {
+        let mut source = roof();
+        source.corners[3].position = 6;
+        assert_eq!(Mesh::new(source).unwrap_err(), MeshError::Index("vertex", 6));
+        let mut source = roof();
+        source.positions[0][1] = f32::NAN;
+        assert_eq!(Mesh::new(source).unwrap_err(), MeshError::NotFinite("positions"));
+    }
+}

@@ -1,0 +1,159 @@
+//! What there is to draw, how it is looked at, and the commands that change it.
+//!
+//! Plain data. Nothing here draws, nothing here reads files, nothing here knows of windows.
+
+mod camera;
+mod command;
+mod light;
+mod list;
+mod material;
+mod mesh;
+mod model;
+mod object;
+mod placed;
+mod settings;
+pub mod triangulate;
+mod view;
+
+pub use camera::{Camera, CameraMode, Lens, Pose};
+pub use command::{Command, CommandError, Item};
+pub use light::{Aim, Attenuation, Light, LightKind, Orbit, SpotOwner};
+pub use list::List;
+pub use material::{Material, MaterialChoice, PRESETS, Preset, PresetId};
+pub use mesh::{
+    Bounds, Corner, Edge, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle,
+    dvec3, newell,
+};
+pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Winding, Wrap};
+pub use object::{Object, PartLook, Spin, Surface};
+pub use placed::Placed;
+pub use settings::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
+pub use view::{
+    Fill, Frame, NormalLength, Normals, Observer, PolygonMode, Projection, Steps, Subject,
+    Transformation, View,
+};
+
+use glam::{DMat3, DMat4};
+use serde::{Deserialize, Serialize};
+
+use crate::base::{color::Color, math};
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident),+ $(,)?) => {
+        $(
+            $(#[$doc])*
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+            pub struct $name(pub u32);
+        )+
+    };
+}
+
+ids! {
+    /// Names an object for as long as the scene lives. A smaller number is an older object.
+    ObjectId,
+    /// Names a camera for as long as the scene lives.
+    CameraId,
+    /// Names a light for as long as the scene lives.
+    LightId,
+}
+
+/// Names anything of the three lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ItemId {
+    /// An object.
+    Object(ObjectId),
+    /// A camera.
+    Camera(CameraId),
+    /// A light.
+    Light(LightId),
+}
+
+/// Everything there is to draw. A clone costs next to nothing: what is large is shared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The objects, in the order in which the user sees them.
+    pub objects: List<ObjectId, Object>,
+    /// The cameras; there is always one.
+    pub cameras: List<CameraId, Camera>,
+    /// The lights.
+    pub lights: List<LightId, Light>,
+    /// What is seen where nothing is.
+    pub background: Color,
+    /// The id that the next new item gets.
+    pub next_id: u32,
+}
+
+impl Scene {
+    /// The blue of the first scene.
+    pub const BACKGROUND: Color = Color([0, 0, 179]);
+
+    /// A scene with one camera and no more.
+    #[must_use]
+    pub fn with_camera(camera: Camera) -> Self {
+        Self {
+            objects: List::default(),
+            cameras: List::from_iter([(CameraId(0), camera)]),
+            lights: List::default(),
+            background: Self::BACKGROUND,
+            next_id: 1,
+        }
+    }
+
+    /// Whether there is an item under this id.
+    #[must_use]
+    pub fn contains(&self, id: ItemId) -> bool {
+        match id {
+            ItemId::Object(id) => self.objects.get(id).is_some(),
+            ItemId::Camera(id) => self.cameras.get(id).is_some(),
+            ItemId::Light(id) => self.lights.get(id).is_some(),
+        }
+    }
+
+    /// The lowest slot that no light has.
+    #[must_use]
+    pub fn free_slot(&self) -> u32 {
+        let taken = |slot: &u32| self.lights.iter().any(|(_, light)| light.slot == *slot);
+        (0..).find(|slot| !taken(slot)).unwrap_or(0)
+    }
+
+    /// The view that a scene is first seen in: the first object, camera and light (the sun where
+    /// there is one) selected.
+    #[must_use]
+    pub fn first_view(&self) -> View {
+        let sun = self.lights.iter().find(|(_, light)| matches!(light.kind, LightKind::Sun { .. }));
+        let light = sun.map(|(id, _)| id).or_else(|| self.lights.first());
+        let camera = self.cameras.first().unwrap_or(CameraId(0));
+        View::new(self.objects.first(), camera, light)
+    }
+
+    /// The camera that is selected, or the first where that one is gone.
+    #[must_use]
+    pub fn selected_camera(&self, view: &View) -> &Camera {
+        let first = || self.cameras.first().and_then(|id| self.cameras.get(id));
+        self.cameras.get(view.camera).or_else(first).expect("a scene always has a camera")
+    }
+
+    /// The frame of an object as an observer, and of its spot: its Z and Y columns by Gram-Schmidt,
+    /// never mirrored or scaled.
+    #[must_use]
+    pub fn frame_of_object(object: &Object, time: f64) -> DMat4 {
+        let m = object.world_from_object(time);
+        let axes = DMat3::from_mat4(m);
+        let axes = math::frame(axes.z_axis, axes.y_axis, DMat3::IDENTITY);
+        math::placed(axes, m.w_axis.truncate())
+    }
+
+    /// `world_from_view` of whoever looks: the selected object's frame where the view says so and
+    /// there is one, else the selected camera's.
+    #[must_use]
+    pub fn observer_frame(&self, view: &View) -> DMat4 {
+        let object = match view.observer {
+            Observer::Object => view.object.and_then(|id| self.objects.get(id)),
+            Observer::Camera => None,
+        };
+        object.map_or_else(
+            || self.selected_camera(view).pose.now().world_from_camera(),
+            |object| Self::frame_of_object(object, view.time),
+        )
+    }
+}

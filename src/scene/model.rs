@@ -1,0 +1,135 @@
+//! A file's content: its shape, its materials, its textures.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Material, Mesh};
+use crate::base::image::Picture;
+use crate::base::{Shared, color::Color};
+
+/// What a file holds, as it was loaded. Objects share it and nobody changes it.
+#[derive(Debug, PartialEq)]
+pub struct Model {
+    /// The name for the outline: the file's, without folders and ending.
+    pub name: String,
+    /// Where it came from; `None` for the three models that the program carries.
+    pub source: Option<PathBuf>,
+    /// How it was read.
+    pub options: LoadOptions,
+    /// Its shape.
+    pub mesh: Mesh,
+    /// Its materials, which the mesh's parts name by their place here.
+    pub materials: Vec<FileMaterial>,
+    /// The colour of edges by its line `c r g b` or `# color r g b`.
+    pub edge_color: Option<Color>,
+}
+
+/// How a file is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LoadOptions {
+    /// Which of the file's axes points up.
+    pub up: UpAxis,
+    /// What the file's coordinates are multiplied by.
+    pub scale: Scale,
+    /// Whether its polygons run clockwise seen from outside, and have to be turned.
+    pub winding: Winding,
+}
+
+/// Which of a file's axes points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum UpAxis {
+    /// As here.
+    #[default]
+    Y,
+    /// (x, y, z) of the file is (x, z, -y) here.
+    Z,
+}
+
+/// A factor that is finite and more than 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(into = "f64", try_from = "f64")]
+pub struct Scale(f64);
+
+impl Scale {
+    /// `factor`, where it is finite and more than 0.
+    #[must_use]
+    pub fn new(factor: f64) -> Option<Self> {
+        (factor.is_finite() && factor > 0.0).then_some(Self(factor))
+    }
+
+    /// The factor.
+    #[must_use]
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+}
+
+impl Default for Scale {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+impl From<Scale> for f64 {
+    fn from(scale: Scale) -> Self {
+        scale.0
+    }
+}
+
+impl TryFrom<f64> for Scale {
+    type Error = &'static str;
+
+    fn try_from(factor: f64) -> Result<Self, Self::Error> {
+        Self::new(factor).ok_or("a scale must be a finite number above 0")
+    }
+}
+
+/// Which way a file's polygons run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Winding {
+    /// Counter-clockwise seen from outside, as here.
+    #[default]
+    Kept,
+    /// Clockwise: corners are taken in the opposite order, and normals turned.
+    Turned,
+}
+
+/// A material of an MTL file, mended where it was nonsense.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileMaterial {
+    /// As `newmtl` calls it.
+    pub name: String,
+    /// Its coefficients.
+    pub material: Material,
+    /// `d`: below 0.5 (times the texel's alpha) nothing is drawn.
+    pub opacity: f64,
+    /// `map_Kd`, where it was found.
+    pub texture: Option<Shared<Texture>>,
+}
+
+/// A picture to be laid over a surface, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// Where it came from.
+    pub source: PathBuf,
+    /// Its texels, rows from the top; place (0, 0) is the lower left corner.
+    pub picture: Picture,
+    /// What happens outside 0 to 1: `-clamp on` holds to the border, else the picture repeats.
+    pub wrap: Wrap,
+    /// `-o u v`, added after scaling.
+    pub offset: [f64; 2],
+    /// `-s u v`, multiplied with the places.
+    pub scale: [f64; 2],
+}
+
+/// What a texture shows outside its borders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Wrap {
+    /// Itself, again and again.
+    #[default]
+    Repeat,
+    /// Its border.
+    Clamp,
+}

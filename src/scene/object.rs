@@ -1,0 +1,184 @@
+//! A model placed in the scene.
+
+use std::collections::BTreeSet;
+
+use glam::{DMat3, DMat4, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::{MaterialChoice, Model, Placed, PresetId, Texture};
+use crate::base::math::{self, Axis};
+use crate::base::{Shared, color::Color};
+
+/// A model placed in the scene, and how its surface looks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// As the outline calls it.
+    pub name: String,
+    /// Whether it is drawn.
+    pub visible: bool,
+    /// Its shape.
+    pub model: Shared<Model>,
+    /// The parts of the model that are not drawn, by their places.
+    pub hidden_parts: BTreeSet<u32>,
+    /// `world_from_object`, without the spin. A matrix, since a step in the global frame on a turned
+    /// object need not be a product of one translation, rotation and scale.
+    pub placement: Placed<DMat4>,
+    /// Turning by itself.
+    pub spin: Spin,
+    /// Which material it has.
+    pub material: MaterialChoice,
+    /// What of material, texture and light is shown.
+    pub surface: Surface,
+    /// A texture given by hand, in place of the file's.
+    pub texture: Option<Shared<Texture>>,
+    /// Multiplied with the texture.
+    pub tint: Color,
+    /// Whether back faces are lit, with their normals turned.
+    pub two_sided: bool,
+    /// Whether the file's normals are used where a polygon has them.
+    pub file_normals: bool,
+    /// Edges and normals are drawn in it.
+    pub edge_color: Color,
+}
+
+/// What of material, texture and light is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Surface {
+    /// The material, lit.
+    Material,
+    /// The texture, not lit.
+    Texture,
+    /// The texture, lit; the material alone where there is none.
+    #[default]
+    TextureAndLight,
+}
+
+/// Turning about the object's own axes, after its placement: M Rx Ry Rz.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spin {
+    /// Whether it turns about X, Y and Z.
+    pub axes: [bool; 3],
+    /// Degrees a second.
+    pub speed: f64,
+    /// When it began, in seconds of the scene's clock.
+    pub since: f64,
+}
+
+impl Default for Spin {
+    fn default() -> Self {
+        Self { axes: [false; 3], speed: 30.0, since: 0.0 }
+    }
+}
+
+impl Spin {
+    /// Whether it turns about any axis.
+    #[must_use]
+    pub fn is_on(&self) -> bool {
+        self.axes.contains(&true)
+    }
+
+    /// The turn at `time`, in seconds of the scene's clock.
+    #[must_use]
+    pub fn at(&self, time: f64) -> DMat3 {
+        // A whole turn changes nothing, and a small angle keeps its digits.
+        let degrees = (self.speed * (time - self.since)) % 360.0;
+        Axis::ALL
+            .into_iter()
+            .filter(|axis| self.axes[axis.index()])
+            .fold(DMat3::IDENTITY, |turn, axis| {
+                turn * math::rotation(axis.unit(), degrees.to_radians())
+            })
+    }
+}
+
+impl Object {
+    /// A model as oriented in its file, at the centre of the world.
+    #[must_use]
+    pub fn new(model: Shared<Model>, material: MaterialChoice) -> Self {
+        Self {
+            name: model.name.clone(),
+            visible: true,
+            hidden_parts: BTreeSet::new(),
+            placement: Placed::new(DMat4::IDENTITY),
+            spin: Spin::default(),
+            material,
+            surface: Surface::default(),
+            texture: None,
+            tint: Color::WHITE,
+            two_sided: false,
+            file_normals: true,
+            edge_color: model.edge_color.unwrap_or(Color::WHITE),
+            model,
+        }
+    }
+
+    /// `world_from_object` at `time`, in seconds of the scene's clock.
+    #[must_use]
+    pub fn world_from_object(&self, time: f64) -> DMat4 {
+        let placement = *self.placement.now();
+        if self.spin.is_on() { placement * DMat4::from_mat3(self.spin.at(time)) } else { placement }
+    }
+
+    /// The mean of its vertices, placed.
+    #[must_use]
+    pub fn centre(&self, time: f64) -> DVec3 {
+        self.world_from_object(time).transform_point3(self.model.mesh.mean())
+    }
+
+    /// The middle and the radius of a sphere about the object, placed: about the middle of the
+    /// model's box, through the vertex farthest from it. `None` where it has no vertices.
+    #[must_use]
+    pub fn bounding_sphere(&self, time: f64) -> Option<(DVec3, f64)> {
+        let world_from_object = self.world_from_object(time);
+        let centre = world_from_object.transform_point3(self.model.mesh.bounds()?.centre());
+        let placed = |p: &[f32; 3]| world_from_object.transform_point3(super::dvec3(*p));
+        let squares =
+            self.model.mesh.positions().iter().map(|p| placed(p).distance_squared(centre));
+        Some((centre, squares.fold(0.0, f64::max).sqrt()))
+    }
+
+    /// The largest extent of its box in its own axes, placed: what "by size" is measured by.
+    #[must_use]
+    pub fn largest_extent(&self) -> f64 {
+        let Some(bounds) = self.model.mesh.bounds() else { return 0.0 };
+        let m = *self.placement.now();
+        let side = |axis: Axis| m.transform_vector3(axis.unit()).length();
+        let sides = Axis::ALL.map(|axis| side(axis) * bounds.extent()[axis.index()]);
+        sides.into_iter().fold(0.0, f64::max)
+    }
+
+    /// The coefficients, opacity and texture of one of the model's parts.
+    #[must_use]
+    pub fn part_look(&self, part: u32) -> PartLook<'_> {
+        let named = self.model.mesh.parts().get(part as usize).and_then(|part| part.material);
+        let file = named.and_then(|material| self.model.materials.get(material as usize));
+        let material = match &self.material {
+            MaterialChoice::Preset(id) => id.get().material,
+            MaterialChoice::Own(material) => *material,
+            MaterialChoice::File => {
+                file.map_or(PresetId::SILVER.get().material, |file| file.material)
+            }
+        };
+        let texture = self.texture.as_ref().or_else(|| file?.texture.as_ref());
+        let opacity = match self.material {
+            MaterialChoice::File => file.map_or(1.0, |file| file.opacity),
+            _ => 1.0,
+        };
+        PartLook {
+            material,
+            opacity,
+            texture: texture.filter(|_| self.surface != Surface::Material),
+        }
+    }
+}
+
+/// How one part of an object looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PartLook<'a> {
+    /// Its coefficients.
+    pub material: super::Material,
+    /// `d` of the file's material.
+    pub opacity: f64,
+    /// The texture that it shows, if it shows one.
+    pub texture: Option<&'a Shared<Texture>>,
+}

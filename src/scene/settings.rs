@@ -1,0 +1,59 @@
+//! A point in the space of accuracy. Each field is one axis; the default is what the editor shows.
+
+use serde::{Deserialize, Serialize};
+
+/// How exactly a picture is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// The numbers that light is computed in.
+    pub arithmetic: Arithmetic,
+    /// Where light is evaluated.
+    pub light: LightAt,
+    /// What a texture gives between its texels.
+    pub filter: Filter,
+    /// Which form the highlight has.
+    pub specular: SpecularForm,
+}
+
+/// The numbers that light is computed in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Arithmetic {
+    /// 32 bits, sixteen at once.
+    #[default]
+    F32,
+    /// 64 bits, one at a time, with the library's power: the reference.
+    F64,
+}
+
+/// Where light is evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum LightAt {
+    /// Once a polygon, at the mean of its corners (flat shading).
+    Face,
+    /// At its vertices, interpolated between them (Gouraud).
+    Vertex,
+    /// At each pixel, with interpolated normals (Phong).
+    #[default]
+    Pixel,
+}
+
+/// What a texture gives between its texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Filter {
+    /// The texel that the place falls into.
+    Nearest,
+    /// A mean of the four around it.
+    #[default]
+    Bilinear,
+}
+
+/// Which form the highlight has. The two are different models: neither is an error of the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum SpecularForm {
+    /// (R.V)^Ns: Phong's.
+    #[default]
+    Reflection,
+    /// (N.H)^Ns, H half-way between L and V: Blinn's.
+    HalfVector,
+}

@@ -1,0 +1,212 @@
+//! How the scene is looked at: saved with it, but never a step of undo.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+use super::{CameraId, LightId, ObjectId};
+
+/// What is selected and what is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// What the keys act on.
+    pub subject: Subject,
+    /// The selected object; `None` only where there is none.
+    pub object: Option<ObjectId>,
+    /// The selected camera.
+    pub camera: CameraId,
+    /// The selected light; `None` only where there is none.
+    pub light: Option<LightId>,
+    /// What x, y and z do.
+    pub transformation: Transformation,
+    /// In which frame objects are transformed.
+    pub frame: Frame,
+    /// How far a step goes.
+    pub steps: Steps,
+    /// Who looks.
+    pub observer: Observer,
+    /// Through which projection.
+    pub projection: Projection,
+    /// Whether polygons are filled.
+    pub fill: Fill,
+    /// Whether edges are drawn over filled polygons.
+    pub edges_over_fill: bool,
+    /// Whether one polygon of the selected object is shown rather than all.
+    pub polygons: Option<PolygonMode>,
+    /// Polygon mode: whether earlier polygons stay drawn.
+    pub polygons_stay: bool,
+    /// Whether all objects are shown, or the selected one alone.
+    pub only_selected: bool,
+    /// Which normals light uses.
+    pub normals: Normals,
+    /// Whether back faces are drawn, in red.
+    pub back_faces: bool,
+    /// Whether the normals of faces are drawn.
+    pub face_normals: bool,
+    /// Whether the normals of vertices are drawn.
+    pub vertex_normals: bool,
+    /// How long drawn normals are.
+    pub normal_length: NormalLength,
+    /// Whether lines are two pixels wide, for screens of high density.
+    pub wide_lines: bool,
+    /// Whether the marks of cameras and of the bulb are drawn.
+    pub marks: bool,
+    /// Seconds of the scene's clock.
+    pub time: f64,
+}
+
+impl View {
+    /// The first view of a scene.
+    #[must_use]
+    pub const fn new(object: Option<ObjectId>, camera: CameraId, light: Option<LightId>) -> Self {
+        Self {
+            subject: Subject::Camera,
+            object,
+            camera,
+            light,
+            transformation: Transformation::Translation,
+            frame: Frame::Local,
+            steps: Steps::DEFAULT,
+            observer: Observer::Camera,
+            projection: Projection::Perspective,
+            fill: Fill::Filled,
+            edges_over_fill: false,
+            polygons: None,
+            polygons_stay: true,
+            only_selected: false,
+            normals: Normals::Vertex,
+            back_faces: false,
+            face_normals: false,
+            vertex_normals: false,
+            normal_length: NormalLength::Units,
+            wide_lines: false,
+            marks: true,
+            time: 0.0,
+        }
+    }
+}
+
+/// What the keys act on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Subject {
+    /// The selected camera.
+    Camera,
+    /// The selected object.
+    Object,
+    /// The selected light.
+    Light,
+}
+
+/// What x, y and z do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Transformation {
+    /// Move.
+    Translation,
+    /// Turn.
+    Rotation,
+    /// Make larger or smaller; objects only.
+    Scaling,
+}
+
+/// In which frame objects are transformed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Frame {
+    /// The object's own: M := M T.
+    Local,
+    /// The world's: M := T M.
+    Global,
+}
+
+/// How far one press of x, y or z goes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Steps {
+    /// Units of the world.
+    pub translation: f64,
+    /// Whether translation goes by 1/20 of the selected object's largest extent instead.
+    pub by_size: bool,
+    /// Degrees.
+    pub rotation: f64,
+    /// The factor of a step up; a step down divides by it. More than 1.
+    pub scaling: f64,
+}
+
+impl Steps {
+    /// 10 units, 10 degrees, a factor of 1.2.
+    pub const DEFAULT: Self =
+        Self { translation: 10.0, by_size: false, rotation: 10.0, scaling: 1.2 };
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// Who looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Observer {
+    /// The selected camera.
+    Camera,
+    /// The selected object, with the selected camera's lens.
+    Object,
+}
+
+/// How space is brought onto the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Projection {
+    /// What is farther looks smaller.
+    Perspective,
+    /// In parallel.
+    Orthographic,
+}
+
+/// Whether polygons are filled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Fill {
+    /// Filled.
+    Filled,
+    /// Edges only.
+    Edges,
+}
+
+/// Which normals light uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Normals {
+    /// Those of vertices.
+    Vertex,
+    /// Those of faces.
+    Face,
+}
+
+/// How long drawn normals are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum NormalLength {
+    /// 5 units of the object's own space.
+    Units,
+    /// 1/20 of the object's largest extent.
+    BySize,
+}
+
+/// One polygon at a time of the selected object.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PolygonMode {
+    /// The selected polygon.
+    pub current: u32,
+    /// The polygons shown since the mode began, the selected one among them.
+    pub shown: BTreeSet<u32>,
+}
+
+impl PolygonMode {
+    /// At polygon 0.
+    #[must_use]
+    pub fn begin() -> Self {
+        Self { current: 0, shown: BTreeSet::from([0]) }
+    }
+
+    /// Goes to another polygon.
+    pub fn go_to(&mut self, polygon: u32) {
+        self.current = polygon;
+        self.shown.insert(polygon);
+    }
+}
