@@ -1,1 +1,21 @@
 //! The window: the only floor that knows of egui.
+//!
+//! ```text
+//! keys, menus, buttons, mouse  ->  Ask  ->  App::answer  ->  Command or View  ->  the scene
+//! ```
+//!
+//! Panels and the viewport read the [`State`](state::State) and give back what is asked for; they
+//! change nothing. [`App`] answers at the end of the frame.
+
+pub mod action;
+pub mod ask;
+mod buttons;
+pub mod chord;
+mod editor;
+pub mod gestures;
+mod keyboard;
+pub mod panels;
+pub mod state;
+pub mod theme;
+
+pub use editor::App;
