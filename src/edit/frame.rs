@@ -1,0 +1,158 @@
+//! Where the selected camera has to be to see things whole, whatever their size.
+//!
+//! ```text
+//! distance = r / sin(a)                                 r the bounding radius, a the half-angle
+//! near     = min(1, (distance - r) / 2, distance / 1000)
+//! far      = max(2000, distance + 2 r)
+//! in parallel projection: half-size = 1.1 r
+//! ```
+//!
+//! The camera keeps the direction in which it looks. In analysis it goes on looking at the mean of
+//! the object's vertices, so the sphere that is framed then has its centre there.
+
+use glam::{DMat3, DVec3};
+
+use super::{Refusal, Stroke, put};
+use crate::scene::{
+    CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, Scene, View, dvec3,
+};
+
+/// A sphere about what is to be seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its middle.
+    pub centre: DVec3,
+    /// Its radius: at least 0.
+    pub radius: f64,
+}
+
+/// From where the axes of the world are looked along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Along -Z.
+    Front,
+    /// From +X, along -X.
+    Right,
+    /// From +Y, along -Y, with -Z up.
+    Top,
+}
+
+impl Side {
+    /// The axes of a camera that looks from there.
+    #[must_use]
+    pub const fn axes(self) -> DMat3 {
+        match self {
+            Self::Front => DMat3::IDENTITY,
+            Self::Right => DMat3::from_cols(DVec3::NEG_Z, DVec3::Y, DVec3::X),
+            Self::Top => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
+        }
+    }
+}
+
+/// The key `.`: the selected camera sees the selected object whole.
+///
+/// # Errors
+/// Where there is no object, or it has no vertices.
+pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    let (id, _) = put::selected_object(scene, view)?;
+    objects(scene, view, &[id])
+}
+
+/// The key Home: the selected camera sees everything that is shown.
+///
+/// # Errors
+/// Where nothing is shown.
+pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    let shown = |id: &ObjectId, object: &Object| {
+        object.visible && (!view.only_selected || view.object == Some(*id))
+    };
+    let ids: Vec<ObjectId> =
+        scene.objects.iter().filter(|(id, object)| shown(id, object)).map(|(id, _)| id).collect();
+    objects(scene, view, &ids)
+}
+
+/// The selected camera sees these objects whole.
+///
+/// # Errors
+/// Where none of them has vertices.
+pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, Refusal> {
+    framed(scene, view, ids, scene.selected_camera(view).pose.now().axes)
+}
+
+/// Ctrl+1, 3 and 7: the selected camera sees the selected object whole from a side, or everything
+/// where there is no object.
+///
+/// # Errors
+/// Where nothing has vertices.
+pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
+    match view.object {
+        Some(id) => framed(scene, view, &[id], side.axes()),
+        None => Err(Refusal::NoObject),
+    }
+}
+
+/// A sphere about objects: of one object its own, of several about the box around theirs. `None`
+/// where none of them has vertices.
+#[must_use]
+pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
+    let spheres: Vec<(DVec3, f64)> = ids
+        .iter()
+        .filter_map(|id| scene.objects.get(*id)?.bounding_sphere(view.time))
+        .filter(|(centre, radius)| centre.is_finite() && radius.is_finite())
+        .collect();
+    if let [(centre, radius)] = spheres[..] {
+        return Some(Sphere { centre, radius });
+    }
+    let min = spheres.iter().map(|(centre, radius)| *centre - *radius).reduce(DVec3::min)?;
+    let max = spheres.iter().map(|(centre, radius)| *centre + *radius).reduce(DVec3::max)?;
+    let centre = (min + max) * 0.5;
+    let reach = |(other, radius): &(DVec3, f64)| other.distance(centre) + radius;
+    Some(Sphere { centre, radius: spheres.iter().map(reach).fold(0.0, f64::max) })
+}
+
+/// How far from the centre of a sphere of radius `r` the eye is, and the lens that sees it.
+#[must_use]
+pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
+    let distance = r / libm::sin(lens.half_angle.to_radians());
+    let near = 1.0_f64.min((distance - r) / 2.0).min(distance / 1000.0);
+    let far = 2000.0_f64.max(distance + 2.0 * r);
+    let framed = Lens {
+        half_angle: lens.half_angle,
+        near,
+        far,
+        half_size: 1.1 * r,
+        parallel_near: lens.parallel_near.min(near),
+        parallel_far: far,
+    };
+    (distance, framed)
+}
+
+fn framed(scene: &Scene, view: &View, ids: &[ObjectId], axes: DMat3) -> Result<Command, Refusal> {
+    if view.observer == Observer::Object && view.object.is_some() {
+        return Err(Refusal::ObjectLooks);
+    }
+    let camera = scene.selected_camera(view);
+    let mode = camera.pose.now().mode_with(view.object);
+    let analysed = match (mode, ids) {
+        (CameraMode::Analysis { target }, [id]) if target == *id => scene.objects.get(*id),
+        _ => None,
+    };
+    let (sphere, mode) = match analysed {
+        Some(object) => (Some(about_the_mean(object, view.time)), mode),
+        None => (sphere(scene, view, ids), CameraMode::Fly),
+    };
+    let Sphere { centre, radius } = sphere.ok_or(Refusal::NothingToFrame)?;
+    // A single point is looked at as if it were a sphere of one unit.
+    let radius = if radius > 0.0 { radius } else { 1.0 };
+    let (distance, lens) = lens(&camera.lens, radius);
+    let pose = Pose { eye: centre + axes.z_axis * distance, axes, mode };
+    put::pose_and_lens(scene, view.camera, pose, lens, Stroke::First)
+}
+
+/// The sphere about the mean of an object's vertices, through the one farthest from it.
+fn about_the_mean(object: &Object, time: f64) -> Sphere {
+    let (m, centre) = (object.world_from_object(time), object.centre(time));
+    let positions = object.model.mesh.positions().iter();
+    let squares = positions.map(|p| m.transform_point3(dvec3(*p)).distance_squared(centre));
+    Sphere { centre, radius: squares.fold(0.0, f64::max).sqrt() }
+}

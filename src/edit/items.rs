@@ -1,0 +1,313 @@
+//! New items, their removal, and everything about them but where they are.
+
+use std::collections::{BTreeSet, HashSet};
+
+use glam::DVec3;
+
+use super::Refusal;
+use crate::base::Shared;
+use crate::scene::{
+    Camera, CameraId, Command, CommandError, Item, ItemId, Lens, Light, LightId, LightKind,
+    MaterialChoice, Model, Object, ObjectId, Placed, Pose, Scene, SpotOwner,
+};
+
+/// More parts than this are not made objects at once: the outline could not be read any more.
+pub const MOST_PARTS: usize = 1000;
+
+/// Puts an object into the scene, at the front of the list.
+#[must_use]
+pub fn insert_object(scene: &Scene, mut object: Object) -> Command {
+    let taken = scene.objects.iter().map(|(_, other)| &*other.name).collect();
+    object.name = free_name(&taken, &object.name);
+    let id = ObjectId(scene.next_id);
+    inserted(scene, 0, Item::Object(id, Box::new(object)))
+}
+
+/// The key `F`: a camera at the centre of the world, looking along -Z, with the model and material
+/// of its mark.
+#[must_use]
+pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoice) -> Command {
+    let number = scene.cameras.len() + 1;
+    let camera = Camera {
+        name: format!("camera {number}"),
+        visible: true,
+        model,
+        material,
+        pose: Placed::new(Pose::facing_minus_z(DVec3::ZERO)),
+        lens: Lens::default(),
+    };
+    put_camera(scene, camera)
+}
+
+/// A new white light in the lowest free slot.
+///
+/// # Errors
+/// Where it is a spot of an object or a camera that is not there.
+pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> {
+    put_light(scene, Light::new(light_name(&kind), 0, kind))
+}
+
+/// A copy of an item; its stack of transformations begins anew.
+///
+/// # Errors
+/// Where the item is gone.
+pub fn duplicate(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+    match id {
+        ItemId::Object(id) => {
+            let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
+            object.placement = Placed::new(*object.placement.now());
+            Ok(insert_object(scene, object))
+        }
+        ItemId::Camera(id) => {
+            let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
+            camera.pose = Placed::new(*camera.pose.now());
+            Ok(put_camera(scene, camera))
+        }
+        ItemId::Light(id) => {
+            let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
+            match &mut light.kind {
+                LightKind::Sun { direction } => *direction = Placed::new(*direction.now()),
+                LightKind::Bulb { position, .. } => *position = Placed::new(*position.now()),
+                LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } => {
+                    *aim = Placed::new(*aim.now());
+                }
+                LightKind::Ambient | LightKind::Spot { .. } => {}
+            }
+            put_light(scene, light)
+        }
+    }
+}
+
+/// Takes an item out of the scene, and the spots that are fixed to it.
+///
+/// # Errors
+/// Where the item is gone, or is the last camera.
+pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+    if !scene.contains(id) {
+        return Err(Refusal::Gone);
+    }
+    if matches!(id, ItemId::Camera(_)) && scene.cameras.len() == 1 {
+        return Err(CommandError::LastCamera.into());
+    }
+    let attached = |kind: &LightKind| match kind {
+        LightKind::Spot { owner: SpotOwner::Object(owner), .. } => id == ItemId::Object(*owner),
+        LightKind::Spot { owner: SpotOwner::Camera(owner), .. } => id == ItemId::Camera(*owner),
+        _ => false,
+    };
+    let spots = scene.lights.iter().filter(|(_, light)| attached(&light.kind));
+    let spots = spots.map(|(spot, _)| Command::Remove(ItemId::Light(spot)));
+    let commands: Vec<Command> = spots.chain([Command::Remove(id)]).collect();
+    Ok(one_or_batch(commands))
+}
+
+/// Calls an item something else.
+///
+/// # Errors
+/// Where the name is empty, or the item gone.
+pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Result<Command, Refusal> {
+    let name = name.trim();
+    if name.is_empty() {
+        return Err(Refusal::NoName);
+    }
+    let name = name.to_owned();
+    match id {
+        ItemId::Object(id) => change_object(scene, id, |object| object.name = name),
+        ItemId::Camera(id) => change_camera(scene, id, |camera| camera.name = name),
+        ItemId::Light(id) => change_light(scene, id, |light| light.name = name),
+    }
+}
+
+/// Moves an item to another place in its list.
+///
+/// # Errors
+/// Where the item is gone.
+pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Result<Command, Refusal> {
+    if scene.contains(id) { Ok(Command::Reorder { id, to }) } else { Err(Refusal::Gone) }
+}
+
+/// Shows or hides an object or a camera's mark; puts a light on or out.
+///
+/// # Errors
+/// Where the item is gone.
+pub fn toggle_shown(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+    match id {
+        ItemId::Object(id) => change_object(scene, id, |object| object.visible = !object.visible),
+        ItemId::Camera(id) => change_camera(scene, id, |camera| camera.visible = !camera.visible),
+        ItemId::Light(id) => change_light(scene, id, |light| light.on = !light.on),
+    }
+}
+
+/// Shows or hides one part of an object.
+///
+/// # Errors
+/// Where the object is gone, or has no such part.
+pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Refusal> {
+    let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
+    if part as usize >= object.model.mesh.parts().len() {
+        return Err(Refusal::Gone);
+    }
+    change_object(scene, id, |object| {
+        if !object.hidden_parts.remove(&part) {
+            object.hidden_parts.insert(part);
+        }
+    })
+}
+
+/// Makes an object of each part: the object itself keeps the first, the others follow it in the
+/// list. All share the model and show one part of it.
+///
+/// # Errors
+/// Where the object is gone, or has one part or too many.
+pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
+    let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
+    let at = scene.objects.position(id).ok_or(Refusal::Gone)?;
+    let mesh = &object.model.mesh;
+    let used: BTreeSet<u32> = mesh.polygon_parts().iter().copied().collect();
+    if used.len() < 2 {
+        return Err(Refusal::OnePart);
+    }
+    if used.len() > MOST_PARTS {
+        return Err(Refusal::TooManyParts(used.len(), MOST_PARTS));
+    }
+    let all = 0..u32::try_from(mesh.parts().len()).unwrap_or(u32::MAX);
+    let names = part_names(scene, object, &used);
+    let mut commands = Vec::with_capacity(used.len() + 1);
+    let mut next_id = scene.next_id;
+    for (i, (part, name)) in used.iter().zip(names).enumerate() {
+        let mut piece = object.clone();
+        piece.name = name;
+        piece.visible = object.visible && !object.hidden_parts.contains(part);
+        piece.hidden_parts = all.clone().filter(|other| other != part).collect();
+        if i == 0 {
+            commands.push(Command::Replace(Item::Object(id, Box::new(piece))));
+        } else {
+            piece.placement = Placed::new(*piece.placement.now());
+            let item = Item::Object(ObjectId(next_id), Box::new(piece));
+            commands.push(Command::Insert { at: at + i, item });
+            next_id += 1;
+        }
+    }
+    commands.push(Command::NextId(next_id));
+    Ok(Command::Batch(commands))
+}
+
+/// What the objects are called that an object's parts become.
+fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::with_capacity(parts.len());
+    for part in parts {
+        let own = names.iter().map(|name| &**name);
+        let others = scene.objects.iter().filter(|(_, other)| !std::ptr::eq(*other, object));
+        let taken = others.map(|(_, other)| &*other.name).chain(own).collect();
+        let name = free_name(&taken, &object.model.mesh.parts()[*part as usize].name);
+        names.push(name);
+    }
+    names
+}
+
+/// Gives a camera another lens.
+///
+/// # Errors
+/// Where no picture could be made through it, or the camera is gone.
+pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refusal> {
+    if !lens.is_valid() {
+        return Err(CommandError::Lens.into());
+    }
+    change_camera(scene, id, |camera| camera.lens = lens)
+}
+
+/// Changes what of an object is neither its place nor its spin.
+///
+/// # Errors
+/// Where the object is gone.
+pub fn change_object(
+    scene: &Scene,
+    id: ObjectId,
+    change: impl FnOnce(&mut Object),
+) -> Result<Command, Refusal> {
+    let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
+    change(&mut object);
+    Ok(Command::Replace(Item::Object(id, Box::new(object))))
+}
+
+/// Changes what of a camera is not its pose.
+///
+/// # Errors
+/// Where the camera is gone.
+pub fn change_camera(
+    scene: &Scene,
+    id: CameraId,
+    change: impl FnOnce(&mut Camera),
+) -> Result<Command, Refusal> {
+    let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
+    change(&mut camera);
+    Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
+}
+
+/// Changes what of a light is not its place.
+///
+/// # Errors
+/// Where the light is gone.
+pub fn change_light(
+    scene: &Scene,
+    id: LightId,
+    change: impl FnOnce(&mut Light),
+) -> Result<Command, Refusal> {
+    let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
+    change(&mut light);
+    Ok(Command::Replace(Item::Light(id, Box::new(light))))
+}
+
+fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
+    let taken = scene.cameras.iter().map(|(_, other)| &*other.name).collect();
+    camera.name = free_name(&taken, &camera.name);
+    let id = CameraId(scene.next_id);
+    inserted(scene, scene.cameras.len(), Item::Camera(id, Box::new(camera)))
+}
+
+fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
+    if let LightKind::Spot { owner, .. } = &light.kind {
+        super::lights::check_owner(scene, owner)?;
+    }
+    let taken = scene.lights.iter().map(|(_, other)| &*other.name).collect();
+    light.name = free_name(&taken, &light.name);
+    light.slot = scene.free_slot();
+    let id = LightId(scene.next_id);
+    Ok(inserted(scene, scene.lights.len(), Item::Light(id, Box::new(light))))
+}
+
+fn inserted(scene: &Scene, at: usize, item: Item) -> Command {
+    Command::Batch(vec![Command::NextId(scene.next_id + 1), Command::Insert { at, item }])
+}
+
+fn one_or_batch(mut commands: Vec<Command>) -> Command {
+    if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) }
+}
+
+const fn light_name(kind: &LightKind) -> &'static str {
+    match kind {
+        LightKind::Ambient => "ambient",
+        LightKind::Sun { .. } => "sun",
+        LightKind::Bulb { .. } => "bulb",
+        LightKind::Spot { owner: SpotOwner::SelectedObject | SpotOwner::Object(_), .. } => {
+            "object spot"
+        }
+        LightKind::Spot { owner: SpotOwner::SelectedCamera | SpotOwner::Camera(_), .. } => {
+            "camera spot"
+        }
+        LightKind::Spot { owner: SpotOwner::Fixed(_), .. } => "spot",
+    }
+}
+
+/// `wish` where nothing is called so, else with the lowest number behind it that is free.
+fn free_name(taken: &HashSet<&str>, wish: &str) -> String {
+    if !taken.contains(wish) {
+        return wish.to_owned();
+    }
+    // "sun 2" goes on to "sun 3", not to "sun 2 2".
+    let stem = match wish.rsplit_once(' ') {
+        Some((stem, number)) if number.parse::<u32>().is_ok() => stem,
+        _ => wish,
+    };
+    let mut numbered = (2_u64..).map(|number| format!("{stem} {number}"));
+    numbered.find(|name| !taken.contains(&**name)).unwrap_or_else(|| wish.to_owned())
+}

@@ -1,0 +1,196 @@
+//! What of lights the keys and panels change: on, colour, aperture, slot, owner.
+
+use glam::DVec3;
+
+use super::items::change_light;
+use super::{Refusal, put};
+use crate::scene::{
+    Aim, Attenuation, Command, CommandError, LightId, LightKind, Orbit, Placed, Scene, SpotOwner,
+    Subject, View,
+};
+
+/// The degrees by which a press of `+` or `-` opens or closes a spot.
+pub const APERTURE_STEP: f64 = 5.0;
+
+/// Red, green or blue of a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// The keys q and Q.
+    Red,
+    /// The keys v and V.
+    Green,
+    /// The keys a and A.
+    Blue,
+}
+
+impl Channel {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Red => "red",
+            Self::Green => "green",
+            Self::Blue => "blue",
+        }
+    }
+}
+
+/// A sun whose light goes straight down.
+#[must_use]
+pub const fn sun() -> LightKind {
+    LightKind::Sun { direction: Placed::new(DVec3::NEG_Y) }
+}
+
+/// A bulb at the centre of the world.
+#[must_use]
+pub fn bulb() -> LightKind {
+    LightKind::Bulb { position: Placed::new(DVec3::ZERO), orbit: Orbit::default() }
+}
+
+/// A spot with the aperture and concentration that spots have at first.
+#[must_use]
+pub const fn spot(owner: SpotOwner) -> LightKind {
+    LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 }
+}
+
+/// The owner of a spot that stands at the centre of the world and shines along -Z.
+#[must_use]
+pub const fn fixed() -> SpotOwner {
+    SpotOwner::Fixed(Placed::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
+}
+
+/// The keys 0 to 9: puts the light in a slot on or out.
+///
+/// # Errors
+/// Where the slot is empty.
+pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
+    let in_slot = scene.lights.iter().find(|(_, light)| light.slot == slot);
+    let (id, _) = in_slot.ok_or(Refusal::EmptySlot(slot))?;
+    change_light(scene, id, |light| light.on = !light.on)
+}
+
+/// The keys q Q, v V, a A: brightens or dims one channel of the selected light, within 0 to 255.
+///
+/// # Errors
+/// At the end of the range, and while the subject is not lights.
+pub fn step_color(
+    scene: &Scene,
+    view: &View,
+    channel: Channel,
+    by: i16,
+) -> Result<Command, Refusal> {
+    let (id, light) = subject_light(scene, view)?;
+    let index = channel as usize;
+    let old = light.color.0[index];
+    let wish = i16::from(old).saturating_add(by).clamp(0, 255);
+    let new = u8::try_from(wish).unwrap_or(old);
+    if new == old {
+        return Err(Refusal::Limit(channel.name(), u32::from(old)));
+    }
+    change_light(scene, id, |light| light.color.0[index] = new)
+}
+
+/// The keys + and -: opens or closes the selected spot by so many degrees, within 0 to 90.
+///
+/// # Errors
+/// At the end of the range, for other lights, and while the subject is not lights.
+pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Result<Command, Refusal> {
+    let (id, light) = subject_light(scene, view)?;
+    let LightKind::Spot { half_aperture: old, .. } = light.kind else {
+        return Err(Refusal::NotASpot);
+    };
+    let new = (old + degrees).clamp(0.0, 90.0);
+    if new == old {
+        let limit = if degrees < 0.0 { 0 } else { 90 };
+        return Err(Refusal::Limit("the half-aperture", limit));
+    }
+    set_aperture(scene, id, new)
+}
+
+/// Opens a spot to so many degrees from its axis; what is outside 0 to 90 is brought to its border.
+///
+/// # Errors
+/// Where the light is not a spot, or the number is none.
+pub fn set_aperture(scene: &Scene, id: LightId, degrees: f64) -> Result<Command, Refusal> {
+    if degrees.is_nan() {
+        return Err(Refusal::TooLarge);
+    }
+    change_spot(scene, id, |_, half_aperture, _| *half_aperture = degrees.clamp(0.0, 90.0))
+}
+
+/// Gathers a spot's light along its axis by an exponent of at least 0.
+///
+/// # Errors
+/// Where the light is not a spot, or the number is not finite.
+pub fn set_exponent(scene: &Scene, id: LightId, to: f64) -> Result<Command, Refusal> {
+    if !to.is_finite() {
+        return Err(Refusal::TooLarge);
+    }
+    change_spot(scene, id, |_, _, exponent| *exponent = to.max(0.0))
+}
+
+/// Fixes a spot to something else.
+///
+/// # Errors
+/// Where the light is not a spot, or the owner is not there.
+pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, Refusal> {
+    check_owner(scene, &to)?;
+    change_spot(scene, id, |owner, _, _| *owner = to)
+}
+
+/// Gives a light another key.
+///
+/// # Errors
+/// Where another light has it.
+pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusal> {
+    if scene.lights.iter().any(|(other, light)| other != id && light.slot == slot) {
+        return Err(Refusal::SlotTaken(slot));
+    }
+    change_light(scene, id, |light| light.slot = slot)
+}
+
+/// Lets a light fade otherwise.
+///
+/// # Errors
+/// Where it would become infinite or negative.
+pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Result<Command, Refusal> {
+    if !to.is_valid() {
+        return Err(CommandError::Attenuation.into());
+    }
+    change_light(scene, id, |light| light.attenuation = to)
+}
+
+/// Whether what a spot should be fixed to is there.
+pub(super) fn check_owner(scene: &Scene, owner: &SpotOwner) -> Result<(), Refusal> {
+    let there = match owner {
+        SpotOwner::Object(id) => scene.objects.get(*id).is_some(),
+        SpotOwner::Camera(id) => scene.cameras.get(*id).is_some(),
+        SpotOwner::SelectedObject | SpotOwner::SelectedCamera | SpotOwner::Fixed(_) => true,
+    };
+    if there { Ok(()) } else { Err(Refusal::Gone) }
+}
+
+fn change_spot(
+    scene: &Scene,
+    id: LightId,
+    change: impl FnOnce(&mut SpotOwner, &mut f64, &mut f64),
+) -> Result<Command, Refusal> {
+    let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
+    if !matches!(light.kind, LightKind::Spot { .. }) {
+        return Err(Refusal::NotASpot);
+    }
+    change_light(scene, id, |light| {
+        if let LightKind::Spot { owner, half_aperture, exponent } = &mut light.kind {
+            change(owner, half_aperture, exponent);
+        }
+    })
+}
+
+/// The selected light, while the subject is lights.
+fn subject_light<'a>(
+    scene: &'a Scene,
+    view: &View,
+) -> Result<(LightId, &'a crate::scene::Light), Refusal> {
+    if view.subject != Subject::Light {
+        return Err(Refusal::OnlyLights);
+    }
+    put::selected_light(scene, view)
+}

@@ -1,0 +1,96 @@
+//! What moves by itself: an object's spin, a bulb's orbit.
+//!
+//! Whatever of a motion is changed, what has been turned so far goes into the placement first, and
+//! the motion begins anew from there: nothing jumps on the screen.
+
+use super::items::change_object;
+use super::{Refusal, Stroke};
+use crate::base::math::Axis;
+use crate::scene::{Command, Item, LightId, LightKind, ObjectId, Orbit, Scene, Spin};
+
+/// Lets an object turn about one of its axes, or no longer.
+///
+/// # Errors
+/// Where the object is gone.
+pub fn toggle_spin(scene: &Scene, id: ObjectId, axis: Axis, time: f64) -> Result<Command, Refusal> {
+    let mut spin = scene.objects.get(id).ok_or(Refusal::Gone)?.spin;
+    spin.axes[axis.index()] = !spin.axes[axis.index()];
+    set_spin(scene, id, spin, time, Stroke::First)
+}
+
+/// Gives an object another spin, which begins at `time`; what it has turned so far stays.
+///
+/// # Errors
+/// Where the speed is not finite, or the object is gone.
+pub fn set_spin(
+    scene: &Scene,
+    id: ObjectId,
+    spin: Spin,
+    time: f64,
+    stroke: Stroke,
+) -> Result<Command, Refusal> {
+    let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
+    if !(spin.speed.is_finite() && time.is_finite()) {
+        return Err(Refusal::TooLarge);
+    }
+    let turned = object.world_from_object(time);
+    if !turned.is_finite() {
+        return Err(Refusal::TooLarge);
+    }
+    change_object(scene, id, |object| {
+        if object.spin.is_on() {
+            object.placement = stroke.put(&object.placement, turned);
+        }
+        object.spin = Spin { since: time, ..spin };
+    })
+}
+
+/// Makes what an object has turned so far its placement; it goes on turning.
+///
+/// # Errors
+/// Where it does not turn by itself, or is gone.
+pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Refusal> {
+    let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
+    if !object.spin.is_on() {
+        return Err(Refusal::NotSpinning);
+    }
+    set_spin(scene, id, object.spin, time, Stroke::First)
+}
+
+/// Lets a bulb circle the world's Y, or no longer.
+///
+/// # Errors
+/// Where the light is no bulb, or is gone.
+pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Result<Command, Refusal> {
+    match &scene.lights.get(id).ok_or(Refusal::Gone)?.kind {
+        LightKind::Bulb { orbit, .. } => {
+            set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, Stroke::First)
+        }
+        _ => Err(Refusal::NotABulb),
+    }
+}
+
+/// Gives a bulb another orbit, which begins at `time`; it stays where it has come to.
+///
+/// # Errors
+/// Where the speed is not finite, the light is no bulb, or is gone.
+pub fn set_orbit(
+    scene: &Scene,
+    id: LightId,
+    to: Orbit,
+    time: f64,
+    stroke: Stroke,
+) -> Result<Command, Refusal> {
+    if !(to.speed.is_finite() && time.is_finite()) {
+        return Err(Refusal::TooLarge);
+    }
+    let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
+    let LightKind::Bulb { position, orbit } = &mut light.kind else {
+        return Err(Refusal::NotABulb);
+    };
+    if orbit.on {
+        *position = stroke.put(position, orbit.at(*position.now(), time));
+    }
+    *orbit = Orbit { since: time, ..to };
+    Ok(Command::Replace(Item::Light(id, Box::new(light))))
+}

@@ -1,0 +1,104 @@
+//! Why a wish is not fulfilled, worded for the status line.
+
+use crate::scene::CommandError;
+
+/// Why a wish is not fulfilled. Nothing has changed then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// There is no object to do it with.
+    #[error("there is no object")]
+    NoObject,
+    /// There is no light to do it with.
+    #[error("there is no light")]
+    NoLight,
+    /// Nothing can be framed.
+    #[error("there is nothing visible to frame")]
+    NothingToFrame,
+    /// What the wish names is not in the scene.
+    #[error("it is not in the scene any more")]
+    Gone,
+    /// Nothing of the chosen kind has another to go on to.
+    #[error("there is only one of its kind")]
+    OnlyOne,
+    /// Cameras have no size.
+    #[error("cameras cannot be scaled")]
+    CameraScaled,
+    /// Lights have no size.
+    #[error("lights cannot be scaled")]
+    LightScaled,
+    /// Scaling was chosen while the subject is not objects.
+    #[error("only objects can be scaled: press c until the subject is an object")]
+    OnlyObjectsScale,
+    /// Ambient light comes from everywhere.
+    #[error("ambient light has no place and no direction")]
+    Ambient,
+    /// A sun has no place.
+    #[error("the sun has a direction only: it can be turned, not moved")]
+    SunMoved,
+    /// A bulb has no direction.
+    #[error("a bulb shines in all directions: it can be moved, not turned")]
+    BulbTurned,
+    /// The spot shines from an object or a camera.
+    #[error("this spot follows its {0}: move that instead")]
+    SpotFollows(&'static str),
+    /// The item was never anything else.
+    #[error("there is no transformation to take back")]
+    NothingToTakeBack,
+    /// The object would become flat.
+    #[error("a scale of 0 would flatten the object for good")]
+    Flat,
+    /// A number would be infinite or none.
+    #[error("a number would become too large")]
+    TooLarge,
+    /// A vector of length 0 points nowhere.
+    #[error("a direction needs at least one number other than 0")]
+    NoDirection,
+    /// The camera is as near as it may be.
+    #[error("the camera cannot come nearer to the object's centre")]
+    Nearest,
+    /// The scene is seen from an object.
+    #[error("the observer is an object: press C to look through the camera")]
+    ObjectLooks,
+    /// Neither frames nor modes belong to lights.
+    #[error("a light has neither a mode nor a frame to choose")]
+    NoModeOfLight,
+    /// The key acts on lights.
+    #[error("this acts on lights: press c until the subject is a light")]
+    OnlyLights,
+    /// The light has no cone.
+    #[error("only a spot has an aperture")]
+    NotASpot,
+    /// A number has reached the end of its range.
+    #[error("{0} is already at {1}")]
+    Limit(&'static str, u32),
+    /// No light has this key.
+    #[error("no light has the key {0}")]
+    EmptySlot(u32),
+    /// Two lights cannot have one key.
+    #[error("the key {0} belongs to another light")]
+    SlotTaken(u32),
+    /// Enter outside of polygon mode.
+    #[error("press o first: Enter goes to the next polygon while one is shown at a time")]
+    NotInPolygonMode,
+    /// There is no polygon to show.
+    #[error("the object has no polygons")]
+    NoPolygons,
+    /// Nothing to split.
+    #[error("the object has only one part")]
+    OnePart,
+    /// Splitting would flood the outline.
+    #[error("the object has {0} parts: more than {1} are not made objects at once")]
+    TooManyParts(usize, usize),
+    /// Nothing turns, nothing to apply.
+    #[error("the object does not turn by itself")]
+    NotSpinning,
+    /// Only a bulb circles.
+    #[error("only a bulb can circle")]
+    NotABulb,
+    /// A name of blanks.
+    #[error("a name needs at least one letter")]
+    NoName,
+    /// The scene's own refusal.
+    #[error(transparent)]
+    Command(#[from] CommandError),
+}

@@ -1,0 +1,264 @@
+//! What is selected, what is the subject, and what keeps both true after a change of the scene.
+//!
+//! None of this is a step of undo, but for one thing: while the selected camera is in analysis,
+//! selecting another object aims the camera at that one. So a selection is a view and, sometimes, a
+//! command.
+
+use super::Refusal;
+use super::put;
+use crate::scene::{
+    CameraMode, Command, Item, ItemId, List, Observer, PolygonMode, Scene, Subject, Transformation,
+    View,
+};
+
+/// A view after a selection, with the command that goes with it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// The view to be shown.
+    pub view: View,
+    /// What aims the selected camera at the newly selected object, where it is in analysis.
+    pub command: Option<Command>,
+}
+
+/// Selects an item in its list. The subject stays.
+///
+/// # Errors
+/// Where the item is gone.
+pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
+    if !scene.contains(id) {
+        return Err(Refusal::Gone);
+    }
+    let mut next = view.clone();
+    let mut command = None;
+    match id {
+        ItemId::Camera(id) => next.camera = id,
+        ItemId::Light(id) => next.light = Some(id),
+        ItemId::Object(id) if view.object == Some(id) => {}
+        ItemId::Object(id) => {
+            next.object = Some(id);
+            next.polygons = view.polygons.as_ref().map(|_| PolygonMode::begin());
+            let camera = scene.selected_camera(view);
+            let mode = camera.pose.now().mode_with(view.object);
+            if let (CameraMode::Analysis { .. }, Some(object)) = (mode, scene.objects.get(id)) {
+                let aimed = put::aimed(camera.pose.now(), id, object.centre(view.time));
+                let mut camera = camera.clone();
+                camera.pose = camera.pose.moved(aimed);
+                command = Some(Command::Replace(Item::Camera(view.camera, Box::new(camera))));
+            }
+        }
+    }
+    keep_polygons(scene, &mut next);
+    Ok(Selection { view: next, command })
+}
+
+/// Selects an item and makes its kind the subject, as a click in the outline does.
+///
+/// # Errors
+/// Where the item is gone.
+pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
+    let mut selection = select(scene, view, id)?;
+    set_subject(&mut selection.view, subject_of(id));
+    Ok(selection)
+}
+
+/// The key Tab: selects the next item of the subject, round and round.
+///
+/// # Errors
+/// Where there is no other to go on to.
+pub fn next(scene: &Scene, view: &View) -> Result<Selection, Refusal> {
+    fn after<K: Copy + PartialEq, T>(list: &List<K, T>, id: Option<K>) -> Option<K> {
+        list.after(id).filter(|next| Some(*next) != id)
+    }
+    let id = match view.subject {
+        Subject::Camera => after(&scene.cameras, Some(view.camera)).map(ItemId::Camera),
+        Subject::Object if scene.objects.is_empty() => return Err(Refusal::NoObject),
+        Subject::Object => after(&scene.objects, view.object).map(ItemId::Object),
+        Subject::Light if scene.lights.is_empty() => return Err(Refusal::NoLight),
+        Subject::Light => after(&scene.lights, view.light).map(ItemId::Light),
+    };
+    select(scene, view, id.ok_or(Refusal::OnlyOne)?)
+}
+
+/// The item that the subject's keys act on.
+#[must_use]
+pub fn selected(view: &View) -> Option<ItemId> {
+    match view.subject {
+        Subject::Camera => Some(ItemId::Camera(view.camera)),
+        Subject::Object => view.object.map(ItemId::Object),
+        Subject::Light => view.light.map(ItemId::Light),
+    }
+}
+
+/// The subject that has items of this kind.
+#[must_use]
+pub const fn subject_of(id: ItemId) -> Subject {
+    match id {
+        ItemId::Object(_) => Subject::Object,
+        ItemId::Camera(_) => Subject::Camera,
+        ItemId::Light(_) => Subject::Light,
+    }
+}
+
+/// The key `c`: camera, object, light, camera ...
+pub const fn cycle_subject(view: &mut View) {
+    let next = match view.subject {
+        Subject::Camera => Subject::Object,
+        Subject::Object => Subject::Light,
+        Subject::Light => Subject::Camera,
+    };
+    set_subject(view, next);
+}
+
+/// Chooses what the keys act on. Leaving objects while scaling is chosen returns to translation.
+pub const fn set_subject(view: &mut View, subject: Subject) {
+    view.subject = subject;
+    if !matches!(subject, Subject::Object) && matches!(view.transformation, Transformation::Scaling)
+    {
+        view.transformation = Transformation::Translation;
+    }
+}
+
+/// The keys `t`, `r` and `s`.
+///
+/// # Errors
+/// Scaling, while the subject is not objects.
+pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Refusal> {
+    if to == Transformation::Scaling && view.subject != Subject::Object {
+        return Err(Refusal::OnlyObjectsScale);
+    }
+    view.transformation = to;
+    Ok(())
+}
+
+/// The key `C`: the selected camera looks, or the selected object.
+///
+/// # Errors
+/// Where there is no object.
+pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
+    view.observer = match view.observer {
+        Observer::Object => Observer::Camera,
+        Observer::Camera => {
+            put::selected_object(scene, view)?;
+            Observer::Object
+        }
+    };
+    Ok(())
+}
+
+/// The key `o`: the whole object, or one polygon of it at a time, from polygon 0.
+///
+/// # Errors
+/// Where there is no object, or it has no polygons.
+pub fn toggle_polygons(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
+    view.polygons = match view.polygons {
+        Some(_) => None,
+        None => {
+            polygon_count(scene, view)?;
+            Some(PolygonMode::begin())
+        }
+    };
+    Ok(())
+}
+
+/// The key Enter: the next polygon of the selected object, round and round.
+///
+/// # Errors
+/// Outside of polygon mode.
+pub fn next_polygon(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
+    let count = polygon_count(scene, view)?;
+    let mode = view.polygons.as_mut().ok_or(Refusal::NotInPolygonMode)?;
+    mode.go_to(if mode.current < count - 1 { mode.current + 1 } else { 0 });
+    Ok(())
+}
+
+/// Goes to a polygon of the selected object, as a click on it does.
+///
+/// # Errors
+/// Outside of polygon mode, and where the object has no such polygon.
+pub fn go_to_polygon(scene: &Scene, view: &mut View, polygon: u32) -> Result<(), Refusal> {
+    let count = polygon_count(scene, view)?;
+    let mode = view.polygons.as_mut().ok_or(Refusal::NotInPolygonMode)?;
+    if polygon >= count {
+        return Err(Refusal::Gone);
+    }
+    mode.go_to(polygon);
+    Ok(())
+}
+
+/// Makes the view fit a scene that has changed from `before`: what appeared is selected, and where
+/// the selected item is gone, the next in its list is, else the one before.
+///
+/// After every command, undo and redo.
+pub fn follow(before: &Scene, scene: &Scene, view: &mut View) {
+    let object = followed(&before.objects, &scene.objects, view.object);
+    if object != view.object {
+        view.object = object;
+        view.polygons = view.polygons.as_ref().map(|_| PolygonMode::begin());
+    }
+    view.light = followed(&before.lights, &scene.lights, view.light);
+    let camera = followed(&before.cameras, &scene.cameras, Some(view.camera));
+    view.camera = camera.unwrap_or(view.camera);
+    settle(scene, view);
+}
+
+/// Makes the view fit the scene: what it names exists, and the selected polygon too.
+pub fn settle(scene: &Scene, view: &mut View) {
+    if scene.cameras.get(view.camera).is_none() {
+        view.camera = scene.cameras.first().unwrap_or(view.camera);
+    }
+    if view.object.is_none_or(|id| scene.objects.get(id).is_none()) {
+        view.object = scene.objects.first();
+        view.polygons = view.polygons.as_ref().map(|_| PolygonMode::begin());
+    }
+    if view.light.is_none_or(|id| scene.lights.get(id).is_none()) {
+        view.light = scene.lights.first();
+    }
+    if view.object.is_none() {
+        view.observer = Observer::Camera;
+    }
+    // A view from a file may scale what has no size.
+    set_subject(view, view.subject);
+    keep_polygons(scene, view);
+}
+
+/// What of a list is selected after a change.
+fn followed<K: Copy + PartialEq, T>(
+    before: &List<K, T>,
+    after: &List<K, T>,
+    selected: Option<K>,
+) -> Option<K> {
+    if let Some(new) = after.ids().find(|id| before.position(*id).is_none()) {
+        return Some(new);
+    }
+    let is_there = |id: &K| after.position(*id).is_some();
+    let Some(at) = selected.and_then(|id| before.position(id)) else {
+        return selected.filter(is_there).or_else(|| after.first());
+    };
+    // The selected one itself, those after it, and then those before it from near to far.
+    let onwards = before.ids().skip(at);
+    let back = before.ids().take(at).rev();
+    onwards.chain(back).find(is_there)
+}
+
+fn polygon_count(scene: &Scene, view: &View) -> Result<u32, Refusal> {
+    let (_, object) = put::selected_object(scene, view)?;
+    match u32::try_from(object.model.mesh.polygon_count()) {
+        Ok(0) | Err(_) => Err(Refusal::NoPolygons),
+        Ok(count) => Ok(count),
+    }
+}
+
+/// Ends polygon mode where there is no polygon to show, and brings it back into range.
+fn keep_polygons(scene: &Scene, view: &mut View) {
+    let count = polygon_count(scene, view).unwrap_or(0);
+    match &mut view.polygons {
+        Some(_) if count == 0 => view.polygons = None,
+        Some(mode) => {
+            mode.shown.retain(|polygon| *polygon < count);
+            if mode.current >= count {
+                *mode = PolygonMode::begin();
+            }
+        }
+        None => {}
+    }
+}

@@ -1,0 +1,311 @@
+//! What x, y and z do to whom, by a step or by an amount, and what `u` takes back.
+//!
+//! * An object, M its placement: M := M T in the local frame, M := T M in the global one.
+//! * A camera in fly moves and turns in its own frame: X yaws about its own Y, Y pitches about its
+//!   own X, whether translation or rotation is chosen; Z moves along its own Z, or rolls about it.
+//! * A camera in analysis does the same about the centre that it looks at: it orbits, comes nearer
+//!   or goes away but never past the centre, and rolls.
+//! * A sun is turned about the world's axes, a bulb moved along them, a spot of its own both.
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::put::{self, LightPlace};
+use super::{Refusal, Stroke};
+use crate::base::math::{self, Axis};
+use crate::scene::{
+    Aim, CameraMode, Command, Frame, Item, LightKind, Object, Pose, Scene, SpotOwner, Subject,
+    Transformation, View,
+};
+
+/// Which way along or about an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Sign {
+    /// The lower-case key.
+    Positive,
+    /// The upper-case key.
+    Negative,
+}
+
+impl Sign {
+    const fn of(self, amount: f64) -> f64 {
+        match self {
+            Self::Positive => amount,
+            Self::Negative => -amount,
+        }
+    }
+}
+
+/// One press of x, y or z: transforms the subject's selected item by the view's step.
+///
+/// # Errors
+/// Where the item cannot be transformed so, and why.
+pub fn step(
+    scene: &Scene,
+    view: &View,
+    axis: Axis,
+    sign: Sign,
+    stroke: Stroke,
+) -> Result<Command, Refusal> {
+    let along = || axis.unit() * sign.of(distance(scene, view, axis));
+    let radians = sign.of(view.steps.rotation.to_radians());
+    match view.subject {
+        Subject::Object => match view.transformation {
+            Transformation::Translation => translate(scene, view, along(), stroke),
+            Transformation::Rotation => rotate(scene, view, axis.unit(), radians, stroke),
+            Transformation::Scaling => {
+                let up = view.steps.scaling;
+                let factor = if sign == Sign::Positive { up } else { 1.0 / up };
+                scale(scene, view, factor, stroke)
+            }
+        },
+        Subject::Camera => match (axis, view.transformation) {
+            (_, Transformation::Scaling) => Err(Refusal::CameraScaled),
+            (Axis::X, _) => rotate(scene, view, DVec3::Y, radians, stroke),
+            (Axis::Y, _) => rotate(scene, view, DVec3::X, radians, stroke),
+            (Axis::Z, Transformation::Translation) => translate(scene, view, along(), stroke),
+            (Axis::Z, Transformation::Rotation) => rotate(scene, view, DVec3::Z, radians, stroke),
+        },
+        Subject::Light => match put::place_of(put::selected_light(scene, view)?.1)? {
+            // A sun can only be turned and a bulb only be moved, whatever is chosen.
+            LightPlace::Direction(_) => rotate(scene, view, axis.unit(), radians, stroke),
+            LightPlace::Position(_) => translate(scene, view, along(), stroke),
+            LightPlace::Aim(_) => match view.transformation {
+                Transformation::Translation => translate(scene, view, along(), stroke),
+                Transformation::Rotation => rotate(scene, view, axis.unit(), radians, stroke),
+                Transformation::Scaling => Err(Refusal::LightScaled),
+            },
+        },
+    }
+}
+
+/// How far one press moves the subject's selected item along `axis`, in the units of the frame that
+/// it is moved in.
+#[must_use]
+pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
+    let object = view.object.and_then(|id| scene.objects.get(id));
+    let extent = object.map_or(0.0, Object::largest_extent);
+    if !(view.steps.by_size && extent > 0.0) {
+        return view.steps.translation;
+    }
+    match object {
+        // A scaled object's own units are as long as its axes.
+        Some(object) if view.subject == Subject::Object && view.frame == Frame::Local => {
+            let unit = object.placement.now().transform_vector3(axis.unit()).length();
+            if unit > 0.0 { extent / 20.0 / unit } else { view.steps.translation }
+        }
+        _ => extent / 20.0,
+    }
+}
+
+/// Moves the subject's selected item by `delta`: an object in the frame that the view says, a camera
+/// in its own, a light in the world's.
+///
+/// # Errors
+/// Where it cannot be moved, and why.
+pub fn translate(
+    scene: &Scene,
+    view: &View,
+    delta: DVec3,
+    stroke: Stroke,
+) -> Result<Command, Refusal> {
+    match view.subject {
+        Subject::Object => transform(scene, view, DMat4::from_translation(delta), stroke),
+        Subject::Camera => {
+            let pose = match put::analysis_centre(scene, view) {
+                None => moved(&effective_pose(scene, view), delta),
+                Some(centre) => moved_about(scene, view, centre, delta)?,
+            };
+            put::pose(scene, view.camera, pose, stroke)
+        }
+        Subject::Light => {
+            let (id, light) = put::selected_light(scene, view)?;
+            let place = match put::place_of(light)? {
+                LightPlace::Direction(_) => return Err(Refusal::SunMoved),
+                LightPlace::Position(position) => LightPlace::Position(position + delta),
+                LightPlace::Aim(aim) => {
+                    LightPlace::Aim(Aim { position: aim.position + delta, ..aim })
+                }
+            };
+            put::light(scene, id, place, stroke)
+        }
+    }
+}
+
+/// Turns the subject's selected item by the right-hand rule about `axis`: an object in the frame
+/// that the view says (the global one turns about the world's origin), a camera in fly about its own
+/// eye and in analysis about the centre it looks at, both in its own frame, a light in the world's.
+///
+/// # Errors
+/// Where it cannot be turned, and why.
+pub fn rotate(
+    scene: &Scene,
+    view: &View,
+    axis: DVec3,
+    radians: f64,
+    stroke: Stroke,
+) -> Result<Command, Refusal> {
+    let turn = |axis| put::turn(axis, radians);
+    match view.subject {
+        Subject::Object => transform(scene, view, DMat4::from_mat3(turn(axis)?), stroke),
+        Subject::Camera => {
+            let pose = effective_pose(scene, view);
+            let pose = match put::analysis_centre(scene, view) {
+                None => Pose { axes: pose.axes * turn(axis)?, ..pose },
+                Some(centre) => orbited(&pose, turn(pose.axes * axis)?, centre),
+            };
+            put::pose(scene, view.camera, pose, stroke)
+        }
+        Subject::Light => {
+            let (id, light) = put::selected_light(scene, view)?;
+            let place = match put::place_of(light)? {
+                LightPlace::Direction(direction) => LightPlace::Direction(turn(axis)? * direction),
+                LightPlace::Position(_) => return Err(Refusal::BulbTurned),
+                LightPlace::Aim(aim) => {
+                    LightPlace::Aim(Aim { direction: turn(axis)? * aim.direction, ..aim })
+                }
+            };
+            put::light(scene, id, place, stroke)
+        }
+    }
+}
+
+/// Makes the selected object larger or smaller by `factor` in all directions.
+///
+/// # Errors
+/// Where the subject is not objects, and where the object would become flat.
+pub fn scale(scene: &Scene, view: &View, factor: f64, stroke: Stroke) -> Result<Command, Refusal> {
+    stretch(scene, view, DVec3::splat(factor), stroke)
+}
+
+/// Makes the selected object larger or smaller by a factor for each axis of the frame that the view
+/// says; a negative one mirrors it.
+///
+/// # Errors
+/// Where the subject is not objects, and where the object would become flat.
+pub fn stretch(
+    scene: &Scene,
+    view: &View,
+    factors: DVec3,
+    stroke: Stroke,
+) -> Result<Command, Refusal> {
+    match view.subject {
+        Subject::Object => transform(scene, view, DMat4::from_scale(factors), stroke),
+        Subject::Camera => Err(Refusal::CameraScaled),
+        Subject::Light => Err(Refusal::LightScaled),
+    }
+}
+
+/// The key `u`: the subject's selected item becomes what it was before its last transformation.
+///
+/// # Errors
+/// Where it never was anything else.
+pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    let nothing = Refusal::NothingToTakeBack;
+    match view.subject {
+        Subject::Object => {
+            let (id, object) = put::selected_object(scene, view)?;
+            put::object_placed(scene, view, id, object.placement.undone().ok_or(nothing)?)
+        }
+        Subject::Camera => {
+            let mut camera = scene.selected_camera(view).clone();
+            camera.pose = camera.pose.undone().ok_or(nothing)?;
+            Ok(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
+        }
+        Subject::Light => {
+            let (id, light) = put::selected_light(scene, view)?;
+            put::place_of(light)?;
+            let mut light = light.clone();
+            match &mut light.kind {
+                LightKind::Sun { direction } => *direction = direction.undone().ok_or(nothing)?,
+                LightKind::Bulb { position, .. } => *position = position.undone().ok_or(nothing)?,
+                LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } => {
+                    *aim = aim.undone().ok_or(nothing)?;
+                }
+                LightKind::Ambient | LightKind::Spot { .. } => return Err(nothing),
+            }
+            Ok(Command::Replace(Item::Light(id, Box::new(light))))
+        }
+    }
+}
+
+/// The key `g` while the subject is cameras: from fly to analysis, which aims the selected camera at
+/// the selected object's centre, and back, which moves nothing and pushes nothing.
+///
+/// # Errors
+/// Where there is no object to look at.
+pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    let pose = effective_pose(scene, view);
+    match pose.mode {
+        CameraMode::Analysis { .. } => {
+            let pose = Pose { mode: CameraMode::Fly, ..pose };
+            put::pose(scene, view.camera, pose, Stroke::Continued)
+        }
+        CameraMode::Fly => {
+            let (id, object) = put::selected_object(scene, view)?;
+            let pose = put::aimed(&pose, id, object.centre(view.time));
+            put::pose(scene, view.camera, pose, Stroke::First)
+        }
+    }
+}
+
+/// The selected object's placement, multiplied from the side that the frame says.
+fn transform(scene: &Scene, view: &View, t: DMat4, stroke: Stroke) -> Result<Command, Refusal> {
+    let (id, object) = put::selected_object(scene, view)?;
+    let m = *object.placement.now();
+    let placement = match view.frame {
+        Frame::Local => m * t,
+        Frame::Global => t * m,
+    };
+    if !placement.is_finite() {
+        return Err(Refusal::TooLarge);
+    }
+    // What is flat already, from a file, may be moved and turned.
+    let linear = |m: DMat4| DMat3::from_mat4(m);
+    let was_whole = math::has_full_rank(linear(m));
+    let is_whole = math::has_full_rank(linear(placement)) && math::has_full_rank(linear(t));
+    if was_whole && !is_whole {
+        return Err(Refusal::Flat);
+    }
+    put::object(scene, view, id, placement, stroke)
+}
+
+/// The selected camera's pose, in the mode in which it moves now.
+pub(super) fn effective_pose(scene: &Scene, view: &View) -> Pose {
+    let pose = scene.selected_camera(view).pose.now();
+    Pose { mode: pose.mode_with(view.object), ..*pose }
+}
+
+/// A pose in fly, moved in its own frame.
+pub(super) fn moved(pose: &Pose, delta: DVec3) -> Pose {
+    Pose { eye: pose.eye + pose.axes * delta, ..*pose }
+}
+
+/// A pose turned about a centre, and aimed at it again, which keeps rounding errors from adding up.
+pub(super) fn orbited(pose: &Pose, turn: DMat3, centre: DVec3) -> Pose {
+    let eye = centre + turn * (pose.eye - centre);
+    let axes = turn * pose.axes;
+    Pose { eye, axes: math::look_at(eye, centre, axes.y_axis, axes), mode: pose.mode }
+}
+
+/// The selected camera in analysis moved in its own frame: aimed again, and never past the centre.
+///
+/// Towards the centre it goes as far as the near plane, where it would see nothing of it any more.
+pub(super) fn moved_about(
+    scene: &Scene,
+    view: &View,
+    centre: DVec3,
+    delta: DVec3,
+) -> Result<Pose, Refusal> {
+    let pose = effective_pose(scene, view);
+    let from_centre = pose.eye - centre;
+    let distance = from_centre.length();
+    let nearest = distance.min(scene.selected_camera(view).lens.near);
+    if delta.z < 0.0 && distance <= nearest {
+        return Err(Refusal::Nearest);
+    }
+    let z = math::unit(from_centre).unwrap_or(pose.axes.z_axis);
+    let sideways = pose.axes * DVec3::new(delta.x, delta.y, 0.0);
+    let eye = centre + z * (distance + delta.z).max(nearest) + sideways;
+    let axes = math::look_at(eye, centre, pose.axes.y_axis, pose.axes);
+    Ok(Pose { eye, axes, mode: pose.mode })
+}
