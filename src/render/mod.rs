@@ -4,8 +4,19 @@
 //! Scene, View, Settings, Size  ->  FramePlan  ->  Renderer  ->  Picture
 //! ```
 
+mod bins;
+pub mod coverage;
+pub mod effects;
+mod geometry;
+mod light;
+mod lines;
+mod marks;
 mod plan;
+pub mod real;
 mod renderer;
+mod surface;
+mod texture;
+mod tile;
 
-pub use plan::FramePlan;
+pub use plan::{FramePlan, Skipped};
 pub use renderer::{Hit, Renderer};
