@@ -40,6 +40,8 @@ pub enum Ask {
     LoadFiles(Vec<PathBuf>),
     /// Puts away the notice that stands at this place.
     PutAway(usize),
+    /// Takes a gesture back while it lasts, as if it had never begun.
+    Abandon(Gesture),
     /// Says in the status line why something that was asked for is not done.
     Refuse(String),
 }

@@ -11,11 +11,15 @@ pub mod action;
 pub mod ask;
 mod buttons;
 pub mod chord;
+mod decide;
 mod editor;
 pub mod gestures;
 mod keyboard;
+mod mouse;
 pub mod panels;
 pub mod state;
 pub mod theme;
+mod viewport;
+mod worker;
 
 pub use editor::App;
