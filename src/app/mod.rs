@@ -9,15 +9,22 @@
 
 pub mod action;
 pub mod ask;
+mod browser;
 mod buttons;
 pub mod chord;
 mod decide;
+mod dialogs;
 mod editor;
+mod files;
 pub mod gestures;
 mod keyboard;
+mod material_dialog;
 mod mouse;
+mod notices;
 pub mod panels;
+mod scene_files;
 pub mod state;
+mod tasks;
 pub mod theme;
 mod viewport;
 mod worker;

@@ -1,6 +1,6 @@
 //! Everything that panels read. Only the app writes it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::action::Action;
@@ -144,6 +144,18 @@ impl State {
             ItemId::Camera(id) => &scene.cameras.get(id)?.name,
             ItemId::Light(id) => &scene.lights.get(id)?.name,
         })
+    }
+
+    /// The scene's file without folders, or what stands in for it.
+    #[must_use]
+    pub fn file_name(&self) -> String {
+        let name = self.path.as_deref().and_then(Path::file_name);
+        name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Says in the status line what was done.
+    pub(super) fn tell(&mut self, text: Option<String>) {
+        self.message = text.map(|text| Message { text, tone: Tone::Done });
     }
 
     /// Whether anything in the scene moves by itself.
