@@ -4,6 +4,7 @@
 //! with one reason, or loaded with a list of what was mended in it.
 
 mod assets;
+mod describe;
 mod error;
 mod findings;
 mod locate;
@@ -13,6 +14,7 @@ mod progress;
 mod texture;
 
 pub use assets::{cam_model, default_scene, own_model};
+pub use describe::describe;
 pub use error::LoadError;
 pub use findings::{Finding, FindingKind};
 pub use obj::{Loaded, load, parse};

@@ -46,7 +46,7 @@ pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
     reader.limits(limits);
     // A decoder that breaks down on a damaged file must not take the editor with it.
     let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| reader.decode()))
-        .map_err(|_| LoadError::file(&file, "the picture is damaged"))?
+        .map_err(|_panic| LoadError::file(&file, "the picture is damaged"))?
         .map_err(|error| LoadError::file(&file, reason(&error)))?;
     let texels = decoded.into_rgba8();
     let size = Size::new(texels.width() as usize, texels.height() as usize);
