@@ -200,7 +200,8 @@ impl Browser {
 
     fn fits(&self, name: &str) -> bool {
         let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy());
-        ending.is_some_and(|ending| self.endings.iter().any(|own| own.eq_ignore_ascii_case(&ending)))
+        ending
+            .is_some_and(|ending| self.endings.iter().any(|own| own.eq_ignore_ascii_case(&ending)))
     }
 }
 

@@ -239,9 +239,7 @@ impl Wanted {
             Self::Scene => ("Open a scene", Mode::Open, &["marraztu"]),
             Self::SceneTo(_) => ("Save the scene", Mode::Save, &["marraztu"]),
             Self::PictureTo => ("Save the picture", Mode::Save, &["png", "ppm"]),
-            Self::Texture(_) | Self::TextureOfModel => {
-                ("Choose a texture", Mode::Open, PICTURES)
-            }
+            Self::Texture(_) | Self::TextureOfModel => ("Choose a texture", Mode::Open, PICTURES),
             Self::Missing(_) => ("Where is the missing model?", Mode::Open, &["obj"]),
         }
     }

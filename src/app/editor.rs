@@ -3,6 +3,8 @@
 //! [`App::perform`] alone makes of an action a command or another view, and [`App::change`] alone
 //! writes the scene.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
 use egui::{CentralPanel, Context, Frame, Key, ViewportCommand};
 
 use super::action::Action;
@@ -34,6 +36,8 @@ pub struct App {
     /// When the last frame was shown in which something moved by itself.
     moved_at: Option<f64>,
     title: String,
+    /// How many frames failed one after the other.
+    faults: u32,
 }
 
 impl App {
@@ -49,6 +53,7 @@ impl App {
             leaving: false,
             moved_at: None,
             title: String::new(),
+            faults: 0,
         }
     }
 
@@ -56,6 +61,11 @@ impl App {
     #[must_use]
     pub const fn state(&self) -> &State {
         &self.state
+    }
+
+    /// Files are asked for with the system's own dialogs, where it has any.
+    pub(super) const fn use_system_dialogs(&mut self) {
+        self.dialogs.native = true;
     }
 
     /// Shows the editor, and does what the user asks of it.
@@ -126,7 +136,9 @@ impl App {
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, asks);
             if failed {
-                self.refuse("the picture could not be drawn: this is a fault of the program".into());
+                self.refuse(
+                    "the picture could not be drawn: this is a fault of the program".into(),
+                );
             }
         }
         self.tick(ctx);
@@ -372,6 +384,22 @@ impl App {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        self.editor_ui(ui);
+        // A fault of the program costs a frame, not the user's work. One that comes in every frame
+        // cannot be lived with.
+        match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
+            Ok(()) => self.faults = 0,
+            Err(fault) if self.faults >= MOST_FAULTS => resume_unwind(fault),
+            Err(_) => {
+                self.faults += 1;
+                self.dialogs.tell_fault(FAULT.to_owned());
+                ui.ctx().request_repaint();
+            }
+        }
     }
 }
+
+/// After so many frames that failed one after the other the program gives up.
+const MOST_FAULTS: u32 = 10;
+
+const FAULT: &str = "This is a fault of the program. What you asked for last may not have been \
+    done; everything else is as it was. It is wise to save the scene now.";

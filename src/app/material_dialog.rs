@@ -7,9 +7,7 @@ use egui::{Color32, Ui};
 use super::dialogs::take_focus;
 use crate::base::color::Color;
 use crate::io::Loaded;
-use crate::scene::{
-    LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding,
-};
+use crate::scene::{LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding};
 
 /// The choice of a material.
 #[derive(Debug)]

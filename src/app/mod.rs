@@ -23,6 +23,7 @@ mod mouse;
 mod notices;
 pub mod panels;
 mod scene_files;
+mod start;
 pub mod state;
 mod tasks;
 pub mod theme;
@@ -30,3 +31,4 @@ mod viewport;
 mod worker;
 
 pub use editor::App;
+pub use start::{StartError, run};

@@ -37,6 +37,17 @@ pub(super) struct Mouse {
     count: u64,
 }
 
+/// What is under the mouse.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Under {
+    /// Where in the window the picture is.
+    pub(super) rect: Rect,
+    /// How many pixels it has.
+    pub(super) size: Size,
+    /// What is seen under the pointer, where that is known.
+    pub(super) hit: Option<Hit>,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Drag {
     motion: Motion,
@@ -91,28 +102,24 @@ impl Mouse {
         }
     }
 
-    /// What is asked for in this frame; what is to be asked of the picture is given back. `hit` is
-    /// what is seen under the pointer, where that is known.
-    #[expect(clippy::too_many_arguments, reason = "one place calls it, with all that it has")]
+    /// What is asked for in this frame; what is to be asked of the picture is given back.
     pub(super) fn ui(
         &mut self,
         ui: &Ui,
         response: &Response,
         state: &State,
-        rect: Rect,
-        size: Size,
-        hit: Option<Hit>,
+        under: Under,
         asks: &mut Vec<Ask>,
     ) -> Vec<(Pos2, Purpose)> {
         let mut picks = Vec::new();
         self.begin(ui, response, state, asks);
-        self.go_on(ui, state, size, asks);
+        self.go_on(ui, state, under.size, asks);
         self.end(ui, &mut picks);
         if response.double_clicked_by(PointerButton::Primary) {
             picks.extend(response.interact_pointer_pos().map(|at| (at, Purpose::Frame)));
         }
         if response.contains_pointer() {
-            self.wheel(ui, state, rect, size, hit, asks);
+            self.wheel(ui, state, under, asks);
         }
         picks
     }
@@ -129,8 +136,7 @@ impl Mouse {
         if !response.contains_pointer() || egui::Popup::is_any_open(ui.ctx()) {
             return;
         }
-        let buttons =
-            [PointerButton::Primary, PointerButton::Middle, PointerButton::Secondary];
+        let buttons = [PointerButton::Primary, PointerButton::Middle, PointerButton::Secondary];
         let Some(button) = buttons.into_iter().find(|button| pressed(*button)) else { return };
         let Some(from) = ui.input(|input| input.pointer.press_origin()) else { return };
         let modifiers = ui.input(|input| input.modifiers);
@@ -189,11 +195,7 @@ impl Mouse {
     fn fly(&mut self, ui: &Ui, drag: Drag, state: &State, asks: &mut Vec<Ask>) {
         let held = |key| ui.input(|input| f64::from(u8::from(input.key_down(key))));
         let along = |back, forth| held(forth) - held(back);
-        let way = DVec3::new(
-            along(Key::A, Key::D),
-            along(Key::Q, Key::E),
-            along(Key::W, Key::S),
-        );
+        let way = DVec3::new(along(Key::A, Key::D), along(Key::Q, Key::E), along(Key::W, Key::S));
         if way == DVec3::ZERO {
             return;
         }
@@ -218,15 +220,8 @@ impl Mouse {
         ui.ctx().request_repaint();
     }
 
-    fn wheel(
-        &mut self,
-        ui: &Ui,
-        state: &State,
-        rect: Rect,
-        size: Size,
-        hit: Option<Hit>,
-        asks: &mut Vec<Ask>,
-    ) {
+    fn wheel(&mut self, ui: &Ui, state: &State, under: Under, asks: &mut Vec<Ask>) {
+        let Under { rect, size, hit } = under;
         let (notches, moved, at) = ui.input(|input| {
             let notches = input.events.iter().map(notches).sum::<f64>();
             (notches, input.pointer.delta() != Vec2::ZERO, input.pointer.latest_pos())
@@ -261,12 +256,7 @@ impl Mouse {
 
 /// What moving the pointer by so many pixels means.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-fn moving(
-    drag: Drag,
-    state: &State,
-    pixels: Vec2,
-    size: Size,
-) -> Result<Command, Refusal> {
+fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command, Refusal> {
     let (scene, view) = (&state.scene, &state.view);
     let stroke = state.stroke(drag.gesture);
     let (dx, dy) = (f64::from(pixels.x), f64::from(pixels.y));

@@ -13,7 +13,7 @@ use egui::{
 use super::action::Action;
 use super::ask::Ask;
 use super::keyboard::Keyboard;
-use super::mouse::Mouse;
+use super::mouse::{Mouse, Under};
 use super::state::State;
 use super::worker::{Drawn, News, Pick, Worker};
 use crate::base::image::Size;
@@ -38,8 +38,8 @@ pub(super) enum Purpose {
 pub(super) struct Viewport {
     texture: Option<TextureHandle>,
     image: Option<Arc<ColorImage>>,
-    rect: Rect,
-    size: Option<Size>,
+    /// Where in the window it is, and how many pixels it has.
+    place: Option<(Rect, Size)>,
     mouse: Mouse,
     /// The pixel that the pointer is over, and what is seen there where that is known.
     hovered: Option<([usize; 2], Option<Hit>)>,
@@ -54,14 +54,14 @@ struct Menu {
 
 impl std::fmt::Debug for Viewport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Viewport").field("size", &self.size).finish_non_exhaustive()
+        f.debug_struct("Viewport").field("place", &self.place).finish_non_exhaustive()
     }
 }
 
 impl Viewport {
     /// As many pixels as there are to be drawn; `None` before it was shown.
-    pub(super) const fn size(&self) -> Option<Size> {
-        self.size
+    pub(super) fn size(&self) -> Option<Size> {
+        self.place.map(|(_, size)| size)
     }
 
     /// What it shows.
@@ -99,7 +99,7 @@ impl Viewport {
         asks: &mut Vec<Ask>,
     ) {
         let (rect, size) = whole_pixels(ui);
-        (self.rect, self.size) = (rect, Some(size));
+        self.place = Some((rect, size));
         let id = Id::unique("viewport");
         let response = ui.interact(rect, id, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Viewport"));
@@ -109,7 +109,8 @@ impl Viewport {
             ui.painter().image(texture.id(), rect, all, egui::Color32::WHITE);
         }
         let hit = self.hovered.and_then(|(_, hit)| hit);
-        let picks = self.mouse.ui(ui, &response, state, rect, size, hit, asks);
+        let under = Under { rect, size, hit };
+        let picks = self.mouse.ui(ui, &response, state, under, asks);
         Keyboard::set_viewport(ui.ctx(), id, self.mouse.is_flying());
         for (at, purpose) in picks {
             worker.pick(Pick { at: self.pixel(at), purpose });
@@ -190,8 +191,8 @@ impl Viewport {
         reason = "brought to the picture's borders, which are small"
     )]
     fn pixel(&self, at: Pos2) -> [usize; 2] {
-        let size = self.size.unwrap_or(Size::new(1, 1));
-        let part = (at - self.rect.min) / self.rect.size();
+        let Some((rect, size)) = self.place else { return [0, 0] };
+        let part = (at - rect.min) / rect.size();
         let along = |part: f32, count: usize| {
             ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
         };
@@ -208,12 +209,17 @@ impl Viewport {
             (None, Some(name)) => name.to_owned(),
             (None, None) => return,
         };
-        let at = self.rect.left_bottom() + vec2(8.0, -6.0);
+        let Some((rect, _)) = self.place else { return };
+        let at = rect.left_bottom() + vec2(8.0, -6.0);
         let font = egui::TextStyle::Body.resolve(ui.style());
         let painter = ui.painter();
         let galley = painter.layout_no_wrap(text, font, egui::Color32::WHITE);
         let plate = egui::Align2::LEFT_BOTTOM.anchor_size(at, galley.size());
-        painter.rect_filled(plate.expand2(vec2(5.0, 2.0)), 3.0, egui::Color32::from_black_alpha(150));
+        painter.rect_filled(
+            plate.expand2(vec2(5.0, 2.0)),
+            3.0,
+            egui::Color32::from_black_alpha(150),
+        );
         painter.galley(plate.min, galley, egui::Color32::WHITE);
     }
 
@@ -321,9 +327,8 @@ fn whole_pixels(ui: &Ui) -> (Rect, Size) {
 /// Gives the viewport the keyboard when it is clicked, and whenever nobody else wants it.
 fn keep_focus(ctx: &Context, response: &Response) {
     let pressed = ctx.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
-    let free = ctx.memory(|memory| {
-        memory.focused().is_none() && memory.top_modal_layer().is_none()
-    });
+    let free =
+        ctx.memory(|memory| memory.focused().is_none() && memory.top_modal_layer().is_none());
     if (pressed || free) && !response.has_focus() && !egui::Popup::is_any_open(ctx) {
         response.request_focus();
     }

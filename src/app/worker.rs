@@ -74,8 +74,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
     /// Starts the thread; `wake` is called whenever there is news.
     pub(super) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let news = News { drawn: None, picked: Vec::new(), failed: false };
-        let desk =
-            Desk { wanted: None, picks: VecDeque::new(), news, busy: false, closed: false };
+        let desk = Desk { wanted: None, picks: VecDeque::new(), news, busy: false, closed: false };
         let shared = Arc::new(Shared { desk: Mutex::new(desk), changed: Condvar::new() });
         let theirs = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
