@@ -159,6 +159,8 @@ fn models_alone_are_seen_whole_and_in_the_middle() {
     }
     let through_the_camera = drawn(folder.path(), &["square.obj", "--camera", "1"]);
     assert_eq!(through_the_camera.pixel(80, 60), blue, "the square is at (5, 5), and small");
+    let marks = ["square.obj", "--camera", "1", "--helpers", "all"];
+    assert_eq!(drawn(folder.path(), &marks).pixel(80, 60), [255, 255, 0, 255], "the bulb");
     let turned = drawn(folder.path(), &["square.obj", "--flip-winding"]);
     assert_eq!(turned.pixel(80, 60), blue, "only its back is seen, which is not drawn");
     let red = drawn(folder.path(), &["square.obj", "--flip-winding", "--back-faces"]);

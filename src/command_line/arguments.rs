@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
@@ -69,7 +69,7 @@ pub(crate) struct Render {
     pub(crate) files: Vec<PathBuf>,
 
     /// The picture to write; its ending says how: .png or .ppm
-    #[arg(short, long, value_name = "FILE", value_parser = picture)]
+    #[arg(short, long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: PathBuf,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
@@ -247,8 +247,7 @@ fn choice<T: Copy + Send + Sync>(
 }
 
 /// Known before anything is drawn, for drawing may take long.
-fn picture(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
+fn picture(path: PathBuf) -> Result<PathBuf, String> {
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
     match ending.as_deref().and_then(|ending| ending.to_str()) {
         Some("png" | "ppm") => Ok(path),
