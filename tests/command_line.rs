@@ -7,10 +7,10 @@ use std::process::{Command, Output, Stdio};
 
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math::Axis;
-use marraztu::edit::motion;
+use marraztu::edit::{lights, motion};
 use marraztu::io;
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{Projection, Settings};
+use marraztu::scene::{Projection, Scene, Settings};
 use tempfile::TempDir;
 
 /// A square of one unit on a side, its corners counter-clockwise seen from +Z, far from the origin.
@@ -203,6 +203,23 @@ fn a_scene_is_drawn_as_it_was_saved_and_models_go_into_it() {
     }
     let (_, err) = ends_with(2, folder.path(), &["render", "-oa.png", "s.marraztu", "s.marraztu"]);
     assert!(err.contains("only one scene"), "{err}");
+}
+
+#[test]
+fn the_named_lights_shine_and_no_others_whatever_the_scene_says() {
+    let folder = folder();
+    let (mut scene, view) = io::default_scene();
+    let toggle = |scene: &mut Scene, slot| {
+        lights::toggle_slot(scene, slot).unwrap().apply(scene).unwrap();
+    };
+    toggle(&mut scene, 1);
+    io::save(&folder.path().join("s.marraztu"), &scene, &view, &Settings::default()).unwrap();
+    for slot in [0, 1, 2, 4] {
+        toggle(&mut scene, slot);
+    }
+    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(160, 120));
+    let expected = Renderer::default().render(&plan).clone();
+    assert!(drawn(folder.path(), &["s.marraztu", "--lights", "1, 3"]) == expected);
 }
 
 #[test]
