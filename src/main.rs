@@ -1,3 +1,7 @@
 //! Arguments: the editor, or a headless command.
 
-fn main() {}
+mod command_line;
+
+fn main() -> std::process::ExitCode {
+    command_line::run()
+}

@@ -1,0 +1,181 @@
+//! Everything that panels read. Only the app writes it.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::action::Action;
+use crate::base::image::Size;
+use crate::edit::{Gesture, History, Stroke, selection};
+use crate::scene::{ItemId, Light, LightKind, Scene, Settings, View};
+
+/// What is edited and shown.
+#[derive(Debug)]
+pub struct State {
+    /// What there is to draw.
+    pub scene: Scene,
+    /// How it is looked at.
+    pub view: View,
+    /// How exactly it is drawn.
+    pub settings: Settings,
+    /// What was done to the scene.
+    pub history: History,
+    /// The scene's file, where it has one.
+    pub path: Option<PathBuf>,
+    /// The last word to the user, for the status line.
+    pub message: Option<Message>,
+    /// What is to be told until the user puts it away.
+    pub notices: Vec<Notice>,
+    /// What the last picture took.
+    pub statistics: Statistics,
+    /// Which panels are shown.
+    pub shown: Shown,
+    /// The item that is being given a name.
+    pub renaming: Option<ItemId>,
+    /// What the last change of the scene was part of.
+    pub(super) gesture: Gesture,
+}
+
+/// A word to the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// One sentence.
+    pub text: String,
+    /// How it is meant.
+    pub tone: Tone,
+}
+
+/// How a word to the user is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// It was done.
+    Done,
+    /// It was not done, for this reason.
+    Refused,
+}
+
+/// Something that is told until the user puts it away.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// One line.
+    pub text: String,
+    /// More, one line each, for those who want to see it.
+    pub details: Vec<String>,
+    /// What is offered with it, as a button.
+    pub offer: Option<Action>,
+}
+
+/// What the last picture took.
+#[derive(Clone, Copy, Debug)]
+pub struct Statistics {
+    /// From the snapshot to the finished picture.
+    pub time: Duration,
+    /// How large the picture is.
+    pub size: Size,
+    /// How many pictures have been drawn.
+    pub pictures: u64,
+    /// How many triangles of the picture faced the observer inside the view.
+    pub triangles: usize,
+}
+
+impl Default for Statistics {
+    fn default() -> Self {
+        Self { time: Duration::ZERO, size: Size::new(0, 0), pictures: 0, triangles: 0 }
+    }
+}
+
+/// Which panels are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// The list of objects, cameras and lights.
+    pub outline: bool,
+    /// The properties of what is selected.
+    pub properties: bool,
+    /// The switches of the view.
+    pub view: bool,
+    /// What a picture takes.
+    pub statistics: bool,
+    /// The list of keys.
+    pub cheat_sheet: bool,
+}
+
+impl Default for Shown {
+    fn default() -> Self {
+        Self { outline: true, properties: true, view: true, statistics: false, cheat_sheet: false }
+    }
+}
+
+impl State {
+    /// A scene that nothing was done to.
+    #[must_use]
+    pub fn new(scene: Scene, view: View) -> Self {
+        Self {
+            scene,
+            view,
+            settings: Settings::default(),
+            history: History::default(),
+            path: None,
+            message: None,
+            notices: Vec::new(),
+            statistics: Statistics::default(),
+            shown: Shown::default(),
+            renaming: None,
+            gesture: Gesture::Whole,
+        }
+    }
+
+    /// The item that the keys act on.
+    #[must_use]
+    pub fn selected(&self) -> Option<ItemId> {
+        selection::selected(&self.view)
+    }
+
+    /// Its name; empty where there is none.
+    #[must_use]
+    pub fn selected_name(&self) -> &str {
+        self.selected().and_then(|id| self.name(id)).unwrap_or_default()
+    }
+
+    /// As the outline calls an item.
+    #[must_use]
+    pub fn name(&self, id: ItemId) -> Option<&str> {
+        let scene = &self.scene;
+        Some(match id {
+            ItemId::Object(id) => &scene.objects.get(id)?.name,
+            ItemId::Camera(id) => &scene.cameras.get(id)?.name,
+            ItemId::Light(id) => &scene.lights.get(id)?.name,
+        })
+    }
+
+    /// The scene's file without folders, or what stands in for it.
+    #[must_use]
+    pub fn file_name(&self) -> String {
+        let name = self.path.as_deref().and_then(Path::file_name);
+        name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Says in the status line what was done.
+    pub(super) fn tell(&mut self, text: Option<String>) {
+        self.message = text.map(|text| Message { text, tone: Tone::Done });
+    }
+
+    /// Whether anything in the scene moves by itself.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        let circles = |light: &Light| match &light.kind {
+            LightKind::Bulb { orbit, .. } => orbit.on,
+            _ => false,
+        };
+        self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
+            || self.scene.lights.iter().any(|(_, light)| circles(light))
+    }
+
+    /// Where in `gesture` the next change stands: its first one pushes what the item was.
+    #[must_use]
+    pub fn stroke(&self, gesture: Gesture) -> Stroke {
+        if gesture != Gesture::Whole && gesture == self.gesture {
+            Stroke::Continued
+        } else {
+            Stroke::First
+        }
+    }
+}
