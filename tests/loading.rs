@@ -229,11 +229,15 @@ fn corners_are_written_in_all_their_ways() {
 fn runs_with_the_same_names_are_one_part_and_are_called_by_group_object_or_material() {
     let mesh = read(&triangle_and(
         "f 1 2 3\no ship\nf 1 2 3\ng  hull  left \nf 1 2 3\nusemtl red\nf 1 2 3\ng hull  left\n\
-         f 1 2 3\no\ng\nusemtl red\nf 1 2 3\no ship\nusemtl red\nf 1 2 3\n",
+         f 1 2 3\no\ng\nusemtl red\nf 1 2 3\no ship\nusemtl red\nf 1 2 3\ng wing\n\
+         f 1 2 3\no boat\nf 1 2 3\n",
     ));
     let parts: Vec<&str> = mesh.model.mesh.parts().iter().map(|part| part.name.as_str()).collect();
-    assert_eq!(parts, ["part 1", "ship", "hull  left", "hull  left", "red", "ship"]);
-    assert_eq!(mesh.model.mesh.polygon_parts(), [0, 1, 2, 3, 3, 4, 5]);
+    assert_eq!(
+        parts,
+        ["part 1", "ship", "hull  left", "hull  left", "red", "ship", "wing", "boat"]
+    );
+    assert_eq!(mesh.model.mesh.polygon_parts(), [0, 1, 2, 3, 3, 4, 5, 6, 7]);
 }
 
 #[test]
