@@ -3,6 +3,8 @@
 //! Each test is a small file. Those of the first part are read wrongly, or not at all, by `tobj`
 //! alone; breaking the pass over the bytes that stands before it makes them fail.
 
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
 use marraztu::base::color::Color;
 use marraztu::io::{Finding, FindingKind, LoadError, Loaded, Progress, describe, load, parse};
 use marraztu::scene::{LoadOptions, Mesh, NONE, Scale, UpAxis, Winding};

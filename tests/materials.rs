@@ -1,6 +1,8 @@
 //! The material files and textures that an OBJ file names: whether they are found, and what is said
 //! where they are not.
 
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::{Finding, FindingKind, Loaded, Progress, load, save_picture};
 use marraztu::scene::{LoadOptions, Wrap};
