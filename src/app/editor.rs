@@ -91,7 +91,7 @@ impl App {
             self.press(&ctx, press);
         }
         for ask in asks {
-            self.fulfil(&ctx, ask);
+            self.answer_ask(&ctx, ask);
         }
         if let Some(answer) = answer {
             self.take_answer(&ctx, answer);
@@ -182,7 +182,7 @@ impl App {
         if press.chord == Chord::Named(Key::Escape) {
             let mut asks = Vec::new();
             if self.viewport.cancel_drag(&mut asks) {
-                return asks.into_iter().for_each(|ask| self.fulfil(ctx, ask));
+                return asks.into_iter().for_each(|ask| self.answer_ask(ctx, ask));
             }
             if std::mem::take(&mut self.state.shown.cheat_sheet)
                 || self.state.renaming.take().is_some()
@@ -193,7 +193,8 @@ impl App {
         self.perform(ctx, press.action, press.gesture);
     }
 
-    fn fulfil(&mut self, ctx: &Context, ask: Ask) {
+    /// Does what a panel asks for.
+    pub fn answer_ask(&mut self, ctx: &Context, ask: Ask) {
         let state = &mut self.state;
         match ask {
             Ask::Do(action) => self.perform(ctx, action, Gesture::Whole),
