@@ -19,7 +19,8 @@ const MOST_MEMORY: u64 = 2 << 30;
 /// Where the file cannot be read or is no picture.
 pub fn load_texture(path: &Path) -> Result<Shared<Texture>, LoadError> {
     Ok(Shared::new(Texture {
-        source: path.to_owned(),
+        // Complete, so that it holds wherever the program goes on to work.
+        source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
         picture: load_picture(path)?,
         wrap: Wrap::Repeat,
         offset: [0.0; 2],

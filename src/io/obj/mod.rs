@@ -50,7 +50,8 @@ pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<L
     let bytes = read(path, &file, &progress.part(0.0, 0.1))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut loaded = parse(&bytes, &file, Some(folder), options, &progress.part(0.1, 1.0))?;
-    loaded.model.source = Some(path.to_owned());
+    // Complete, so that it holds wherever the program goes on to work.
+    loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
     Ok(loaded)
 }
 
