@@ -354,7 +354,7 @@ fn keys_act_again_after_a_slider_was_dragged() {
     let mut value = 0.5;
     let mut editor = Editor::showing(move |ui, app| {
         egui::Panel::left("slider").show(ui, |ui| {
-            ui.add(egui::Slider::new(&mut value, 0.0..=1.0));
+            ui.add(egui::Slider::new(&mut value, 0.0..=1.0).text("Value"));
         });
         app.editor_ui(ui);
     });

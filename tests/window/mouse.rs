@@ -31,6 +31,8 @@ const R_FALKE: (f32, f32) = (0.335, 0.5);
 fn place_of(editor: &mut Editor, name: &str, (x, y): (f32, f32)) -> egui::Pos2 {
     for step in 0..40 {
         let at = editor.at(x, y - 0.1 + 0.005 * step as f32);
+        // Far enough from the last click in time not to be its second half.
+        editor.harness.run_steps(30);
         editor.click(at, LEFT);
         if name_of_selected(editor) == name && editor.view().subject == Subject::Object {
             return at;
@@ -267,7 +269,12 @@ fn a_double_click_frames_the_object_and_one_on_nothing_frames_all() {
     for _ in 0..2 {
         for pressed in [true, false] {
             let modifiers = Modifiers::NONE;
-            editor.harness.event(Event::PointerButton { pos: at, button: LEFT, pressed, modifiers });
+            editor.harness.event(Event::PointerButton {
+                pos: at,
+                button: LEFT,
+                pressed,
+                modifiers,
+            });
             editor.harness.step();
         }
     }
