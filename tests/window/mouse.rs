@@ -202,7 +202,7 @@ fn the_wheel_comes_nearer_by_whole_notches_and_its_turns_in_one_place_are_one_st
 
 #[test]
 fn the_wheel_over_a_panel_moves_nothing() {
-    let mut editor = Editor::with_buttons();
+    let mut editor = Editor::with_buttons(&[Action::Undo]);
     editor.hover(egui::pos2(5.0, 300.0));
     let before = editor.scene();
     wheel(&mut editor, 3.0);
