@@ -1,0 +1,129 @@
+//! The three models that the program carries, and the scene that it opens with.
+
+use std::sync::OnceLock;
+
+use glam::{DMat4, DVec3};
+
+use super::obj::parse;
+use super::progress::Progress;
+use crate::base::Shared;
+use crate::scene::{
+    Camera, CameraId, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model, Object,
+    ObjectId, Placed, Pose, PresetId, Scene, View,
+};
+
+/// A model that the program carries.
+#[derive(Debug)]
+struct Asset {
+    name: &'static str,
+    text: &'static [u8],
+    model: OnceLock<Shared<Model>>,
+}
+
+impl Asset {
+    const fn new(name: &'static str, text: &'static [u8]) -> Self {
+        Self { name, text, model: OnceLock::new() }
+    }
+
+    /// The model, read when first asked for.
+    fn model(&self) -> Shared<Model> {
+        let read = || {
+            let file = format!("{}.obj", self.name);
+            let loaded = parse(self.text, &file, None, &LoadOptions::default(), &Progress::new());
+            Shared::new(loaded.expect("the program's own models are sound").model)
+        };
+        self.model.get_or_init(read).clone()
+    }
+}
+
+static CAM: Asset = Asset::new("cam", include_bytes!("../../assets/cam.obj"));
+static X_WING: Asset = Asset::new("x_wing", include_bytes!("../../assets/x_wing.obj"));
+static R_FALKE: Asset = Asset::new("r_falke", include_bytes!("../../assets/r_falke.obj"));
+
+/// The pyramid: the mark of cameras.
+#[must_use]
+pub fn cam_model() -> Shared<Model> {
+    CAM.model()
+}
+
+/// A model that the program carries, by its name.
+#[must_use]
+pub fn own_model(name: &str) -> Option<Shared<Model>> {
+    [&CAM, &X_WING, &R_FALKE].into_iter().find(|asset| asset.name == name).map(Asset::model)
+}
+
+/// The scene that the program opens with, and how it is seen.
+///
+/// Three objects were loaded one after the other, each to the front of the list; so the last is the
+/// first, and the selected one.
+#[must_use]
+pub fn default_scene() -> (Scene, View) {
+    let object = |asset: &Asset, material, place| {
+        let mut object = Object::new(asset.model(), MaterialChoice::Preset(material));
+        object.placement = Placed::new(DMat4::from_translation(place));
+        object
+    };
+    let cam = object(&CAM, PresetId::OBSIDIAN, DVec3::new(0.0, 0.0, -400.0));
+    let x_wing = object(&X_WING, PresetId::EMERALD, DVec3::new(100.0, 0.0, 0.0));
+    let r_falke = object(&R_FALKE, PresetId::RUBY, DVec3::new(-100.0, 0.0, 0.0));
+    let camera = Camera {
+        name: "camera 1".to_owned(),
+        visible: true,
+        model: cam_model(),
+        material: MaterialChoice::Preset(PresetId::OBSIDIAN),
+        pose: Placed::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
+        lens: Lens::default(),
+    };
+    let lights = Light::five().into_iter().zip(4..).map(|(light, id)| (LightId(id), light));
+    let scene = Scene {
+        objects: List::from_iter([
+            (ObjectId(2), r_falke),
+            (ObjectId(1), x_wing),
+            (ObjectId(0), cam),
+        ]),
+        cameras: List::from_iter([(CameraId(3), camera)]),
+        lights: lights.collect(),
+        background: Scene::BACKGROUND,
+        next_id: 9,
+    };
+    let view = scene.first_view();
+    (scene, view)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::LightKind;
+
+    #[test]
+    fn the_first_scene_is_the_one_of_the_ancestor() {
+        let (scene, view) = default_scene();
+        let names: Vec<&str> = scene.objects.iter().map(|(_, o)| o.name.as_str()).collect();
+        assert_eq!(names, ["r_falke", "x_wing", "cam"]);
+        let places: Vec<DVec3> =
+            scene.objects.iter().map(|(_, o)| o.placement.now().w_axis.truncate()).collect();
+        assert_eq!(places, [DVec3::X * -100.0, DVec3::X * 100.0, DVec3::Z * -400.0]);
+        assert_eq!(view.object, scene.objects.first());
+        let light = scene.lights.get(view.light.unwrap()).unwrap();
+        assert!(matches!(light.kind, LightKind::Sun { .. }));
+        assert_eq!(scene.lights.len(), 5);
+        let ids = scene.lights.ids().map(|id| id.0);
+        assert!(ids.chain(scene.objects.ids().map(|id| id.0)).all(|id| id < scene.next_id));
+    }
+
+    #[test]
+    fn the_programs_own_models_are_sound_and_have_polygons_of_many_sizes() {
+        for asset in [&CAM, &X_WING, &R_FALKE] {
+            let loaded =
+                parse(asset.text, asset.name, None, &LoadOptions::default(), &Progress::new());
+            assert_eq!(loaded.unwrap().findings, []);
+            let mesh = &asset.model().mesh;
+            for sides in [3, 4, 5] {
+                let count = |i: u32| mesh.polygon(i).len();
+                let polygons = u32::try_from(mesh.polygon_count()).unwrap();
+                let right = (0..polygons).any(|i| count(i).min(5) == sides);
+                assert!(right, "{} has no polygon of {sides} corners", asset.name);
+            }
+        }
+    }
+}

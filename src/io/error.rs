@@ -1,0 +1,72 @@
+//! Why a file could not be loaded, worded for the person at the screen.
+
+use std::path::Path;
+
+use super::progress::Cancelled;
+
+/// Why a file could not be loaded. Nothing has been changed then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LoadError {
+    /// The file cannot be read at all.
+    #[error("{file}: {reason}")]
+    File {
+        /// Its name, without folders.
+        file: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A line of it cannot be taken for what it says it is.
+    #[error("{file}, line {line}: {reason}")]
+    Line {
+        /// The file's name, without folders.
+        file: String,
+        /// The line, counted from 1.
+        line: u32,
+        /// What is wrong.
+        reason: String,
+    },
+    /// [`Progress::cancel`](super::Progress::cancel) was called.
+    #[error("loading was cancelled")]
+    Cancelled,
+}
+
+impl From<Cancelled> for LoadError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl LoadError {
+    pub(super) fn file(file: &str, reason: impl Into<String>) -> Self {
+        Self::File { file: file.to_owned(), reason: reason.into() }
+    }
+
+    pub(super) fn line(file: &str, line: u32, reason: impl Into<String>) -> Self {
+        Self::Line { file: file.to_owned(), line, reason: reason.into() }
+    }
+
+    pub(super) fn system(file: &str, error: &std::io::Error) -> Self {
+        Self::file(file, reason(error))
+    }
+}
+
+/// What the operating system says, in words of ours where they are plainer.
+pub(super) fn reason(error: &std::io::Error) -> String {
+    use std::io::ErrorKind;
+    match error.kind() {
+        ErrorKind::NotFound => "there is no such file".to_owned(),
+        ErrorKind::PermissionDenied => "this user may not do that with it".to_owned(),
+        ErrorKind::IsADirectory => "this is a folder, not a file".to_owned(),
+        ErrorKind::NotADirectory => "a part of its path is no folder".to_owned(),
+        ErrorKind::StorageFull => "there is no room left on the disk".to_owned(),
+        ErrorKind::ReadOnlyFilesystem => "the disk can only be read".to_owned(),
+        ErrorKind::OutOfMemory => "there is not enough memory for it".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// A file's name without folders, for messages.
+pub(super) fn short_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}

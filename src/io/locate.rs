@@ -1,0 +1,91 @@
+//! Where the file is that another file names.
+//!
+//! Names come from other machines: with back slashes, with the folders of whoever exported them, in
+//! another case. So a name is looked for where it says, then by its last part beside the file that
+//! names it, then without regard to case.
+
+use std::path::{Path, PathBuf};
+
+/// The file that `name` means, seen from `folder`; `None` where there is none.
+pub(super) fn locate(folder: &Path, name: &str) -> Option<PathBuf> {
+    let name = plain(name);
+    if name.is_empty() {
+        return None;
+    }
+    let last = name.rsplit('/').next().unwrap_or(&name);
+    let file = |path: PathBuf| path.is_file().then_some(path);
+    file(folder.join(&name))
+        .or_else(|| file(folder.join(last)))
+        .or_else(|| any_case(folder, &name))
+        .or_else(|| any_case(folder, last))
+}
+
+/// A name with slashes, without the quotation marks that some write about it.
+pub(super) fn plain(name: &str) -> String {
+    let name = name.trim();
+    let unquoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name);
+    let slashes = unquoted.replace('\\', "/");
+    let lead = if slashes.starts_with('/') { "/" } else { "" };
+    let parts: Vec<&str> = slashes.split('/').filter(|part| !part.is_empty()).collect();
+    format!("{lead}{}", parts.join("/"))
+}
+
+/// Follows a relative name from `folder`, without regard to case.
+fn any_case(folder: &Path, name: &str) -> Option<PathBuf> {
+    if name.starts_with('/') {
+        return None;
+    }
+    let mut path = folder.to_owned();
+    for part in name.split('/') {
+        if part == "." || part == ".." {
+            path.push(part);
+            continue;
+        }
+        let wanted = part.to_lowercase();
+        let entries =
+            std::fs::read_dir(if path.as_os_str().is_empty() { ".".as_ref() } else { &*path });
+        let mut names: Vec<_> = entries
+            .ok()?
+            .filter_map(|entry| Some(entry.ok()?.file_name()))
+            .filter(|name| name.to_string_lossy().to_lowercase() == wanted)
+            .collect();
+        // The order of a folder's entries is no order: the first by name.
+        names.sort();
+        path.push(names.first()?);
+    }
+    path.is_file().then_some(path)
+}
+
+/// The files that a line of names means: names are divided by blanks, and may have blanks inside.
+///
+/// From each word on, the longest run of words that is a file is one name; where none is, a name
+/// that is not there goes up to the first word with the ending that all of them have.
+pub(super) fn locate_all(
+    folder: &Path,
+    names: &str,
+    ending: &str,
+) -> Vec<(String, Option<PathBuf>)> {
+    let whole = locate(folder, names);
+    if whole.is_some() {
+        return vec![(names.to_owned(), whole)];
+    }
+    let words: Vec<&str> = names.split_whitespace().collect();
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        // Every further word is a look at the disk; no name has as many as this.
+        let longest = words.len().min(at + 16);
+        let run = (at + 1..=longest).rev().find_map(|end| {
+            let name = words[at..end].join(" ");
+            locate(folder, &name).map(|path| (end, name, Some(path)))
+        });
+        let ends = |word: &&str| word.to_ascii_lowercase().ends_with(ending);
+        let (end, name, path) = run.unwrap_or_else(|| {
+            let end = words[at..].iter().position(ends).map_or(words.len(), |i| at + i + 1);
+            (end, words[at..end].join(" "), None)
+        });
+        found.push((name, path));
+        at = end;
+    }
+    found
+}

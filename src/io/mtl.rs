@@ -1,0 +1,395 @@
+//! The materials of an MTL file, mended where exporters write nonsense.
+//!
+//! A file that cannot be understood is never a reason not to show the model: whatever is wrong is
+//! listed, and the rest is taken.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::error::{reason, short_name};
+use super::findings::{Finding, FindingKind, Findings};
+use super::locate::locate;
+use super::obj::lines::{Line, Lines, decode, number, words};
+use super::texture::load_picture;
+use crate::base::Shared;
+use crate::scene::{FileMaterial, Material, Texture, Wrap};
+
+/// The materials of the files that a model names, in their order.
+#[derive(Debug, Default)]
+pub(super) struct Library {
+    pub(super) materials: Vec<FileMaterial>,
+    pub(super) findings: Vec<Finding>,
+    /// By path, wrapping, and the bits of offset and scale: what is the same is shared.
+    textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
+}
+
+/// A material as its statements say it.
+#[derive(Debug, Default)]
+struct Statements {
+    name: String,
+    line: u32,
+    ambient: Option<[f64; 3]>,
+    diffuse: Option<[f64; 3]>,
+    specular: Option<[f64; 3]>,
+    exponent: Option<f64>,
+    opacity: Option<f64>,
+    transparency: Option<f64>,
+    illumination: Option<f64>,
+    map: Option<(u32, Map)>,
+}
+
+/// The arguments of `map_Kd`.
+#[derive(Clone, Debug, PartialEq)]
+struct Map {
+    name: String,
+    wrap: Wrap,
+    offset: [f64; 2],
+    scale: [f64; 2],
+}
+
+impl Library {
+    /// Reads one file; textures are looked for beside it, then beside the model.
+    pub(super) fn read(&mut self, path: &Path, model_folder: &Path) {
+        let mut findings = Findings::new(&short_name(path));
+        match std::fs::read(path) {
+            Ok(bytes) => {
+                let folders = [path.parent().unwrap_or(Path::new("")), model_folder];
+                for statements in read_statements(&bytes, &mut findings) {
+                    self.add(statements, folders, &mut findings);
+                }
+            }
+            Err(error) => findings.add(FindingKind::MtlUnreadable, &reason(&error), None),
+        }
+        self.findings.extend(findings.into_list());
+    }
+
+    /// The place of the material with this name.
+    pub(super) fn place(&self, name: &str) -> Option<u32> {
+        let place = self.materials.iter().position(|material| material.name == name)?;
+        u32::try_from(place).ok()
+    }
+
+    fn add(&mut self, statements: Statements, folders: [&Path; 2], findings: &mut Findings) {
+        if self.place(&statements.name).is_some() {
+            findings.add(FindingKind::MaterialTwice, &statements.name, Some(statements.line));
+            return;
+        }
+        let texture = statements.map.clone().and_then(|(line, map)| {
+            self.texture(map, folders, &mut |kind, name| findings.add(kind, name, Some(line)))
+        });
+        self.materials.push(statements.mended(texture, findings));
+    }
+
+    fn texture(
+        &mut self,
+        map: Map,
+        folders: [&Path; 2],
+        note: &mut dyn FnMut(FindingKind, &str),
+    ) -> Option<Shared<Texture>> {
+        let Some(path) = folders.into_iter().find_map(|folder| locate(folder, &map.name)) else {
+            note(FindingKind::TextureMissing, &map.name);
+            return None;
+        };
+        let bits = [map.offset, map.scale].concat();
+        let bits = std::array::from_fn(|i| bits[i].to_bits());
+        let key = (path.clone(), map.wrap == Wrap::Clamp, bits);
+        if let Some(texture) = self.textures.get(&key) {
+            return Some(texture.clone());
+        }
+        match load_picture(&path) {
+            Ok(picture) => {
+                let Map { wrap, offset, scale, .. } = map;
+                let texture = Texture { source: path, picture, wrap, offset, scale };
+                let texture = Shared::new(texture);
+                self.textures.insert(key, texture.clone());
+                Some(texture)
+            }
+            Err(error) => {
+                note(FindingKind::TextureUnreadable, &error.to_string());
+                None
+            }
+        }
+    }
+}
+
+fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
+    let mut list: Vec<Statements> = Vec::new();
+    for line in Lines::new(bytes) {
+        let (keyword, _) = line.statement();
+        if keyword == b"newmtl" {
+            let (name, line) = (line.name(), line.number);
+            list.push(Statements { name, line, ..Statements::default() });
+            continue;
+        }
+        if keyword.starts_with(b"#") {
+            continue;
+        }
+        match list.last_mut() {
+            Some(statements) => statements.read(&line, findings),
+            None => findings.add(FindingKind::MtlStray, &decode(keyword), Some(line.number)),
+        }
+    }
+    list
+}
+
+impl Statements {
+    fn read(&mut self, line: &Line<'_>, findings: &mut Findings) {
+        let (keyword, rest) = line.statement();
+        let plain = keyword.to_ascii_lowercase();
+        let mut read = true;
+        match &plain[..] {
+            b"ka" => read = set(&mut self.ambient, color(rest)),
+            b"kd" => read = set(&mut self.diffuse, color(rest)),
+            b"ks" => read = set(&mut self.specular, color(rest)),
+            b"ns" => read = set(&mut self.exponent, single(rest)),
+            b"d" => {
+                // `d -halo x` fades towards the middle; x alone is taken.
+                read = set(&mut self.opacity, single(rest.strip_prefix(b"-halo").unwrap_or(rest)));
+            }
+            b"tr" => read = set(&mut self.transparency, single(rest)),
+            b"illum" => read = set(&mut self.illumination, single(rest)),
+            b"map_kd" => match map(rest) {
+                Some(map) => self.map = Some((line.number, map)),
+                None => read = false,
+            },
+            b"bump" | b"disp" | b"decal" | b"refl" | b"norm" => {
+                findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
+            }
+            b"map_aat" => {}
+            _ if plain.starts_with(b"map_") => {
+                findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
+            }
+            // Emission, refraction, filters, sharpness, and what physically based shading has.
+            b"ke" | b"kt" | b"ni" | b"tf" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc"
+            | b"pcr" | b"aniso" | b"anisor" => {}
+            _ => findings.add(FindingKind::Unknown, &decode(keyword), Some(line.number)),
+        }
+        if !read {
+            findings.add(FindingKind::MtlNumber, &decode(keyword), Some(line.number));
+        }
+    }
+
+    /// The material, with what is missing or nonsense replaced.
+    fn mended(self, texture: Option<Shared<Texture>>, findings: &mut Findings) -> FileMaterial {
+        let mut note = |kind| findings.add(kind, &self.name, Some(self.line));
+        let clamped = |color: [f64; 3], note: &mut dyn FnMut(FindingKind)| {
+            let within = color.map(|x| x.clamp(0.0, 1.0));
+            if within != color {
+                note(FindingKind::MendedRange);
+            }
+            within
+        };
+        let diffuse = match self.diffuse {
+            Some(color) => clamped(color, &mut note),
+            None => {
+                note(FindingKind::MendedDiffuse);
+                // The texture named is what the material shows, found or not.
+                [if self.map.is_some() { 1.0 } else { 0.8 }; 3]
+            }
+        };
+        let shade = diffuse.map(|x| 0.2 * x);
+        let nonsense = |ambient: [f64; 3]| {
+            Some(ambient) == self.diffuse
+                || ambient.iter().all(|x| *x >= 1.0)
+                || ambient.iter().any(|x| *x > 1.0)
+        };
+        let ambient = match self.ambient {
+            Some(ambient) if !nonsense(ambient) => clamped(ambient, &mut note),
+            given => {
+                if given != Some(shade) {
+                    note(FindingKind::MendedAmbient);
+                }
+                shade
+            }
+        };
+        let unlit = self.illumination.is_some_and(|model| model == 0.0 || model == 1.0);
+        let specular = match self.specular {
+            Some(specular) if !unlit => clamped(specular, &mut note),
+            given => {
+                if given != Some([0.0; 3]) {
+                    note(FindingKind::MendedSpecular);
+                }
+                [0.0; 3]
+            }
+        };
+        let exponent = self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0);
+        // Without a highlight nobody sees its size.
+        if self.exponent != Some(exponent) && specular != [0.0; 3] {
+            note(FindingKind::MendedExponent);
+        }
+        let opacity = self.opacity.or_else(|| self.transparency.map(|x| 1.0 - x)).unwrap_or(1.0);
+        let [opacity, ..] = clamped([opacity; 3], &mut note);
+        if opacity < 0.5 {
+            note(FindingKind::Transparent);
+        } else if opacity < 1.0 {
+            note(FindingKind::Translucent);
+        }
+        let material = Material { ambient, diffuse, specular, exponent };
+        FileMaterial { name: self.name, material, opacity, texture }
+    }
+}
+
+/// Sets what could be read; says whether it could.
+fn set<T>(target: &mut Option<T>, value: Option<T>) -> bool {
+    let read = value.is_some();
+    if read {
+        *target = value;
+    }
+    read
+}
+
+/// Three numbers, or one for all three.
+fn color(rest: &[u8]) -> Option<[f64; 3]> {
+    let numbers: Option<Vec<f64>> = words(rest).take(3).map(finite).collect();
+    match numbers?[..] {
+        [r, g, b] => Some([r, g, b]),
+        [grey] => Some([grey; 3]),
+        _ => None,
+    }
+}
+
+fn single(rest: &[u8]) -> Option<f64> {
+    words(rest).next().and_then(finite)
+}
+
+/// A number as its text says it, not by way of 32 bits.
+fn finite(word: &[u8]) -> Option<f64> {
+    let (_, text) = number(word).ok()?;
+    std::str::from_utf8(text).ok()?.parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+/// A file's name with options before or after it.
+fn map(rest: &[u8]) -> Option<Map> {
+    let mut map =
+        Map { name: String::new(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
+    // Words with where they begin, for blanks inside a name are kept.
+    let text = decode(rest);
+    let mut words: Vec<(usize, &str)> = Vec::new();
+    for word in text.split_whitespace() {
+        // The address of a part of a text tells where in the text it stands.
+        words.push((word.as_ptr().addr() - text.as_ptr().addr(), word));
+    }
+    let mut name: Option<(usize, usize)> = None;
+    let mut at = 0;
+    while let Some(&(begin, word)) = words.get(at) {
+        at += 1;
+        if word == "#" {
+            break;
+        }
+        let numbers = |most: usize| -> Vec<f64> {
+            let following = words[at..].iter().take(most);
+            following.map_while(|(_, word)| finite(word.as_bytes())).collect()
+        };
+        match word.to_ascii_lowercase().as_str() {
+            "-clamp" => {
+                let on = words.get(at).is_some_and(|(_, word)| word.eq_ignore_ascii_case("on"));
+                map.wrap = if on { Wrap::Clamp } else { Wrap::Repeat };
+                at += 1;
+            }
+            "-o" | "-s" => {
+                let given = numbers(3);
+                let target =
+                    if word.ends_with(['o', 'O']) { &mut map.offset } else { &mut map.scale };
+                for (target, given) in target.iter_mut().zip(&given) {
+                    *target = *given;
+                }
+                at += given.len();
+            }
+            "-t" => at += numbers(3).len(),
+            "-mm" => at += numbers(2).len(),
+            "-bm" | "-boost" | "-texres" => at += numbers(1).len(),
+            "-blendu" | "-blendv" | "-cc" | "-imfchan" | "-type" | "-colorspace" => at += 1,
+            _ => {
+                let first = name.map_or(begin, |(first, _)| first);
+                name = Some((first, begin + word.len()));
+            }
+        }
+    }
+    let (begin, end) = name?;
+    text[begin..end].clone_into(&mut map.name);
+    Some(map)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> (FileMaterial, Vec<FindingKind>) {
+        let mut findings = Findings::new("a.mtl");
+        let mut library = Library::default();
+        for statements in read_statements(text.as_bytes(), &mut findings) {
+            library.add(statements, [Path::new("nowhere"); 2], &mut findings);
+        }
+        let kinds = findings.into_list().into_iter().map(|finding| finding.kind).collect();
+        (library.materials.remove(0), kinds)
+    }
+
+    #[test]
+    fn a_sound_material_is_taken_as_it_is() {
+        let (red, findings) =
+            read("newmtl red\nKa .1 0 0\nKd 0.5 0 0\nKs 1 1 1\nNs 20\nd 1\nillum 2\n");
+        assert_eq!(findings, []);
+        assert_eq!(red.name, "red");
+        let Material { ambient, diffuse, specular, exponent } = red.material;
+        assert_eq!([ambient, diffuse, specular], [[0.1, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0; 3]]);
+        assert_eq!((exponent, red.opacity), (20.0, 1.0));
+    }
+
+    #[test]
+    fn each_nonsense_is_mended_by_its_rule_and_listed() {
+        use FindingKind::*;
+        let rows: [(&str, FindingKind, fn(&FileMaterial) -> bool); 11] = [
+            ("Kd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
+            ("Ka 1 1 1\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
+            ("Ka .5 0 0\nKd .5 0 0\nKs 0 0 0", MendedAmbient, |m| {
+                m.material.ambient == [0.1, 0.0, 0.0]
+            }),
+            ("Ka 0 0 7\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
+            ("Ka 0 0 0\nKs 0 0 0", MendedDiffuse, |m| m.material.diffuse == [0.8; 3]),
+            ("Ka 0 0 0\nKd 1 1 1", MendedSpecular, |m| m.material.specular == [0.0; 3]),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nillum 1\nNs 9", MendedSpecular, |m| {
+                m.material.specular == [0.0; 3]
+            }),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 1 1 1\nNs 0", MendedExponent, |m| m.material.exponent == 1.0),
+            ("Ka 0 0 0\nKd 1 -1 9\nKs 0 0 0", MendedRange, |m| {
+                m.material.diffuse == [1.0, 0.0, 1.0]
+            }),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nTr 0.75", Transparent, |m| m.opacity == 0.25),
+            ("Ka 0 0 0\nKd 0.5\nKs 0 0 0\nd 0.75", Translucent, |m| {
+                m.material.diffuse == [0.5; 3] && m.opacity == 0.75
+            }),
+        ];
+        for (text, kind, right) in rows {
+            let (material, findings) = read(&format!("newmtl m\n{text}\n"));
+            assert_eq!(findings, [kind], "{text}");
+            assert!(right(&material), "{text}: {material:?}");
+        }
+    }
+
+    #[test]
+    fn a_texture_without_a_diffuse_colour_is_shown_in_its_own() {
+        let (material, findings) = read("newmtl m\nKa 0 0 0\nKs 0 0 0\nmap_Kd t.png\n");
+        assert_eq!(material.material.diffuse, [1.0; 3]);
+        assert_eq!(findings, [FindingKind::MendedDiffuse, FindingKind::TextureMissing]);
+    }
+
+    #[test]
+    fn options_of_a_map_stand_before_or_after_a_name_with_blanks() {
+        let map = |text: &str| map(text.as_bytes());
+        let plain =
+            Map { name: "a  b.png".into(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
+        assert_eq!(map("a  b.png"), Some(plain.clone()));
+        assert_eq!(
+            map("-clamp on -o 0.1 -s 2 3 0 -mm 0 1 -imfchan r a  b.png -bm 1.5"),
+            Some(Map { wrap: Wrap::Clamp, offset: [0.1, 0.0], scale: [2.0, 3.0], ..plain })
+        );
+        assert_eq!(map("-s 1 1 1"), None);
+    }
+
+    #[test]
+    fn numbers_that_cannot_be_read_and_stray_statements_are_listed() {
+        let (_, findings) =
+            read("Kd 1 1 1\nnewmtl m\nKa 0 0 0\nKd 1 1 1\nKs 0,5 0 0\nKs 0 0 0\nbsdf pbr\n");
+        assert_eq!(findings, [FindingKind::Unknown, FindingKind::MtlStray, FindingKind::MtlNumber]);
+    }
+}

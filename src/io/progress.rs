@@ -1,0 +1,79 @@
+//! How far a long piece of work has come, and whether it should go on.
+//!
+//! The one who works and the one who watches hold clones of the same value.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// A share of some work, from 0 to 1, with a flag that asks for its end.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    state: Arc<State>,
+    /// Where this part of the work begins and how much of the whole it is.
+    begin: f64,
+    share: f64,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    /// The bits of an f64.
+    fraction: AtomicU64,
+    cancelled: AtomicBool,
+}
+
+/// The work should end: nobody waits for it any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cancelled;
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self { state: Arc::default(), begin: 0.0, share: 1.0 }
+    }
+}
+
+impl Progress {
+    /// Work that has not begun.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// How much of the whole work is done, from 0 to 1.
+    #[must_use]
+    pub fn fraction(&self) -> f64 {
+        f64::from_bits(self.state.fraction.load(Ordering::Relaxed))
+    }
+
+    /// Asks for the end of the work. It ends with an error, and nothing is changed.
+    pub fn cancel(&self) {
+        self.state.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether [`Self::cancel`] was called.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.state.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// The part of this work between two fractions of it, as work of its own.
+    #[must_use]
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        Self {
+            state: Arc::clone(&self.state),
+            begin: self.begin + self.share * from,
+            share: self.share * (to - from),
+        }
+    }
+
+    /// Says that `done` of `all` steps of this work are done.
+    ///
+    /// # Errors
+    /// Where the work should end.
+    #[expect(clippy::cast_precision_loss, reason = "for the eye")]
+    pub fn reached(&self, done: usize, all: usize) -> Result<(), Cancelled> {
+        let fraction = (done as f64 / all.max(1) as f64).min(1.0);
+        let whole = self.begin + self.share * fraction;
+        self.state.fraction.store(whole.to_bits(), Ordering::Relaxed);
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,276 @@
+//! What pictures show, on scenes small enough to know the answer.
+
+mod common;
+
+use common::{at, ball, covered, cube, draw, edit, scene, square};
+use glam::{DMat4, DVec3};
+use marraztu::base::color::Color;
+use marraztu::base::image::{Picture, Size};
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{
+    Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Normals, ObjectId, PolygonMode,
+    PresetId, Projection, Scene, Settings, SpecularForm, View,
+};
+
+const FIRST: ObjectId = ObjectId(10);
+const SECOND: ObjectId = ObjectId(11);
+
+/// The bulb's mark would stand in the picture.
+fn without_marks(view: View) -> View {
+    View { marks: false, ..view }
+}
+
+fn steps_apart(a: &Picture, b: &Picture) -> u8 {
+    let bytes = |picture: &Picture| picture.pixels().as_flattened().to_vec();
+    bytes(a).iter().zip(bytes(b)).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+}
+
+#[test]
+fn every_way_of_lighting_is_the_same_to_a_step_in_both_arithmetics() {
+    let (scene, view) =
+        scene(&[(ball(16), at(60.0, -70.0, 10.0, 0.0)), (cube(), at(50.0, 80.0, 0.0, -60.0))]);
+    for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
+        for normals in [Normals::Vertex, Normals::Face] {
+            for projection in [Projection::Perspective, Projection::Orthographic] {
+                for specular in [SpecularForm::Reflection, SpecularForm::HalfVector] {
+                    let view = View { normals, projection, ..view.clone() };
+                    let settings = Settings { light, specular, ..Settings::default() };
+                    let exact = Settings { arithmetic: Arithmetic::F64, ..settings };
+                    let (fast, exact) =
+                        (draw(&scene, &view, &settings, 160), draw(&scene, &view, &exact, 160));
+                    let steps = steps_apart(&fast, &exact);
+                    assert!(steps <= 1, "{steps} steps: {settings:?} {normals:?} {projection:?}");
+                    assert_eq!(covered(&fast, &scene), covered(&exact, &scene));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_square_that_faces_the_camera_covers_the_pixels_that_the_lens_says() {
+    // 400 away, 45 degrees: 2 tan(22.5) 400 = 331.37 units across 100 pixels.
+    let (scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0))]);
+    let picture = draw(&scene, &without_marks(view), &Settings::default(), 100);
+    let side = (100.0 / (800.0 * 22.5_f64.to_radians().tan()) * 100.0).round() as usize;
+    assert_eq!(covered(&picture, &scene).iter().filter(|seen| **seen).count(), side * side);
+}
+
+#[test]
+fn what_is_lit_by_the_sun_alone_has_the_colour_of_the_equation() {
+    let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0))]);
+    // The ground, seen from above by a camera at (0, 0, 400): the square lies in y = 0 and is turned
+    // to face up and towards the camera by 45 degrees.
+    edit(&mut scene, FIRST, |object| {
+        let turn =
+            DMat4::from_rotation_x(-45_f64.to_radians()) * DMat4::from_scale(DVec3::splat(50.0));
+        object.placement = object.placement.replaced(turn);
+        object.material = MaterialChoice::Preset(PresetId::named("jade").unwrap());
+    });
+    for slot in [0, 2, 3, 4] {
+        switch(&mut scene, slot, false);
+    }
+    let picture = draw(&scene, &without_marks(view), &Settings::default(), 99);
+    // N.L = cos 45, L straight up; V along +Z at the middle: R = 2 (N.L) N - L = (0, 0, 1), R.V = 1.
+    let half = 0.5_f64.sqrt();
+    let expected =
+        [0.54, 0.89, 0.63].map(|kd: f64| ((kd * half + 0.316_228).min(1.0) * 255.0).round());
+    let [r, g, b, _] = picture.pixel(49, 49);
+    for (got, want) in [r, g, b].into_iter().zip(expected) {
+        assert!((f64::from(got) - want).abs() <= 1.0, "{got} for {want}");
+    }
+}
+
+fn switch(scene: &mut Scene, slot: u32, on: bool) {
+    let (id, light) = scene.lights.iter().find(|(_, light)| light.slot == slot).unwrap();
+    let mut light = light.clone();
+    light.on = on;
+    let item = marraztu::scene::Item::Light(id, Box::new(light));
+    Command::Replace(item).apply(scene).unwrap();
+}
+
+#[test]
+fn back_faces_are_left_out_or_red_or_lit() {
+    let turned = at(50.0, 0.0, 0.0, 0.0) * DMat4::from_rotation_y(std::f64::consts::PI);
+    let (mut scene, view) = scene(&[(square(), turned)]);
+    let view = without_marks(view);
+    let settings = Settings::default();
+    let empty = draw(&scene, &view, &settings, 50);
+    assert!(covered(&empty, &scene).iter().all(|seen| !seen));
+    let red = View { back_faces: true, ..view.clone() };
+    assert_eq!(draw(&scene, &red, &settings, 50).pixel(25, 25), [255, 0, 0, 255]);
+    edit(&mut scene, FIRST, |object| object.two_sided = true);
+    let lit = draw(&scene, &view, &settings, 50).pixel(25, 25);
+    edit(&mut scene, FIRST, |object| {
+        object.two_sided = false;
+        object.placement = object.placement.replaced(at(50.0, 0.0, 0.0, 0.0));
+    });
+    // The object's own spot turned with it: without it, front and turned back look alike.
+    switch(&mut scene, 3, false);
+    let front = draw(&scene, &view, &settings, 50).pixel(25, 25);
+    edit(&mut scene, FIRST, |object| {
+        object.two_sided = true;
+        object.placement = object.placement.replaced(turned);
+    });
+    let back = draw(&scene, &view, &settings, 50).pixel(25, 25);
+    assert_eq!(front, back);
+    assert_ne!(lit, scene.background.opaque());
+}
+
+#[test]
+fn a_mirrored_object_is_not_inside_out() {
+    let (mut scene, view) = scene(&[(ball(8), at(80.0, 0.0, 0.0, 0.0))]);
+    let view = without_marks(view);
+    let plain = draw(&scene, &view, &Settings::default(), 64);
+    edit(&mut scene, FIRST, |object| {
+        let mirror = DMat4::from_scale(DVec3::new(-80.0, 80.0, 80.0));
+        object.placement = object.placement.replaced(mirror);
+    });
+    let mirrored = draw(&scene, &view, &Settings::default(), 64);
+    let seen = |picture: &Picture| covered(picture, &scene).iter().filter(|seen| **seen).count();
+    assert_eq!(seen(&plain), seen(&mirrored));
+    assert!(steps_apart(&plain, &mirrored) <= 2, "a ball is its own mirror image");
+}
+
+#[test]
+fn what_is_nearer_hides_what_is_farther_whatever_the_order() {
+    let near = (square(), at(20.0, 0.0, 0.0, 50.0));
+    let far = (square(), at(60.0, 0.0, 0.0, -50.0));
+    for models in [[near.clone(), far.clone()], [far, near]] {
+        let (mut scene, view) = scene(&models);
+        let nearer = if models[0].1.w_axis.z > 0.0 { FIRST } else { SECOND };
+        edit(&mut scene, nearer, |object| {
+            object.material = MaterialChoice::Preset(PresetId::EMERALD);
+        });
+        let [r, g, ..] = draw(&scene, &without_marks(view), &Settings::default(), 64).pixel(32, 32);
+        assert!(g > r, "emerald is in front of ruby: {r} {g}");
+    }
+}
+
+#[test]
+fn among_equal_depths_the_older_object_wins() {
+    let (mut scene, view) =
+        scene(&[(square(), at(50.0, 0.0, 0.0, 0.0)), (square(), at(50.0, 0.0, 0.0, 0.0))]);
+    edit(&mut scene, SECOND, |object| {
+        object.material = MaterialChoice::Preset(PresetId::EMERALD);
+    });
+    let before = draw(&scene, &view, &Settings::default(), 64);
+    let [r, g, ..] = before.pixel(32, 34);
+    assert!(r > g, "ruby is older than emerald: {r} {g}");
+    let reorder = Command::Reorder { id: ItemId::Object(SECOND), to: 0 };
+    reorder.apply(&mut scene).unwrap();
+    assert_eq!(
+        before,
+        draw(&scene, &view, &Settings::default(), 64),
+        "the list's order does not show"
+    );
+}
+
+#[test]
+fn a_ground_that_runs_through_the_camera_is_cut_at_the_near_plane() {
+    // A floor of 1000 units, 10 below the camera: without clipping its rear corners would fold over.
+    let floor = at(1000.0, 0.0, -10.0, 400.0) * DMat4::from_rotation_x(-90_f64.to_radians());
+    let (scene, view) = scene(&[(square(), floor)]);
+    let picture = draw(&scene, &without_marks(view), &Settings::default(), 101);
+    let seen = covered(&picture, &scene);
+    let rows: Vec<usize> =
+        (0..101).map(|y| seen[y * 101..][..101].iter().filter(|seen| **seen).count()).collect();
+    assert!(rows[..50].iter().all(|row| *row == 0), "nothing of the floor is above the horizon");
+    assert!(rows[54..].iter().all(|row| *row == 101), "below it there is floor from side to side");
+}
+
+#[test]
+fn edges_are_the_outlines_of_polygons_that_face_the_camera() {
+    let (mut scene, view) = scene(&[(cube(), at(50.0, 0.0, 0.0, 0.0))]);
+    edit(&mut scene, FIRST, |object| object.edge_color = Color([1, 200, 3]));
+    let view = View { fill: Fill::Edges, ..without_marks(view) };
+    let picture = draw(&scene, &view, &Settings::default(), 101);
+    let colored = |color: [u8; 4]| picture.pixels().iter().filter(|pixel| **pixel == color).count();
+    let front = colored([1, 200, 3, 255]);
+    // The front square alone faces a camera in front of its middle: four sides of some 34 pixels.
+    let side = 100.0 / (700.0 * 22.5_f64.to_radians().tan()) * 101.0;
+    assert!((front as f64 - 4.0 * side).abs() <= 6.0, "{front} for {}", 4.0 * side);
+    assert_eq!(colored(Color::BACK_FACE.opaque()), 0);
+    let red = View { back_faces: true, ..view };
+    let picture = draw(&scene, &red, &Settings::default(), 101);
+    assert!(picture.pixels().contains(&Color::BACK_FACE.opaque()));
+}
+
+#[test]
+fn one_polygon_is_shown_alone_or_with_the_earlier_ones() {
+    let (scene, view) = scene(&[(cube(), at(50.0, 0.0, 0.0, 0.0))]);
+    let count = |polygon: u32, stay: bool| {
+        let mut mode = PolygonMode::begin();
+        mode.go_to(polygon);
+        let view = View {
+            polygons: Some(mode),
+            polygons_stay: stay,
+            back_faces: true,
+            ..without_marks(view.clone())
+        };
+        let picture = draw(&scene, &view, &Settings::default(), 64);
+        covered(&picture, &scene).iter().filter(|seen| **seen).count()
+    };
+    // Polygon 0 is the back of the cube, polygon 1 its front; 2 is the bottom, seen from inside.
+    assert!(count(1, false) > count(0, false));
+    assert_eq!(count(1, true), count(1, false), "the front hides the back");
+    assert!(count(2, true) > count(2, false));
+}
+
+#[test]
+fn a_pixel_knows_whose_it_is() {
+    let (scene, view) =
+        scene(&[(cube(), at(40.0, -80.0, 0.0, 0.0)), (cube(), at(40.0, 80.0, 0.0, 0.0))]);
+    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(200, 200));
+    let mut renderer = Renderer::default();
+    renderer.render(&plan);
+    let item = |x: usize, y: usize| renderer.hit(x, y).map(|hit| (hit.item, hit.polygon));
+    assert_eq!(item(52, 100), Some((ItemId::Object(FIRST), 1)));
+    assert_eq!(item(148, 100), Some((ItemId::Object(SECOND), 1)));
+    assert_eq!(item(100, 20), None);
+    assert_eq!(item(1000, 20), None);
+    let bulb = scene.lights.iter().find(|(_, light)| light.slot == 2).unwrap().0;
+    assert_eq!(item(100, 100), Some((ItemId::Light(bulb), 0)), "the diamond stands in the middle");
+}
+
+#[test]
+fn the_diamond_is_nine_pixels_across_however_far() {
+    let (scene, view) = scene(&[]);
+    let picture = draw(&scene, &view, &Settings::default(), 800);
+    let yellow: Vec<(usize, usize)> = (0..800 * 800)
+        .filter(|i| picture.pixels()[*i] == [255, 255, 0, 255])
+        .map(|i| (i % 800, i / 800))
+        .collect();
+    let extent = |pick: fn(&(usize, usize)) -> usize| {
+        let (low, high) =
+            (yellow.iter().map(pick).min().unwrap(), yellow.iter().map(pick).max().unwrap());
+        high - low + 1
+    };
+    assert!((8..=9).contains(&extent(|p| p.0)) && (8..=9).contains(&extent(|p| p.1)), "{yellow:?}");
+}
+
+#[test]
+fn scenes_without_anything_in_them_are_background() {
+    let (scene, view) = scene(&[]);
+    for side in [1, 7, 64, 65] {
+        let picture = draw(&scene, &without_marks(view.clone()), &Settings::default(), side);
+        assert!(picture.pixels().iter().all(|pixel| *pixel == scene.background.opaque()));
+    }
+}
+
+#[test]
+fn what_is_left_out_is_named_with_its_reason() {
+    let (mut scene, view) = scene(&[(cube(), at(40.0, 0.0, 0.0, 900.0))]);
+    switch(&mut scene, 4, false);
+    edit(&mut scene, FIRST, |object| {
+        let rubber = PresetId::named("black plastic").unwrap();
+        object.material = MaterialChoice::Preset(rubber);
+    });
+    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(64, 64));
+    let reason = |effect: &str| {
+        plan.skipped().iter().find(|skipped| skipped.effect == effect).map(|s| s.reason.clone())
+    };
+    assert_eq!(reason("cube").as_deref(), Some("outside the view"));
+    assert_eq!(reason("camera spot").as_deref(), Some("switched off"));
+    assert_eq!(reason("ambient on cube").as_deref(), Some("Ka of the material is 0"));
+}
