@@ -1,5 +1,7 @@
 //! The editor: it shows the panels, and at the end of the frame does what was asked for.
 
+use egui::ThemePreference;
+
 use super::action::Action;
 use super::ask::Ask;
 use super::keyboard::Keyboard;
@@ -40,6 +42,7 @@ impl App {
         for ask in asks {
             self.answer(ask);
         }
+        ui.ctx().set_theme(self.state.shown.theme);
     }
 
     fn answer(&mut self, ask: Ask) {
@@ -68,6 +71,9 @@ impl App {
             Action::ToggleProperties => shown.properties ^= true,
             Action::ToggleViewPanel => shown.view ^= true,
             Action::ToggleStatistics => shown.statistics ^= true,
+            Action::ThemeSystem => shown.theme = ThemePreference::System,
+            Action::ThemeLight => shown.theme = ThemePreference::Light,
+            Action::ThemeDark => shown.theme = ThemePreference::Dark,
             _ => {}
         }
     }
