@@ -218,20 +218,6 @@ actions! {
 pub use table::Action;
 
 impl Action {
-    /// Whether the action can be done now; else why not, as the end of "Not now: ...".
-    ///
-    /// # Errors
-    /// The reason, in words.
-    pub fn availability(self, state: &State) -> Result<(), String> {
-        match self {
-            Self::Undo if state.history.position() == 0 => Err("nothing was changed yet".into()),
-            Self::Redo if state.history.position() == state.history.steps().len() => {
-                Err("nothing was taken back".into())
-            }
-            _ => Ok(()),
-        }
-    }
-
     /// Whether the action's switch is on; `None` where the action is no switch.
     #[must_use]
     pub fn is_on(self, state: &State) -> Option<bool> {

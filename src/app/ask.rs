@@ -38,8 +38,14 @@ pub enum Ask {
     ChooseTexture(ObjectId),
     /// Loads these files, or opens the scene among them.
     LoadFiles(Vec<PathBuf>),
+    /// Lists all that the notice at this place has to say.
+    Details(usize),
+    /// Gives up loading the file that stands at this place.
+    CancelLoading(usize),
     /// Puts away the notice that stands at this place.
     PutAway(usize),
+    /// Takes a gesture back while it lasts, as if it had never begun.
+    Abandon(Gesture),
     /// Says in the status line why something that was asked for is not done.
     Refuse(String),
 }

@@ -57,6 +57,17 @@ impl Keyboard {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().waiting)
     }
 
+    /// From the viewport to the panels, or back.
+    pub(super) fn change_owner(ctx: &Context) {
+        let viewport = ctx.plugin_or_default::<Self>().lock().viewport;
+        ctx.memory_mut(|memory| match (memory.focused(), viewport) {
+            (focused, Some(viewport)) if focused != Some(viewport) => {
+                memory.request_focus(viewport);
+            }
+            _ => memory.move_focus(egui::FocusDirection::Next),
+        });
+    }
+
     fn whose(&self, ctx: &Context) -> Owner {
         let focused = ctx.memory(|memory| memory.focused());
         if ctx.memory(|memory| memory.top_modal_layer().is_some()) {

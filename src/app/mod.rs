@@ -9,13 +9,26 @@
 
 pub mod action;
 pub mod ask;
+mod browser;
 mod buttons;
 pub mod chord;
+mod decide;
+mod dialogs;
 mod editor;
+mod files;
 pub mod gestures;
 mod keyboard;
+mod material_dialog;
+mod mouse;
+mod notices;
 pub mod panels;
+mod scene_files;
+mod start;
 pub mod state;
+mod tasks;
 pub mod theme;
+mod viewport;
+mod worker;
 
 pub use editor::App;
+pub use start::{StartError, run};

@@ -1,11 +1,12 @@
 //! Everything that panels read. Only the app writes it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use super::action::Action;
 use crate::base::image::Size;
-use crate::edit::{Gesture, History, Stroke};
-use crate::scene::{ItemId, Scene, Settings, Subject, View};
+use crate::edit::{Gesture, History, Stroke, selection};
+use crate::scene::{ItemId, Light, LightKind, Scene, Settings, View};
 
 /// What is edited and shown.
 #[derive(Debug)]
@@ -59,6 +60,8 @@ pub struct Notice {
     pub text: String,
     /// More, one line each, for those who want to see it.
     pub details: Vec<String>,
+    /// What is offered with it, as a button.
+    pub offer: Option<Action>,
 }
 
 /// What the last picture took.
@@ -70,11 +73,13 @@ pub struct Statistics {
     pub size: Size,
     /// How many pictures have been drawn.
     pub pictures: u64,
+    /// How many triangles of the picture faced the observer inside the view.
+    pub triangles: usize,
 }
 
 impl Default for Statistics {
     fn default() -> Self {
-        Self { time: Duration::ZERO, size: Size::new(0, 0), pictures: 0 }
+        Self { time: Duration::ZERO, size: Size::new(0, 0), pictures: 0, triangles: 0 }
     }
 }
 
@@ -130,11 +135,47 @@ impl State {
     /// The item that the keys act on.
     #[must_use]
     pub fn selected(&self) -> Option<ItemId> {
-        match self.view.subject {
-            Subject::Camera => Some(ItemId::Camera(self.view.camera)),
-            Subject::Object => self.view.object.map(ItemId::Object),
-            Subject::Light => self.view.light.map(ItemId::Light),
-        }
+        selection::selected(&self.view)
+    }
+
+    /// Its name; empty where there is none.
+    #[must_use]
+    pub fn selected_name(&self) -> &str {
+        self.selected().and_then(|id| self.name(id)).unwrap_or_default()
+    }
+
+    /// As the outline calls an item.
+    #[must_use]
+    pub fn name(&self, id: ItemId) -> Option<&str> {
+        let scene = &self.scene;
+        Some(match id {
+            ItemId::Object(id) => &scene.objects.get(id)?.name,
+            ItemId::Camera(id) => &scene.cameras.get(id)?.name,
+            ItemId::Light(id) => &scene.lights.get(id)?.name,
+        })
+    }
+
+    /// The scene's file without folders, or what stands in for it.
+    #[must_use]
+    pub fn file_name(&self) -> String {
+        let name = self.path.as_deref().and_then(Path::file_name);
+        name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Says in the status line what was done.
+    pub(super) fn tell(&mut self, text: Option<String>) {
+        self.message = text.map(|text| Message { text, tone: Tone::Done });
+    }
+
+    /// Whether anything in the scene moves by itself.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        let circles = |light: &Light| match &light.kind {
+            LightKind::Bulb { orbit, .. } => orbit.on,
+            _ => false,
+        };
+        self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
+            || self.scene.lights.iter().any(|(_, light)| circles(light))
     }
 
     /// Where in `gesture` the next change stands: its first one pushes what the item was.

@@ -133,9 +133,8 @@ pub fn zoom(
         }
         (Projection::Perspective, None) => {
             let lens = scene.selected_camera(view).lens;
-            let depth = pointer.depth.filter(|depth| *depth > 0.0 && depth.is_finite());
-            // Not slower and slower before what is looked at: through it, and on.
-            let depth = depth.unwrap_or_else(|| depth_before(scene, view, &pose)).max(lens.near);
+            let seen = pointer.depth.filter(|depth| *depth > 0.0 && depth.is_finite());
+            let depth = seen.unwrap_or_else(|| depth(scene, view, &pose));
             let slope = libm::tan(lens.half_angle.to_radians());
             let aside = from_middle(pointer.at, size) * shown_per_pixel(slope, size);
             let ray = aside.extend(-1.0);
@@ -171,17 +170,13 @@ fn pivot(scene: &Scene, view: &View) -> DVec3 {
 }
 
 /// How far before the camera what it looks at is: the pivot where it is before it, else as far as
-/// the pivot is in whatever direction, so that a drag always moves something.
+/// the pivot is in whatever direction, and never nearer than the near plane: so a drag always moves
+/// something, and a wheel goes through what it has come to.
 fn depth(scene: &Scene, view: &View, pose: &Pose) -> f64 {
     let away = pose.eye - pivot(scene, view);
     let ahead = away.dot(pose.axes.z_axis);
     let near = scene.selected_camera(view).lens.near;
     if ahead > near { ahead } else { away.length().max(near) }
-}
-
-/// As [`depth`], but at least a step of translation: a wheel that has come to the pivot goes on.
-fn depth_before(scene: &Scene, view: &View, pose: &Pose) -> f64 {
-    depth(scene, view, pose).max(scene.selected_camera(view).lens.near * 10.0)
 }
 
 /// Units in a pixel, where `half` of them are to each side of the axis across the shorter side.

@@ -184,11 +184,12 @@ pub(super) fn light(
 }
 
 /// The turn by `radians` about `axis`, of any length; none about an axis of no length.
+///
+/// Whole turns are left to the sine: a remainder by the nearest number to 2 pi would lose 4e-11 at
+/// an angle of 1e6.
 pub(super) fn turn(axis: DVec3, radians: f64) -> Result<DMat3, Refusal> {
     if !radians.is_finite() {
         return Err(Refusal::TooLarge);
     }
-    // A whole turn changes nothing, and a small angle keeps its digits.
-    let radians = radians % std::f64::consts::TAU;
     Ok(math::unit(axis).map_or(DMat3::IDENTITY, |axis| math::rotation(axis, radians)))
 }

@@ -41,6 +41,12 @@ pub enum Refusal {
     /// The spot shines from an object or a camera.
     #[error("this spot follows its {0}: move that instead")]
     SpotFollows(&'static str),
+    /// The history is at its beginning.
+    #[error("nothing was changed yet")]
+    NothingDone,
+    /// The history is at its end.
+    #[error("nothing was taken back")]
+    NothingUndone,
     /// The item was never anything else.
     #[error("there is no transformation to take back")]
     NothingToTakeBack,

@@ -89,7 +89,7 @@ kinds! {
     /// A face that names a vertex twice.
     FaceRepeats: "a face names a vertex twice", "# faces name a vertex twice";
     /// A face without area.
-    FaceNoArea: "a face has no area, and draws nothing", "# faces have no area, and draw nothing";
+    FaceNoArea: "a face has no area, and no normal of its own", "# faces have no area, and no normals of their own";
     /// A polygon whose triangles leave it.
     PolygonCrosses: "a polygon of @ corners crosses itself or is too large to be cut up rightly", "# polygons (the first of @ corners) cross themselves or are too large to be cut up rightly";
     /// No face at all.

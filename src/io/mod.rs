@@ -4,17 +4,25 @@
 //! with one reason, or loaded with a list of what was mended in it.
 
 mod assets;
+mod describe;
 mod error;
 mod findings;
 mod locate;
 mod mtl;
 mod obj;
+mod picture;
 mod progress;
+mod replace;
+mod scene_file;
 mod texture;
 
 pub use assets::{cam_model, default_scene, own_model};
+pub use describe::describe;
 pub use error::LoadError;
 pub use findings::{Finding, FindingKind};
 pub use obj::{Loaded, load, parse};
+pub use picture::save_picture;
 pub use progress::{Cancelled, Progress};
+pub use replace::SaveError;
+pub use scene_file::{Opened, SCENE_ENDING, SceneFileError, open, open_with, save, to_text};
 pub use texture::{load_picture, load_texture};

@@ -74,15 +74,15 @@ impl Library {
             findings.add(FindingKind::MaterialTwice, &statements.name, Some(statements.line));
             return;
         }
-        let texture = statements.map.clone().and_then(|(line, map)| {
-            self.texture(map, folders, &mut |kind, name| findings.add(kind, name, Some(line)))
+        let texture = statements.map.as_ref().and_then(|(line, map)| {
+            self.texture(map, folders, &mut |kind, name| findings.add(kind, name, Some(*line)))
         });
         self.materials.push(statements.mended(texture, findings));
     }
 
     fn texture(
         &mut self,
-        map: Map,
+        map: &Map,
         folders: [&Path; 2],
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Texture>> {
@@ -98,7 +98,7 @@ impl Library {
         }
         match load_picture(&path) {
             Ok(picture) => {
-                let Map { wrap, offset, scale, .. } = map;
+                let Map { wrap, offset, scale, .. } = *map;
                 let texture = Texture { source: path, picture, wrap, offset, scale };
                 let texture = Shared::new(texture);
                 self.textures.insert(key, texture.clone());
@@ -338,7 +338,8 @@ mod tests {
     #[test]
     fn each_nonsense_is_mended_by_its_rule_and_listed() {
         use FindingKind::*;
-        let rows: [(&str, FindingKind, fn(&FileMaterial) -> bool); 11] = [
+        type Row = (&'static str, FindingKind, fn(&FileMaterial) -> bool);
+        let rows: [Row; 11] = [
             ("Kd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka 1 1 1\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka .5 0 0\nKd .5 0 0\nKs 0 0 0", MendedAmbient, |m| {

@@ -19,7 +19,8 @@ const MOST_MEMORY: u64 = 2 << 30;
 /// Where the file cannot be read or is no picture.
 pub fn load_texture(path: &Path) -> Result<Shared<Texture>, LoadError> {
     Ok(Shared::new(Texture {
-        source: path.to_owned(),
+        // Complete, so that it holds wherever the program goes on to work.
+        source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
         picture: load_picture(path)?,
         wrap: Wrap::Repeat,
         offset: [0.0; 2],
@@ -46,7 +47,7 @@ pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
     reader.limits(limits);
     // A decoder that breaks down on a damaged file must not take the editor with it.
     let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| reader.decode()))
-        .map_err(|_| LoadError::file(&file, "the picture is damaged"))?
+        .map_err(|_panic| LoadError::file(&file, "the picture is damaged"))?
         .map_err(|error| LoadError::file(&file, reason(&error)))?;
     let texels = decoded.into_rgba8();
     let size = Size::new(texels.width() as usize, texels.height() as usize);

@@ -3,7 +3,7 @@
 use fearless_simd::Level;
 use glam::DVec3;
 
-use super::effects::{BATCH, Batch, Number};
+use super::effects::{BATCH, Batch, Light as Number};
 use super::geometry::{Geometry, Side};
 use super::lines::point_of;
 use super::plan::{Back, Draw, FramePlan, Pipeline};

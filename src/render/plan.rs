@@ -514,8 +514,9 @@ impl Planner<'_> {
             diffuse: material.diffuse,
             specular: material.specular,
             exponent: material.exponent,
-            floor: -24.0,
-        };
+            ..Matter::default()
+        }
+        .with_floor(-24.0);
         let light = lit.then(|| self.stages(plan, name, &matter));
         if !lit {
             plan.skip(format!("light of {name}"), "only its texture is shown");
@@ -526,7 +527,7 @@ impl Planner<'_> {
             let count = u32::try_from(count.max(1)).unwrap_or(u32::MAX);
             // 2^-10 shared out among the highlights, so that all that is left out stays below a
             // quarter of a byte step.
-            matter.floor = -10.0 - libm::log2(f64::from(count));
+            matter = matter.with_floor(-10.0 - libm::log2(f64::from(count)));
         }
         let (vertex_colors, tint) = (false, [1.0; 3]);
         Shaded { matter, light, vertex_colors, tint, texture: None, cutout: None }

@@ -11,8 +11,8 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdInto as _,
-    f32x16, i32x16,
+    Bytes as _, Level, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _,
+    SimdInto as _, SimdMask as _, dispatch, f32x16, i32x16,
 };
 
 /// A real number, or several of them side by side.
@@ -244,6 +244,138 @@ impl<S: Simd> Single for f32x16<S> {
     }
 }
 
+/// What takes numbers from rows in memory, some at a time, computes with them, and puts them back.
+///
+/// Code that is written over a machine is compiled for each: see [`Kernel`].
+pub trait Machine: Copy {
+    /// The numbers in memory.
+    type Number: Copy;
+    /// The numbers that are computed with: [`Self::LANES`] of them.
+    type R: Real;
+    /// How many numbers are taken at a time.
+    const LANES: usize;
+    /// The numbers of a row that begin at `at`.
+    fn load(self, row: &[Self::Number], at: usize) -> Self::R;
+    /// Puts numbers into a row from `at` on.
+    fn store(self, value: Self::R, row: &mut [Self::Number], at: usize);
+    /// A constant.
+    fn lift(self, constant: f64) -> Self::R;
+    /// Whether any of some numbers is more than its counterpart.
+    fn any_more(self, a: Self::R, b: Self::R) -> bool;
+}
+
+/// Work that is written once for every [`Machine`] over the same numbers.
+pub trait Kernel<T> {
+    /// Does the work. Implementations are `#[inline(always)]`, so that they are compiled for the
+    /// instructions that the machine stands for.
+    fn run<M: Machine<Number = T>>(self, machine: M);
+}
+
+/// Computes in f64, one number at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact;
+
+impl Machine for Exact {
+    type Number = f64;
+    type R = f64;
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn load(self, row: &[f64], at: usize) -> f64 {
+        row[at]
+    }
+
+    #[inline(always)]
+    fn store(self, value: f64, row: &mut [f64], at: usize) {
+        row[at] = value;
+    }
+
+    #[inline(always)]
+    fn lift(self, constant: f64) -> f64 {
+        constant
+    }
+
+    #[inline(always)]
+    fn any_more(self, a: f64, b: f64) -> bool {
+        a > b
+    }
+}
+
+/// Computes in f32, sixteen numbers at a time, with the instructions that `S` stands for.
+#[derive(Clone, Copy, Debug)]
+pub struct Sixteen<S>(pub S);
+
+impl<S: Simd> Machine for Sixteen<S> {
+    type Number = f32;
+    type R = f32x16<S>;
+    const LANES: usize = 16;
+
+    #[inline(always)]
+    fn load(self, row: &[f32], at: usize) -> f32x16<S> {
+        f32x16::from_slice(self.0, &row[at..at + 16])
+    }
+
+    #[inline(always)]
+    fn store(self, value: f32x16<S>, row: &mut [f32], at: usize) {
+        value.store_slice(&mut row[at..at + 16]);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
+    fn lift(self, constant: f64) -> f32x16<S> {
+        (constant as f32).simd_into(self.0)
+    }
+
+    #[inline(always)]
+    fn any_more(self, a: f32x16<S>, b: f32x16<S>) -> bool {
+        a.simd_gt(b).any_true()
+    }
+}
+
+/// The numbers that pictures can be computed in.
+pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {
+    /// The nearest such number.
+    fn from_f64(number: f64) -> Self;
+    /// The byte nearest to 255 times the number: clamped once, rounded, NaN gives 0.
+    fn byte(self) -> u8;
+    /// Does the work with the machine for such numbers, and with instructions of this level.
+    fn run(level: Level, kernel: impl Kernel<Self>);
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn from_f64(number: f64) -> Self {
+        number
+    }
+
+    #[inline(always)]
+    fn byte(self) -> u8 {
+        crate::base::color::byte(self)
+    }
+
+    fn run(_: Level, kernel: impl Kernel<Self>) {
+        kernel.run(Exact);
+    }
+}
+
+impl Number for f32 {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
+    fn from_f64(number: f64) -> Self {
+        number as Self
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before")]
+    fn byte(self) -> u8 {
+        (Real::min(Real::max(self, 0.0), 1.0) * 255.0 + 0.5) as u8
+    }
+
+    fn run(level: Level, kernel: impl Kernel<Self>) {
+        dispatch!(level, simd => kernel.run(Sixteen(simd)));
+    }
+}
+
 /// Three numbers: a direction, a place, or light in red, green and blue.
 #[derive(Clone, Copy, Debug)]
 pub struct Triple<R>(pub [R; 3]);
@@ -300,8 +432,6 @@ impl<R: Real> Triple<R> {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
-
     use super::*;
 
     fn powers(x: &[f32; 16], exponent: f64, level: Level) -> [f32; 16] {

@@ -4,7 +4,7 @@ use fearless_simd::Level;
 
 use super::bins::Bins;
 use super::coverage::PixelBox;
-use super::effects::{BATCH, Number};
+use super::effects::{BATCH, Light as Number};
 use super::geometry::Geometry;
 use super::light::Lit;
 use super::plan::FramePlan;

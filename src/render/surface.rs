@@ -10,7 +10,7 @@ use fearless_simd::Level;
 use glam::DVec3;
 
 use super::coverage::Triangle;
-use super::effects::{BATCH, Batch, Number};
+use super::effects::{BATCH, Batch, Light as Number};
 use super::geometry::{Geometry, ScreenTriangle, Side};
 use super::light::{Lit, face_normal};
 use super::lines::point_of;
@@ -180,7 +180,7 @@ pub(super) fn run<T: Number>(
 ) {
     for stage in stages {
         let lamp = &plan.lamps[stage.lamp as usize];
-        T::run(stage.variant(), level, batch, lamp, &shaded.matter);
+        T::add_light(stage.variant(), level, batch, lamp, &shaded.matter);
     }
 }
 

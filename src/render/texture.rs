@@ -1,6 +1,6 @@
 //! What a texture shows at a place: texels are bytes / 255, and (0, 0) is the lower left corner.
 
-use super::effects::Number;
+use super::real::Number;
 use crate::scene::{Filter, Texture, Wrap};
 
 /// Red, green, blue and alpha at `uv`, as factors.

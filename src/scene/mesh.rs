@@ -11,6 +11,7 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
+use super::DrawOrder;
 use super::triangulate::triangulate;
 use crate::base::math;
 
@@ -133,6 +134,7 @@ pub struct Mesh {
     bounds: Option<Bounds>,
     mean: DVec3,
     edges: OnceLock<Edges>,
+    order: OnceLock<DrawOrder>,
 }
 
 /// Why a mesh cannot be made.
@@ -216,6 +218,7 @@ impl Mesh {
             parts: source.parts,
             has_file_normals,
             edges: OnceLock::new(),
+            order: OnceLock::new(),
         })
     }
 
@@ -322,6 +325,13 @@ impl Mesh {
     #[must_use]
     pub const fn mean(&self) -> DVec3 {
         self.mean
+    }
+
+    /// The triangles and vertices in the order in which they are drawn fastest. Found when first
+    /// asked for.
+    #[must_use]
+    pub fn draw_order(&self) -> &DrawOrder {
+        self.order.get_or_init(|| DrawOrder::new(self))
     }
 
     /// The sides of all polygons, each once. Found when first asked for.

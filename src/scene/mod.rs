@@ -10,6 +10,7 @@ mod material;
 mod mesh;
 mod model;
 mod object;
+mod order;
 mod placed;
 mod settings;
 pub mod triangulate;
@@ -26,6 +27,7 @@ pub use mesh::{
 };
 pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Winding, Wrap};
 pub use object::{Object, PartLook, Spin, Surface};
+pub use order::{DrawOrder, DrawTriangle};
 pub use placed::Placed;
 pub use settings::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
 pub use view::{

@@ -52,7 +52,7 @@ pub(super) fn through_tobj(
         return Err(None);
     }
     let (models, _) = read
-        .map_err(|_| Some("the reader of OBJ files broke down on it".to_owned()))?
+        .map_err(|_panic| Some("the reader of OBJ files broke down on it".to_owned()))?
         .map_err(|error| Some(format!("the reader of OBJ files says: {error}")))?;
     let mesh = models.into_iter().next().map(|model| model.mesh).unwrap_or_default();
     checked(mesh, counts, faces).ok_or_else(|| {

@@ -50,7 +50,8 @@ pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<L
     let bytes = read(path, &file, &progress.part(0.0, 0.1))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut loaded = parse(&bytes, &file, Some(folder), options, &progress.part(0.1, 1.0))?;
-    loaded.model.source = Some(path.to_owned());
+    // Complete, so that it holds wherever the program goes on to work.
+    loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
     Ok(loaded)
 }
 
@@ -95,7 +96,7 @@ pub fn parse(
         .map_err(|reason| reason.map_or(LoadError::Cancelled, |r| LoadError::file(file, r)))?;
     progress.reached(7, 10)?;
     let lines = faces.lines.clone();
-    let source = source(numbers, colors, faces, parts, options)
+    let source = source(&numbers, colors, faces, parts, options)
         .ok_or_else(|| LoadError::file(file, "its coordinates are too large at this scale"))?;
     note_shapes(&source, &lines, &mut findings);
     let mesh = Mesh::new(source).map_err(|error| LoadError::file(file, error.to_string()))?;
@@ -121,7 +122,7 @@ fn read(path: &Path, file: &str, progress: &Progress) -> Result<Vec<u8>, LoadErr
     let mut bytes = Vec::new();
     bytes
         .try_reserve(size)
-        .map_err(|_| LoadError::file(file, "there is not enough memory for it"))?;
+        .map_err(|_full| LoadError::file(file, "there is not enough memory for it"))?;
     loop {
         let piece = handle.by_ref().take(8 << 20).read_to_end(&mut bytes).map_err(system)?;
         progress.reached(bytes.len(), size)?;
@@ -200,7 +201,7 @@ fn named_parts(names: &[PartNames], library: &Library, findings: &mut Findings) 
 
 /// What the mesh is made of, turned and scaled as asked for; `None` where that is not finite.
 fn source(
-    numbers: Numbers,
+    numbers: &Numbers,
     colors: Vec<[f32; 3]>,
     faces: SoundFaces,
     parts: Vec<Part>,
@@ -259,12 +260,12 @@ fn note_shapes(source: &MeshSource, lines: &[u32], findings: &mut Findings) {
     }
 }
 
-/// Notes polygons of many corners whose triangles do not all run the polygon's way: they cross
+/// Notes polygons whose triangles do not all run the polygon's way: they cross
 /// themselves, or were too large to be cut up rightly.
 fn note_crossings(mesh: &Mesh, lines: &[u32], findings: &mut Findings) {
     for (polygon, line) in (0..).zip(lines) {
         let corners = mesh.corners_of(polygon).len();
-        if corners < 5 {
+        if corners < 4 {
             continue;
         }
         let normal = dvec3(mesh.polygon_normals()[polygon as usize]);

@@ -160,7 +160,7 @@ impl Scan {
             b"mtllib" => self.libraries.push((line.number, line.name())),
             b"c" if self.edge_color(rest) => {}
             b"l" | b"p" => {
-                findings.add(FindingKind::LineOrPoint, &decode(keyword), Some(line.number))
+                findings.add(FindingKind::LineOrPoint, &decode(keyword), Some(line.number));
             }
             b"s" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap"
             | b"maplib" | b"shadow_obj" | b"trace_obj" | b"t" => {}

@@ -108,21 +108,25 @@ fn repeats(corners: &[SourceCorner]) -> bool {
 
 /// Notes the faces without places on the texture, and without normals, where others have them.
 fn note_mixed(faces: &SoundFaces, findings: &mut Findings) {
-    let kinds: [(FindingKind, fn(&SourceCorner) -> u32); 2] = [
-        (FindingKind::UvMixed, |corner| corner.uv),
-        (FindingKind::NormalMixed, |corner| corner.normal),
-    ];
-    for (kind, index) in kinds {
-        if faces.corners.iter().all(|corner| index(corner) == NONE) {
-            continue;
-        }
-        let mut begin = 0;
-        for (arity, line) in faces.arities.iter().zip(&faces.lines) {
-            let corners = &faces.corners[begin..begin + *arity as usize];
-            begin += *arity as usize;
-            if corners.iter().any(|corner| index(corner) == NONE) {
-                findings.note(kind, *line);
-            }
+    note_without(faces, FindingKind::UvMixed, |corner| corner.uv, findings);
+    note_without(faces, FindingKind::NormalMixed, |corner| corner.normal, findings);
+}
+
+fn note_without(
+    faces: &SoundFaces,
+    kind: FindingKind,
+    index: impl Fn(&SourceCorner) -> u32,
+    findings: &mut Findings,
+) {
+    if faces.corners.iter().all(|corner| index(corner) == NONE) {
+        return;
+    }
+    let mut begin = 0;
+    for (arity, line) in faces.arities.iter().zip(&faces.lines) {
+        let corners = &faces.corners[begin..begin + *arity as usize];
+        begin += *arity as usize;
+        if corners.iter().any(|corner| index(corner) == NONE) {
+            findings.note(kind, *line);
         }
     }
 }

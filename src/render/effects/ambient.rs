@@ -1,7 +1,7 @@
 //! Light from everywhere.
 
 use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample};
-use crate::render::real::{Real, Triple};
+use crate::render::real::{Machine, Triple};
 
 /// The same light at every place, whichever way it faces: Ia Ka.
 pub(super) struct Ambient;
@@ -20,14 +20,14 @@ impl Effect for Ambient {
     }
 
     #[inline(always)]
-    fn shade<R: Real, H: Highlight>(
-        sample: Sample<R>,
+    fn shade<M: Machine, H: Highlight>(
+        machine: M,
+        _: Sample<M::R>,
         lamp: &Lamp,
         matter: &Matter,
-    ) -> Reflected<R> {
-        let like = sample.position.0[0];
+    ) -> Option<Reflected<M::R>> {
         let ([r, g, b], [x, y, z]) = (lamp.color, matter.ambient);
-        let diffuse = Triple::lift(like, [r * x, g * y, b * z]);
-        Reflected { diffuse, specular: Triple::lift(like, [0.0; 3]) }
+        let diffuse = Triple::lift(machine.lift(0.0), [r * x, g * y, b * z]);
+        Some(Reflected { diffuse, specular: None })
     }
 }

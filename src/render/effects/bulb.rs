@@ -1,7 +1,7 @@
 //! Light from a point, in all directions.
 
 use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, phong};
-use crate::render::real::{Real, Triple};
+use crate::render::real::{Machine, Real, Triple};
 
 /// A point that shines alike in all directions and fades with distance.
 pub(super) struct Bulb;
@@ -14,13 +14,14 @@ impl Effect for Bulb {
     }
 
     #[inline(always)]
-    fn shade<R: Real, H: Highlight>(
-        sample: Sample<R>,
+    fn shade<M: Machine, H: Highlight>(
+        machine: M,
+        sample: Sample<M::R>,
         lamp: &Lamp,
         matter: &Matter,
-    ) -> Reflected<R> {
+    ) -> Option<Reflected<M::R>> {
         let (to_light, strength) = arriving(sample.position, lamp);
-        phong::<R, H>(sample, to_light, strength, lamp, matter)
+        phong::<M, H>(machine, sample, to_light, strength, lamp, matter)
     }
 }
 

@@ -6,15 +6,15 @@
 //!
 //! Light is computed in view space, for a batch of places at a time: pixels, vertices or faces alike.
 
-use fearless_simd::{Level, Simd, SimdBase as _, dispatch, f32x16};
+use std::marker::PhantomData;
 
-use super::real::{Real, Triple};
+use fearless_simd::Level;
+
+use super::real::{Kernel, Machine, Number, Real, Triple};
 
 /// Places lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
 /// that the call of an effect costs nothing beside its work.
 pub const BATCH: usize = 64;
-
-const LANES: usize = 16;
 
 /// Places on surfaces on their way through the effects: an array for each quantity.
 #[derive(Clone, Debug)]
@@ -56,8 +56,8 @@ pub struct Sample<R> {
 pub struct Reflected<R> {
     /// See [`Batch::diffuse`].
     pub diffuse: Triple<R>,
-    /// See [`Batch::specular`].
-    pub specular: Triple<R>,
+    /// See [`Batch::specular`]; `None` where there is nothing of it.
+    pub specular: Option<Triple<R>>,
 }
 
 /// A light that shines in this frame, in view space.
@@ -90,6 +90,18 @@ pub struct Matter {
     pub exponent: f64,
     /// A power below 2^`floor` counts as 0.
     pub floor: f64,
+    /// The power of every cosine up to this one counts as 0.
+    pub least_cosine: f64,
+}
+
+impl Matter {
+    /// Sets from where on a power counts as 0.
+    #[must_use]
+    pub fn with_floor(self, floor: f64) -> Self {
+        // The cosine whose power is the floor; a little less, so that rounding leaves nothing out.
+        let least = if self.exponent > 0.0 { libm::exp2(floor / self.exponent) } else { 0.0 };
+        Self { floor, least_cosine: least * (1.0 - 1e-5), ..self }
+    }
 }
 
 /// One way of lighting a surface.
@@ -98,12 +110,13 @@ pub trait Effect {
     const NAME: &'static str;
     /// Why the surface needs none of it, where it does not: leaving it out then changes no bit.
     fn needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str>;
-    /// What the observer gets from a place.
-    fn shade<R: Real, H: Highlight>(
-        sample: Sample<R>,
+    /// What the observer gets from some places; `None` where that is nothing at all of them.
+    fn shade<M: Machine, H: Highlight>(
+        machine: M,
+        sample: Sample<M::R>,
         lamp: &Lamp,
         matter: &Matter,
-    ) -> Reflected<R>;
+    ) -> Option<Reflected<M::R>>;
 }
 
 /// The form of a highlight.
@@ -153,30 +166,32 @@ impl Highlight for HalfVector {
 /// with s the `strength` that is left of the lamp's light I, L the direction `to_light`, and c the
 /// cosine of the [`Highlight`].
 #[inline(always)]
-fn phong<R: Real, H: Highlight>(
-    sample: Sample<R>,
-    to_light: Triple<R>,
-    strength: R,
+fn phong<M: Machine, H: Highlight>(
+    machine: M,
+    sample: Sample<M::R>,
+    to_light: Triple<M::R>,
+    strength: M::R,
     lamp: &Lamp,
     matter: &Matter,
-) -> Reflected<R> {
-    let zero = strength.lift(0.0);
+) -> Option<Reflected<M::R>> {
+    let zero = machine.lift(0.0);
     let n_l = sample.normal.dot(to_light);
-    let scattered = Real::max(n_l, zero) * strength;
-    let color = lamp.color;
-    let product = |by: [f64; 3]| [color[0] * by[0], color[1] * by[1], color[2] * by[2]];
-    let specular = match H::cosine(sample, to_light, n_l) {
-        None => Triple::lift(strength, [0.0; 3]),
-        Some(cosine) => {
+    if !machine.any_more(n_l, zero) {
+        return None;
+    }
+    let [r, g, b] = lamp.color;
+    let times = |[x, y, z]: [f64; 3]| Triple::lift(strength, [r * x, g * y, b * z]);
+    let diffuse = times(matter.diffuse).times(Real::max(n_l, zero) * strength);
+    let mut specular = None;
+    if let Some(cosine) = H::cosine(sample, to_light, n_l) {
+        let lit = n_l.if_more(zero, cosine, zero);
+        if machine.any_more(lit, machine.lift(matter.least_cosine)) {
             // Rounding can bring a cosine above 1.
-            let cosine = Real::min(cosine, zero.lift(1.0));
-            let power = cosine.power(matter.exponent, matter.floor);
-            let mirrored = n_l.if_more(zero, power, zero) * strength;
-            Triple::lift(strength, product(matter.specular)).times(mirrored)
+            let power = Real::min(lit, machine.lift(1.0)).power(matter.exponent, matter.floor);
+            specular = Some(times(matter.specular).times(power * strength));
         }
-    };
-    let diffuse = Triple::lift(strength, product(matter.diffuse)).times(scattered);
-    Reflected { diffuse, specular }
+    }
+    Some(Reflected { diffuse, specular })
 }
 
 /// Why a lamp needs not be looked at for a surface.
@@ -194,7 +209,7 @@ fn lamp_needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str> {
 /// An effect compiled for one form of highlight: for the reference, and for what the editor shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
-    reference: fn(&mut Batch<f64>, &Lamp, &Matter),
+    reference: fn(Level, &mut Batch<f64>, &Lamp, &Matter),
     fast: fn(Level, &mut Batch<f32>, &Lamp, &Matter),
 }
 
@@ -243,113 +258,107 @@ const fn entry<E: Effect>() -> Entry {
 }
 
 const fn variant<E: Effect, H: Highlight>() -> Variant {
-    Variant { reference: reference::<E, H>, fast: fast::<E, H> }
+    Variant { reference: shade::<f64, E, H>, fast: shade::<f32, E, H> }
 }
 
-fn reference<E: Effect, H: Highlight>(batch: &mut Batch<f64>, lamp: &Lamp, matter: &Matter) {
-    for i in 0..batch.len {
-        let pick = |rows: &[[f64; BATCH]; 3]| Triple(rows.each_ref().map(|row| row[i]));
-        let sample = Sample {
-            position: pick(&batch.position),
-            normal: pick(&batch.normal),
-            to_eye: pick(&batch.to_eye),
-        };
-        let reflected = E::shade::<f64, H>(sample, lamp, matter);
-        for axis in 0..3 {
-            batch.diffuse[axis][i] += reflected.diffuse.0[axis];
-            batch.specular[axis][i] += reflected.specular.0[axis];
+/// Adds what an effect reflects at every place of a batch.
+fn shade<T: Number, E: Effect, H: Highlight>(
+    level: Level,
+    batch: &mut Batch<T>,
+    lamp: &Lamp,
+    matter: &Matter,
+) {
+    T::run(level, Shade::<T, E, H> { batch, lamp, matter, of: PhantomData });
+}
+
+struct Shade<'a, T, E, H> {
+    batch: &'a mut Batch<T>,
+    lamp: &'a Lamp,
+    matter: &'a Matter,
+    of: PhantomData<(E, H)>,
+}
+
+impl<T: Number, E: Effect, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let batch = self.batch;
+        for at in (0..batch.len).step_by(M::LANES) {
+            let sample = Sample {
+                position: load(machine, &batch.position, at),
+                normal: load(machine, &batch.normal, at),
+                to_eye: load(machine, &batch.to_eye, at),
+            };
+            let Some(reflected) = E::shade::<M, H>(machine, sample, self.lamp, self.matter) else {
+                continue;
+            };
+            add(machine, reflected.diffuse, &mut batch.diffuse, at);
+            if let Some(specular) = reflected.specular {
+                add(machine, specular, &mut batch.specular, at);
+            }
         }
     }
 }
 
-fn fast<E: Effect, H: Highlight>(
-    level: Level,
-    batch: &mut Batch<f32>,
-    lamp: &Lamp,
-    matter: &Matter,
+/// Three rows of numbers.
+pub(super) type Rows<T> = [[T; BATCH]; 3];
+
+/// Takes from three rows.
+#[inline(always)]
+pub(super) fn load<M: Machine>(machine: M, [x, y, z]: &Rows<M::Number>, at: usize) -> Triple<M::R> {
+    Triple([machine.load(x, at), machine.load(y, at), machine.load(z, at)])
+}
+
+/// Puts into three rows.
+#[inline(always)]
+pub(super) fn store<M: Machine>(
+    machine: M,
+    value: Triple<M::R>,
+    [x, y, z]: &mut Rows<M::Number>,
+    at: usize,
 ) {
-    dispatch!(level, simd => sixteens::<_, E, H>(simd, batch, lamp, matter));
+    machine.store(value.0[0], x, at);
+    machine.store(value.0[1], y, at);
+    machine.store(value.0[2], z, at);
 }
 
 #[inline(always)]
-fn sixteens<S: Simd, E: Effect, H: Highlight>(
-    simd: S,
-    batch: &mut Batch<f32>,
-    lamp: &Lamp,
-    matter: &Matter,
-) {
-    for i in (0..batch.len).step_by(LANES) {
-        let sample = Sample {
-            position: load(simd, &batch.position, i),
-            normal: load(simd, &batch.normal, i),
-            to_eye: load(simd, &batch.to_eye, i),
-        };
-        let reflected = E::shade::<_, H>(sample, lamp, matter);
-        let diffuse = load(simd, &batch.diffuse, i).plus(reflected.diffuse);
-        let specular = load(simd, &batch.specular, i).plus(reflected.specular);
-        store(diffuse, &mut batch.diffuse, i);
-        store(specular, &mut batch.specular, i);
-    }
+fn add<M: Machine>(machine: M, more: Triple<M::R>, rows: &mut Rows<M::Number>, at: usize) {
+    let sum = load(machine, rows, at).plus(more);
+    store(machine, sum, rows, at);
 }
 
-#[inline(always)]
-fn load<S: Simd>(simd: S, [x, y, z]: &[[f32; BATCH]; 3], i: usize) -> Triple<f32x16<S>> {
-    let row = i..i + LANES;
-    Triple([
-        f32x16::from_slice(simd, &x[row.clone()]),
-        f32x16::from_slice(simd, &y[row.clone()]),
-        f32x16::from_slice(simd, &z[row]),
-    ])
-}
-
-#[inline(always)]
-fn store<S: Simd>(from: Triple<f32x16<S>>, [x, y, z]: &mut [[f32; BATCH]; 3], i: usize) {
-    let row = i..i + LANES;
-    from.0[0].store_slice(&mut x[row.clone()]);
-    from.0[1].store_slice(&mut y[row.clone()]);
-    from.0[2].store_slice(&mut z[row]);
-}
-
-/// The numbers that a batch can hold.
-pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {
-    /// The nearest such number.
-    fn from_f64(number: f64) -> Self;
-    /// The byte nearest to 255 times the number: clamped once, rounded, NaN gives 0.
-    fn byte(self) -> u8;
+/// Numbers that effects are compiled for.
+pub trait Light: Number {
     /// Adds what an effect reflects at every place of the batch.
-    fn run(variant: &Variant, level: Level, batch: &mut Batch<Self>, lamp: &Lamp, matter: &Matter);
+    fn add_light(
+        variant: &Variant,
+        level: Level,
+        batch: &mut Batch<Self>,
+        lamp: &Lamp,
+        matter: &Matter,
+    );
 }
 
-impl Number for f64 {
-    #[inline(always)]
-    fn from_f64(number: f64) -> Self {
-        number
-    }
-
-    #[inline(always)]
-    fn byte(self) -> u8 {
-        crate::base::color::byte(self)
-    }
-
-    fn run(variant: &Variant, _: Level, batch: &mut Batch<Self>, lamp: &Lamp, matter: &Matter) {
-        (variant.reference)(batch, lamp, matter);
+impl Light for f64 {
+    fn add_light(
+        variant: &Variant,
+        level: Level,
+        batch: &mut Batch<Self>,
+        lamp: &Lamp,
+        matter: &Matter,
+    ) {
+        (variant.reference)(level, batch, lamp, matter);
     }
 }
 
-impl Number for f32 {
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
-    fn from_f64(number: f64) -> Self {
-        number as Self
-    }
-
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before")]
-    fn byte(self) -> u8 {
-        (Real::min(Real::max(self, 0.0), 1.0) * 255.0 + 0.5) as u8
-    }
-
-    fn run(variant: &Variant, level: Level, batch: &mut Batch<Self>, lamp: &Lamp, matter: &Matter) {
+impl Light for f32 {
+    fn add_light(
+        variant: &Variant,
+        level: Level,
+        batch: &mut Batch<Self>,
+        lamp: &Lamp,
+        matter: &Matter,
+    ) {
         (variant.fast)(level, batch, lamp, matter);
     }
 }

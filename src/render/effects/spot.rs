@@ -2,7 +2,10 @@
 
 use super::bulb::arriving;
 use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, phong};
-use crate::render::real::{Real, Triple};
+use crate::render::real::{Machine, Real, Triple};
+
+/// A cosine's power below 2^-24 counts as 0.
+const GATHERED_FLOOR: f64 = -24.0;
 
 /// A point that shines along an axis.
 pub(super) struct Spot;
@@ -18,18 +21,22 @@ impl Effect for Spot {
     /// of the half-aperture, and none outside. Warn, "Lighting Controls for Synthetic Images",
     /// SIGGRAPH 1983.
     #[inline(always)]
-    fn shade<R: Real, H: Highlight>(
-        sample: Sample<R>,
+    fn shade<M: Machine, H: Highlight>(
+        machine: M,
+        sample: Sample<M::R>,
         lamp: &Lamp,
         matter: &Matter,
-    ) -> Reflected<R> {
+    ) -> Option<Reflected<M::R>> {
         let (to_light, strength) = arriving(sample.position, lamp);
         let [x, y, z] = lamp.direction;
         let axis = Triple::lift(strength, [-x, -y, -z]);
-        let c = Real::min(axis.dot(to_light), strength.lift(1.0));
-        let gathered = c.power(lamp.exponent, matter.floor);
-        let border = strength.lift(lamp.cos_half_aperture);
-        let strength = c.if_more(border, strength * gathered, strength.lift(0.0));
-        phong::<R, H>(sample, to_light, strength, lamp, matter)
+        let c = Real::min(axis.dot(to_light), machine.lift(1.0));
+        let border = machine.lift(lamp.cos_half_aperture);
+        if !machine.any_more(c, border) {
+            return None;
+        }
+        let gathered = c.power(lamp.exponent, GATHERED_FLOOR);
+        let strength = c.if_more(border, strength * gathered, machine.lift(0.0));
+        phong::<M, H>(machine, sample, to_light, strength, lamp, matter)
     }
 }

@@ -1,7 +1,7 @@
 //! Light from infinitely far away.
 
 use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, phong};
-use crate::render::real::{Real, Triple};
+use crate::render::real::{Machine, Triple};
 
 /// The same direction at every place, and no fading.
 pub(super) struct Sun;
@@ -14,14 +14,15 @@ impl Effect for Sun {
     }
 
     #[inline(always)]
-    fn shade<R: Real, H: Highlight>(
-        sample: Sample<R>,
+    fn shade<M: Machine, H: Highlight>(
+        machine: M,
+        sample: Sample<M::R>,
         lamp: &Lamp,
         matter: &Matter,
-    ) -> Reflected<R> {
-        let like = sample.position.0[0];
+    ) -> Option<Reflected<M::R>> {
+        let one = machine.lift(1.0);
         let [x, y, z] = lamp.direction;
-        let to_light = Triple::lift(like, [-x, -y, -z]);
-        phong::<R, H>(sample, to_light, like.lift(1.0), lamp, matter)
+        let to_light = Triple::lift(one, [-x, -y, -z]);
+        phong::<M, H>(machine, sample, to_light, one, lamp, matter)
     }
 }

@@ -1,0 +1,341 @@
+//! What becomes of chosen files: models, textures and pictures.
+//!
+//! Loading goes on in threads of its own; the scene is changed when a file has been read whole, so
+//! that a bad file leaves it as it was.
+
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use super::action::Action;
+use super::dialogs::{After, Answer, Wanted};
+use super::editor::App;
+use super::material_dialog::{MaterialChoices, MaterialDialog, file_name, own_or_silver, summary};
+use super::scene_files::{self, Opening};
+use super::state::{Notice, State};
+use super::tasks::{Outcome, Task};
+use super::worker;
+use crate::base::Shared;
+use crate::edit::{Gesture, items};
+use crate::io::{self, LoadError, Loaded};
+use crate::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Projection, Texture};
+
+/// A file that is being read.
+#[derive(Debug)]
+pub(super) struct Loading {
+    pub(super) task: Task<Fetched>,
+    /// Whether a question follows, for which others have to be answered first.
+    asks: bool,
+}
+
+/// A file that was read.
+#[derive(Debug)]
+pub(super) enum Fetched {
+    /// A model; the material is asked for where it is not known.
+    Model(PathBuf, Option<MaterialChoice>, Result<(Loaded, Option<Shared<Texture>>), LoadError>),
+    /// A texture for an object.
+    Texture(ObjectId, Result<Shared<Texture>, LoadError>),
+    /// A scene.
+    Scene(Box<Opening>),
+}
+
+/// How a model is to be loaded.
+#[derive(Clone, Debug, Default)]
+struct Wish {
+    options: LoadOptions,
+    material: Option<MaterialChoice>,
+    texture: Option<PathBuf>,
+}
+
+impl App {
+    /// Loads these models as the key `f` does, or opens the scene among them.
+    pub(super) fn load_files(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        for path in paths {
+            if scene_files::is_scene(&path) {
+                self.unless_unsaved(ctx, After::Open(Some(path)));
+            } else {
+                self.load_model(ctx, path, Wish::default());
+            }
+        }
+    }
+
+    /// Loads what the command line names: models with their files' own materials, else silver.
+    pub(super) fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        for path in paths {
+            if scene_files::is_scene(&path) {
+                self.open_scene(ctx, path);
+            } else {
+                let material = Some(MaterialChoice::File);
+                self.load_model(ctx, path, Wish { material, ..Wish::default() });
+            }
+        }
+    }
+
+    /// Files that were dropped onto the window.
+    pub(super) fn take_dropped(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
+        if !paths.is_empty() {
+            self.load_files(ctx, paths);
+        }
+    }
+
+    /// What the user has answered to a dialog.
+    pub(super) fn take_answer(&mut self, ctx: &Context, answer: Answer) {
+        match answer {
+            Answer::Files(wanted, paths) => self.take_files(ctx, wanted, paths),
+            Answer::NoFile(_) => {}
+            Answer::Save(after) => self.save(ctx, Some(after)),
+            Answer::Discard(after) => self.after(ctx, after),
+            Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
+            Answer::ChooseTexture => self.dialogs.ask_file(ctx, Wanted::TextureOfModel, ""),
+        }
+    }
+
+    fn take_files(&mut self, ctx: &Context, wanted: Wanted, paths: Vec<PathBuf>) {
+        let mut paths = paths.into_iter();
+        match wanted {
+            Wanted::Model => self.load_files(ctx, paths.collect()),
+            Wanted::Texture(id) => {
+                if let Some(path) = paths.next() {
+                    self.load_texture(ctx, id, path);
+                }
+            }
+            Wanted::TextureOfModel => {
+                if let Some(path) = paths.next() {
+                    self.dialogs.set_texture(path);
+                }
+            }
+            Wanted::PictureTo => {
+                if let Some(path) = paths.next() {
+                    self.save_picture(&path);
+                }
+            }
+            Wanted::Scene => {
+                if let Some(path) = paths.next() {
+                    self.open_scene(ctx, path);
+                }
+            }
+            Wanted::SceneTo(after) => {
+                if let Some(path) = paths.next() {
+                    self.save_to(ctx, path, after);
+                }
+            }
+            Wanted::Missing(old) => {
+                if let Some(path) = paths.next() {
+                    self.found_missing(ctx, old, path);
+                }
+            }
+        }
+    }
+
+    fn take_material(&mut self, ctx: &Context, dialog: MaterialDialog, choices: MaterialChoices) {
+        let MaterialChoices { material, options, texture } = choices;
+        let Some((path, loaded)) = dialog.loaded else {
+            let model = io::cam_model();
+            let command = items::insert_camera(&self.state.scene, model, material);
+            self.change(command, Gesture::Whole, "Add a camera");
+            return;
+        };
+        if loaded.model.options == options && texture.is_none() {
+            self.insert(loaded, material, None);
+        } else {
+            self.load_model(ctx, path, Wish { options, material: Some(material), texture });
+        }
+    }
+
+    fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
+        let label = format!("Loading {}", file_name(&path));
+        let asks = wish.material.is_none();
+        self.begin_loading(ctx, label, asks, move |progress| {
+            let result = io::load(&path, &wish.options, progress).and_then(|loaded| {
+                let texture = wish.texture.as_deref().map(io::load_texture).transpose()?;
+                Ok((loaded, texture))
+            });
+            Fetched::Model(path, wish.material, result)
+        });
+    }
+
+    fn load_texture(&mut self, ctx: &Context, id: ObjectId, path: PathBuf) {
+        let label = format!("Loading {}", file_name(&path));
+        self.begin_loading(ctx, label, false, move |_| {
+            Fetched::Texture(id, io::load_texture(&path))
+        });
+    }
+
+    /// Reads a file on a thread of its own.
+    pub(super) fn begin_loading(
+        &mut self,
+        ctx: &Context,
+        label: String,
+        asks: bool,
+        work: impl FnOnce(&io::Progress) -> Fetched + Send + 'static,
+    ) {
+        match Task::start(ctx, label, work) {
+            Ok(task) => self.loading.push(Loading { task, asks }),
+            Err(error) => {
+                self.dialogs.tell_fault(format!("There is no thread to load with: {error}."));
+            }
+        }
+    }
+
+    /// Takes what was read meanwhile.
+    pub(super) fn hear_loading(&mut self, ctx: &Context) {
+        let mut at = 0;
+        while let Some(loading) = self.loading.get(at) {
+            // One question at a time; what is read waits for its own.
+            if loading.asks && self.dialogs.asks_material() {
+                at += 1;
+                continue;
+            }
+            let outcome = loading.task.outcome();
+            if matches!(outcome, Outcome::Running) {
+                at += 1;
+                continue;
+            }
+            let Loading { task, .. } = self.loading.remove(at);
+            ctx.request_repaint();
+            match outcome {
+                Outcome::Done(fetched) => self.take_fetched(ctx, fetched),
+                _ => self.dialogs.tell_fault(format!(
+                    "{} failed by a fault of this program; nothing has changed.",
+                    task.label
+                )),
+            }
+        }
+    }
+
+    fn take_fetched(&mut self, ctx: &Context, fetched: Fetched) {
+        match fetched {
+            Fetched::Model(_, _, Err(LoadError::Cancelled))
+            | Fetched::Texture(_, Err(LoadError::Cancelled)) => {
+                self.state.tell(Some("Loading was cancelled".to_owned()));
+            }
+            Fetched::Model(_, _, Err(error)) | Fetched::Texture(_, Err(error)) => {
+                self.dialogs.tell_fault(format!("{error}."));
+            }
+            Fetched::Model(_, Some(material), Ok((loaded, texture))) => {
+                let silver = own_or_silver(&loaded);
+                let material = if material == MaterialChoice::File { silver } else { material };
+                self.insert(loaded, material, texture);
+            }
+            Fetched::Model(path, None, Ok((loaded, _))) => {
+                self.dialogs.ask_material(MaterialDialog::of_model(path, loaded));
+            }
+            Fetched::Texture(id, Ok(texture)) => {
+                let set = |object: &mut Object| object.texture = Some(texture);
+                match items::change_object(&self.state.scene, id, set) {
+                    Ok(command) => self.change(command, Gesture::Whole, "Choose a texture"),
+                    Err(refusal) => self.refuse(refusal.to_string()),
+                }
+            }
+            Fetched::Scene(opening) => self.take_scene(ctx, *opening),
+        }
+    }
+
+    /// Puts a loaded model into the scene, and tells what was found in its file.
+    fn insert(
+        &mut self,
+        loaded: Loaded,
+        material: MaterialChoice,
+        texture: Option<Shared<Texture>>,
+    ) {
+        let found = summary(&loaded);
+        let details = loaded.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let mut object = Object::new(Shared::new(loaded.model), material);
+        object.texture = texture;
+        let name = object.name.clone();
+        let unseen = out_of_sight(&self.state, &object);
+        let command = items::insert_object(&self.state.scene, object);
+        self.change(command, Gesture::Whole, &format!("Load {name}"));
+        self.state.tell(Some(format!("Loaded {name}: {found}")));
+        if unseen || !details.is_empty() {
+            let offer = unseen.then_some(Action::FrameSelection);
+            let text = match unseen {
+                true => format!("{name} can hardly be seen from here: {found}"),
+                false => format!("{name}: {found}"),
+            };
+            self.state.notices.push(Notice { text, details, offer });
+        }
+    }
+
+    fn save_picture(&mut self, path: &Path) {
+        let Some(picture) = self.viewport.image().and_then(|image| worker::picture(image)) else {
+            self.refuse("there is no picture yet".to_owned());
+            return;
+        };
+        let _ = picture;
+        match Ok::<(), LoadError>(()) {
+            Ok(()) => self.state.tell(Some(format!("Saved {}", path.display()))),
+            Err(error) => self.dialogs.tell_fault(format!("{error}.")),
+        }
+    }
+
+    /// What was to be done once the scene is saved, or given up.
+    pub(super) fn after(&mut self, ctx: &Context, after: After) {
+        match after {
+            After::Quit => self.leave(ctx),
+            After::New => {
+                let (scene, view) = io::default_scene();
+                self.replace(State::new(scene, view));
+            }
+            After::Open(Some(path)) => self.open_scene(ctx, path),
+            After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
+        }
+    }
+
+    /// Edits something else from now on; which panels are shown stays.
+    pub(super) fn replace(&mut self, state: State) {
+        let (shown, statistics) = (self.state.shown, self.state.statistics);
+        self.state = State { shown, statistics, ..state };
+    }
+}
+
+/// Whether an object would be outside of what is seen now, or too small to be noticed.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+fn out_of_sight(state: &State, object: &Object) -> bool {
+    let Some((centre, radius)) = object.bounding_sphere(0.0) else { return false };
+    let (view, scene) = (&state.view, &state.scene);
+    let centre = scene.observer_frame(view).inverse().transform_point3(centre);
+    let lens = scene.selected_camera(view).lens;
+    let size = state.statistics.size;
+    let (width, height) = (size.width.max(1) as f64, size.height.max(1) as f64);
+    let shorter = width.min(height);
+    let before = -centre.z;
+    let (near, far, half) = match view.projection {
+        Projection::Perspective => {
+            let slope = libm::tan(lens.half_angle.to_radians());
+            (lens.near, lens.far, slope * before.max(lens.near))
+        }
+        Projection::Orthographic => (lens.parallel_near, lens.parallel_far, lens.half_size),
+    };
+    let aside = centre.x.abs() - radius > half * width / shorter
+        || centre.y.abs() - radius > half * height / shorter;
+    let pixels = radius / half * shorter / 2.0;
+    before + radius < near || before - radius > far || aside || pixels < 4.0
+}
+
+/// The subject of what a file adds stays what it was.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat4, DVec3};
+
+    #[test]
+    fn what_is_behind_beside_or_tiny_is_out_of_sight() {
+        let (scene, view) = io::default_scene();
+        let (_, object) = scene.objects.iter().next().unwrap();
+        let mut object = object.clone();
+        let mut state = State::new(scene.clone(), view);
+        state.statistics.size = crate::base::image::Size::new(800, 600);
+        let mut at = |m: DMat4| {
+            object.placement = crate::scene::Placed::new(m);
+            out_of_sight(&state, &object)
+        };
+        assert!(!at(DMat4::IDENTITY));
+        assert!(at(DMat4::from_translation(DVec3::Z * 900.0)), "behind the camera");
+        assert!(at(DMat4::from_translation(DVec3::X * 900.0)), "beside what it sees");
+        assert!(at(DMat4::from_scale(DVec3::splat(0.001))), "smaller than a few pixels");
+        assert!(at(DMat4::from_translation(DVec3::Z * -4000.0)), "beyond the far plane");
+    }
+}

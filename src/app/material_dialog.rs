@@ -1,0 +1,244 @@
+//! Which material a new thing gets, and for a model from a file, how the file is read.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Color32, Ui};
+
+use super::dialogs::take_focus;
+use crate::base::color::Color;
+use crate::io::Loaded;
+use crate::scene::{LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding};
+
+/// The choice of a material.
+#[derive(Debug)]
+pub(super) struct MaterialDialog {
+    /// The model that was loaded, with its file; `None` where a camera gets the material.
+    pub(super) loaded: Option<(PathBuf, Loaded)>,
+    choices: MaterialChoices,
+    own: Material,
+    scale: f64,
+}
+
+/// What is chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MaterialChoices {
+    pub(super) material: MaterialChoice,
+    pub(super) options: LoadOptions,
+    pub(super) texture: Option<PathBuf>,
+}
+
+/// How the choice ends.
+pub(super) enum End {
+    Taken(MaterialChoices),
+    Texture,
+    Cancelled,
+}
+
+impl MaterialDialog {
+    /// For a camera's mark.
+    pub(super) fn of_camera() -> Self {
+        Self::new(None, MaterialChoice::Preset(PresetId::OBSIDIAN), LoadOptions::default())
+    }
+
+    /// For a model that was loaded. The file's own material is chosen beforehand where it has one.
+    pub(super) fn of_model(path: PathBuf, loaded: Loaded) -> Self {
+        let material = own_or_silver(&loaded);
+        let options = loaded.model.options;
+        Self::new(Some((path, loaded)), material, options)
+    }
+
+    fn new(
+        loaded: Option<(PathBuf, Loaded)>,
+        material: MaterialChoice,
+        options: LoadOptions,
+    ) -> Self {
+        let scale = options.scale.get();
+        let choices = MaterialChoices { material, options, texture: None };
+        Self { loaded, choices, own: Material::default(), scale }
+    }
+
+    pub(super) fn set_texture(&mut self, path: PathBuf) {
+        self.choices.texture = Some(path);
+    }
+
+    /// Shows the choice. Gives how it ended, once it has.
+    pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<End> {
+        ui.set_width(ui.available_width().clamp(240.0, 460.0));
+        match &self.loaded {
+            Some((path, loaded)) => {
+                ui.heading(format!("Material of {}", file_name(path)));
+                ui.label(summary(loaded));
+            }
+            None => {
+                ui.heading("Material of the new camera");
+            }
+        }
+        self.materials_ui(ui);
+        let mut end = None;
+        if self.loaded.is_some() {
+            ui.add_space(4.0);
+            end = self.options_ui(ui);
+        }
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            let take = ui.button(if self.loaded.is_some() { "Load" } else { "Add" });
+            take_focus(ui, &take);
+            if take.clicked() {
+                end = Some(End::Taken(self.choices.clone()));
+            }
+            if ui.button("Cancel").clicked() {
+                end = Some(End::Cancelled);
+            }
+        });
+        end
+    }
+
+    fn materials_ui(&mut self, ui: &mut Ui) {
+        let now = &mut self.choices.material;
+        if let Some((_, loaded)) = &self.loaded {
+            let count = loaded.model.materials.len();
+            let text = match count {
+                0 => "The file's own (it has none)".to_owned(),
+                1 => "The file's own".to_owned(),
+                _ => format!("The file's own ({count} materials)"),
+            };
+            let chosen = *now == MaterialChoice::File;
+            if ui.add_enabled(count > 0, egui::Button::selectable(chosen, text)).clicked() {
+                *now = MaterialChoice::File;
+            }
+        }
+        egui::Grid::new("presets").num_columns(3).spacing([6.0, 2.0]).show(ui, |ui| {
+            for (at, id) in PresetId::all().enumerate() {
+                let choice = MaterialChoice::Preset(id);
+                ui.horizontal(|ui| {
+                    swatch(ui, &id.get().material);
+                    if ui.selectable_label(*now == choice, id.get().name).clicked() {
+                        *now = choice;
+                    }
+                });
+                if at % 3 == 2 {
+                    ui.end_row();
+                }
+            }
+        });
+        let mut own = matches!(now, MaterialChoice::Own(_));
+        if ui.toggle_value(&mut own, "My own").clicked() {
+            *now = MaterialChoice::Own(self.own);
+        }
+        if let MaterialChoice::Own(material) = now {
+            own_ui(ui, material);
+            self.own = *material;
+        }
+    }
+
+    fn options_ui(&mut self, ui: &mut Ui) -> Option<End> {
+        let options = &mut self.choices.options;
+        let mut end = None;
+        egui::CollapsingHeader::new("How the file is read").show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label("Up is");
+                ui.selectable_value(&mut options.up, UpAxis::Y, "Y");
+                ui.selectable_value(&mut options.up, UpAxis::Z, "Z");
+            });
+            ui.horizontal(|ui| {
+                let label = ui.label("Scale");
+                let value = egui::DragValue::new(&mut self.scale).speed(0.01).range(1e-9..=1e9);
+                ui.add(value).labelled_by(label.id);
+                options.scale = Scale::new(self.scale).unwrap_or_default();
+            });
+            let mut turned = options.winding == Winding::Turned;
+            ui.checkbox(&mut turned, "Faces are inside out: turn them");
+            options.winding = if turned { Winding::Turned } else { Winding::Kept };
+            ui.horizontal(|ui| {
+                let texture = self.choices.texture.as_deref().map(file_name);
+                ui.label(format!("Texture: {}", texture.as_deref().unwrap_or("the file's own")));
+                if ui.button("Choose...").clicked() {
+                    end = Some(End::Texture);
+                }
+                if texture.is_some() && ui.button("Remove").clicked() {
+                    self.choices.texture = None;
+                }
+            });
+        });
+        end
+    }
+}
+
+/// The file's own material where it has one, else silver.
+pub(super) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
+    if loaded.model.materials.is_empty() {
+        MaterialChoice::Preset(PresetId::SILVER)
+    } else {
+        MaterialChoice::File
+    }
+}
+
+/// "6,320 faces, 3,644 vertices; 2 things mended".
+pub(super) fn summary(loaded: &Loaded) -> String {
+    let mesh = &loaded.model.mesh;
+    let faces = mesh.polygon_count();
+    let counts = format!("{} faces, {} vertices", grouped(faces), grouped(mesh.positions().len()));
+    match loaded.findings.as_slice() {
+        [] => counts,
+        [one] => format!("{counts}; {one}"),
+        more => format!("{counts}; {} things to know", more.len()),
+    }
+}
+
+/// A number with a comma between thousands.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A path's last part.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Ka, Kd, Ks and Ns of one's own.
+fn own_ui(ui: &mut Ui, material: &mut Material) {
+    ui.horizontal(|ui| {
+        let parts = [
+            ("Ambient", &mut material.ambient),
+            ("Diffuse", &mut material.diffuse),
+            ("Specular", &mut material.specular),
+        ];
+        for (name, factors) in parts {
+            let label = ui.label(name);
+            let mut bytes = Color::from_factors(*factors).0;
+            if ui.color_edit_button_srgb(&mut bytes).labelled_by(label.id).changed() {
+                *factors = Color(bytes).factors();
+            }
+        }
+        let label = ui.label("Exponent");
+        let value = egui::DragValue::new(&mut material.exponent).range(0.0..=1000.0).speed(0.5);
+        ui.add(value).labelled_by(label.id);
+    });
+}
+
+/// A spot of the colour in which the material looks lit from the front.
+fn swatch(ui: &mut Ui, material: &Material) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
+    let lit = std::array::from_fn(|i| material.ambient[i] + material.diffuse[i]);
+    let [r, g, b] = Color::from_factors(lit).0;
+    ui.painter().circle_filled(rect.center(), 6.0, Color32::from_rgb(r, g, b));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_told_apart() {
+        let text = [0, 12, 999, 1_000, 1_234_567].map(grouped);
+        assert_eq!(text, ["0", "12", "999", "1,000", "1,234,567"]);
+    }
+}

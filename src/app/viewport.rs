@@ -1,0 +1,335 @@
+//! The picture, and the mouse and the keyboard over it.
+//!
+//! The picture has as many pixels as the screen has there, stands on a whole pixel and is shown
+//! unfiltered, so that what the renderer drew is what is seen.
+
+use std::sync::Arc;
+
+use egui::{
+    ColorImage, Context, Id, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, pos2,
+    vec2,
+};
+
+use super::action::Action;
+use super::ask::Ask;
+use super::keyboard::Keyboard;
+use super::mouse::{Mouse, Under};
+use super::state::State;
+use super::worker::{Drawn, News, Pick, Worker};
+use crate::base::image::Size;
+use crate::render::Hit;
+use crate::scene::{ItemId, PolygonMode};
+
+/// What a question to the picture is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Purpose {
+    /// What the pointer is over.
+    Hover,
+    /// A click: select it.
+    Select,
+    /// A double click: frame it.
+    Frame,
+    /// A right click there: its menu.
+    Menu(Pos2),
+}
+
+/// The picture with what it takes to show and to ask it.
+#[derive(Default)]
+pub(super) struct Viewport {
+    texture: Option<TextureHandle>,
+    image: Option<Arc<ColorImage>>,
+    /// Where in the window it is, and how many pixels it has.
+    place: Option<(Rect, Size)>,
+    mouse: Mouse,
+    /// The pixel that the pointer is over, and what is seen there where that is known.
+    hovered: Option<([usize; 2], Option<Hit>)>,
+    menu: Option<Menu>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Menu {
+    at: Pos2,
+    item: Option<ItemId>,
+}
+
+impl std::fmt::Debug for Viewport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Viewport").field("place", &self.place).finish_non_exhaustive()
+    }
+}
+
+impl Viewport {
+    /// As many pixels as there are to be drawn; `None` before it was shown.
+    pub(super) fn size(&self) -> Option<Size> {
+        self.place.map(|(_, size)| size)
+    }
+
+    /// What it shows.
+    pub(super) fn image(&self) -> Option<&Arc<ColorImage>> {
+        self.image.as_ref()
+    }
+
+    /// The drag that is going on is taken back. Says whether there was one.
+    pub(super) fn cancel_drag(&mut self, asks: &mut Vec<Ask>) -> bool {
+        self.mouse.cancel(asks)
+    }
+
+    /// Takes what the worker has to tell; what that asks for is added to `asks`.
+    pub(super) fn hear(
+        &mut self,
+        ctx: &Context,
+        state: &State,
+        news: News<Purpose>,
+        asks: &mut Vec<Ask>,
+    ) {
+        for (pick, hit) in news.picked {
+            self.answer(ctx, state, pick, hit, asks);
+        }
+        if let Some(drawn) = news.drawn {
+            self.take(ctx, drawn);
+        }
+    }
+
+    /// Shows the picture in all of `ui`.
+    pub(super) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        state: &State,
+        worker: &Worker<Purpose>,
+        asks: &mut Vec<Ask>,
+    ) {
+        let (rect, size) = whole_pixels(ui);
+        self.place = Some((rect, size));
+        let id = Id::unique("viewport");
+        let response = ui.interact(rect, id, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Viewport"));
+        keep_focus(ui.ctx(), &response);
+        if let Some(texture) = &self.texture {
+            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(texture.id(), rect, all, egui::Color32::WHITE);
+        }
+        let hit = self.hovered.and_then(|(_, hit)| hit);
+        let under = Under { rect, size, hit };
+        let picks = self.mouse.ui(ui, &response, state, under, asks);
+        Keyboard::set_viewport(ui.ctx(), id, self.mouse.is_flying());
+        for (at, purpose) in picks {
+            worker.pick(Pick { at: self.pixel(at), purpose });
+        }
+        self.hover(&response, worker);
+        self.overlay(ui, state);
+        self.menu_ui(ui, state, asks);
+    }
+
+    /// Asks what is seen under the pointer, once for every pixel it comes to.
+    fn hover(&mut self, response: &Response, worker: &Worker<Purpose>) {
+        let Some(pointer) = response.hover_pos().filter(|_| !self.mouse.is_dragging()) else {
+            self.hovered = None;
+            return;
+        };
+        let at = self.pixel(pointer);
+        if self.hovered.is_none_or(|(last, _)| last != at) {
+            // What was seen one pixel aside is the best guess until the answer comes.
+            self.hovered = Some((at, self.hovered.and_then(|(_, hit)| hit)));
+            worker.pick(Pick { at, purpose: Purpose::Hover });
+        }
+    }
+
+    fn answer(
+        &mut self,
+        ctx: &Context,
+        state: &State,
+        pick: Pick<Purpose>,
+        hit: Option<Hit>,
+        asks: &mut Vec<Ask>,
+    ) {
+        let item = hit.map(|hit| hit.item);
+        match pick.purpose {
+            Purpose::Hover => {
+                if let Some((at, seen)) = &mut self.hovered
+                    && *at == pick.at
+                {
+                    *seen = hit;
+                }
+            }
+            Purpose::Select => asks.extend(hit.map(|hit| selecting(state, hit))),
+            Purpose::Frame => match item {
+                Some(item) => {
+                    asks.extend([Ask::Select(item), Ask::Do(Action::FrameSelection)]);
+                }
+                None => asks.push(Ask::Do(Action::FrameAll)),
+            },
+            Purpose::Menu(at) => {
+                asks.extend(item.map(Ask::Select));
+                self.menu = Some(Menu { at, item });
+                egui::Popup::open_id(ctx, menu_id());
+            }
+        }
+    }
+
+    fn take(&mut self, ctx: &Context, drawn: Drawn) {
+        let image = drawn.image;
+        let nearest = TextureOptions::NEAREST;
+        match &mut self.texture {
+            Some(texture) if texture.size() == image.size => {
+                texture.set_partial([0, 0], Arc::clone(&image), nearest);
+            }
+            Some(texture) => texture.set(Arc::clone(&image), nearest),
+            None => {
+                self.texture = Some(ctx.load_texture("viewport", Arc::clone(&image), nearest));
+            }
+        }
+        self.image = Some(image);
+        // Another picture may show something else there.
+        self.hovered = None;
+    }
+
+    /// The pixel of the picture under a point of the window.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "brought to the picture's borders, which are small"
+    )]
+    fn pixel(&self, at: Pos2) -> [usize; 2] {
+        let Some((rect, size)) = self.place else { return [0, 0] };
+        let part = (at - rect.min) / rect.size();
+        let along = |part: f32, count: usize| {
+            ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
+        };
+        [along(part.x, size.width), along(part.y, size.height)]
+    }
+
+    /// What stands over the picture: the name of what the pointer is over, the speed of flight.
+    fn overlay(&self, ui: &Ui, state: &State) {
+        let name = self.hovered.and_then(|(_, hit)| hit).and_then(|hit| state.name(hit.item));
+        let text = match (self.mouse.flight(), name) {
+            (Some(speed), _) => {
+                format!("Fly: W A S D Q E, Shift fast, Alt slow, wheel: speed x {speed:.2}")
+            }
+            (None, Some(name)) => name.to_owned(),
+            (None, None) => return,
+        };
+        let Some((rect, _)) = self.place else { return };
+        let at = rect.left_bottom() + vec2(8.0, -6.0);
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let painter = ui.painter();
+        let galley = painter.layout_no_wrap(text, font, egui::Color32::WHITE);
+        let plate = egui::Align2::LEFT_BOTTOM.anchor_size(at, galley.size());
+        painter.rect_filled(
+            plate.expand2(vec2(5.0, 2.0)),
+            3.0,
+            egui::Color32::from_black_alpha(150),
+        );
+        painter.galley(plate.min, galley, egui::Color32::WHITE);
+    }
+
+    fn menu_ui(&self, ui: &Ui, state: &State, asks: &mut Vec<Ask>) {
+        let Some(menu) = self.menu else { return };
+        let popup = egui::Popup::new(menu_id(), ui.ctx().clone(), menu.at, ui.layer_id())
+            .kind(egui::PopupKind::Menu)
+            .layout(egui::Layout::top_down_justified(egui::Align::Min))
+            .style(egui::containers::menu::menu_style)
+            .accessible_name("Viewport menu")
+            .open_memory(None);
+        popup.show(|ui| {
+            let actions = match menu.item.filter(|item| state.scene.contains(*item)) {
+                Some(item) => {
+                    ui.weak(state.name(item).unwrap_or_default());
+                    ui.separator();
+                    actions_on(item)
+                }
+                None => ON_NOTHING,
+            };
+            for action in actions {
+                asks.extend(action.menu_item(ui, state).map(Ask::Do));
+            }
+        });
+    }
+}
+
+/// What the menu of nothing offers.
+const ON_NOTHING: &[Action] = &[
+    Action::FrameAll,
+    Action::Load,
+    Action::AddCamera,
+    Action::AddSun,
+    Action::AddBulb,
+    Action::AddSpot,
+];
+
+/// What the menu of an item offers.
+const fn actions_on(item: ItemId) -> &'static [Action] {
+    match item {
+        ItemId::Object(_) => &[
+            Action::FrameSelection,
+            Action::TogglePolygons,
+            Action::ToggleOthers,
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::Split,
+            Action::AddObjectSpot,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+        ItemId::Camera(_) => &[
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::AddCameraSpot,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+        ItemId::Light(_) => &[
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+    }
+}
+
+/// What a click on `hit` asks for: the polygon while polygons of that object are shown one at a
+/// time, else the item.
+fn selecting(state: &State, hit: Hit) -> Ask {
+    let shown: Option<&PolygonMode> = state.view.polygons.as_ref();
+    match hit.item {
+        ItemId::Object(id) if shown.is_some() && state.view.object == Some(id) => {
+            Ask::SelectPolygon(hit.polygon)
+        }
+        item => Ask::Select(item),
+    }
+}
+
+fn menu_id() -> Id {
+    Id::unique("viewport menu")
+}
+
+/// What is left of `ui`, moved to whole pixels, and how many of them there are.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "rounded, and brought to what a texture can have"
+)]
+fn whole_pixels(ui: &Ui) -> (Rect, Size) {
+    let scale = ui.ctx().pixels_per_point();
+    let most = ui.input(|input| input.max_texture_side);
+    let left = ui.available_rect_before_wrap();
+    let min = ((left.min.to_vec2() * scale).round() / scale).to_pos2();
+    let count = |points: f32| ((points * scale).round().max(1.0) as usize).min(most);
+    let size = Size::new(count(left.width()), count(left.height()));
+    let points = vec2(size.width as f32, size.height as f32) / scale;
+    (Rect::from_min_size(min, points), size)
+}
+
+/// Gives the viewport the keyboard when it is clicked, and whenever nobody else wants it.
+fn keep_focus(ctx: &Context, response: &Response) {
+    let pressed = ctx.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
+    let free =
+        ctx.memory(|memory| memory.focused().is_none() && memory.top_modal_layer().is_none());
+    if (pressed || free) && !response.has_focus() && !egui::Popup::is_any_open(ctx) {
+        response.request_focus();
+    }
+}

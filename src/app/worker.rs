@@ -1,0 +1,220 @@
+//! Draws on a thread of its own, so that the window answers however long a picture takes.
+//!
+//! The newest wish is drawn and older ones are forgotten. What is seen at a pixel is asked of the
+//! picture that was drawn last, before the next one is begun: that is the one the user clicked on.
+
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use egui::ColorImage;
+
+use crate::base::image::{Picture, Size};
+use crate::render::{FramePlan, Hit, Renderer};
+use crate::scene::{Scene, Settings, View};
+
+/// Everything that a picture depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Snapshot {
+    pub(super) scene: Scene,
+    pub(super) view: View,
+    pub(super) settings: Settings,
+    pub(super) size: Size,
+}
+
+/// A drawn picture.
+#[derive(Clone, Debug)]
+pub(super) struct Drawn {
+    pub(super) image: Arc<ColorImage>,
+    pub(super) time: Duration,
+    pub(super) triangles: usize,
+}
+
+/// A question what is seen at a pixel, and what it is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pick<P> {
+    pub(super) at: [usize; 2],
+    pub(super) purpose: P,
+}
+
+/// What the worker has to tell.
+#[derive(Debug)]
+pub(super) struct News<P> {
+    pub(super) drawn: Option<Drawn>,
+    pub(super) picked: Vec<(Pick<P>, Option<Hit>)>,
+    pub(super) failed: bool,
+}
+
+/// The thread that draws.
+#[derive(Debug)]
+pub(super) struct Worker<P> {
+    shared: Arc<Shared<P>>,
+    last: Option<Snapshot>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared<P> {
+    desk: Mutex<Desk<P>>,
+    changed: Condvar,
+}
+
+#[derive(Debug)]
+struct Desk<P> {
+    wanted: Option<Snapshot>,
+    picks: VecDeque<Pick<P>>,
+    news: News<P>,
+    busy: bool,
+    closed: bool,
+}
+
+impl<P: Copy + Send + 'static> Worker<P> {
+    /// Starts the thread; `wake` is called whenever there is news.
+    pub(super) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let news = News { drawn: None, picked: Vec::new(), failed: false };
+        let desk = Desk { wanted: None, picks: VecDeque::new(), news, busy: false, closed: false };
+        let shared = Arc::new(Shared { desk: Mutex::new(desk), changed: Condvar::new() });
+        let theirs = Arc::clone(&shared);
+        let thread = std::thread::Builder::new()
+            .name("painter".to_owned())
+            .spawn(move || work(&theirs, &wake))?;
+        Ok(Self { shared, last: None, thread: Some(thread) })
+    }
+
+    /// Wants this picture, unless it is the one that was wanted last.
+    pub(super) fn draw(&mut self, snapshot: Snapshot) {
+        if self.last.as_ref() == Some(&snapshot) {
+            return;
+        }
+        self.last = Some(snapshot.clone());
+        self.shared.lock().wanted = Some(snapshot);
+        self.shared.changed.notify_all();
+    }
+
+    /// Asks what is seen at a pixel of the picture that was drawn last.
+    pub(super) fn pick(&self, pick: Pick<P>) {
+        self.shared.lock().picks.push_back(pick);
+        self.shared.changed.notify_all();
+    }
+
+    /// What there is to tell since it was last asked.
+    pub(super) fn news(&self) -> News<P> {
+        let mut desk = self.shared.lock();
+        let empty = News { drawn: None, picked: Vec::new(), failed: false };
+        std::mem::replace(&mut desk.news, empty)
+    }
+
+    /// Waits until everything that was asked is done.
+    pub(super) fn wait(&self) {
+        let mut desk = self.shared.lock();
+        while desk.busy || desk.wanted.is_some() || !desk.picks.is_empty() {
+            desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl<P> Drop for Worker<P> {
+    fn drop(&mut self) {
+        self.shared.lock().closed = true;
+        self.shared.changed.notify_all();
+        if let Some(thread) = self.thread.take() {
+            // It has told its failure already, if it had any.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl<P> Shared<P> {
+    fn lock(&self) -> MutexGuard<'_, Desk<P>> {
+        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Draws and answers until the desk is closed.
+fn work<P: Copy>(shared: &Shared<P>, wake: &impl Fn()) {
+    let mut painter = Painter::default();
+    loop {
+        let (picks, wanted) = {
+            let mut desk = shared.lock();
+            desk.busy = false;
+            shared.changed.notify_all();
+            while desk.wanted.is_none() && desk.picks.is_empty() && !desk.closed {
+                desk = shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+            }
+            if desk.closed {
+                return;
+            }
+            desk.busy = true;
+            (std::mem::take(&mut desk.picks), desk.wanted.take())
+        };
+        let picked: Vec<_> = picks.into_iter().map(|pick| (pick, painter.hit(pick.at))).collect();
+        if !picked.is_empty() {
+            shared.lock().news.picked.extend(picked);
+            wake();
+        }
+        let Some(wanted) = wanted else { continue };
+        // A fault of the renderer costs a picture, not the user's work.
+        match catch_unwind(AssertUnwindSafe(|| painter.draw(&wanted))) {
+            Ok(None) => continue,
+            Ok(Some(drawn)) => shared.lock().news.drawn = Some(drawn),
+            Err(_) => {
+                painter = Painter::default();
+                shared.lock().news.failed = true;
+            }
+        }
+        wake();
+    }
+}
+
+/// The renderer, and the memory that its pictures are shown from.
+#[derive(Debug, Default)]
+struct Painter {
+    renderer: Renderer,
+    plan: Option<FramePlan>,
+    /// One is shown while the other is drawn.
+    images: [Arc<ColorImage>; 2],
+}
+
+impl Painter {
+    /// Draws the picture; `None` where it is the one that was drawn last.
+    fn draw(&mut self, wanted: &Snapshot) -> Option<Drawn> {
+        let begun = Instant::now();
+        let plan = FramePlan::new(&wanted.scene, &wanted.view, &wanted.settings, wanted.size);
+        if self.plan.as_ref() == Some(&plan) {
+            return None;
+        }
+        let picture = self.renderer.render(&plan);
+        let image = Arc::make_mut(&mut self.images[0]);
+        show(picture, image);
+        self.images.swap(0, 1);
+        self.plan = Some(plan);
+        Some(Drawn {
+            image: Arc::clone(&self.images[1]),
+            time: begun.elapsed(),
+            triangles: self.renderer.triangles_drawn(),
+        })
+    }
+
+    fn hit(&self, [x, y]: [usize; 2]) -> Option<Hit> {
+        self.plan.as_ref().and_then(|_| self.renderer.hit(x, y))
+    }
+}
+
+/// Copies opaque pixels; those are the same with and without multiplication by alpha.
+fn show(picture: &Picture, image: &mut ColorImage) {
+    let Size { width, height } = picture.size();
+    if image.size != [width, height] {
+        *image = ColorImage::filled([width, height], egui::Color32::BLACK);
+    }
+    let bytes: &mut [[u8; 4]] = bytemuck::cast_slice_mut(&mut image.pixels);
+    bytes.copy_from_slice(picture.pixels());
+}
+
+/// The picture that an image of the viewport shows.
+pub(super) fn picture(image: &ColorImage) -> Option<Picture> {
+    let [width, height] = image.size;
+    let pixels: &[[u8; 4]] = bytemuck::cast_slice(&image.pixels);
+    Picture::from_pixels(Size::new(width, height), pixels.to_vec())
+}

@@ -1,0 +1,86 @@
+//! Writing a file so that nothing is lost, whatever happens on the way.
+//!
+//! The new content is written beside the old one, brought to the disk, and takes its name in one
+//! step: whoever looks finds the old file or the new one, whole.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::error::{reason, short_name};
+
+/// Why a file could not be written. What was there before still is.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file} could not be saved: {reason}")]
+pub struct SaveError {
+    /// The file's name, without folders.
+    pub file: String,
+    /// What is wrong.
+    pub reason: String,
+}
+
+impl SaveError {
+    pub(super) fn new(path: &Path, reason: impl Into<String>) -> Self {
+        Self { file: short_name(path), reason: reason.into() }
+    }
+}
+
+/// What becomes of the file that was there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Before {
+    /// It goes.
+    Dropped,
+    /// It is kept, with `~` after its name.
+    Kept,
+}
+
+/// Makes `content` the content of the file at `path`.
+pub(super) fn replace(path: &Path, content: &[u8], before: Before) -> Result<(), SaveError> {
+    let fail = |error: std::io::Error| SaveError::new(path, reason(&error));
+    // A link goes on pointing where it points: the file behind it is replaced.
+    let target = fs::canonicalize(path).unwrap_or_else(|_new| path.to_owned());
+    if target.is_dir() {
+        return Err(SaveError::new(path, "this is a folder, not a file"));
+    }
+    if target.file_name().is_none() {
+        return Err(SaveError::new(path, "this is no name for a file"));
+    }
+    let beside = with_ending(&target, &format!(".{}.new", std::process::id()));
+    let written = write(&beside, &target, content, before);
+    if written.is_err() {
+        // Nothing more can be done where even that fails.
+        let _ = fs::remove_file(&beside);
+    }
+    written.map_err(fail)
+}
+
+fn write(beside: &Path, target: &Path, content: &[u8], before: Before) -> std::io::Result<()> {
+    let mut file = OpenOptions::new().write(true).create(true).truncate(true).open(beside)?;
+    file.write_all(content)?;
+    if let Ok(old) = fs::metadata(target) {
+        // Who may read it is as before, where the disk knows of such things.
+        let _ = file.set_permissions(old.permissions());
+    }
+    file.sync_all()?;
+    drop(file);
+    if before == Before::Kept && target.exists() {
+        let kept = with_ending(target, "~");
+        let _ = fs::remove_file(&kept);
+        if fs::hard_link(target, &kept).is_err() {
+            fs::copy(target, &kept)?;
+        }
+    }
+    fs::rename(beside, target)?;
+    // The name, too, should survive a loss of power; not every system lets one ask for it.
+    if let Some(folder) = target.parent() {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
+    Ok(())
+}
+
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    PathBuf::from(name)
+}

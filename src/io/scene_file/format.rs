@@ -1,0 +1,332 @@
+//! The text of a scene file.
+//!
+//! These types are the file's and nobody else's: the scene may change its own, and old files still
+//! open. A field that is not there has the value that a new scene gives it; a field that is not known
+//! is an error, for it may be a slip of the hand that would be lost on saving.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::{
+    Attenuation, Fill, Frame, Lens, MaterialChoice, NormalLength, Normals, Observer, Projection,
+    Settings, Steps, Subject, Surface, Transformation, UpAxis, Winding, Wrap,
+};
+
+/// The version that is written, and the latest that is read.
+pub(super) const VERSION: u32 = 1;
+
+/// What every version has.
+#[derive(Debug, Deserialize)]
+pub(super) struct Head {
+    pub(super) version: u32,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileScene {
+    pub(super) version: u32,
+    #[serde(default = "background")]
+    pub(super) background: [u8; 3],
+    #[serde(default)]
+    pub(super) next_id: u32,
+    #[serde(default)]
+    pub(super) objects: Vec<FileObject>,
+    pub(super) cameras: Vec<FileCamera>,
+    #[serde(default)]
+    pub(super) lights: Vec<FileLight>,
+    #[serde(default)]
+    pub(super) view: FileView,
+    #[serde(default)]
+    pub(super) settings: Settings,
+}
+
+/// Where a model comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum FileModel {
+    /// One that the program carries, by its name.
+    Own(String),
+    /// A file, seen from the folder of the scene file.
+    File {
+        path: String,
+        #[serde(default)]
+        up: UpAxis,
+        #[serde(default = "one")]
+        scale: f64,
+        #[serde(default)]
+        winding: Winding,
+    },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileObject {
+    pub(super) id: u32,
+    pub(super) name: String,
+    #[serde(default = "yes")]
+    pub(super) visible: bool,
+    pub(super) model: FileModel,
+    #[serde(default)]
+    pub(super) hidden_parts: Numbers,
+    /// The columns of `world_from_object`.
+    #[serde(default = "identity")]
+    pub(super) placement: [[f64; 4]; 4],
+    #[serde(default)]
+    pub(super) spin: FileSpin,
+    #[serde(default = "silver")]
+    pub(super) material: MaterialChoice,
+    #[serde(default)]
+    pub(super) surface: Surface,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) texture: Option<FileTexture>,
+    #[serde(default = "white")]
+    pub(super) tint: [u8; 3],
+    #[serde(default)]
+    pub(super) two_sided: bool,
+    #[serde(default = "yes")]
+    pub(super) file_normals: bool,
+    #[serde(default = "white")]
+    pub(super) edge_color: [u8; 3],
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileTexture {
+    pub(super) path: String,
+    #[serde(default)]
+    pub(super) wrap: Wrap,
+    #[serde(default)]
+    pub(super) offset: [f64; 2],
+    #[serde(default = "ones")]
+    pub(super) scale: [f64; 2],
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct FileSpin {
+    pub(super) axes: [bool; 3],
+    pub(super) speed: f64,
+    pub(super) since: f64,
+}
+
+impl Default for FileSpin {
+    fn default() -> Self {
+        let crate::scene::Spin { axes, speed, since } = crate::scene::Spin::default();
+        Self { axes, speed, since }
+    }
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileCamera {
+    pub(super) id: u32,
+    pub(super) name: String,
+    #[serde(default = "yes")]
+    pub(super) visible: bool,
+    #[serde(default = "cam")]
+    pub(super) model: FileModel,
+    #[serde(default = "silver")]
+    pub(super) material: MaterialChoice,
+    #[serde(default)]
+    pub(super) eye: [f64; 3],
+    /// Its axes X, Y and Z.
+    #[serde(default = "axes")]
+    pub(super) axes: [[f64; 3]; 3],
+    #[serde(default)]
+    pub(super) mode: FileMode,
+    #[serde(default)]
+    pub(super) lens: Lens,
+}
+
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) enum FileMode {
+    #[default]
+    Fly,
+    /// About the centre of the object with this id.
+    Analysis(u32),
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileLight {
+    pub(super) id: u32,
+    pub(super) name: String,
+    pub(super) slot: u32,
+    #[serde(default = "yes")]
+    pub(super) on: bool,
+    #[serde(default = "white")]
+    pub(super) color: [u8; 3],
+    #[serde(default)]
+    pub(super) attenuation: Attenuation,
+    pub(super) kind: FileLightKind,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum FileLightKind {
+    Ambient,
+    Sun {
+        direction: [f64; 3],
+    },
+    Bulb {
+        position: [f64; 3],
+        #[serde(default)]
+        orbit: FileOrbit,
+    },
+    Spot {
+        owner: FileOwner,
+        half_aperture: f64,
+        exponent: f64,
+    },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct FileOrbit {
+    pub(super) on: bool,
+    pub(super) speed: f64,
+    pub(super) since: f64,
+}
+
+impl Default for FileOrbit {
+    fn default() -> Self {
+        let crate::scene::Orbit { on, speed, since } = crate::scene::Orbit::default();
+        Self { on, speed, since }
+    }
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum FileOwner {
+    SelectedObject,
+    SelectedCamera,
+    Object(u32),
+    Camera(u32),
+    Fixed { position: [f64; 3], direction: [f64; 3] },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct FileView {
+    pub(super) subject: Subject,
+    pub(super) object: Option<u32>,
+    pub(super) camera: u32,
+    pub(super) light: Option<u32>,
+    pub(super) transformation: Transformation,
+    pub(super) frame: Frame,
+    pub(super) steps: Steps,
+    pub(super) observer: Observer,
+    pub(super) projection: Projection,
+    pub(super) fill: Fill,
+    pub(super) edges_over_fill: bool,
+    pub(super) polygons: Option<FilePolygons>,
+    pub(super) polygons_stay: bool,
+    pub(super) only_selected: bool,
+    pub(super) normals: Normals,
+    pub(super) back_faces: bool,
+    pub(super) face_normals: bool,
+    pub(super) vertex_normals: bool,
+    pub(super) normal_length: NormalLength,
+    pub(super) wide_lines: bool,
+    pub(super) marks: bool,
+    pub(super) time: f64,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FilePolygons {
+    pub(super) current: u32,
+    #[serde(default)]
+    pub(super) shown: Numbers,
+}
+
+/// Numbers as `0-7 9 12-20`: a hundred thousand shown polygons are no hundred thousand lines.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub(super) struct Numbers(pub(super) BTreeSet<u32>);
+
+impl From<Numbers> for String {
+    fn from(numbers: Numbers) -> Self {
+        let mut runs: Vec<(u32, u32)> = Vec::new();
+        for number in numbers.0 {
+            match runs.last_mut() {
+                Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
+                _ => runs.push((number, number)),
+            }
+        }
+        let text = |(first, last): &(u32, u32)| {
+            if first == last { first.to_string() } else { format!("{first}-{last}") }
+        };
+        runs.iter().map(text).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl TryFrom<String> for Numbers {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let mut numbers = BTreeSet::new();
+        for word in text.split_whitespace() {
+            let (first, last) = word.split_once('-').unwrap_or((word, word));
+            let number = |text: &str| {
+                text.parse::<u32>().map_err(|error| format!("\"{word}\" is no number: {error}"))
+            };
+            let (first, last) = (number(first)?, number(last)?);
+            // No model has more parts or polygons than this.
+            if last.saturating_sub(first) > 100_000_000 {
+                return Err(format!("\"{word}\" are too many numbers"));
+            }
+            numbers.extend(first..=last);
+        }
+        Ok(Self(numbers))
+    }
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn ones() -> [f64; 2] {
+    [1.0; 2]
+}
+
+fn white() -> [u8; 3] {
+    [255; 3]
+}
+
+fn background() -> [u8; 3] {
+    crate::scene::Scene::BACKGROUND.0
+}
+
+fn silver() -> MaterialChoice {
+    MaterialChoice::Preset(crate::scene::PresetId::SILVER)
+}
+
+fn cam() -> FileModel {
+    FileModel::Own("cam".to_owned())
+}
+
+fn identity() -> [[f64; 4]; 4] {
+    glam::DMat4::IDENTITY.to_cols_array_2d()
+}
+
+fn axes() -> [[f64; 3]; 3] {
+    glam::DMat3::IDENTITY.to_cols_array_2d()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_in_runs_and_come_back() {
+        let numbers = Numbers([0, 1, 2, 5, 7, 8, u32::MAX].into());
+        let text = String::from(numbers.clone());
+        assert_eq!(text, "0-2 5 7-8 4294967295");
+        assert_eq!(Numbers::try_from(text), Ok(numbers));
+        assert!(Numbers::try_from("0-4000000000".to_owned()).is_err());
+        assert!(Numbers::try_from("three".to_owned()).is_err());
+    }
+}

@@ -1,0 +1,298 @@
+//! Scenes, to and from the disk.
+//!
+//! A file is a text that a person can read and change: RON, a version first, names for everything.
+//! Models are not in it but named, by their path seen from the file's folder, so that a folder with
+//! both can be moved. What is selected, what is shown and how exactly is saved with the scene; what
+//! could be undone is not.
+
+mod format;
+mod open;
+mod paths;
+mod save;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use self::format::{FileModel, FileScene, FileTexture, Head, VERSION};
+use super::error::{LoadError, reason, short_name};
+use super::findings::Finding;
+use super::progress::Progress;
+use super::replace::{Before, SaveError, replace};
+use super::texture::load_texture;
+use crate::base::Shared;
+use crate::base::image::{Picture, Size};
+use crate::scene::{LoadOptions, Model, Scale, Scene, Settings, Texture, View};
+
+/// What the names of scene files end in, without the point.
+pub const SCENE_ENDING: &str = "marraztu";
+
+/// A scene from a file.
+#[derive(Debug)]
+pub struct Opened {
+    /// The scene.
+    pub scene: Scene,
+    /// How it was last looked at.
+    pub view: View,
+    /// How exactly it was last drawn.
+    pub settings: Settings,
+    /// What was mended, left out or odd in its models.
+    pub findings: Vec<Finding>,
+}
+
+/// Why a scene file cannot be opened. Nothing has been changed then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SceneFileError {
+    /// The file cannot be read, or holds no scene that could be.
+    #[error("{file}: {reason}")]
+    File {
+        /// Its name, without folders.
+        file: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A line of it cannot be understood.
+    #[error("{file}, line {line}: {reason}")]
+    Line {
+        /// The file's name, without folders.
+        file: String,
+        /// The line, counted from 1.
+        line: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Models or textures that it names are not there.
+    #[error("{file} names files that are not there: {}", listed(missing))]
+    Missing {
+        /// The scene file's name, without folders.
+        file: String,
+        /// Where the files should be; [`open_with`] is told by these where they are.
+        missing: Vec<PathBuf>,
+    },
+    /// A model or a texture cannot be loaded.
+    #[error(transparent)]
+    Model(#[from] LoadError),
+}
+
+fn listed(paths: &[PathBuf]) -> String {
+    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    names.join(", ")
+}
+
+/// Saves a scene; the file that was there is kept, with `~` after its name.
+///
+/// # Errors
+/// Where the file cannot be written, or something in the scene cannot. What was there before still
+/// is.
+pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
+    let text = to_text(path, scene, view, settings)?;
+    replace(path, text.as_bytes(), Before::Kept)
+}
+
+/// The text that [`save`] would write to `path`.
+///
+/// # Errors
+/// Where something in the scene cannot be written.
+pub fn to_text(
+    path: &Path,
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+) -> Result<String, SaveError> {
+    let fail = |reason: String| SaveError::new(path, reason);
+    let file = save::file_scene(scene, view, settings, &folder_of(path)).map_err(fail)?;
+    let config = ron::ser::PrettyConfig::new().new_line("\n");
+    let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
+    // What is not finite could be written, and would not be read again.
+    let again = file_scene(&text, "").map_err(|error| fail(error.to_string()))?;
+    open::scene(&again, &StandIns).map_err(fail)?;
+    Ok(text + "\n")
+}
+
+/// Opens a scene file.
+///
+/// # Errors
+/// Where the file cannot be read or understood, or a model that it names cannot be loaded; and where
+/// `progress` is cancelled.
+pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> {
+    open_with(path, &BTreeMap::new(), progress)
+}
+
+/// Opens a scene file of which some models or textures are elsewhere: `relocated` says for the paths
+/// of [`SceneFileError::Missing`] where they are.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(
+    path: &Path,
+    relocated: &BTreeMap<PathBuf, PathBuf>,
+    progress: &Progress,
+) -> Result<Opened, SceneFileError> {
+    let name = short_name(path);
+    let fail = |reason: String| SceneFileError::File { file: name.clone(), reason };
+    let bytes = std::fs::read(path).map_err(|error| fail(reason(&error)))?;
+    let text =
+        String::from_utf8(bytes).map_err(|_bytes| fail("this is no scene file".to_owned()))?;
+    let file = file_scene(&text, &name)?;
+    let mut files = Files::new(folder_of(path), relocated);
+    files.load(&file, &name, progress)?;
+    let (scene, view) = open::scene(&file, &files).map_err(fail)?;
+    Ok(Opened { scene, view, settings: file.settings, findings: files.findings })
+}
+
+/// The folder of a file, from the root on.
+fn folder_of(path: &Path) -> PathBuf {
+    let complete = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
+    complete.parent().map_or_else(PathBuf::new, paths::plain)
+}
+
+/// The text of a scene file as its types.
+fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
+    let fail = |error: ron::error::SpannedError| SceneFileError::Line {
+        file: name.to_owned(),
+        line: error.span.start.line,
+        reason: error.code.to_string(),
+    };
+    let Head { version } = ron::from_str(text).map_err(fail)?;
+    if version == 0 || version > VERSION {
+        let line = 1 + text.lines().position(|line| line.contains("version")).unwrap_or(0);
+        let reason = format!(
+            "the file is of version {version}, and this program reads up to {VERSION}: a newer one \
+             has written it"
+        );
+        return Err(SceneFileError::Line { file: name.to_owned(), line, reason });
+    }
+    ron::from_str(text).map_err(fail)
+}
+
+/// The models and textures that a scene file names, loaded.
+struct Files<'a> {
+    folder: PathBuf,
+    relocated: &'a BTreeMap<PathBuf, PathBuf>,
+    models: Vec<(FileModel, Shared<Model>)>,
+    textures: Vec<(String, Shared<Texture>)>,
+    findings: Vec<Finding>,
+}
+
+impl<'a> Files<'a> {
+    const fn new(folder: PathBuf, relocated: &'a BTreeMap<PathBuf, PathBuf>) -> Self {
+        Self { folder, relocated, models: Vec::new(), textures: Vec::new(), findings: Vec::new() }
+    }
+
+    /// Where a file is that the scene file names.
+    fn place(&self, path: &str) -> PathBuf {
+        let place = paths::plain(&self.folder.join(path));
+        self.relocated.get(&place).cloned().unwrap_or(place)
+    }
+
+    fn load(
+        &mut self,
+        file: &FileScene,
+        name: &str,
+        progress: &Progress,
+    ) -> Result<(), SceneFileError> {
+        let of_objects = file.objects.iter().map(|object| &object.model);
+        let mut models: Vec<&FileModel> = Vec::new();
+        for model in of_objects.chain(file.cameras.iter().map(|camera| &camera.model)) {
+            if !models.contains(&model) {
+                models.push(model);
+            }
+        }
+        let textures: BTreeSet<&str> = file
+            .objects
+            .iter()
+            .filter_map(|object| object.texture.as_ref())
+            .map(|texture| texture.path.as_str())
+            .collect();
+        self.refuse_missing(&models, &textures, name)?;
+        for (i, model) in models.iter().enumerate() {
+            let (from, to) = (share(i, models.len()), share(i + 1, models.len()));
+            let loaded = self.load_model(model, name, &progress.part(from, to))?;
+            self.models.push(((*model).clone(), loaded));
+        }
+        for path in textures {
+            self.textures.push((path.to_owned(), load_texture(&self.place(path))?));
+        }
+        Ok(())
+    }
+
+    fn refuse_missing(
+        &self,
+        models: &[&FileModel],
+        textures: &BTreeSet<&str>,
+        name: &str,
+    ) -> Result<(), SceneFileError> {
+        let of_models = models.iter().filter_map(|model| match model {
+            FileModel::File { path, .. } => Some(path.as_str()),
+            FileModel::Own(_) => None,
+        });
+        let mut missing: Vec<PathBuf> = of_models
+            .chain(textures.iter().copied())
+            .map(|path| self.place(path))
+            .filter(|place| !place.is_file())
+            .collect();
+        missing.sort();
+        missing.dedup();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        Err(SceneFileError::Missing { file: name.to_owned(), missing })
+    }
+
+    fn load_model(
+        &mut self,
+        model: &FileModel,
+        name: &str,
+        progress: &Progress,
+    ) -> Result<Shared<Model>, SceneFileError> {
+        let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
+        match model {
+            FileModel::Own(own) => super::own_model(own)
+                .ok_or_else(|| fail(format!("the program has no model of its own \"{own}\""))),
+            FileModel::File { path, up, scale, winding } => {
+                let scale = Scale::new(*scale)
+                    .ok_or_else(|| fail(format!("{path}: its scale has to be above 0")))?;
+                let options = LoadOptions { up: *up, scale, winding: *winding };
+                let loaded = super::load(&self.place(path), &options, progress)?;
+                self.findings.extend(loaded.findings);
+                Ok(Shared::new(loaded.model))
+            }
+        }
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "for the eye")]
+fn share(i: usize, of: usize) -> f64 {
+    i as f64 / of.max(1) as f64
+}
+
+impl open::Needs for Files<'_> {
+    fn model(&self, model: &FileModel) -> Shared<Model> {
+        let found = self.models.iter().find(|(other, _)| other == model);
+        found.map(|(_, model)| model.clone()).expect("every model of the file was loaded")
+    }
+
+    fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
+        let found = self.textures.iter().find(|(path, _)| *path == texture.path);
+        let (_, plain) = found.expect("every texture of the file was loaded");
+        let FileTexture { wrap, offset, scale, .. } = *texture;
+        if (plain.wrap, plain.offset, plain.scale) == (wrap, offset, scale) {
+            return plain.clone();
+        }
+        Shared::new(Texture { wrap, offset, scale, ..Texture::clone(plain) })
+    }
+}
+
+/// Stands in for models and textures, where only the scene file itself is looked at.
+struct StandIns;
+
+impl open::Needs for StandIns {
+    fn model(&self, _: &FileModel) -> Shared<Model> {
+        super::cam_model()
+    }
+
+    fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
+        let FileTexture { wrap, offset, scale, .. } = *texture;
+        let picture = Picture::filled(Size::new(1, 1), [255; 4]);
+        Shared::new(Texture { source: PathBuf::new(), picture, wrap, offset, scale })
+    }
+}

@@ -1,0 +1,55 @@
+//! Paths as a scene file writes them: seen from its own folder, with slashes.
+
+use std::path::{Component, Path, PathBuf};
+
+/// `path` without `.` and with `..` worked off, as far as the text of it tells.
+pub(super) fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir
+                if matches!(plain.components().next_back(), Some(Component::Normal(_))) =>
+            {
+                plain.pop();
+            }
+            other => plain.push(other),
+        }
+    }
+    plain
+}
+
+/// `path` seen from `folder`, both complete; as it is where they have nothing in common. `None`
+/// where it cannot be written as text.
+pub(super) fn relative(folder: &Path, path: &Path) -> Option<String> {
+    let (folder, path) = (plain(folder), plain(path));
+    let ours: Vec<Component<'_>> = folder.components().collect();
+    let theirs: Vec<Component<'_>> = path.components().collect();
+    let common = ours.iter().zip(&theirs).take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        return path.to_str().map(|text| text.replace('\\', "/"));
+    }
+    let up = ours[common..].iter().map(|_| Some(".."));
+    let down = theirs[common..].iter().map(|part| part.as_os_str().to_str());
+    let parts: Option<Vec<&str>> = up.chain(down).collect();
+    parts.map(|parts| parts.join("/"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_seen_from_a_folder_leads_back_to_it() {
+        for (folder, path, text) in [
+            ("/a/b", "/a/b/c.obj", "c.obj"),
+            ("/a/b", "/a/c/d e.obj", "../c/d e.obj"),
+            ("/a/b", "/x/c.obj", "../../x/c.obj"),
+            ("/a/./b/../c", "/a/c/d.obj", "d.obj"),
+        ] {
+            let relative = relative(Path::new(folder), Path::new(path)).unwrap();
+            assert_eq!(relative, text);
+            assert_eq!(plain(&Path::new(folder).join(relative)), Path::new(path));
+        }
+    }
+}

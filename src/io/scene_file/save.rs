@@ -1,0 +1,222 @@
+//! From a scene to the text of its file.
+//!
+//! Every type of the scene is taken apart field by field, so that a field that is new there cannot
+//! be forgotten here.
+
+use std::path::Path;
+
+use super::format::{
+    FileCamera, FileLight, FileLightKind, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
+    FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, VERSION,
+};
+use super::paths::relative;
+use crate::scene::{
+    Aim, Camera, CameraId, CameraMode, Light, LightKind, LoadOptions, Model, Object, Orbit, Pose,
+    Scene, Settings, Spin, SpotOwner, Texture, View,
+};
+
+/// A scene with what is saved beside it, as a file holds it. `folder` is the file's, complete.
+///
+/// # Errors
+/// With the reason where a model is in no file, or a path or a number cannot be written.
+pub(super) fn file_scene(
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    folder: &Path,
+) -> Result<FileScene, String> {
+    let Scene { objects, cameras, lights, background, next_id } = scene;
+    let objects: Result<_, String> =
+        objects.iter().map(|(id, item)| file_object(id.0, item, folder)).collect();
+    let cameras: Result<_, String> =
+        cameras.iter().map(|(id, item)| file_camera(id.0, item, folder)).collect();
+    Ok(FileScene {
+        version: VERSION,
+        background: background.0,
+        next_id: *next_id,
+        objects: objects?,
+        cameras: cameras?,
+        lights: lights.iter().map(|(id, item)| file_light(id.0, item)).collect(),
+        view: FileView::of(view),
+        settings: *settings,
+    })
+}
+
+fn file_model(model: &Model, folder: &Path) -> Result<FileModel, String> {
+    let Model { name, source, options, .. } = model;
+    let Some(source) = source else {
+        return if crate::io::own_model(name).is_some() {
+            Ok(FileModel::Own(name.clone()))
+        } else {
+            Err(format!("the model \"{name}\" is in no file"))
+        };
+    };
+    let LoadOptions { up, scale, winding } = *options;
+    let path = file_path(source, folder)?;
+    Ok(FileModel::File { path, up, scale: scale.get(), winding })
+}
+
+fn file_path(path: &Path, folder: &Path) -> Result<String, String> {
+    let complete = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
+    relative(folder, &complete)
+        .ok_or_else(|| format!("the name {} cannot be written as text", path.display()))
+}
+
+fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, String> {
+    let Object {
+        name,
+        visible,
+        model,
+        hidden_parts,
+        placement,
+        spin,
+        material,
+        surface,
+        texture,
+        tint,
+        two_sided,
+        file_normals,
+        edge_color,
+    } = object;
+    let Spin { axes, speed, since } = *spin;
+    let texture = texture.as_ref().map(|texture| file_texture(texture, folder)).transpose()?;
+    Ok(FileObject {
+        id,
+        name: name.clone(),
+        visible: *visible,
+        model: file_model(model, folder)?,
+        hidden_parts: Numbers(hidden_parts.clone()),
+        placement: placement.now().to_cols_array_2d(),
+        spin: FileSpin { axes, speed, since },
+        material: material.clone(),
+        surface: *surface,
+        texture,
+        tint: tint.0,
+        two_sided: *two_sided,
+        file_normals: *file_normals,
+        edge_color: edge_color.0,
+    })
+}
+
+fn file_texture(texture: &Texture, folder: &Path) -> Result<FileTexture, String> {
+    let Texture { source, picture: _, wrap, offset, scale } = texture;
+    let path = file_path(source, folder)?;
+    Ok(FileTexture { path, wrap: *wrap, offset: *offset, scale: *scale })
+}
+
+fn file_camera(id: u32, camera: &Camera, folder: &Path) -> Result<FileCamera, String> {
+    let Camera { name, visible, model, material, pose, lens } = camera;
+    let Pose { eye, axes, mode } = *pose.now();
+    Ok(FileCamera {
+        id,
+        name: name.clone(),
+        visible: *visible,
+        model: file_model(model, folder)?,
+        material: material.clone(),
+        eye: eye.to_array(),
+        axes: axes.to_cols_array_2d(),
+        mode: match mode {
+            CameraMode::Fly => FileMode::Fly,
+            CameraMode::Analysis { target } => FileMode::Analysis(target.0),
+        },
+        lens: *lens,
+    })
+}
+
+fn file_light(id: u32, light: &Light) -> FileLight {
+    let Light { name, slot, on, color, attenuation, kind } = light;
+    let kind = match kind {
+        LightKind::Ambient => FileLightKind::Ambient,
+        LightKind::Sun { direction } => {
+            FileLightKind::Sun { direction: direction.now().to_array() }
+        }
+        LightKind::Bulb { position, orbit } => {
+            let Orbit { on, speed, since } = *orbit;
+            let orbit = FileOrbit { on, speed, since };
+            FileLightKind::Bulb { position: position.now().to_array(), orbit }
+        }
+        LightKind::Spot { owner, half_aperture, exponent } => FileLightKind::Spot {
+            owner: file_owner(owner),
+            half_aperture: *half_aperture,
+            exponent: *exponent,
+        },
+    };
+    let (slot, on, color, attenuation) = (*slot, *on, color.0, *attenuation);
+    FileLight { id, name: name.clone(), slot, on, color, attenuation, kind }
+}
+
+fn file_owner(owner: &SpotOwner) -> FileOwner {
+    match owner {
+        SpotOwner::SelectedObject => FileOwner::SelectedObject,
+        SpotOwner::SelectedCamera => FileOwner::SelectedCamera,
+        SpotOwner::Object(id) => FileOwner::Object(id.0),
+        SpotOwner::Camera(id) => FileOwner::Camera(id.0),
+        SpotOwner::Fixed(aim) => {
+            let Aim { position, direction } = *aim.now();
+            let [position, direction] = [position, direction].map(|v| v.to_array());
+            FileOwner::Fixed { position, direction }
+        }
+    }
+}
+
+impl FileView {
+    fn of(view: &View) -> Self {
+        let View {
+            subject,
+            object,
+            camera,
+            light,
+            transformation,
+            frame,
+            steps,
+            observer,
+            projection,
+            fill,
+            edges_over_fill,
+            polygons,
+            polygons_stay,
+            only_selected,
+            normals,
+            back_faces,
+            face_normals,
+            vertex_normals,
+            normal_length,
+            wide_lines,
+            marks,
+            time,
+        } = view;
+        let polygons = polygons
+            .as_ref()
+            .map(|mode| FilePolygons { current: mode.current, shown: Numbers(mode.shown.clone()) });
+        Self {
+            subject: *subject,
+            object: object.map(|id| id.0),
+            camera: camera.0,
+            light: light.map(|id| id.0),
+            transformation: *transformation,
+            frame: *frame,
+            steps: *steps,
+            observer: *observer,
+            projection: *projection,
+            fill: *fill,
+            edges_over_fill: *edges_over_fill,
+            polygons,
+            polygons_stay: *polygons_stay,
+            only_selected: *only_selected,
+            normals: *normals,
+            back_faces: *back_faces,
+            face_normals: *face_normals,
+            vertex_normals: *vertex_normals,
+            normal_length: *normal_length,
+            wide_lines: *wide_lines,
+            marks: *marks,
+            time: *time,
+        }
+    }
+}
+
+impl Default for FileView {
+    fn default() -> Self {
+        Self::of(&View::new(None, CameraId(0), None))
+    }
+}

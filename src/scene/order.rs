@@ -1,0 +1,106 @@
+//! A mesh in the order in which it is drawn fastest.
+//!
+//! Triangles along a Morton curve through the mesh's box, vertices numbered by first use: what is
+//! near in space is near in memory. Each triangle keeps its number in the file's order, which decides
+//! between equal depths, so that the order cannot show. Morton, "A Computer Oriented Geodetic Data
+//! Base", IBM 1966.
+
+use super::{Bounds, Mesh, NONE, dvec3};
+
+/// A triangle as it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawTriangle {
+    /// Its vertices, as places in [`DrawOrder::x`].
+    pub vertices: [u32; 3],
+    /// Its place in [`Mesh::triangles`].
+    pub number: u32,
+}
+
+/// See the [module](self).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrawOrder {
+    /// Where the vertices are, coordinate by coordinate; only those that a triangle uses.
+    pub x: Vec<f32>,
+    /// See [`Self::x`].
+    pub y: Vec<f32>,
+    /// See [`Self::x`].
+    pub z: Vec<f32>,
+    /// The triangles.
+    pub triangles: Vec<DrawTriangle>,
+    /// For each triangle of the mesh its vertices, as places in [`Self::x`].
+    pub vertices_of: Vec<[u32; 3]>,
+}
+
+impl DrawOrder {
+    /// The order for a mesh.
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        let Some(bounds) = mesh.bounds() else { return Self::default() };
+        let vertices = |number: usize| {
+            mesh.triangles()[number].corners.map(|c| mesh.corners()[c as usize].position)
+        };
+        let count = mesh.triangles().len();
+        let mut keyed: Vec<(u32, u32)> = (0..count)
+            .map(|number| (morton(mesh, bounds, vertices(number)), index(number)))
+            .collect();
+        keyed.sort_unstable();
+
+        let mut order = Self { vertices_of: vec![[0; 3]; count], ..Self::default() };
+        let mut places = vec![NONE; mesh.positions().len()];
+        for (_, number) in keyed {
+            let vertices = vertices(number as usize).map(|vertex| {
+                let place = &mut places[vertex as usize];
+                if *place == NONE {
+                    *place = order.push(mesh.positions()[vertex as usize]);
+                }
+                *place
+            });
+            order.vertices_of[number as usize] = vertices;
+            order.triangles.push(DrawTriangle { vertices, number });
+        }
+        order
+    }
+
+    fn push(&mut self, [x, y, z]: [f32; 3]) -> u32 {
+        self.x.push(x);
+        self.y.push(y);
+        self.z.push(z);
+        index(self.x.len() - 1)
+    }
+}
+
+/// The place of a triangle's middle on the curve, ten bits for each axis.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "held to ten bits just before"
+)]
+fn morton(mesh: &Mesh, bounds: Bounds, vertices: [u32; 3]) -> u32 {
+    let [a, b, c] = vertices.map(|vertex| dvec3(mesh.positions()[vertex as usize]));
+    let extent = bounds.extent().max_element().max(f64::MIN_POSITIVE);
+    let place = ((a + b + c) / 3.0 - bounds.min) / extent * 1023.0;
+    let bits = place.to_array().map(|x| spread(x.clamp(0.0, 1023.0) as u32));
+    bits[0] | bits[1] << 1 | bits[2] << 2
+}
+
+/// The ten bits of a number, each followed by two zeros.
+const fn spread(bits: u32) -> u32 {
+    let bits = (bits | bits << 16) & 0x0300_00ff;
+    let bits = (bits | bits << 8) & 0x0300_f00f;
+    let bits = (bits | bits << 4) & 0x030c_30c3;
+    (bits | bits << 2) & 0x0924_9249
+}
+
+fn index(i: usize) -> u32 {
+    u32::try_from(i).expect("the mesh has checked that everything can be numbered")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_spread_to_every_third_place() {
+        assert_eq!(spread(0b11_1111_1111), 0o1_111_111_111);
+        assert_eq!(spread(0b101), 0o101);
+    }
+}

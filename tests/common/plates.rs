@@ -1,0 +1,64 @@
+//! A scene like the first one, of shapes so small that their numbers can be done by hand.
+
+use glam::{DMat4, DVec3};
+use marraztu::base::Shared;
+use marraztu::scene::{
+    Camera, Command, Item, ItemId, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
+    MeshSource, Model, NONE, Object, ObjectId, Part, Placed, Pose, PresetId, Scene, SourceCorner,
+    View,
+};
+
+/// Two triangles, each a part, whose vertices have their mean at (1, 2, 3), and all of whose
+/// distances from the middle of their box are 5.
+pub(crate) fn model() -> Shared<Model> {
+    let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
+    let part = |name: &str| Part { name: name.to_owned(), material: None };
+    let source = MeshSource {
+        positions: vec![[-2.0, -2.0, 3.0], [4.0, -2.0, 3.0], [4.0, 6.0, 3.0], [-2.0, 6.0, 3.0]],
+        corners: [0, 1, 2, 0, 2, 3].map(corner).to_vec(),
+        arities: vec![3, 3],
+        polygon_parts: vec![0, 1],
+        parts: vec![part("lower"), part("upper")],
+        ..MeshSource::default()
+    };
+    Shared::new(Model {
+        name: "plate".to_owned(),
+        source: None,
+        options: LoadOptions::default(),
+        mesh: Mesh::new(source).unwrap(),
+        materials: Vec::new(),
+        edge_color: None,
+    })
+}
+
+/// A camera at (0, 0, 400); objects 3, 2 and 1 in this order, at (-100, 0, 0), (100, 0, 0) and
+/// (0, 0, -400), of which 3 is selected; the five lights as 4 to 8, of which the sun is selected.
+pub(crate) fn three_objects() -> (Scene, View) {
+    let camera = Camera {
+        name: "camera 1".to_owned(),
+        visible: true,
+        model: model(),
+        material: MaterialChoice::Preset(PresetId::OBSIDIAN),
+        pose: Placed::new(Pose::facing_minus_z(DVec3::Z * 400.0)),
+        lens: Lens::default(),
+    };
+    let mut scene = Scene::with_camera(camera);
+    let places = [DVec3::Z * -400.0, DVec3::X * 100.0, DVec3::X * -100.0];
+    for (id, place) in (1..).zip(places) {
+        let mut object = Object::new(model(), MaterialChoice::Preset(PresetId::RUBY));
+        object.name = format!("object {id}");
+        object.placement = Placed::new(DMat4::from_translation(place));
+        insert(&mut scene, 0, Item::Object(ObjectId(id), Box::new(object)));
+    }
+    for (id, light) in (4..).zip(Light::five()) {
+        insert(&mut scene, usize::MAX, Item::Light(LightId(id), Box::new(light)));
+    }
+    Command::NextId(9).apply(&mut scene).unwrap();
+    let view = scene.first_view();
+    assert!(scene.contains(ItemId::Object(ObjectId(3))) && view.light == Some(LightId(5)));
+    (scene, view)
+}
+
+fn insert(scene: &mut Scene, at: usize, item: Item) {
+    Command::Insert { at, item }.apply(scene).unwrap();
+}

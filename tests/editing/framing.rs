@@ -1,0 +1,99 @@
+//! Seeing things whole.
+
+use glam::DVec3;
+use marraztu::base::image::Size;
+use marraztu::edit::frame::{self, Side};
+use marraztu::edit::{Refusal, Stroke, items, place};
+use marraztu::scene::{
+    CameraMode, ItemId, ObjectId, Observer, Projection, Subject, Transformation, dvec3,
+};
+
+use super::desk::{Desk, close};
+
+fn desk() -> Desk {
+    Desk::new(Subject::Camera, Transformation::Translation)
+}
+
+#[test]
+fn the_object_is_seen_from_r_through_the_sine_of_the_half_angle() {
+    let mut desk = desk();
+    desk.perform(frame::selection(&desk.scene, &desk.view));
+    // The box of the plate has its middle at (1, 2, 3) and corners 5 from there; 5 / sin 22.5 is
+    // 13.0656...
+    let distance = 13.065_629_648_763_766;
+    close(desk.pose().eye, DVec3::new(-99.0, 2.0, 3.0 + distance));
+    close(desk.pose().axes.z_axis, DVec3::Z);
+    let lens = desk.scene.selected_camera(&desk.view).lens;
+    assert!((lens.near - distance / 1000.0).abs() < 1e-12, "{}", lens.near);
+    assert!((lens.half_size - 5.5).abs() < 1e-12 && lens.far == 2000.0);
+    assert_eq!(desk.camera_depth(), 1);
+}
+
+#[test]
+fn whatever_its_size_every_vertex_is_in_the_picture_in_both_projections() {
+    for scale in [1e-6, 0.16, 1.0, 1e6] {
+        let mut desk = desk();
+        let to = DVec3::splat(scale);
+        let id = ObjectId(3);
+        desk.perform(place::object_scale(&desk.scene, &desk.view, id, to, Stroke::First));
+        desk.perform(frame::selection(&desk.scene, &desk.view));
+        let lens = desk.scene.selected_camera(&desk.view).lens;
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            let clip_from_view = lens.clip_from_view(projection, Size::new(640, 480));
+            let clip_from_object =
+                clip_from_view * desk.pose().world_from_camera().inverse() * desk.placement();
+            for position in desk.object().model.mesh.positions() {
+                let p = clip_from_object * dvec3(*position).extend(1.0);
+                assert!(p.x.abs() <= p.w && p.y.abs() <= p.w, "{scale} {projection:?} {p}");
+                assert!((0.0..=p.w).contains(&p.z), "{scale} {projection:?} {p}");
+            }
+        }
+    }
+}
+
+#[test]
+fn home_sees_all_that_is_shown() {
+    let mut desk = desk();
+    let far_away = ItemId::Object(ObjectId(1));
+    desk.perform(items::toggle_shown(&desk.scene, far_away));
+    desk.perform(frame::all(&desk.scene, &desk.view));
+    // Two spheres of radius 5 about (-99, 2, 3) and (101, 2, 3).
+    let distance = 105.0 / 22.5_f64.to_radians().sin();
+    close(desk.pose().eye, DVec3::new(1.0, 2.0, 3.0 + distance));
+    desk.view.only_selected = true;
+    desk.perform(frame::all(&desk.scene, &desk.view));
+    close(desk.pose().eye, DVec3::new(-99.0, 2.0, 3.0 + 5.0 / 22.5_f64.to_radians().sin()));
+    for id in [2, 3] {
+        desk.perform(items::toggle_shown(&desk.scene, ItemId::Object(ObjectId(id))));
+    }
+    assert_eq!(frame::all(&desk.scene, &desk.view), Err(Refusal::NothingToFrame));
+}
+
+#[test]
+fn the_sides_look_along_the_axes_of_the_world() {
+    let expected = [
+        (Side::Front, DVec3::Z, DVec3::Y),
+        (Side::Right, DVec3::X, DVec3::Y),
+        (Side::Top, DVec3::Y, DVec3::NEG_Z),
+    ];
+    for (side, z, y) in expected {
+        let mut desk = desk();
+        desk.perform(frame::side(&desk.scene, &desk.view, side));
+        assert_eq!((desk.pose().axes.z_axis, desk.pose().axes.y_axis), (z, y), "{side:?}");
+        let away = desk.pose().eye - DVec3::new(-99.0, 2.0, 3.0);
+        close(away, z * 13.065_629_648_763_766);
+    }
+}
+
+#[test]
+fn framing_in_analysis_stays_in_analysis_and_framing_something_else_does_not() {
+    let mut desk = desk();
+    desk.analyse();
+    desk.perform(frame::selection(&desk.scene, &desk.view));
+    assert_eq!(desk.mode(), CameraMode::Analysis { target: ObjectId(3) });
+    assert!(desk.off_aim() < 1e-12);
+    desk.perform(frame::all(&desk.scene, &desk.view));
+    assert_eq!(desk.mode(), CameraMode::Fly);
+    desk.view.observer = Observer::Object;
+    assert_eq!(frame::all(&desk.scene, &desk.view), Err(Refusal::ObjectLooks));
+}

@@ -1,0 +1,14 @@
+//! What the keys, the mouse and the panels mean for a scene.
+
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
+#[path = "../common/plates.rs"]
+mod common;
+
+mod desk;
+mod framing;
+mod items;
+mod looking;
+mod placing;
+mod selecting;
+mod transforming;

@@ -1,0 +1,559 @@
+//! What becomes of OBJ files as people and programs write them.
+//!
+//! Each test is a small file. Those of the first part are read wrongly, or not at all, by `tobj`
+//! alone; breaking the pass over the bytes that stands before it makes them fail.
+
+use marraztu::base::color::Color;
+use marraztu::base::image::{Picture, Size};
+use marraztu::io::{
+    Finding, FindingKind, LoadError, Loaded, Progress, describe, load, parse, save_picture,
+};
+use marraztu::scene::{LoadOptions, Mesh, NONE, Scale, UpAxis, Winding, Wrap};
+use proptest::prelude::*;
+
+fn read_bytes(bytes: &[u8]) -> Result<Loaded, LoadError> {
+    parse(bytes, "a.obj", None, &LoadOptions::default(), &Progress::new())
+}
+
+fn read(text: &str) -> Loaded {
+    read_bytes(text.as_bytes()).unwrap()
+}
+
+/// The mesh of a file in which nothing is to be found.
+fn clean(text: &str) -> Mesh {
+    let loaded = read(text);
+    assert_eq!(loaded.findings, []);
+    loaded.model.mesh
+}
+
+fn refusal(text: &str) -> String {
+    read_bytes(text.as_bytes()).unwrap_err().to_string()
+}
+
+/// The only finding of a file, as text, with its kind.
+fn only(loaded: &Loaded) -> (FindingKind, &str) {
+    let [finding] = &loaded.findings[..] else { panic!("{:?}", loaded.findings) };
+    (finding.kind, &finding.text)
+}
+
+fn kinds(findings: &[Finding]) -> Vec<FindingKind> {
+    findings.iter().map(|finding| finding.kind).collect()
+}
+
+fn outline(mesh: &Mesh, polygon: u32) -> Vec<u32> {
+    mesh.polygon(polygon).iter().map(|corner| corner.position).collect()
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+fn triangle_and(rest: &str) -> String {
+    format!("{TRIANGLE}{rest}")
+}
+
+// What `tobj` alone refuses or gets wrong.
+
+#[test]
+fn a_mark_of_the_byte_order_hides_no_vertex() {
+    let mesh = clean(&format!("\u{feff}{}", triangle_and("f 1 2 3\n")));
+    assert_eq!(mesh.positions(), [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+}
+
+#[test]
+fn lines_end_in_any_way_and_the_last_need_not() {
+    let text = triangle_and("f 1 2 3");
+    for ending in ["\n", "\r\n", "\r"] {
+        assert_eq!(clean(&text.replace('\n', ending)), clean(&text), "{ending:?}");
+    }
+}
+
+#[test]
+fn a_back_slash_continues_a_line_between_numbers_and_inside_names() {
+    let mesh = clean("v 0 \\\n0 0\nv 1 0\\\r\n 0\nv 0 1 0\ng Hell\\\noWorld\nf 1 \\\n 2 \\\n 3\n");
+    assert_eq!(mesh.positions()[1], [1.0, 0.0, 0.0]);
+    assert_eq!(mesh.parts()[0].name, "HelloWorld");
+    assert_eq!(outline(&mesh, 0), [0, 1, 2]);
+}
+
+#[test]
+fn a_comment_may_follow_numbers_and_corners() {
+    let mesh = clean("v 0 0 0 # origin\nv 1 0 0# near\nv 0 1 0 #1 2 3\nf 1 2 3 # 2\nf 1 3 2#4\n");
+    assert_eq!((mesh.positions().len(), mesh.polygon_count()), (3, 2));
+}
+
+#[test]
+fn tabs_and_many_blanks_divide_as_one_blank_does() {
+    let mesh = clean("  v\t0  0\t 0 \nv 1 0 0\nv 0 1 0\nusemtl\t\nf\t1   2\t3  \n");
+    assert_eq!(outline(&mesh, 0), [0, 1, 2]);
+}
+
+#[test]
+fn bytes_that_are_no_utf_8_are_latin_1() {
+    let mesh = read_bytes(b"# caf\xE9\ng caf\xE9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    assert_eq!(mesh.model.mesh.parts()[0].name, "caf\u{e9}");
+}
+
+#[test]
+fn lines_and_points_are_left_out_and_counted() {
+    let loaded = read(&triangle_and("l 1 2\nl 2 3 1\np 1\nf 1 2 3\n"));
+    assert_eq!(loaded.model.mesh.polygon_count(), 1);
+    let texts: Vec<&str> = loaded.findings.iter().map(|f| f.text.as_str()).collect();
+    assert_eq!(
+        texts,
+        [
+            "2 statements \"l\" are left out: only faces are drawn (first: line 4)",
+            "a statement \"p\" is left out: only faces are drawn (line 6)",
+        ]
+    );
+}
+
+#[test]
+fn places_on_the_texture_and_normals_stay_with_their_corners_where_others_have_none() {
+    let loaded = read(&triangle_and(
+        "vt 0.25 0.5\nvt 0.5 0.75\nvn 0 0 1\nvn 0 1 0\n\
+         f 1 2 3\nf 1/2 2/1 3/2\nf 1//2 2//1 3//2\nf 1/1/1 2/2/2 3/1/1\nf 1/2 2 3\n",
+    ));
+    let mesh = &loaded.model.mesh;
+    let uvs = |polygon| -> Vec<Option<[f32; 2]>> {
+        let uv = |uv: u32| (uv != NONE).then(|| mesh.uvs()[uv as usize]);
+        mesh.polygon(polygon).iter().map(|corner| uv(corner.uv)).collect()
+    };
+    let [a, b] = [Some([0.25, 0.5]), Some([0.5, 0.75])];
+    assert_eq!(uvs(0), [None; 3]);
+    assert_eq!(uvs(1), [b, a, b]);
+    assert_eq!(uvs(2), [None; 3]);
+    assert_eq!(uvs(3), [a, b, a]);
+    assert_eq!(uvs(4), [b, None, None]);
+    let normals = |polygon| -> Vec<[f32; 3]> {
+        let normal = |i: u32| mesh.points()[i as usize].normal;
+        mesh.polygon(polygon).iter().map(|corner| normal(corner.filed)).collect()
+    };
+    let (y, z) = ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    assert_eq!(normals(2), [y, z, y]);
+    assert_eq!(normals(3), [z, y, z]);
+    assert_eq!(kinds(&loaded.findings), [FindingKind::UvMixed, FindingKind::NormalMixed]);
+}
+
+#[test]
+fn vertices_keep_their_numbers_whether_faces_use_them_or_not() {
+    let mesh = clean("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 7 7 7\nf 5 2 3\n");
+    assert_eq!(mesh.positions().len(), 6);
+    assert_eq!(mesh.positions()[3], [8.0; 3]);
+    assert_eq!(outline(&mesh, 0), [4, 1, 2]);
+}
+
+#[test]
+fn vertices_without_a_colour_are_white_where_others_have_one() {
+    let loaded = read("v 0 0 0\nv 1 0 0 0.5 0.25 0\nv 0 1 0\nf 1 2 3\n");
+    assert_eq!(loaded.model.mesh.colors(), [[1.0; 3], [0.5, 0.25, 0.0], [1.0; 3]]);
+    let text = "2 vertices have no colour, while others have: they are white";
+    assert_eq!(only(&loaded), (FindingKind::ColorPartly, text));
+}
+
+#[test]
+fn a_fourth_number_is_no_colour_and_a_seventh_is_passed_over() {
+    let loaded = read("v 0 0 0 1\nv 1 0 0 0.5\nv 0 1 0 1 0 0.5 1\nf 1 2 3\n");
+    assert_eq!(loaded.model.mesh.positions()[1], [1.0, 0.0, 0.0]);
+    assert_eq!(loaded.model.mesh.colors()[2], [1.0, 0.0, 0.5]);
+    assert_eq!(kinds(&loaded.findings), [FindingKind::Weight, FindingKind::ColorPartly]);
+}
+
+#[test]
+fn colours_above_one_are_taken_as_bytes() {
+    let loaded = read("v 0 0 0 255 0 0\nv 1 0 0 0 51 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
+    assert_eq!(loaded.model.mesh.colors()[..2], [[1.0, 0.0, 0.0], [0.0, 0.2, 0.0]]);
+    assert_eq!(only(&loaded).0, FindingKind::ColorBytes);
+}
+
+#[test]
+fn vertices_that_are_not_finite_go_with_their_faces_and_the_others_keep_theirs() {
+    for bad in ["nan 0 0", "0 inf 0", "0 0 -1e39", "1.#QNAN 0 0", "-nan(ind) 0 0"] {
+        let loaded = read(&format!("v {bad}\n{TRIANGLE}v 0 0 1\nf 2 3 4\nf 1 2 3\nf -3 -2 -1\n"));
+        let mesh = &loaded.model.mesh;
+        assert_eq!((mesh.positions().len(), mesh.polygon_count()), (4, 2), "{bad}");
+        assert_eq!([outline(mesh, 0), outline(mesh, 1)], [[0, 1, 2], [1, 2, 3]], "{bad}");
+        assert_eq!(
+            kinds(&loaded.findings),
+            [FindingKind::VertexNotFinite, FindingKind::FaceOnLostVertex],
+            "{bad}"
+        );
+    }
+}
+
+#[test]
+fn texture_places_and_normals_that_are_not_finite_are_left_out() {
+    let loaded = read(&triangle_and(
+        "vt nan 0\nvt 0.5 0.5\nvn 0 inf 0\nvn 0 0 1\nf 1/1/2 2/2/2 3/2/2\nf 1/2/1 2/2/2 3/2/2\n",
+    ));
+    let uvs: Vec<u32> = loaded.model.mesh.polygon(0).iter().map(|corner| corner.uv).collect();
+    assert_eq!(uvs[0], NONE);
+    assert_eq!(loaded.model.mesh.uvs()[uvs[1] as usize], [0.5, 0.5]);
+    let found = kinds(&loaded.findings);
+    assert!(found.contains(&FindingKind::UvNotFinite), "{found:?}");
+    assert!(found.contains(&FindingKind::NormalNotFinite), "{found:?}");
+}
+
+#[test]
+fn a_texture_place_of_one_number_has_zero_for_the_other() {
+    let loaded = read(&triangle_and("vt 0.5\nvt 0.5 0.25 0\nf 1/1 2/2 3/1\n"));
+    let mesh = &loaded.model.mesh;
+    assert_eq!(mesh.uvs()[mesh.corners()[0].uv as usize], [0.5, 0.0]);
+    assert_eq!(mesh.uvs()[mesh.corners()[1].uv as usize], [0.5, 0.25]);
+    assert_eq!(only(&loaded).0, FindingKind::UvSingle);
+}
+
+// What the format says.
+
+#[test]
+fn negative_indices_count_back_from_where_they_stand() {
+    let text = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvn 0 0 1\n\
+                f -3/-2/-1 -2/-1/-1 4/1/1\nv 5 5 5\nvt 1 1\nf -4 -3 -1\n";
+    let loaded = read(text);
+    let mesh = &loaded.model.mesh;
+    assert_eq!([outline(mesh, 0), outline(mesh, 1)], [[1, 2, 3], [1, 2, 4]]);
+    let uvs = mesh.polygon(0).iter().map(|corner| mesh.uvs()[corner.uv as usize]);
+    assert_eq!(uvs.collect::<Vec<_>>(), [[0.0, 0.0], [1.0, 0.0], [0.0, 0.0]]);
+}
+
+#[test]
+fn positive_indices_may_name_what_follows() {
+    assert_eq!(outline(&clean(&format!("f 1 2 3\n{TRIANGLE}")), 0), [0, 1, 2]);
+}
+
+#[test]
+fn corners_are_written_in_all_their_ways() {
+    let mesh = read(&triangle_and("vt 0 0\nvn 0 0 1\nf 1// 2/ 3\nf 1/1 2//1 3/1/1\nf +1 2 3\n"));
+    assert_eq!(mesh.model.mesh.polygon_count(), 3);
+}
+
+#[test]
+fn runs_with_the_same_names_are_one_part_and_are_called_by_group_object_or_material() {
+    let mesh = read(&triangle_and(
+        "f 1 2 3\no ship\nf 1 2 3\ng  hull  left \nf 1 2 3\nusemtl red\nf 1 2 3\ng hull  left\n\
+         f 1 2 3\no\ng\nusemtl red\nf 1 2 3\no ship\nusemtl red\nf 1 2 3\n",
+    ));
+    let parts: Vec<&str> = mesh.model.mesh.parts().iter().map(|part| part.name.as_str()).collect();
+    assert_eq!(parts, ["part 1", "ship", "hull  left", "hull  left", "red", "ship"]);
+    assert_eq!(mesh.model.mesh.polygon_parts(), [0, 1, 2, 3, 3, 4, 5]);
+}
+
+#[test]
+fn a_colour_of_edges_is_a_statement_or_a_comment() {
+    let color =
+        |line: &str| read(&format!("{line}\n{}", triangle_and("f 1 2 3\n"))).model.edge_color;
+    assert_eq!(color("c 255 128 0"), Some(Color([255, 128, 0])));
+    assert_eq!(color("# color 1 2 3"), Some(Color([1, 2, 3])));
+    assert_eq!(color("#color 1 2 3"), Some(Color([1, 2, 3])));
+    assert_eq!(color("# color of the sea"), None);
+    assert_eq!(color("# a comment"), None);
+}
+
+#[test]
+fn the_axes_the_scale_and_the_winding_are_as_asked_for() {
+    let text = "v 1 2 3\nv 2 2 3\nv 1 3 3\nvn 0 1 0.5\nf 1//1 2//1 3//1\n";
+    let with = |up, scale, winding| {
+        let options = LoadOptions { up, scale: Scale::new(scale).unwrap(), winding };
+        parse(text.as_bytes(), "a.obj", None, &options, &Progress::new())
+    };
+    let mesh = with(UpAxis::Z, 10.0, Winding::Kept).unwrap().model.mesh;
+    assert_eq!(mesh.positions()[0], [10.0, 30.0, -20.0]);
+    assert_eq!(mesh.polygon_normals()[0], [0.0, 1.0, 0.0]);
+    let filed = mesh.points()[mesh.corners()[0].filed as usize].normal;
+    assert!(filed[1] > 0.0 && filed[2] < 0.0, "{filed:?}");
+
+    let mesh = with(UpAxis::Y, 1.0, Winding::Turned).unwrap().model.mesh;
+    assert_eq!(outline(&mesh, 0), [2, 1, 0]);
+    assert_eq!(mesh.polygon_normals()[0], [0.0, 0.0, -1.0]);
+    let filed = mesh.points()[mesh.corners()[0].filed as usize].normal;
+    assert!(filed[1] < 0.0 && filed[2] < 0.0, "{filed:?}");
+
+    let error = with(UpAxis::Y, 1e39, Winding::Kept).unwrap_err();
+    assert_eq!(error.to_string(), "a.obj: its coordinates are too large at this scale");
+}
+
+// What is refused, with line and reason.
+
+#[test]
+fn a_number_that_cannot_be_read_refuses_the_file_with_its_line() {
+    for (text, message) in [
+        ("v 0 0 zero\n", "a.obj, line 1: \"zero\" is no number"),
+        (
+            "v 0 0 0\nv 0,5 1 1\n",
+            "a.obj, line 2: \"0,5\" has a decimal comma, where the format has a point",
+        ),
+        ("# x\n\nv 1 2\n", "a.obj, line 3: a vertex needs three numbers, here are 2"),
+        ("v 0 0 0\nvn 0 0\n", "a.obj, line 2: a normal needs three numbers, here are 2"),
+        ("v 0 0 0\nvt\n", "a.obj, line 2: a place on the texture needs two numbers, here is none"),
+        ("v 0 0 \\\n0x\n", "a.obj, line 1: \"0x\" is no number"),
+    ] {
+        assert_eq!(refusal(text), message);
+    }
+}
+
+#[test]
+fn a_file_of_which_no_face_can_be_used_is_refused_by_its_first_bad_line() {
+    assert_eq!(
+        refusal(&triangle_and("f 1 2 9\nf 1 2\n")),
+        "a.obj, line 4: a face names vertex 9, the file has 3; no face of the file can be used"
+    );
+    assert_eq!(
+        refusal(&triangle_and("f 1 2\n")),
+        "a.obj, line 4: a face needs three corners or more, here are 2; \
+         no face of the file can be used"
+    );
+    assert_eq!(
+        refusal(&triangle_and("f a b c\n")),
+        "a.obj, line 4: \"a\" is no corner of a face; no face of the file can be used"
+    );
+    assert_eq!(
+        refusal(&triangle_and("f 0 1 2\n")),
+        "a.obj, line 4: a face names vertex 0; no face of the file can be used"
+    );
+}
+
+#[test]
+fn what_is_no_obj_file_is_refused() {
+    for (bytes, message) in [
+        (&b""[..], "a.obj: the file is empty"),
+        (b" \n\n", "a.obj: the file is empty"),
+        (b"\x89PNG\r\n\x1a\n", "a.obj: this is no OBJ file, but a PNG picture"),
+        (b"ab\0cd", "a.obj: this is no OBJ file: it is no text"),
+        (b"\xFF\xFEv\0 \0", "a.obj: this is no OBJ file, but a text of UTF-16; save it as UTF-8"),
+        (b"Dear Sir,\n", "a.obj: this is no OBJ file: it has neither vertices nor faces"),
+        (b"v nan 0 0\n", "a.obj: none of its vertices is finite"),
+    ] {
+        assert_eq!(read_bytes(bytes).unwrap_err().to_string(), message);
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there_or_is_a_folder_is_refused_in_plain_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let load = |path: &std::path::Path| {
+        load(path, &LoadOptions::default(), &Progress::new()).unwrap_err().to_string()
+    };
+    assert_eq!(load(&folder.path().join("b.obj")), "b.obj: there is no such file");
+    let inner = folder.path().join("c.obj");
+    std::fs::create_dir(&inner).unwrap();
+    assert_eq!(load(&inner), "c.obj: this is a folder, not a file");
+}
+
+// What is mended and listed.
+
+#[test]
+fn faces_that_cannot_be_are_left_out_and_the_others_stay() {
+    let loaded =
+        read(&triangle_and("f 1 2 3\nf 1 2 4\nf 0 1 2\nf -9 1 2\nf 1 2\nf 1 x 3\nf 3 2 1\n"));
+    let mesh = &loaded.model.mesh;
+    assert_eq!([outline(mesh, 0), outline(mesh, 1)], [[0, 1, 2], [2, 1, 0]]);
+    let texts: Vec<&str> = loaded.findings.iter().map(|f| f.text.as_str()).collect();
+    assert_eq!(
+        texts,
+        [
+            "3 faces name vertices that the file does not have, and are left out (first: line 6)",
+            "a face has fewer than three corners, and is left out (line 8)",
+            "a face has a corner that is no number (\"x\"), and is left out (line 9)",
+        ]
+    );
+}
+
+#[test]
+fn corners_lose_texture_places_and_normals_that_are_not_there() {
+    let loaded = read(&triangle_and("vt 0 0\nvn 0 0 1\nf 1/2/1 2/1/-2 3/0/1\n"));
+    let uvs: Vec<u32> = loaded.model.mesh.corners().iter().map(|corner| corner.uv).collect();
+    assert_eq!(uvs, [NONE, 0, NONE]);
+    let found = kinds(&loaded.findings);
+    assert_eq!(found[..2], [FindingKind::UvRange, FindingKind::NormalRange]);
+}
+
+#[test]
+fn faces_that_repeat_a_vertex_or_have_no_area_are_kept_and_listed() {
+    let loaded = read(&triangle_and("v 2 0 0\nf 1 2 2\nf 1 2 4\nf 1 2 3\n"));
+    assert_eq!(loaded.model.mesh.polygon_count(), 3);
+    let counts: Vec<(FindingKind, usize)> =
+        loaded.findings.iter().map(|f| (f.kind, f.count)).collect();
+    assert_eq!(counts, [(FindingKind::FaceRepeats, 1), (FindingKind::FaceNoArea, 2)]);
+}
+
+#[test]
+fn unknown_statements_are_passed_over_and_listed_by_name() {
+    let loaded = read(&triangle_and("f 1 2 3\ncurv 0 1\nfoo 1\nbar 2\nfoo 3\ns 1\nvp 0 1\n"));
+    let found: Vec<(FindingKind, usize)> =
+        loaded.findings.iter().map(|f| (f.kind, f.count)).collect();
+    use FindingKind::{FreeForm, Unknown};
+    assert_eq!(found, [(FreeForm, 2), (Unknown, 1), (Unknown, 2)]);
+}
+
+#[test]
+fn a_file_of_vertices_alone_loads_and_says_that_it_draws_nothing() {
+    let loaded = read(TRIANGLE);
+    assert_eq!(loaded.model.mesh.positions().len(), 3);
+    assert_eq!(only(&loaded).0, FindingKind::NoFaces);
+    assert!(describe(&loaded).contains("closed          no: there are no edges"));
+}
+
+#[test]
+fn work_is_watched_and_cancelled() {
+    let text = triangle_and("f 1 2 3\n").repeat(20_000);
+    let progress = Progress::new();
+    let options = LoadOptions::default();
+    parse(text.as_bytes(), "a.obj", None, &options, &progress).unwrap();
+    assert!((progress.fraction() - 1.0).abs() < 1e-12);
+    progress.cancel();
+    let error = parse(text.as_bytes(), "a.obj", None, &options, &progress).unwrap_err();
+    assert_eq!(error, LoadError::Cancelled);
+}
+
+// Materials and textures, beside the file.
+
+/// A folder with an OBJ file of this text, an MTL file, and a texture in a folder of its own.
+fn with_files(obj: &str, mtl: (&str, &str)) -> Loaded {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    std::fs::write(&path, triangle_and(obj)).unwrap();
+    std::fs::create_dir(folder.path().join("Maps")).unwrap();
+    std::fs::write(folder.path().join(mtl.0), mtl.1).unwrap();
+    let picture = Picture::filled(Size::new(1, 2), [1, 2, 3, 255]);
+    save_picture(&folder.path().join("Maps/wood 1.png"), &picture).unwrap();
+    load(&path, &LoadOptions::default(), &Progress::new()).unwrap()
+}
+
+const RED: &str = "newmtl red\nKa 0.1 0 0\nKd 0.5 0 0\nKs 0 0 0\n";
+
+#[test]
+fn a_material_is_found_under_names_with_blanks_and_in_any_order_of_statements() {
+    for (line, file) in [
+        ("mtllib a b.mtl", "a b.mtl"),
+        ("mtllib none.mtl a b.mtl other.mtl", "a b.mtl"),
+        ("mtllib \"a b.mtl\"", "a b.mtl"),
+        ("mtllib C:\\models\\A.MTL # from there", "a.mtl"),
+    ] {
+        let loaded = with_files(&format!("usemtl red\nf 1 2 3\n{line}\n"), (file, RED));
+        assert_eq!(loaded.model.materials.len(), 1, "{line}: {:?}", loaded.findings);
+        assert_eq!(loaded.model.mesh.parts()[0].material, Some(0), "{line}");
+        let missing = kinds(&loaded.findings);
+        assert!(missing.iter().all(|kind| *kind == FindingKind::MtlMissing), "{missing:?}");
+        assert_eq!(missing.len(), if line.contains("none") { 2 } else { 0 }, "{line}");
+    }
+}
+
+#[test]
+fn missing_materials_and_files_are_listed() {
+    let loaded = with_files("mtllib x.mtl y.mtl\nusemtl blue\nf 1 2 3\n", ("z.mtl", RED));
+    let texts: Vec<String> = loaded.findings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        texts,
+        [
+            "a.obj: the material file \"x.mtl\" was not found (line 4)",
+            "a.obj: the material file \"y.mtl\" was not found (line 4)",
+            "a.obj: the material \"blue\" is not known: silver is taken (line 5)",
+        ]
+    );
+}
+
+#[test]
+fn a_material_and_its_use_may_both_have_no_name() {
+    let mtl = RED.replace("newmtl red", "newmtl");
+    let loaded = with_files("mtllib m.mtl\nusemtl\nf 1 2 3\n", ("m.mtl", &mtl));
+    assert_eq!(loaded.model.mesh.parts()[0].material, Some(0));
+    assert_eq!(loaded.findings, []);
+}
+
+#[test]
+fn a_texture_is_found_by_back_slashes_by_its_last_name_and_in_another_case() {
+    for name in ["Maps\\wood 1.png", ".\\\\maps\\\\WOOD 1.PNG", "maps/wood 1.png"] {
+        let mtl = format!("{RED}map_Kd -clamp on -o 0.5 -s 2 3 {name}\n");
+        let loaded = with_files("mtllib m.mtl\nusemtl red\nf 1 2 3\n", ("m.mtl", &mtl));
+        assert_eq!(loaded.findings, [], "{name}");
+        let texture = loaded.model.materials[0].texture.clone().unwrap();
+        assert_eq!(texture.picture.size(), Size::new(1, 2));
+        assert_eq!((texture.wrap, texture.offset), (Wrap::Clamp, [0.5, 0.0]));
+        assert_eq!(texture.scale, [2.0, 3.0]);
+    }
+}
+
+#[test]
+fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
+    let mtl = format!("{RED}map_Kd none.png\n");
+    let loaded = with_files("mtllib m.mtl\nusemtl red\nf 1 2 3\n", ("m.mtl", &mtl));
+    assert_eq!(
+        only(&loaded),
+        (FindingKind::TextureMissing, "the texture \"none.png\" was not found (line 5)")
+    );
+    let mtl = format!("{RED}map_Kd a.obj\n");
+    let loaded = with_files("mtllib m.mtl\nusemtl red\nf 1 2 3\n", ("m.mtl", &mtl));
+    assert_eq!(
+        only(&loaded),
+        (
+            FindingKind::TextureUnreadable,
+            "the texture cannot be read: a.obj: this is no PNG, JPEG, BMP, TGA or GIF (line 5)"
+        )
+    );
+}
+
+proptest! {
+    /// Files of statements, half of them nonsense: refused or loaded, and never a panic.
+    #[test]
+    fn no_text_breaks_the_reader(
+        lines in prop::collection::vec(
+            prop_oneof![
+                "(v|vt|vn|f|l|p|o|g|usemtl|c|#|s)( [-+0-9./eE#a]{1,6}){0,8}",
+                "v( -?[0-9]\\.[0-9]){3,7}",
+                "f( [1-9](/[1-9]?){0,2}){3,7}",
+                "f( -[1-9]){3,7}",
+                "[ -~]{0,12}\\\\?",
+            ],
+            0..40,
+        ),
+        ending in prop_oneof![Just("\n"), Just("\r\n"), Just("\r"), Just("\\\n")],
+    ) {
+        if let Ok(loaded) = read_bytes(lines.join(ending).as_bytes()) {
+            let text = describe(&loaded);
+            prop_assert!(text.starts_with("name"));
+        }
+    }
+
+    #[test]
+    fn no_bytes_break_the_reader(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        if let Ok(loaded) = read_bytes(&bytes) {
+            prop_assert!(!loaded.model.mesh.positions().is_empty());
+        }
+    }
+
+    /// Every number of a file comes out of `tobj` as it went in, under the index it had.
+    #[test]
+    fn whatever_the_faces_use_everything_keeps_its_number(
+        vertices in prop::collection::vec(prop::array::uniform3(-1e3..1e3_f32), 3..30),
+        uvs in prop::collection::vec(prop::array::uniform2(-2.0..2.0_f32), 0..30),
+        faces in prop::collection::vec(prop::collection::vec((0..1000_usize, 0..1000_usize), 3..6), 1..30),
+    ) {
+        let mut text = String::new();
+        for [x, y, z] in &vertices {
+            text += &format!("v {x} {y} {z}\n");
+        }
+        for [u, v] in &uvs {
+            text += &format!("vt {u} {v}\n");
+        }
+        for face in &faces {
+            text.push('f');
+            for (v, t) in face {
+                text += &format!(" {}", v % vertices.len() + 1);
+                if !uvs.is_empty() && t % 3 > 0 {
+                    text += &format!("/{}", t % uvs.len() + 1);
+                }
+            }
+            text.push('\n');
+        }
+        let mesh = read(&text).model.mesh;
+        prop_assert_eq!(mesh.positions(), &vertices[..]);
+        for (polygon, face) in faces.iter().enumerate() {
+            let corners = mesh.polygon(u32::try_from(polygon).unwrap());
+            prop_assert_eq!(corners.len(), face.len());
+            for (corner, (v, t)) in corners.iter().zip(face) {
+                prop_assert_eq!(corner.position as usize, v % vertices.len());
+                let uv = (corner.uv != NONE).then(|| mesh.uvs()[corner.uv as usize]);
+                let named = !uvs.is_empty() && t % 3 > 0;
+                prop_assert_eq!(uv, named.then(|| uvs[t % uvs.len()]));
+            }
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Every public model that was gathered, against the table that says what is in it.
+//!
+//! The models are the work of others and lie beside the project. Where they are missing the test is
+//! left out, loudly; `MARRAZTU_REQUIRE_SHARED=1` makes that a failure, `MARRAZTU_SHARED` says where
+//! they are.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use marraztu::io::{Finding, FindingKind, LoadError, Progress, load};
+use marraztu::scene::{Corner, LoadOptions, Mesh, dvec3, newell};
+
+/// The folder of the models, where it is there.
+fn models() -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared");
+    let shared = std::env::var_os("MARRAZTU_SHARED").map_or_else(beside, PathBuf::from);
+    let models = shared.join("models");
+    if models.is_dir() {
+        return Some(models);
+    }
+    let required = std::env::var_os("MARRAZTU_REQUIRE_SHARED").is_some_and(|value| value == "1");
+    assert!(!required, "there are no models at {}", models.display());
+    eprintln!("LEFT OUT: there are no models at {}", models.display());
+    None
+}
+
+/// A row of the table.
+#[derive(Debug)]
+struct Row {
+    file: String,
+    vertices: usize,
+    faces: usize,
+    triangles: usize,
+    bounds: String,
+    features: String,
+    purpose: String,
+}
+
+impl Row {
+    /// How many of something are wrong with the file.
+    fn broken(&self, what: &str) -> usize {
+        let Some((_, broken)) = self.features.split_once("BROKEN: ") else { return 0 };
+        let words: Vec<&str> = broken.split([' ', ',', ';']).collect();
+        words.windows(2).find(|two| two[0] == what).map_or(0, |two| two[1].parse().unwrap())
+    }
+}
+
+fn table(models: &Path) -> Vec<Row> {
+    let text = std::fs::read_to_string(models.join("MODELS.md")).unwrap();
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let file = cells.get(1)?.to_string();
+        let number = |i: usize| cells.get(i)?.parse().ok();
+        let text = |i: usize| cells.get(i).map(ToString::to_string);
+        let (bounds, features, purpose) = (text(6)?, text(7)?, text(8)?);
+        let [vertices, faces, triangles] = [number(3)?, number(4)?, number(5)?];
+        Some(Row { file, vertices, faces, triangles, bounds, features, purpose })
+    };
+    text.lines().filter_map(row).collect()
+}
+
+/// Every file of the table with what became of it.
+fn sweep() -> Option<Vec<(Row, Result<marraztu::io::Loaded, LoadError>)>> {
+    let models = models()?;
+    let load = |row: Row| {
+        let loaded = load(&models.join(&row.file), &LoadOptions::default(), &Progress::new());
+        (row, loaded)
+    };
+    Some(table(&models).into_iter().map(load).collect())
+}
+
+fn count(findings: &[Finding], kind: FindingKind) -> usize {
+    findings.iter().filter(|finding| finding.kind == kind).map(|finding| finding.count).sum()
+}
+
+/// The numbers of "(x, y, z) to (x, y, z)".
+fn numbers(bounds: &str) -> Vec<f64> {
+    let sign = |c: char| !(c.is_ascii_digit() || "-+.e".contains(c));
+    bounds.split(sign).filter_map(|word| word.parse().ok()).collect()
+}
+
+/// Whether two sides of a polygon cross, seen along its normal; sides that touch do not.
+fn crosses_itself(corners: &[DVec3], normal: DVec3) -> bool {
+    let side = |i: usize| (corners[i], corners[(i + 1) % corners.len()]);
+    let turn = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).dot(normal);
+    let cross = |i: usize, j: usize| {
+        let ((a, b), (c, d)) = (side(i), side(j));
+        turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
+    };
+    (0..corners.len()).any(|j| (0..j).any(|i| cross(i, j)))
+}
+
+/// The polygons of a mesh, each with its corners' places and its normal.
+fn polygons(mesh: &Mesh) -> impl Iterator<Item = (u32, Vec<DVec3>, DVec3)> {
+    let at = |corner: &Corner| dvec3(mesh.positions()[corner.position as usize]);
+    mesh.polygon_normals().iter().zip(0..).map(move |(normal, polygon)| {
+        (polygon, mesh.polygon(polygon).iter().map(at).collect(), dvec3(*normal))
+    })
+}
+
+#[test]
+fn every_model_has_as_much_in_it_as_the_table_says() {
+    let Some(sweep) = sweep() else { return };
+    assert!(sweep.len() > 70, "the table has only {} rows", sweep.len());
+    for (row, loaded) in sweep {
+        let refused = row.broken("number") > 0 || (row.faces > 0 && row.triangles == 0);
+        let loaded = match loaded {
+            Err(error) if refused => {
+                assert!(matches!(error, LoadError::Line { .. }), "{}: {error}", row.file);
+                continue;
+            }
+            Err(error) => panic!("{} is refused: {error}", row.file),
+            Ok(_) if refused => panic!("{} is not refused", row.file),
+            Ok(loaded) => loaded,
+        };
+        let (mesh, findings) = (&loaded.model.mesh, &loaded.findings);
+        let found = |kind| count(findings, kind);
+        assert_eq!(mesh.positions().len(), row.vertices, "vertices of {}", row.file);
+        assert_eq!(found(FindingKind::FaceShort), row.broken("face_short"), "{}", row.file);
+        assert_eq!(found(FindingKind::FaceRange), row.broken("face_range"), "{}", row.file);
+        assert_eq!(found(FindingKind::FaceRepeats), row.broken("face_repeat"), "{}", row.file);
+        let left_out = row.broken("face_short") + row.broken("face_range");
+        assert_eq!(mesh.polygon_count(), row.faces - left_out, "faces of {}", row.file);
+        assert_eq!(mesh.triangles().len(), row.triangles, "triangles of {}", row.file);
+        let kinds = [FindingKind::UvRange, FindingKind::NormalRange];
+        let attributes = kinds.map(found).into_iter().max();
+        assert_eq!(attributes, Some(row.broken("attr_range")), "{}: {findings:?}", row.file);
+        if let Some(bounds) = mesh.bounds() {
+            let ours = [bounds.min.to_array(), bounds.max.to_array()].concat();
+            for (ours, theirs) in ours.iter().zip(numbers(&row.bounds)) {
+                assert!((ours - theirs).abs() <= 1e-3 * theirs.abs() + 1e-9, "box of {}", row.file);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_polygon_is_cut_outside_its_outline_unless_it_crosses_itself() {
+    let Some(sweep) = sweep() else { return };
+    let mut checked = 0;
+    for (row, loaded) in sweep {
+        let Ok(loaded) = loaded else { continue };
+        if row.purpose.contains("self-crossing") {
+            continue;
+        }
+        let mesh = &loaded.model.mesh;
+        let mut crossing = 0;
+        for (polygon, corners, normal) in polygons(mesh) {
+            if corners.len() == 3 {
+                continue;
+            }
+            if crosses_itself(&corners, normal) {
+                crossing += 1;
+                continue;
+            }
+            checked += 1;
+            let begin = mesh.corners_of(polygon).start;
+            for triangle in &mesh.triangles()[mesh.triangles_of(polygon)] {
+                let at = |corner: u32| corners[corner as usize - begin];
+                let area = newell(triangle.corners.into_iter().map(at)).dot(normal);
+                let all = newell(corners.iter().copied()).dot(normal);
+                assert!(area > -1e-6 * all, "polygon {polygon} of {}", row.file);
+            }
+        }
+        let found = count(&loaded.findings, FindingKind::PolygonCrosses);
+        assert_eq!(found, crossing, "{}: {:?}", row.file, loaded.findings);
+    }
+    assert!(checked > 20_000, "only {checked} polygons of four corners and more");
+}
+
+#[test]
+fn textures_that_lie_beside_a_model_are_found() {
+    let Some(sweep) = sweep() else { return };
+    for (row, loaded) in sweep {
+        let Ok(loaded) = loaded else { continue };
+        let textured = loaded.model.materials.iter().filter(|m| m.texture.is_some()).count();
+        let here = row.features.split(" textures named, ").nth(1);
+        let here: usize =
+            here.and_then(|here| here.split(' ').next()?.parse().ok()).unwrap_or_default();
+        assert_eq!(textured > 0, here > 0, "{}: {:?}", row.file, loaded.findings);
+        let unreadable = count(&loaded.findings, FindingKind::TextureUnreadable);
+        assert_eq!(unreadable, 0, "{}: {:?}", row.file, loaded.findings);
+    }
+}

@@ -1,0 +1,383 @@
+//! Scene files: what is saved comes back, and nothing is lost where it cannot.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use glam::{DMat4, DVec3};
+use marraztu::base::Shared;
+use marraztu::base::color::Color;
+use marraztu::base::image::{Picture, Size};
+use marraztu::base::math;
+use marraztu::io::{
+    Progress, SceneFileError, default_scene, load, load_texture, open, open_with, save,
+    save_picture, to_text,
+};
+use marraztu::scene::{
+    Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Fill, Filter, Frame, Item,
+    Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength,
+    Normals, Object, ObjectId, Observer, Orbit, Placed, PolygonMode, Pose, PresetId, Projection,
+    Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject, Surface, Texture,
+    Transformation, UpAxis, View, Winding, Wrap,
+};
+use proptest::prelude::*;
+
+const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+                    g a\nf 4 3 2 1\nf 5 6 7 8\ng b\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
+
+/// A folder with a model `models/cube.obj` and a picture `chess.png`.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("models")).unwrap();
+    std::fs::write(folder.path().join("models/cube.obj"), CUBE).unwrap();
+    let picture = Picture::filled(Size::new(2, 2), [9, 8, 7, 255]);
+    save_picture(&folder.path().join("chess.png"), &picture).unwrap();
+    folder
+}
+
+fn insert(scene: &mut Scene, at: usize, item: Item) {
+    Command::Insert { at, item }.apply(scene).unwrap();
+}
+
+/// A scene in which nothing is as it is at first.
+fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
+    let [a, b, c, d] = numbers;
+    let (mut scene, _) = default_scene();
+    let options =
+        LoadOptions { up: UpAxis::Z, scale: Scale::new(2.5).unwrap(), winding: Winding::Turned };
+    let cube = load(&folder.join("models/cube.obj"), &options, &Progress::new()).unwrap().model;
+    let plain = load_texture(&folder.join("chess.png")).unwrap();
+    let texture =
+        Texture { wrap: Wrap::Clamp, offset: [a, b], scale: [2.0, 3.0], ..Texture::clone(&plain) };
+    let place = DMat4::from_cols_array_2d(&[
+        [a, b, c, 0.0],
+        [b, 1.0, d, 0.0],
+        [c, d, 1.0, 0.0],
+        [d, a, b, 1.0],
+    ]);
+    let object = Object {
+        name: "a \"cube\"\nof two lines, \u{f1}".to_owned(),
+        visible: false,
+        model: Shared::new(cube),
+        hidden_parts: BTreeSet::from([1]),
+        placement: Placed::new(DMat4::IDENTITY).moved(place),
+        spin: Spin { axes: [true, false, true], speed: c, since: d },
+        material: MaterialChoice::Own(Material { exponent: 7.25, ..Material::default() }),
+        surface: Surface::Texture,
+        texture: Some(Shared::new(texture)),
+        tint: Color([1, 2, 3]),
+        two_sided: true,
+        file_normals: false,
+        edge_color: Color([4, 5, 6]),
+    };
+    let mut second = Object { texture: Some(plain), ..object.clone() };
+    second.material = MaterialChoice::File;
+    insert(&mut scene, 0, Item::Object(ObjectId(20), Box::new(object)));
+    insert(&mut scene, 3, Item::Object(ObjectId(21), Box::new(second)));
+
+    let axes = math::rotation(math::unit(DVec3::new(1.0, 2.0, 3.0)).unwrap(), a);
+    let pose = Pose {
+        eye: DVec3::new(b, c, d),
+        axes,
+        mode: CameraMode::Analysis { target: ObjectId(20) },
+    };
+    let camera = Camera {
+        name: "second".to_owned(),
+        visible: false,
+        model: scene.objects.get(ObjectId(1)).unwrap().model.clone(),
+        material: MaterialChoice::Preset(PresetId::EMERALD),
+        pose: Placed::new(pose),
+        lens: Lens { half_angle: 30.0, near: 0.1, far: 70.0, half_size: 3.0, ..Lens::default() },
+    };
+    insert(&mut scene, 0, Item::Camera(CameraId(22), Box::new(camera)));
+
+    let direction = math::unit(DVec3::new(a, b, 1.0)).unwrap();
+    let aim = Placed::new(Aim { position: DVec3::new(a, b, c), direction });
+    let bulb = LightKind::Bulb {
+        position: Placed::new(DVec3::new(d, c, b)),
+        orbit: Orbit { on: true, speed: a, since: b },
+    };
+    let spot = |owner| LightKind::Spot { owner, half_aperture: 90.0, exponent: 0.5 };
+    let kinds = [
+        LightKind::Sun { direction: Placed::new(direction) },
+        bulb,
+        spot(SpotOwner::Fixed(aim)),
+        spot(SpotOwner::Object(ObjectId(20))),
+        spot(SpotOwner::Camera(CameraId(22))),
+    ];
+    for (kind, id) in kinds.into_iter().zip(30..) {
+        let mut light = Light::new("another", id, kind);
+        (light.on, light.color) = (false, Color([7, 8, 9]));
+        light.attenuation = Attenuation { constant: 0.5, linear: 0.25, quadratic: 1e-300 };
+        insert(&mut scene, 0, Item::Light(LightId(id), Box::new(light)));
+    }
+    scene.background = Color([10, 11, 12]);
+    scene.next_id = 99;
+
+    let view = View {
+        subject: Subject::Light,
+        object: Some(ObjectId(20)),
+        camera: CameraId(22),
+        light: Some(LightId(30)),
+        transformation: Transformation::Scaling,
+        frame: Frame::Global,
+        steps: Steps { translation: 0.1, by_size: true, rotation: 1.0 / 3.0, scaling: 1.5 },
+        observer: Observer::Object,
+        projection: Projection::Orthographic,
+        fill: Fill::Edges,
+        edges_over_fill: true,
+        polygons: Some(PolygonMode { current: 3, shown: BTreeSet::from([0, 1, 3, 5]) }),
+        polygons_stay: false,
+        only_selected: true,
+        normals: Normals::Face,
+        back_faces: true,
+        face_normals: true,
+        vertex_normals: true,
+        normal_length: NormalLength::BySize,
+        wide_lines: true,
+        marks: false,
+        time: a,
+    };
+    let settings = Settings {
+        arithmetic: Arithmetic::F64,
+        light: LightAt::Vertex,
+        filter: Filter::Nearest,
+        specular: SpecularForm::HalfVector,
+    };
+    (scene, view, settings)
+}
+
+/// The scene without what could be undone.
+fn without_stacks(scene: &Scene) -> Scene {
+    let mut plain = scene.clone();
+    for (id, object) in scene.objects.iter() {
+        let object = Object { placement: Placed::new(*object.placement.now()), ..object.clone() };
+        Command::Replace(Item::Object(id, Box::new(object))).apply(&mut plain).unwrap();
+    }
+    plain
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn what_is_saved_comes_back_bit_for_bit_but_for_undo(
+        numbers in prop::array::uniform4(prop_oneof![
+            -1e6..1e6_f64,
+            -1e-300..1e-300_f64,
+            Just(-0.0),
+            Just(0.1),
+            Just(f64::MIN_POSITIVE),
+            Just(1e300),
+        ]),
+    ) {
+        let folder = folder();
+        let (scene, view, settings) = rich(folder.path(), numbers);
+        let path = folder.path().join("scenes.marraztu");
+        save(&path, &scene, &view, &settings).unwrap();
+        let opened = open(&path, &Progress::new()).unwrap();
+        let scene = without_stacks(&scene);
+        prop_assert_eq!(&opened.scene, &scene);
+        prop_assert_eq!(opened.view, view);
+        prop_assert_eq!(opened.settings, settings);
+        let bits = |scene: &Scene| {
+            let placements = scene.objects.iter().map(|(_, o)| *o.placement.now());
+            placements.flat_map(|m| m.to_cols_array().map(f64::to_bits)).collect::<Vec<_>>()
+        };
+        prop_assert_eq!(bits(&opened.scene), bits(&scene));
+    }
+}
+
+/// The text of the first scene, with one thing in it changed, opened.
+fn changed(from: &str, to: &str) -> Result<marraztu::io::Opened, SceneFileError> {
+    let folder = folder();
+    let (scene, view) = default_scene();
+    let path = folder.path().join("a.marraztu");
+    let text = to_text(&path, &scene, &view, &Settings::default()).unwrap();
+    assert!(text.contains(from), "{from:?} is not in\n{text}");
+    std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
+    open(&path, &Progress::new())
+}
+
+#[test]
+fn the_file_of_the_first_scene_is_short_and_says_what_it_means() {
+    let (scene, view) = default_scene();
+    let path = Path::new("/tmp/first.marraztu");
+    let text = to_text(path, &scene, &view, &Settings::default()).unwrap();
+    assert!(text.starts_with("(\n    version: 1,\n"), "{text}");
+    for line in
+        ["model: Own(\"r_falke\"),", "material: Preset(\"ruby\"),", "background: (0, 0, 179),"]
+    {
+        assert!(text.contains(line), "{line} is not in\n{text}");
+    }
+    assert!(text.lines().count() < 250, "{} lines", text.lines().count());
+}
+
+#[test]
+fn the_first_scene_opens_as_it_was() {
+    let opened = changed("version: 1", "version: 1").unwrap();
+    let (scene, view) = default_scene();
+    assert_eq!((opened.scene, opened.view), (scene, view));
+    assert_eq!(opened.findings, []);
+}
+
+#[test]
+fn what_cannot_be_understood_is_refused_with_its_line() {
+    for (from, to, line, reason) in [
+        ("version: 1", "version: 2", 2, "a newer one has written it"),
+        ("version: 1", "version: 0", 2, "of version 0"),
+        ("background", "foreground", 3, "foreground"),
+        ("next_id: 9", "next_id: -9", 4, ""),
+        ("name: \"r_falke\"", "name: r_falke", 8, ""),
+        ("(\n    version", "\n    version", 2, ""),
+    ] {
+        let error = changed(from, to).unwrap_err();
+        let text = error.to_string();
+        let SceneFileError::Line { line: at, .. } = error else { panic!("{to}: {text}") };
+        assert_eq!(at, line, "{to}: {text}");
+        assert!(text.starts_with(&format!("a.marraztu, line {line}: ")), "{to}: {text}");
+        assert!(text.contains(reason), "{to}: {text}");
+    }
+}
+
+#[test]
+fn what_cannot_be_in_a_scene_is_refused_by_its_name() {
+    for (from, to, reason) in [
+        ("id: 1,", "id: 2,", "object 2 \"x_wing\": what should be added is already in the scene"),
+        (
+            "(-100.0, 0.0, 0.0, 1.0)",
+            "(inf, 0.0, 0.0, 1.0)",
+            "\"r_falke\": its placement has a number that is not finite",
+        ),
+        (
+            "eye: (0.0, 0.0, 400.0)",
+            "eye: (0.0, 0.0, NaN)",
+            "\"camera 1\": its place has a number that is not finite",
+        ),
+        ("half_angle: 22.5", "half_angle: 90.0", "the lens needs an angle between 0 and 90"),
+        ("slot: 1,", "slot: 0,", "another light has slot 0, too"),
+        (
+            "direction: (0.0, -1.0, 0.0)",
+            "direction: (0.0, 0.0, 0.0)",
+            "its direction has no length",
+        ),
+        ("scaling: 1.2", "scaling: 1.0", "of scaling above 1"),
+        ("Own(\"x_wing\")", "Own(\"y_wing\")", "no model of its own \"y_wing\""),
+        ("next_id: 9", "next_id: 9, unknown: 1", "unknown"),
+        ("id: 0,", "id: 4294967295,", "an id is too large"),
+    ] {
+        let text = changed(from, to).unwrap_err().to_string();
+        assert!(text.contains(reason), "{to}: {text}");
+    }
+}
+
+#[test]
+fn a_selection_that_is_gone_gives_way_to_the_first() {
+    let opened = changed("object: Some(2)", "object: Some(77)").unwrap();
+    assert_eq!(opened.view.object, opened.scene.objects.first());
+}
+
+#[test]
+fn what_is_no_scene_file_at_all_is_refused() {
+    let folder = folder();
+    for (content, reason) in
+        [(&b""[..], ""), (b"\x89PNG\xFF", "this is no scene file"), (b"hello", "")]
+    {
+        let path = folder.path().join("b.marraztu");
+        std::fs::write(&path, content).unwrap();
+        let text = open(&path, &Progress::new()).unwrap_err().to_string();
+        assert!(text.starts_with("b.marraztu") && text.contains(reason), "{text}");
+    }
+    let error = open(&folder.path().join("none.marraztu"), &Progress::new()).unwrap_err();
+    assert_eq!(error.to_string(), "none.marraztu: there is no such file");
+}
+
+#[test]
+fn missing_models_are_all_named_and_can_be_found_elsewhere() {
+    let folder = folder();
+    let (scene, view, settings) = rich(folder.path(), [1.0, 2.0, 3.0, 4.0]);
+    let path = folder.path().join("a.marraztu");
+    save(&path, &scene, &view, &settings).unwrap();
+    let other = folder.path().join("other");
+    std::fs::create_dir(&other).unwrap();
+    let moves = [("models/cube.obj", "cube.obj"), ("chess.png", "chess.png")];
+    let moves = moves.map(|(from, to)| (folder.path().join(from), other.join(to)));
+    for (from, to) in &moves {
+        std::fs::rename(from, to).unwrap();
+    }
+    let error = open(&path, &Progress::new()).unwrap_err();
+    let SceneFileError::Missing { missing, .. } = &error else { panic!("{error}") };
+    let gone: BTreeSet<&PathBuf> = moves.iter().map(|(from, _)| from).collect();
+    assert_eq!(missing.iter().collect::<BTreeSet<_>>(), gone);
+
+    let relocated = BTreeMap::from(moves);
+    let opened = open_with(&path, &relocated, &Progress::new()).unwrap();
+    let mesh =
+        |scene: &Scene| scene.objects.get(ObjectId(20)).unwrap().model.mesh.positions().to_vec();
+    assert_eq!(mesh(&opened.scene), mesh(&scene));
+}
+
+#[test]
+fn a_folder_with_its_scene_and_its_models_can_be_moved() {
+    let folder = folder();
+    let (scene, view, settings) = rich(folder.path(), [1.0, 2.0, 3.0, 4.0]);
+    save(&folder.path().join("a.marraztu"), &scene, &view, &settings).unwrap();
+    let moved = tempfile::tempdir().unwrap();
+    let to = moved.path().join("there");
+    std::fs::rename(folder.path(), &to).unwrap();
+    let opened = open(&to.join("a.marraztu"), &Progress::new()).unwrap();
+    let source = opened.scene.objects.get(ObjectId(20)).unwrap().model.source.clone();
+    assert_eq!(source, Some(to.join("models/cube.obj")));
+}
+
+#[test]
+fn one_model_in_many_objects_is_read_once_and_shared() {
+    let folder = folder();
+    let (scene, view, settings) = rich(folder.path(), [1.0, 2.0, 3.0, 4.0]);
+    let path = folder.path().join("a.marraztu");
+    save(&path, &scene, &view, &settings).unwrap();
+    let opened = open(&path, &Progress::new()).unwrap();
+    let model = |id| &opened.scene.objects.get(ObjectId(id)).unwrap().model;
+    assert!(Shared::same(model(20), model(21)));
+}
+
+#[test]
+fn the_file_that_was_there_is_kept_beside() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.marraztu");
+    let (mut scene, view) = default_scene();
+    let mut write = |color: u8| {
+        scene.background = Color([color; 3]);
+        save(&path, &scene, &view, &Settings::default()).unwrap();
+    };
+    write(1);
+    write(2);
+    write(3);
+    let background =
+        |name: &str| open(&folder.path().join(name), &Progress::new()).unwrap().scene.background;
+    assert_eq!(background("a.marraztu"), Color([3; 3]));
+    assert_eq!(background("a.marraztu~"), Color([2; 3]));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+}
+
+#[test]
+fn a_number_that_is_none_is_refused_before_anything_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.marraztu");
+    let (scene, mut view) = default_scene();
+    view.time = f64::NAN;
+    let error = save(&path, &scene, &view, &Settings::default()).unwrap_err();
+    assert!(error.to_string().contains("not finite"), "{error}");
+    assert!(!path.exists());
+}
+
+#[test]
+fn opening_can_be_cancelled() {
+    let folder = folder();
+    let (scene, view, settings) = rich(folder.path(), [1.0, 2.0, 3.0, 4.0]);
+    let path = folder.path().join("a.marraztu");
+    save(&path, &scene, &view, &settings).unwrap();
+    let progress = Progress::new();
+    progress.cancel();
+    let error = open(&path, &progress).unwrap_err();
+    assert_eq!(error.to_string(), "loading was cancelled");
+}
