@@ -5,7 +5,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use egui::{CentralPanel, Context, Frame, Key, ViewportCommand};
+use egui::{CentralPanel, Context, Frame, Key, ThemePreference, ViewportCommand};
 
 use super::action::Action;
 use super::ask::Ask;
@@ -16,7 +16,7 @@ use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
 use super::material_dialog::MaterialDialog;
 use super::scene_files::Waiting;
-use super::state::{Message, State, Tone};
+use super::state::{Message, Shown, State, Tone};
 use super::viewport::{Purpose, Viewport};
 use super::worker::{Snapshot, Worker};
 use super::{notices, panels};
@@ -294,6 +294,9 @@ impl App {
             Action::ToggleProperties => shown.properties ^= true,
             Action::ToggleViewPanel => shown.view ^= true,
             Action::ToggleStatistics => shown.statistics ^= true,
+            Action::ThemeSystem => set_theme(ctx, shown, ThemePreference::System),
+            Action::ThemeLight => set_theme(ctx, shown, ThemePreference::Light),
+            Action::ThemeDark => set_theme(ctx, shown, ThemePreference::Dark),
             Action::ToPanels => Keyboard::change_owner(ctx),
             // What is left is decided, and never comes here.
             _ => {}
@@ -385,6 +388,11 @@ impl App {
     pub(super) fn refuse(&mut self, why: String) {
         self.state.message = Some(Message { text: why, tone: Tone::Refused });
     }
+}
+
+fn set_theme(ctx: &Context, shown: &mut Shown, theme: ThemePreference) {
+    shown.theme = theme;
+    ctx.set_theme(theme);
 }
 
 impl eframe::App for App {
