@@ -1,13 +1,7 @@
 //! Arguments: the editor, or a headless command.
 
+mod command_line;
+
 fn main() -> std::process::ExitCode {
-    use std::io::Write as _;
-    let files = std::env::args_os().skip(1).map(Into::into).collect();
-    match marraztu::app::run(files) {
-        Ok(()) => std::process::ExitCode::SUCCESS,
-        Err(error) => {
-            let _ = writeln!(std::io::stderr(), "marraztu: {error}");
-            std::process::ExitCode::FAILURE
-        }
-    }
+    command_line::run()
 }

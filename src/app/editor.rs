@@ -15,6 +15,7 @@ use super::dialogs::{After, Dialogs, Wanted};
 use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
 use super::material_dialog::MaterialDialog;
+use super::scene_files::Waiting;
 use super::state::{Message, Shown, State, Tone};
 use super::viewport::{Purpose, Viewport};
 use super::worker::{Snapshot, Worker};
@@ -29,6 +30,8 @@ pub struct App {
     pub(super) state: State,
     pub(super) dialogs: Dialogs,
     pub(super) loading: Vec<Loading>,
+    /// A scene whose models are not where it says.
+    pub(super) waiting: Option<Waiting>,
     pub(super) viewport: Viewport,
     worker: Option<Worker<Purpose>>,
     /// It was decided to leave: nothing more is asked.
@@ -48,6 +51,7 @@ impl App {
             state: State::new(scene, view),
             dialogs: Dialogs::default(),
             loading: Vec::new(),
+            waiting: None,
             viewport: Viewport::default(),
             worker: None,
             leaving: false,

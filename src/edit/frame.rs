@@ -79,16 +79,13 @@ pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, 
     framed(scene, view, ids, scene.selected_camera(view).pose.now().axes)
 }
 
-/// Ctrl+1, 3 and 7: the selected camera sees the selected object whole from a side, or everything
-/// where there is no object.
+/// Ctrl+1, 3 and 7: the selected camera sees the selected object whole from a side.
 ///
 /// # Errors
-/// Where nothing has vertices.
+/// Where there is no object, or it has no vertices.
 pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
-    match view.object {
-        Some(id) => framed(scene, view, &[id], side.axes()),
-        None => Err(Refusal::NoObject),
-    }
+    let (id, _) = put::selected_object(scene, view)?;
+    framed(scene, view, &[id], side.axes())
 }
 
 /// A sphere about objects: of one object its own, of several about the box around theirs. `None`

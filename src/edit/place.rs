@@ -185,8 +185,7 @@ pub fn camera_turn(
     put::pose(scene, id, Pose { eye, axes, ..pose }, stroke)
 }
 
-/// Gives a camera a pose as a whole; how it moves stays as it is only where it still looks at its
-/// centre, so it becomes fly.
+/// Gives a camera a pose as a whole. It flies afterwards.
 ///
 /// # Errors
 /// Where the numbers are not finite, or the camera is gone.

@@ -36,6 +36,22 @@ pub struct PixelBox {
 }
 
 impl PixelBox {
+    /// The pixels whose centres lie in the box of three places.
+    #[inline(always)]
+    #[must_use]
+    pub fn of([a, b, c]: [Snapped; 3]) -> Self {
+        let half = SUBPIXELS / 2;
+        // The first centre at or after the smallest coordinate; past the last one before the largest.
+        let first = |a: i32, b: i32, c: i32| (a.min(b).min(c) + half - 1).div_euclid(SUBPIXELS);
+        let end = |a: i32, b: i32, c: i32| (a.max(b).max(c) - half).div_euclid(SUBPIXELS) + 1;
+        Self {
+            left: first(a.x, b.x, c.x),
+            top: first(a.y, b.y, c.y),
+            right: end(a.x, b.x, c.x),
+            bottom: end(a.y, b.y, c.y),
+        }
+    }
+
     /// What both have in common; empty boxes have `left >= right` or `top >= bottom`.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
@@ -65,6 +81,7 @@ struct Edge {
 }
 
 impl Edge {
+    #[inline(always)]
     fn new(p: Snapped, q: Snapped) -> Self {
         let [px, py, qx, qy] = [p.x, p.y, q.x, q.y].map(i64::from);
         Self { a: py - qy, b: qx - px, c: px * qy - py * qx }
@@ -72,10 +89,12 @@ impl Edge {
 
     /// 0 where a centre on the edge is covered: on a top edge (level, the triangle under it) and on a
     /// left one (going up); -1 elsewhere, which moves no other centre across, for e is whole.
+    #[inline(always)]
     fn bias(self) -> i64 {
         if self.a > 0 || (self.a == 0 && self.b > 0) { 0 } else { -1 }
     }
 
+    #[inline(always)]
     fn at(self, x: i64, y: i64) -> i64 {
         self.a * x + self.b * y + self.c
     }
@@ -106,6 +125,7 @@ pub struct Covered {
 impl Triangle {
     /// The triangle, of either winding; `None` where it has no area.
     #[must_use]
+    #[inline(always)]
     pub fn new([p, q, r]: [Snapped; 3]) -> Option<Self> {
         let doubled_area = doubled_area([p, q, r]);
         if doubled_area == 0 {
@@ -117,10 +137,7 @@ impl Triangle {
         } else {
             [Edge::new(r, q), Edge::new(p, r), Edge::new(q, p)]
         };
-        let (xs, ys) = ([p.x, q.x, r.x], [p.y, q.y, r.y]);
-        let (left, right) = centres_between(xs);
-        let (top, bottom) = centres_between(ys);
-        let bounds = PixelBox { left, top, right, bottom };
+        let bounds = PixelBox::of([p, q, r]);
         Some(Self { edges, doubled_area: doubled_area.abs(), bounds })
     }
 
@@ -138,9 +155,45 @@ impl Triangle {
 
     /// The edge functions at the centre of a pixel, in the order of the corners opposite to them.
     #[must_use]
+    #[inline(always)]
     pub fn edges_at(&self, x: i32, y: i32) -> [i64; 3] {
         let [cx, cy] = [x, y].map(centre);
         self.edges.map(|edge| edge.at(cx, cy))
+    }
+
+    /// What the edge functions gain by a pixel to the right, and by one down.
+    #[inline(always)]
+    #[must_use]
+    pub fn steps(&self) -> [[i64; 3]; 2] {
+        let step = i64::from(SUBPIXELS);
+        let [p, q, r] = self.edges;
+        [[p.a * step, q.a * step, r.a * step], [p.b * step, q.b * step, r.b * step]]
+    }
+
+    /// The least values of the edge functions at centres that are covered.
+    #[inline(always)]
+    #[must_use]
+    pub fn least(&self) -> [i64; 3] {
+        let [p, q, r] = self.edges;
+        [-p.bias(), -q.bias(), -r.bias()]
+    }
+
+    /// Whether a block of 8 x 8 pixels, at whose first pixel the edge functions have these values, is
+    /// covered as a whole; `None` where one of the edges leaves all of it out.
+    #[inline(always)]
+    #[must_use]
+    pub fn touches_block(&self, edges: [i64; 3]) -> Option<bool> {
+        let [right, down] = self.steps();
+        let least = self.least();
+        let mut whole = true;
+        for i in 0..3 {
+            let (x, y) = (7 * right[i], 7 * down[i]);
+            if edges[i] + x.max(0) + y.max(0) < least[i] {
+                return None;
+            }
+            whole &= edges[i] + x.min(0) + y.min(0) >= least[i];
+        }
+        Some(whole)
     }
 
     /// Calls `cover` with every pixel inside `clip` that the triangle covers, row by row.
@@ -165,24 +218,16 @@ impl Triangle {
 /// Twice the area, positive where the corners run clockwise on the screen (counter-clockwise as the
 /// observer sees it with y up is negative).
 #[must_use]
+#[inline(always)]
 pub fn doubled_area([p, q, r]: [Snapped; 3]) -> i64 {
     let [px, py, qx, qy, rx, ry] = [p.x, p.y, q.x, q.y, r.x, r.y].map(i64::from);
     (qx - px) * (ry - py) - (qy - py) * (rx - px)
 }
 
 /// The middle of pixel `i`, in parts of a pixel.
+#[inline(always)]
 fn centre(i: i32) -> i64 {
     i64::from(i) * i64::from(SUBPIXELS) + i64::from(SUBPIXELS / 2)
-}
-
-/// The pixels whose centres are not outside the smallest and largest of three coordinates: the
-/// first, and the one after the last.
-fn centres_between(values: [i32; 3]) -> (i32, i32) {
-    let half = SUBPIXELS / 2;
-    let [a, b, c] = values;
-    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    // The first centre at or after `low`; the last one at or before `high`.
-    ((low + half - 1).div_euclid(SUBPIXELS), (high - half).div_euclid(SUBPIXELS) + 1)
 }
 
 #[cfg(test)]

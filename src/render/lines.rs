@@ -5,93 +5,142 @@
 //! ("Bresenham Line Segment Rasterization"). Lines that follow one another take no pixel twice. The
 //! ends are snapped and everything is computed in whole numbers.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-use super::coverage::{PixelBox, SUBPIXELS};
-use super::geometry::{Geometry, Screen, ScreenLine, ScreenVertex, Side, line};
-use super::plan::{Back, Draw};
+use super::clip::{Screen, ScreenVertex};
+use super::coverage::{PixelBox, SUBPIXELS, Snapped, doubled_area};
+use super::plan::{Back, Draw, Lines};
 use crate::base::color::Color;
-use crate::scene::{Corner, dvec3};
+use crate::base::image::Size;
+use crate::scene::{Corner, Mesh, dvec3};
 
 /// How many steps of depth lines are nearer than the surfaces that they lie on.
 const NEARER: u32 = 2;
 
-/// Adds the lines of a draw that has just been brought onto the screen.
-pub(super) fn add(geometry: &mut Geometry, draw: &Draw, index: u32, screen: &Screen) {
-    if draw.lines.edges {
-        add_edges(geometry, draw, index, screen);
+/// A line on the screen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ScreenLine {
+    pub(super) ends: [ScreenVertex; 2],
+    /// Its draw's place in the plan.
+    pub(super) draw: u32,
+    /// The polygon that picking finds.
+    pub(super) polygon: u32,
+    pub(super) color: [u8; 4],
+    /// How many steps of depth it is nearer than it is.
+    nearer: u32,
+}
+
+/// Adds the lines of a draw, whose vertices are on the screen.
+pub(super) fn collect(
+    draw: &Draw,
+    index: u32,
+    size: Size,
+    vertices: &[ScreenVertex],
+    lines: &mut Vec<ScreenLine>,
+) {
+    let Lines { edges, face_normals, vertex_normals, .. } = draw.lines;
+    if !edges && face_normals.is_none() && vertex_normals.is_none() {
+        return;
     }
-    if draw.lines.face_normals.is_some() || draw.lines.vertex_normals.is_some() {
-        add_normals(geometry, draw, index, screen);
+    let screen = Screen::new(draw.clip_from_object, size);
+    let mesh = &draw.model.mesh;
+    let all = 0..u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers");
+    let outlines: Vec<Option<Color>> =
+        all.map(|polygon| outline(draw, &screen, vertices, polygon)).collect();
+    let mut add = |ends: [DVec3; 2], polygon: u32, color: Color, nearer: u32| {
+        let clip = ends.map(|end| screen.clip(end.to_array()));
+        if let Some(ends) = screen.segment(clip) {
+            let color = color.opaque();
+            lines.push(ScreenLine { ends, draw: index, polygon, color, nearer });
+        }
+    };
+    if edges {
+        let nearer = if draw.filled { NEARER } else { 0 };
+        for edge in mesh.edges() {
+            // The side that is not red decides where there are both.
+            let shown = mesh.edge_polygons(edge).iter().filter_map(|&polygon| {
+                let color = outlines[polygon as usize]?;
+                Some((color == Color::BACK_FACE, polygon, color))
+            });
+            if let Some((_, polygon, color)) = shown.min_by_key(|shown| (shown.0, shown.1)) {
+                let ends = edge.ends.map(|end| dvec3(mesh.positions()[end as usize]));
+                add(ends, polygon, color, nearer);
+            }
+        }
+    }
+    if face_normals.is_some() || vertex_normals.is_some() {
+        for (ends, polygon) in normals(draw, &outlines) {
+            add(ends, polygon, draw.lines.color, NEARER);
+        }
     }
 }
 
 /// The colour of a polygon's outline; `None` where it is not drawn.
-fn outline(geometry: &Geometry, draw: &Draw, polygon: u32) -> Option<Color> {
-    let part = draw.model.mesh.polygon_parts()[polygon as usize] as usize;
-    draw.part_pipelines[part]?;
-    match (geometry.facing(polygon)?, draw.back) {
-        (Side::Front, _) | (Side::Back, Back::Lit) => Some(draw.lines.color),
-        (Side::Back, Back::Red) => Some(Color::BACK_FACE),
-        (Side::Back, Back::Left) => None,
+fn outline(draw: &Draw, screen: &Screen, vertices: &[ScreenVertex], polygon: u32) -> Option<Color> {
+    let mesh = &draw.model.mesh;
+    draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize]?;
+    if draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {
+        return None;
+    }
+    let area: i64 = mesh
+        .triangles_of(polygon)
+        .map(|triangle| area_on_screen(mesh, screen, vertices, triangle))
+        .sum();
+    let front = (area < 0) != draw.mirrored;
+    match draw.back {
+        _ if area == 0 => None,
+        Back::Lit => Some(draw.lines.color),
+        _ if front => Some(draw.lines.color),
+        Back::Red => Some(Color::BACK_FACE),
+        Back::Left => None,
     }
 }
 
-fn add_edges(geometry: &mut Geometry, draw: &Draw, index: u32, screen: &Screen) {
-    let mesh = &draw.model.mesh;
-    let nearer = if draw.filled { NEARER } else { 0 };
-    for edge in mesh.edges() {
-        // The side that is not red decides where there are both.
-        let shown = mesh.edge_polygons(edge).iter().filter_map(|&polygon| {
-            outline(geometry, draw, polygon)
-                .map(|color| (color == Color::BACK_FACE, polygon, color))
-        });
-        let Some((_, polygon, color)) = shown.min_by_key(|(red, polygon, _)| (*red, *polygon))
-        else {
-            continue;
-        };
-        if let Some(ends) = geometry.edge(edge.ends, screen) {
-            let color = color.opaque();
-            geometry.lines.push(ScreenLine { ends, draw: index, polygon, color, nearer });
-        }
+/// Twice the area of what is seen of a triangle, in square parts of a pixel.
+fn area_on_screen(mesh: &Mesh, screen: &Screen, vertices: &[ScreenVertex], triangle: usize) -> i64 {
+    let order = mesh.draw_order();
+    let corners = order.vertices_of[triangle];
+    let own = corners.map(|vertex| vertices[vertex as usize]);
+    if own.iter().all(ScreenVertex::is_inside) {
+        return doubled_area(own.map(|corner| corner.at()));
     }
+    let pieces = screen.cut(corners.map(|vertex| screen.clip(order.position(vertex))));
+    let piece = |i: usize| doubled_area([pieces[0], pieces[i - 1], pieces[i]].map(|p| p.at()));
+    (2..pieces.len()).map(piece).sum()
 }
 
-fn add_normals(geometry: &mut Geometry, draw: &Draw, index: u32, screen: &Screen) {
+/// The normals that are drawn of polygons that are, in object space.
+fn normals(draw: &Draw, outlines: &[Option<Color>]) -> Vec<([DVec3; 2], u32)> {
     let mesh = &draw.model.mesh;
-    let polygons = 0..u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers");
-    let color = draw.lines.color.opaque();
+    let mut normals = Vec::new();
     let mut drawn = vec![false; mesh.points().len()];
-    for polygon in polygons {
-        if outline(geometry, draw, polygon).is_none() {
+    for (polygon, outline) in (0..).zip(outlines) {
+        if outline.is_none() {
             continue;
         }
         let mut add = |from: DVec3, normal: [f32; 3], length: f64| {
             let to = from + normal_in_object(draw, dvec3(normal), length);
-            let ends = [from, to].map(|p| draw.clip_from_object * p.extend(1.0));
-            if let Some(ends) = line(ends, screen) {
-                let nearer = NEARER;
-                geometry.lines.push(ScreenLine { ends, draw: index, polygon, color, nearer });
-            }
+            normals.push(([from, to], polygon));
         };
         if let Some(length) = draw.lines.face_normals {
             let normal = mesh.polygon_normals()[polygon as usize];
             add(mesh.polygon_centre(polygon), normal, length);
         }
-        if let Some(length) = draw.lines.vertex_normals {
-            for corner in mesh.polygon(polygon) {
-                let point = point_of(draw, corner) as usize;
-                if !std::mem::replace(&mut drawn[point], true) {
-                    let point = mesh.points()[point];
-                    let from = mesh.positions()[point.position as usize];
-                    add(dvec3(from), point.normal, length);
-                }
+        let Some(length) = draw.lines.vertex_normals else { continue };
+        for corner in mesh.polygon(polygon) {
+            let point = point_of(draw, corner) as usize;
+            if !std::mem::replace(&mut drawn[point], true) {
+                let point = mesh.points()[point];
+                let from = mesh.positions()[point.position as usize];
+                add(dvec3(from), point.normal, length);
             }
         }
     }
+    normals
 }
 
 /// The point of a corner with the vertex normals that the draw uses.
+#[inline(always)]
 pub(super) fn point_of(draw: &Draw, corner: &Corner) -> u32 {
     if draw.file_normals { corner.filed } else { corner.smooth }
 }
@@ -99,10 +148,23 @@ pub(super) fn point_of(draw: &Draw, corner: &Corner) -> u32 {
 /// A drawn normal in object space: it stands on the placed surface, and is as long as `length` units
 /// of object space along the unplaced normal.
 fn normal_in_object(draw: &Draw, normal: DVec3, length: f64) -> DVec3 {
-    let linear = glam::DMat3::from_mat4(draw.view_from_object);
+    let linear = DMat3::from_mat4(draw.view_from_object);
     let across = linear.inverse() * (draw.view_from_normal * normal);
     let scale = (linear * normal).length() / (linear * across).length();
     if scale.is_finite() { across * (scale * length) } else { normal * length }
+}
+
+/// The pixels that a line may take.
+pub(super) fn bounds(line: &ScreenLine, width: i32) -> PixelBox {
+    let [a, b] = line.ends.map(|end| end.at());
+    let low = |p: i32, q: i32| p.min(q).div_euclid(SUBPIXELS) - width;
+    let high = |p: i32, q: i32| p.max(q).div_euclid(SUBPIXELS) + 1 + width;
+    PixelBox {
+        left: low(a.x, b.x),
+        top: low(a.y, b.y),
+        right: high(a.x, b.x),
+        bottom: high(a.y, b.y),
+    }
 }
 
 /// Calls `take` with every pixel of a line inside `clip`, and with the depth there.
@@ -113,9 +175,12 @@ pub(super) fn pixels(
     mut take: impl FnMut(i32, i32, f32),
 ) {
     let [a, b] = line.ends;
-    let steep = (b.at.y - a.at.y).abs() > (b.at.x - a.at.x).abs();
+    let steep = (b.at().y - a.at().y).abs() > (b.at().x - a.at().x).abs();
     // Along the major axis u, and across it v.
-    let turn = |p: ScreenVertex| if steep { (p.at.y, p.at.x) } else { (p.at.x, p.at.y) };
+    let turn = |p: ScreenVertex| {
+        let Snapped { x, y } = p.at();
+        if steep { (y, x) } else { (x, y) }
+    };
     let ((ua, va), (ub, vb)) = (turn(a), turn(b));
     let (du, dv) = (i64::from(ub) - i64::from(ua), i64::from(vb) - i64::from(va));
     if du == 0 {
@@ -169,16 +234,13 @@ fn nearer(depth: f32, steps: u32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::coverage::Snapped;
     use super::*;
 
     const EVERYWHERE: PixelBox = PixelBox { left: -99, top: -99, right: 99, bottom: 99 };
 
     fn drawn(ends: [(f64, f64); 2]) -> Vec<(i32, i32)> {
-        let vertex = |(x, y): (f64, f64)| ScreenVertex {
-            at: Snapped { x: (x * 256.0) as i32, y: (y * 256.0) as i32 },
-            depth: 0.5,
-            inverse_w: 1.0,
+        let vertex = |(x, y): (f64, f64)| {
+            ScreenVertex::new(Snapped { x: (x * 256.0) as i32, y: (y * 256.0) as i32 }, 0.5)
         };
         let line =
             ScreenLine { ends: ends.map(vertex), draw: 0, polygon: 0, color: [0; 4], nearer: 0 };

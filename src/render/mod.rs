@@ -5,18 +5,22 @@
 //! ```
 
 mod bins;
+mod clip;
 pub mod coverage;
 pub mod effects;
-mod geometry;
+mod frame;
+mod gather;
 mod light;
 mod lines;
 mod marks;
 mod plan;
 pub mod real;
 mod renderer;
+mod setup;
 mod surface;
 mod texture;
 mod tile;
+mod vertices;
 
 pub use plan::{FramePlan, Skipped};
 pub use renderer::{Hit, Renderer};

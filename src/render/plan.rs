@@ -32,6 +32,8 @@ pub struct FramePlan {
     pub(super) light_at: LightAt,
     /// What textures give between their texels.
     pub(super) filter: Filter,
+    /// `clip_from_view`.
+    pub(super) clip_from_view: DMat4,
     /// Width of lines in pixels: 1 or 2.
     pub(super) line_width: i32,
     /// The lights that shine, in the order of the scene.
@@ -70,10 +72,25 @@ pub(super) struct Draw {
     pub(super) file_normals: bool,
     /// The pipeline of each part; `None` for parts that are not drawn.
     pub(super) part_pipelines: Vec<Option<u32>>,
+    /// The pipeline of all parts, where they share one.
+    pub(super) uniform: Option<u32>,
     /// The polygons that are drawn, where not all are.
     pub(super) polygons: Option<BTreeSet<u32>>,
     pub(super) filled: bool,
     pub(super) lines: Lines,
+}
+
+impl Draw {
+    /// The pipeline of a triangle that is drawn.
+    #[inline(always)]
+    pub(super) fn pipeline_of(&self, triangle: u32) -> u32 {
+        self.uniform.unwrap_or_else(|| {
+            let mesh = &self.model.mesh;
+            let polygon = mesh.triangles()[triangle as usize].polygon;
+            let part = mesh.polygon_parts()[polygon as usize];
+            self.part_pipelines[part as usize].unwrap_or(0)
+        })
+    }
 }
 
 /// What becomes of faces that are turned away.
@@ -107,6 +124,13 @@ pub(super) enum Pipeline {
     Flat(Color),
     /// Texture, tint and vertex colours, and light where it is lit.
     Shaded(Shaded),
+}
+
+impl Pipeline {
+    /// Whether a texture decides where it is drawn.
+    pub(super) const fn is_cutout(&self) -> bool {
+        matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
+    }
 }
 
 /// See [`Pipeline::Shaded`].
@@ -188,6 +212,7 @@ impl FramePlan {
             arithmetic: settings.arithmetic,
             light_at: settings.light,
             filter: settings.filter,
+            clip_from_view: observer.clip_from_view,
             line_width: if view.wide_lines { 2 } else { 1 },
             lamps: Vec::new(),
             draws: Vec::new(),
@@ -433,6 +458,7 @@ impl Planner<'_> {
             normals: self.view.normals,
             file_normals: true,
             part_pipelines: Vec::new(),
+            uniform: None,
             polygons: None,
             filled: self.view.fill == Fill::Filled,
             lines: Lines {
@@ -445,7 +471,10 @@ impl Planner<'_> {
     }
 
     /// Puts a draw into the plan, unless nothing of it can be seen.
-    fn add(&self, plan: &mut FramePlan, name: &str, draw: Draw) {
+    fn add(&self, plan: &mut FramePlan, name: &str, mut draw: Draw) {
+        let first = draw.part_pipelines.first().copied().flatten();
+        let alike = draw.part_pipelines.iter().all(|pipeline| *pipeline == first);
+        draw.uniform = first.filter(|_| alike);
         let linear = DMat3::from_mat4(draw.view_from_object);
         let Some(bounds) = draw.model.mesh.bounds() else {
             return plan.skip(name, "has no vertices");

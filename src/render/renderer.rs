@@ -1,34 +1,29 @@
 //! Runs plans: does, and asks no setting.
 
-use fearless_simd::Level;
+use std::sync::Mutex;
 
-use super::bins::Bins;
+use fearless_simd::Level;
+use rayon::prelude::*;
+
+use super::bins::tiles_of;
 use super::coverage::PixelBox;
-use super::effects::{BATCH, Light as Number};
-use super::geometry::Geometry;
+use super::effects::Light;
+use super::frame::Frame;
 use super::light::Lit;
 use super::plan::FramePlan;
-use super::surface::{Pixel, Shader};
-use super::tile::{self, Seen, Visibility};
+use super::surface::Shader;
+use super::tile::{self, BLOCK_PIXELS, Seen, TILE, TILE_SIDE, Visibility};
 use crate::base::image::{Picture, Size};
 use crate::scene::{Arithmetic, ItemId};
-
-/// Pixels to a side of a block: those of one are coloured together.
-const BLOCK: i32 = 8;
 
 /// Draws pictures, and keeps the memory that this takes from one to the next.
 #[derive(Debug)]
 pub struct Renderer {
     level: Level,
     picture: Picture,
-    geometry: Geometry,
-    bins: Bins,
-    /// What is seen at each pixel of the picture, for picking.
-    words: Vec<u64>,
-    /// Whose the draws of the last plan are.
-    items: Vec<ItemId>,
-    /// The polygon of each triangle on the screen.
-    polygons: Vec<u32>,
+    frame: Frame,
+    /// The plan of the picture, for picking.
+    plan: Option<FramePlan>,
 }
 
 /// What is seen at a pixel.
@@ -52,30 +47,18 @@ impl Renderer {
     /// A renderer that uses instructions of this level. The pictures are the same on every level.
     #[must_use]
     pub fn new(level: Level) -> Self {
-        Self {
-            level,
-            picture: Picture::default(),
-            geometry: Geometry::default(),
-            bins: Bins::default(),
-            words: Vec::new(),
-            items: Vec::new(),
-            polygons: Vec::new(),
-        }
+        Self { level, picture: Picture::default(), frame: Frame::default(), plan: None }
     }
 
     /// Draws what is planned.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
         self.picture.resize(plan.size);
-        self.picture.pixels_mut().fill(plan.background.opaque());
-        self.words.clear();
-        self.words.resize(plan.size.area(), 0);
-        self.geometry.build(plan);
-        self.bins.build(&self.geometry, plan.size, plan.line_width);
+        self.frame.build(self.level, plan);
         match plan.arithmetic {
             Arithmetic::F32 => self.draw::<f32>(plan),
             Arithmetic::F64 => self.draw::<f64>(plan),
         }
-        self.remember(plan);
+        self.plan = Some(plan.clone());
         &self.picture
     }
 
@@ -85,123 +68,120 @@ impl Renderer {
         &self.picture
     }
 
-    /// How many triangles of the last picture faced the observer inside the view.
+    /// How many triangles the last picture was made of.
     #[must_use]
-    pub const fn triangles_drawn(&self) -> usize {
-        self.geometry.triangles.len()
+    pub fn triangles_drawn(&self) -> usize {
+        self.frame.triangles()
     }
 
     /// What the last picture shows in column `x` of row `y`; `None` for the background.
     #[must_use]
     pub fn hit(&self, x: usize, y: usize) -> Option<Hit> {
+        let plan = self.plan.as_ref()?;
         let Size { width, height } = self.picture.size();
         if x >= width || y >= height {
             return None;
         }
-        let word = self.words[y * width + x];
+        let [x, y] = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
+        let [columns, _] = tiles_of(plan.size);
+        let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
+        let mut visibility = Visibility::default();
+        visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
+        let word = visibility.word(x, y);
         let depth = tile::depth(word);
         let (draw, polygon) = match tile::seen(word) {
             Seen::Background => return None,
             Seen::Triangle(number) => {
-                let triangle = &self.geometry.triangles[number as usize];
-                (triangle.draw, self.polygons[number as usize])
+                let (draw, start) = self.frame.draw_of(number);
+                let mesh = &plan.draws[draw as usize].model.mesh;
+                (draw, mesh.triangles()[(number - start.number) as usize].polygon)
             }
             Seen::Line(number) => {
-                let line = &self.geometry.lines[number as usize];
+                let line = &self.frame.lines[number as usize];
                 (line.draw, line.polygon)
             }
         };
-        Some(Hit { item: self.items[draw as usize], polygon, depth })
+        Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
-    fn draw<T: Number>(&mut self, plan: &FramePlan) {
-        let lit = Lit::<T>::new(plan, &self.geometry, self.level);
-        let mut shader = Shader::new(plan, &self.geometry, &lit, self.level);
-        let mut visibility = Box::new(Visibility::new());
-        for (bounds, bin) in self.bins.tiles(plan.size) {
-            if bin.triangles.is_empty() && bin.lines.is_empty() {
+    /// Draws the tiles, each thread its own; a band of rows is locked only while a tile is copied.
+    fn draw<T: Light>(&mut self, plan: &FramePlan) {
+        let lit = Lit::<T>::new(plan, self.level);
+        let [columns, rows] = tiles_of(plan.size);
+        let (level, frame) = (self.level, &self.frame);
+        let bands = self.picture.pixels_mut().chunks_mut(plan.size.width * TILE_SIDE);
+        let bands: Vec<Mutex<&mut [[u8; 4]]>> = bands.map(Mutex::new).collect();
+        let tiles = usize::try_from(columns * rows).expect("not negative");
+        (0..tiles).into_par_iter().with_max_len(1).for_each_init(
+            || Painter::<T>::new(plan, frame, &lit, level),
+            |painter, tile| {
+                let bounds = bounds_of(tile, plan.size);
+                painter.paint(tile, bounds);
+                let band = &bands[usize::try_from(bounds.top / TILE).expect("not negative")];
+                let mut band = band.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                painter.copy(&mut band, bounds, plan.size.width);
+            },
+        );
+    }
+}
+
+/// The pixels of a tile; tiles are counted along rows.
+fn bounds_of(tile: usize, size: Size) -> PixelBox {
+    let [columns, _] = tiles_of(size);
+    let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
+    let (left, top) = (tile % columns * TILE, tile / columns * TILE);
+    let [right, bottom] = [size.width, size.height]
+        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+    let picture = PixelBox { left: 0, top: 0, right, bottom };
+    PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
+}
+
+/// Draws one tile after another.
+#[derive(Debug)]
+struct Painter<'a, T> {
+    plan: &'a FramePlan,
+    frame: &'a Frame,
+    level: Level,
+    shader: Shader<'a, T>,
+    visibility: Visibility,
+    pixels: Box<[[u8; 4]; TILE_SIDE * TILE_SIDE]>,
+}
+
+impl<'a, T: Light> Painter<'a, T> {
+    fn new(plan: &'a FramePlan, frame: &'a Frame, lit: &'a Lit<T>, level: Level) -> Self {
+        Self {
+            plan,
+            frame,
+            level,
+            shader: Shader::new(plan, frame, lit, level),
+            visibility: Visibility::default(),
+            pixels: Box::new([[0; 4]; TILE_SIDE * TILE_SIDE]),
+        }
+    }
+
+    fn paint(&mut self, tile: usize, bounds: PixelBox) {
+        self.pixels.fill(self.plan.background.opaque());
+        if self.frame.is_empty(tile) {
+            return;
+        }
+        self.visibility.draw(self.level, self.plan, self.frame, (tile, bounds));
+        for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {
+            let (words, corner) = self.visibility.block(block);
+            if words.iter().fold(0, |all, word| all | word) == 0 {
                 continue;
             }
-            visibility.draw(plan, &self.geometry, bounds, bin);
-            let mut target = Target {
-                width: plan.size.width,
-                pixels: self.picture.pixels_mut(),
-                words: &mut self.words,
-            };
-            for top in (bounds.top..bounds.bottom).step_by(BLOCK as usize) {
-                for left in (bounds.left..bounds.right).step_by(BLOCK as usize) {
-                    let block = PixelBox { left, top, right: left + BLOCK, bottom: top + BLOCK };
-                    let block = block.intersection(bounds);
-                    color_block(&mut shader, &visibility, block, &mut target);
-                }
-            }
+            let [x, y] = [corner[0] - bounds.left, corner[1] - bounds.top]
+                .map(|i| usize::try_from(i).expect("not negative"));
+            self.shader.block(words, corner, &mut self.pixels[..], y * TILE_SIDE + x);
         }
     }
 
-    /// Keeps what picking asks for.
-    fn remember(&mut self, plan: &FramePlan) {
-        self.items.clear();
-        self.items.extend(plan.draws.iter().map(|draw| draw.item));
-        self.polygons.clear();
-        self.polygons.extend(self.geometry.triangles.iter().map(|triangle| {
-            let mesh = &plan.draws[triangle.draw as usize].model.mesh;
-            mesh.triangles()[triangle.triangle as usize].polygon
-        }));
-    }
-}
-
-/// Where pixels go.
-struct Target<'a> {
-    width: usize,
-    pixels: &'a mut [[u8; 4]],
-    words: &'a mut [u64],
-}
-
-impl Target<'_> {
-    fn at(&self, x: i32, y: i32) -> usize {
-        let inside = |i: i32| usize::try_from(i).expect("inside the picture");
-        inside(y) * self.width + inside(x)
-    }
-}
-
-/// Colours the pixels of a block, those of one pipeline together.
-fn color_block<T: Number>(
-    shader: &mut Shader<'_, T>,
-    visibility: &Visibility,
-    block: PixelBox,
-    target: &mut Target<'_>,
-) {
-    let mut waiting: Vec<(u32, Pixel)> = Vec::with_capacity(BATCH);
-    for y in block.top..block.bottom {
-        for x in block.left..block.right {
-            let at = target.at(x, y);
-            target.words[at] = visibility.word(x, y);
-            match visibility.seen(x, y) {
-                Seen::Background => {}
-                Seen::Line(number) => {
-                    target.pixels[at] = shader.geometry.lines[number as usize].color;
-                }
-                Seen::Triangle(number) => {
-                    let triangle = &shader.geometry.triangles[number as usize];
-                    let draw = &shader.plan.draws[triangle.draw as usize];
-                    if triangle.side == super::geometry::Side::Back
-                        && draw.back == super::plan::Back::Red
-                    {
-                        target.pixels[at] = crate::base::color::Color::BACK_FACE.opaque();
-                        continue;
-                    }
-                    waiting.push((triangle.pipeline, Pixel { triangle: number, at: [x, y] }));
-                }
-            }
+    /// Copies the tile into its band of the picture.
+    fn copy(&self, band: &mut [[u8; 4]], bounds: PixelBox, width: usize) {
+        let [left, columns] = [bounds.left, bounds.right - bounds.left]
+            .map(|i| usize::try_from(i).expect("not negative"));
+        for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.chunks_mut(width)) {
+            to[left..left + columns].copy_from_slice(&from[..columns]);
         }
-    }
-    while let Some(&(pipeline, _)) = waiting.first() {
-        let (now, later): (Vec<_>, Vec<_>) = waiting.into_iter().partition(|w| w.0 == pipeline);
-        waiting = later;
-        let pixels: Vec<Pixel> = now.into_iter().map(|(_, pixel)| pixel).collect();
-        shader.shade(&pixels, |[x, y], color| {
-            let at = target.at(x, y);
-            target.pixels[at] = color;
-        });
     }
 }

@@ -1,178 +1,250 @@
-//! The attributes of what is seen: from the place in a triangle to colours.
+//! From what is seen to colours.
 //!
-//! Attributes are interpolated with perspective from the corners of the mesh's own triangle, also
-//! where it was cut: a pixel's weights in a piece are turned into weights in the whole. A value that
-//! all corners share comes out as it went in, bit for bit, since only differences are weighted.
+//! The pixels of a block that show the same draw are gathered into rows, and the rows are computed
+//! with: first where in its triangle each pixel lies, then the attributes there, with perspective,
+//! then light, then bytes. A value that all corners share comes out as it went in, bit for bit, since
+//! only differences are weighted.
+//!
+//! The place of a pixel in space is the point of its ray at its depth, so that the direction to the
+//! observer is exact whatever the triangle.
 //!
 //! Perspective: Heckbert and Moreton, "Interpolation for Polygon Texture Mapping and Shading", 1991.
 
 use fearless_simd::Level;
 use glam::DVec3;
 
-use super::coverage::Triangle;
-use super::effects::{BATCH, Batch, Light as Number};
-use super::geometry::{Geometry, ScreenTriangle, Side};
-use super::light::{Lit, face_normal};
-use super::lines::point_of;
-use super::plan::{Eye, FramePlan, Pipeline, Shaded, Stage};
+use super::clip::{Screen, faces_observer, homogeneous_weights};
+use super::coverage::{Snapped, Triangle, doubled_area};
+use super::effects::{BATCH, Batch, Light, Rows};
+use super::frame::Frame;
+use super::gather::{Corners, Gathered, attributes, gather_light, gather_places, mix};
+use super::light::Lit;
+use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded};
 use super::texture;
+use super::tile::{BLOCK, BLOCK_PIXELS, Seen, TILE_SIDE, seen};
 use crate::base::color::Color;
-use crate::scene::{LightAt, NONE, Normals};
+use crate::scene::{LightAt, NONE};
 
-/// The parts that the corners of the mesh's triangle have in a pixel, with perspective; `edges` are
-/// the edge functions there.
-#[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
-pub(super) fn weights(
-    geometry: &Geometry,
-    triangle: &ScreenTriangle,
-    coverage: &Triangle,
-    edges: [i64; 3],
-) -> DVec3 {
-    let area = coverage.doubled_area() as f64;
-    let linear = DVec3::from_array(edges.map(|edge| edge as f64 / area));
-    let w = DVec3::from_array(triangle.corners.map(|corner| corner.inverse_w));
-    let by_w = linear * w;
-    let weights = by_w / by_w.element_sum();
-    if triangle.cut == NONE {
-        return weights;
-    }
-    let [a, b, c] = geometry.cuts[triangle.cut as usize];
-    a * weights.x + b * weights.y + c * weights.z
-}
-
-/// A pixel of a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pixel {
-    /// The triangle's place in the geometry.
-    pub(super) triangle: u32,
-    /// Column and row.
-    pub(super) at: [i32; 2],
-}
-
-/// Colours pixels of one pipeline, a batch at a time.
+/// Colours pixels. Each thread has its own.
 #[derive(Debug)]
 pub(super) struct Shader<'a, T> {
-    pub(super) plan: &'a FramePlan,
-    pub(super) geometry: &'a Geometry,
-    pub(super) lit: &'a Lit<T>,
-    pub(super) level: Level,
-    batch: Box<Batch<T>>,
-    texels: Box<[[T; 3]; BATCH]>,
+    plan: &'a FramePlan,
+    frame: &'a Frame,
+    lit: &'a Lit<T>,
+    level: Level,
+    rows: Box<RowsOfBlock<T>>,
 }
 
-impl<'a, T: Number> Shader<'a, T> {
+/// What is computed for the pixels of a block.
+#[derive(Debug)]
+struct RowsOfBlock<T> {
+    gathered: Gathered<T>,
+    batch: Batch<T>,
+    texels: Rows<T>,
+    colors: [[u8; 4]; BATCH],
+}
+
+/// The pixels of a block that are coloured together.
+struct Group<'a> {
+    draw: &'a Draw,
+    draw_index: u32,
+    base: u32,
+    /// Places in the block.
+    pixels: &'a [u8],
+    numbers: &'a [u32; BLOCK_PIXELS],
+    corner: [i32; 2],
+}
+
+impl<'a, T: Light> Shader<'a, T> {
     pub(super) fn new(
         plan: &'a FramePlan,
-        geometry: &'a Geometry,
+        frame: &'a Frame,
         lit: &'a Lit<T>,
         level: Level,
     ) -> Self {
-        let texels = Box::new([[T::default(); 3]; BATCH]);
-        Self { plan, geometry, lit, level, batch: Box::default(), texels }
+        let rows = RowsOfBlock {
+            gathered: Gathered::default(),
+            batch: Batch::default(),
+            texels: [[T::default(); BATCH]; 3],
+            colors: [[0; 4]; BATCH],
+        };
+        Self { plan, frame, lit, level, rows: Box::new(rows) }
     }
 
-    /// Gives the colour of each of at most [`BATCH`] pixels, all of the same pipeline.
-    pub(super) fn shade(&mut self, pixels: &[Pixel], mut give: impl FnMut([i32; 2], [u8; 4])) {
-        let first = &self.geometry.triangles[pixels[0].triangle as usize];
-        match &self.plan.pipelines[first.pipeline as usize] {
-            Pipeline::Flat(color) => pixels.iter().for_each(|p| give(p.at, color.opaque())),
+    /// Colours the pixels of a block whose upper left pixel is `corner` into the rows of a tile, from
+    /// `at` on. What shows the background is left as it is.
+    pub(super) fn block(
+        &mut self,
+        words: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+        tile: &mut [[u8; 4]],
+        at: usize,
+    ) {
+        let mut numbers = [0; BLOCK_PIXELS];
+        let mut waiting = 0_u64;
+        let place = |i: usize| at + i / BLOCK as usize * TILE_SIDE + i % BLOCK as usize;
+        for (i, word) in words.iter().enumerate() {
+            match seen(*word) {
+                Seen::Background => {}
+                Seen::Line(number) => {
+                    tile[place(i)] = self.frame.lines[number as usize].color;
+                }
+                Seen::Triangle(number) => {
+                    numbers[i] = number;
+                    waiting |= 1 << i;
+                }
+            }
+        }
+        while waiting != 0 {
+            let first = numbers[waiting.trailing_zeros() as usize];
+            let (draw_index, start) = self.frame.draw_of(first);
+            let draw = &self.plan.draws[draw_index as usize];
+            let pipeline = draw.pipeline_of(first - start.number);
+            let mut pixels = [0; BATCH];
+            let mut count = 0;
+            let mut left = waiting;
+            while left != 0 {
+                let i = left.trailing_zeros();
+                left &= left - 1;
+                let number = numbers[i as usize];
+                let own = (start.number..start.end).contains(&number)
+                    && (draw.uniform.is_some()
+                        || draw.pipeline_of(number - start.number) == pipeline);
+                if own {
+                    pixels[count] = u8::try_from(i).expect("below 64");
+                    count += 1;
+                    waiting &= !(1 << i);
+                }
+            }
+            let base = start.number;
+            let pixels = &pixels[..count];
+            let group = Group { draw, draw_index, base, pixels, numbers: &numbers, corner };
+            self.group(&group, pipeline);
+            for (pixel, color) in pixels.iter().zip(&self.rows.colors) {
+                tile[place(usize::from(*pixel))] = *color;
+            }
+        }
+    }
+
+    fn group(&mut self, group: &Group<'_>, pipeline: u32) {
+        match &self.plan.pipelines[pipeline as usize] {
+            Pipeline::Flat(color) => self.rows.colors.fill(color.opaque()),
             Pipeline::Shaded(shaded) => {
-                self.fill(pixels, shaded);
-                if let (Some(stages), LightAt::Pixel) = (&shaded.light, self.plan.light_at) {
-                    self.light(stages, shaded);
+                self.gather(group, pipeline);
+                let rows = &mut *self.rows;
+                rows.batch.len = group.pixels.len();
+                rows.gathered.locate(self.level);
+                if let Some(stages) = &shaded.light {
+                    self.light(group, stages, shaded);
                 }
-                for (i, pixel) in pixels.iter().enumerate() {
-                    give(pixel.at, self.color(i, shaded.light.is_some()));
+                self.texels(group, shaded);
+                let rows = &mut *self.rows;
+                let lit = shaded.light.is_some();
+                finish(&rows.batch, &rows.texels, lit, &mut rows.colors);
+            }
+        }
+        if group.draw.back == Back::Red {
+            for i in 0..group.pixels.len() {
+                if self.rows.gathered.back[i] {
+                    self.rows.colors[i] = Color::BACK_FACE.opaque();
                 }
             }
         }
     }
 
-    /// Adds up light at every place of the batch.
-    fn light(&mut self, stages: &[Stage], shaded: &Shaded) {
-        run(stages, shaded, self.plan, self.level, &mut self.batch);
-    }
-
-    /// Writes the attributes of pixels into the batch.
-    fn fill(&mut self, pixels: &[Pixel], shaded: &Shaded) {
-        self.batch.len = pixels.len();
-        for row in self.batch.diffuse.iter_mut().chain(&mut self.batch.specular) {
-            row.fill(T::default());
-        }
-        for (i, pixel) in pixels.iter().enumerate() {
-            let triangle = &self.geometry.triangles[pixel.triangle as usize];
-            let corners = triangle.corners.map(|corner| corner.at);
-            let coverage = Triangle::new(corners).expect("what is seen has area");
-            let [x, y] = pixel.at;
-            let edges = coverage.edges_at(x, y);
-            let weights = weights(self.geometry, triangle, &coverage, edges);
-            self.texels[i] = texel(self.plan, triangle, shaded, weights);
-            if shaded.light.is_none() {
-                continue;
+    /// Light at the pixels of the group.
+    fn light(&mut self, group: &Group<'_>, stages: &[super::plan::Stage], shaded: &Shaded) {
+        let rows = &mut *self.rows;
+        match self.plan.light_at {
+            LightAt::Pixel => {
+                attributes(self.level, self.plan, group.draw, &rows.gathered, &mut rows.batch);
+                for row in rows.batch.diffuse.iter_mut().chain(&mut rows.batch.specular) {
+                    row.fill(T::default());
+                }
+                run(stages, shaded, self.plan, self.level, &mut rows.batch);
             }
-            match self.plan.light_at {
-                LightAt::Pixel => self.fill_place(i, triangle, weights),
-                LightAt::Face | LightAt::Vertex => self.fill_light(i, triangle, weights),
+            LightAt::Face | LightAt::Vertex => {
+                mix(self.level, &rows.gathered, &mut rows.batch);
             }
         }
     }
 
-    /// Place, normal and direction to the observer, for light per pixel.
-    fn fill_place(&mut self, i: usize, triangle: &ScreenTriangle, weights: DVec3) {
-        let draw = &self.plan.draws[triangle.draw as usize];
-        let mesh = &draw.model.mesh;
-        let base = self.geometry.bases[triangle.draw as usize];
-        let own = mesh.triangles()[triangle.triangle as usize];
-        let corners = own.corners.map(|corner| mesh.corners()[corner as usize]);
-        let places =
-            corners.map(|corner| self.geometry.positions[base.position + corner.position as usize]);
-        let position = interpolate(places, weights);
-        let normal = match draw.normals {
-            Normals::Vertex => {
-                let normals = corners.map(|corner| {
-                    self.geometry.normals[base.point + point_of(draw, &corner) as usize]
-                });
-                interpolate(normals, weights)
+    /// Takes what is known of the triangles at the pixels of the group.
+    fn gather(&mut self, group: &Group<'_>, pipeline: u32) {
+        let (plan, frame, lit) = (self.plan, self.frame, self.lit);
+        let vertices = frame.vertices_of(plan, group.draw_index);
+        let rows = &mut self.rows.gathered;
+        rows.len = group.pixels.len();
+        rows.exact = 0;
+        let mut last = NONE;
+        let mut corners = Corners::default();
+        for (i, pixel) in group.pixels.iter().enumerate() {
+            let number = group.numbers[usize::from(*pixel)] - group.base;
+            if number != last {
+                last = number;
+                corners = Corners::new(plan, group.draw, vertices, number);
+                match plan.light_at {
+                    LightAt::Pixel => gather_places(group.draw, number, &mut corners),
+                    _ => gather_light(
+                        plan,
+                        lit,
+                        (group.draw_index, group.draw),
+                        number,
+                        pipeline,
+                        &mut corners,
+                    ),
+                }
             }
-            Normals::Face => face_normal(draw, own.polygon),
-        };
-        let normal = if triangle.side == Side::Back { -normal } else { normal };
-        self.batch.put(i, position, normal, self.plan.eye);
+            let [left, top] = group.corner;
+            let (x, y) = (left + i32::from(pixel % 8), top + i32::from(pixel / 8));
+            rows.put(i, [x, y], &corners, plan, group.draw, number);
+        }
     }
 
-    /// Light that was evaluated elsewhere.
-    fn fill_light(&mut self, i: usize, triangle: &ScreenTriangle, weights: DVec3) {
-        let draw = &self.plan.draws[triangle.draw as usize];
-        let own = draw.model.mesh.triangles()[triangle.triangle as usize];
-        let light = match self.plan.light_at {
-            LightAt::Face => self.lit.of_polygon(triangle.draw, own.polygon, triangle.side),
-            _ => {
-                let at = own.corners.map(|c| self.lit.of_corner(triangle.draw, c, triangle.side));
-                mix(at, weights)
+    /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
+    fn texels(&mut self, group: &Group<'_>, shaded: &Shaded) {
+        let rows = &mut *self.rows;
+        for (row, tint) in rows.texels.iter_mut().zip(shaded.tint) {
+            row.fill(T::from_f64(tint));
+        }
+        if shaded.texture.is_none() && !shaded.vertex_colors {
+            return;
+        }
+        for (i, pixel) in group.pixels.iter().enumerate() {
+            let number = group.numbers[usize::from(*pixel)] - group.base;
+            let weights = rows.gathered.weights(i);
+            if let Some(texture) = &shaded.texture
+                && let Some(uv) = uv(group.draw, number, weights)
+            {
+                let texel = texture::sample::<T>(texture, uv, self.plan.filter);
+                for (row, part) in rows.texels.iter_mut().zip(texel) {
+                    row[i] = row[i] * part;
+                }
             }
-        };
+            if shaded.vertex_colors {
+                for (row, part) in rows.texels.iter_mut().zip(color(group.draw, number, weights)) {
+                    row[i] = row[i] * T::from_f64(part);
+                }
+            }
+        }
+    }
+}
+
+/// I = t D + S where lit, t elsewhere; as bytes.
+fn finish<T: Light>(batch: &Batch<T>, texels: &Rows<T>, lit: bool, colors: &mut [[u8; 4]; BATCH]) {
+    for (i, color) in colors.iter_mut().enumerate().take(batch.len) {
         for axis in 0..3 {
-            self.batch.diffuse[axis][i] = light[0][axis];
-            self.batch.specular[axis][i] = light[1][axis];
-        }
-    }
-
-    /// I = t D + S where lit, t elsewhere.
-    fn color(&self, i: usize, lit: bool) -> [u8; 4] {
-        let mut color = Color::BLACK.opaque();
-        for axis in 0..3 {
-            let t = self.texels[i][axis];
-            let diffuse = self.batch.diffuse[axis][i];
-            let light = if lit { t * diffuse + self.batch.specular[axis][i] } else { t };
+            let t = texels[axis][i];
+            let light = if lit { t * batch.diffuse[axis][i] + batch.specular[axis][i] } else { t };
             color[axis] = light.byte();
         }
-        color
+        color[3] = 255;
     }
 }
 
 /// Adds up the light of some stages at every place of a batch.
-pub(super) fn run<T: Number>(
-    stages: &[Stage],
+pub(super) fn run<T: Light>(
+    stages: &[super::plan::Stage],
     shaded: &Shaded,
     plan: &FramePlan,
     level: Level,
@@ -184,45 +256,10 @@ pub(super) fn run<T: Number>(
     }
 }
 
-impl<T: Number> Batch<T> {
-    /// Writes one place into the batch: its position and its normal (of any length) in view space.
-    pub(super) fn put(&mut self, i: usize, position: DVec3, normal: DVec3, eye: Eye) {
-        let unit = |v: DVec3| crate::base::math::unit(v).unwrap_or(DVec3::ZERO);
-        let to_eye = match eye {
-            Eye::Point => unit(-position),
-            Eye::Parallel => DVec3::Z,
-        };
-        let normal = unit(normal);
-        for axis in 0..3 {
-            self.position[axis][i] = T::from_f64(position[axis]);
-            self.normal[axis][i] = T::from_f64(normal[axis]);
-            self.to_eye[axis][i] = T::from_f64(to_eye[axis]);
-        }
-    }
-}
-
-/// A value between those of three corners; exactly theirs where they are equal.
-fn interpolate([a, b, c]: [DVec3; 3], weights: DVec3) -> DVec3 {
-    a + (b - a) * weights.y + (c - a) * weights.z
-}
-
-/// The same for light.
-fn mix<T: Number>([a, b, c]: [[[T; 3]; 2]; 3], weights: DVec3) -> [[T; 3]; 2] {
-    let (v, w) = (T::from_f64(weights.y), T::from_f64(weights.z));
-    let mut light = a;
-    for kind in 0..2 {
-        for axis in 0..3 {
-            let [a, b, c] = [a, b, c].map(|corner| corner[kind][axis]);
-            light[kind][axis] = a + (b - a) * v + (c - a) * w;
-        }
-    }
-    light
-}
-
 /// The place on the texture; `None` where a corner has none.
-fn uv(plan: &FramePlan, triangle: &ScreenTriangle, weights: DVec3) -> Option<[f64; 2]> {
-    let mesh = &plan.draws[triangle.draw as usize].model.mesh;
-    let own = mesh.triangles()[triangle.triangle as usize];
+fn uv(draw: &Draw, number: u32, weights: DVec3) -> Option<[f64; 2]> {
+    let mesh = &draw.model.mesh;
+    let own = mesh.triangles()[number as usize];
     let ids = own.corners.map(|corner| mesh.corners()[corner as usize].uv);
     if ids.contains(&NONE) {
         return None;
@@ -236,40 +273,70 @@ fn uv(plan: &FramePlan, triangle: &ScreenTriangle, weights: DVec3) -> Option<[f6
     Some([between(0), between(1)])
 }
 
-/// The texture's alpha at a pixel, 1 where it has no texture there.
-pub(super) fn alpha(
-    plan: &FramePlan,
-    triangle: &ScreenTriangle,
-    shaded: &Shaded,
-    weights: DVec3,
-) -> f64 {
-    let texture = shaded.texture.as_deref();
-    let place = texture.zip(uv(plan, triangle, weights));
-    place.map_or(1.0, |(texture, uv)| texture::sample::<f64>(texture, uv, plan.filter)[3])
+/// The vertex colours' mixture.
+fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
+    let mesh = &draw.model.mesh;
+    let own = mesh.triangles()[number as usize];
+    let [a, b, c] = own.corners.map(|corner| {
+        crate::scene::dvec3(mesh.colors()[mesh.corners()[corner as usize].position as usize])
+    });
+    (a + (b - a) * weights.y + (c - a) * weights.z).to_array()
 }
 
-/// t: texel x tint x vertex colour, each 1 where absent.
-fn texel<T: Number>(
-    plan: &FramePlan,
-    triangle: &ScreenTriangle,
-    shaded: &Shaded,
-    weights: DVec3,
-) -> [T; 3] {
-    let mut t = shaded.tint.map(T::from_f64);
-    let place = shaded.texture.as_deref().zip(uv(plan, triangle, weights));
-    if let Some((texture, uv)) = place {
-        let [r, g, b, _] = texture::sample::<T>(texture, uv, plan.filter);
-        t = [t[0] * r, t[1] * g, t[2] * b];
+/// Whether a triangle with a texture that leaves pixels out is drawn at one of them.
+pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i32; 2]) -> bool {
+    let (index, start) = frame.draw_of(number);
+    let draw = &plan.draws[index as usize];
+    let number = number - start.number;
+    let Pipeline::Shaded(shaded) = &plan.pipelines[draw.pipeline_of(number) as usize] else {
+        return true;
+    };
+    let (Some(opacity), Some(texture)) = (shaded.cutout, &shaded.texture) else { return true };
+    let vertices = frame.vertices_of(plan, index);
+    let corners = Corners::<f64>::new(plan, draw, vertices, number);
+    let weights = corners.weights(plan, draw, number, pixel);
+    let Some(uv) = uv(draw, number, weights) else { return true };
+    texture::sample::<f64>(texture, uv, plan.filter)[3] * opacity >= 0.5
+}
+
+/// The parts of a triangle's corners in a pixel, linear on the screen: from whole numbers.
+#[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+pub(super) fn exact_barycentric(corners: [Snapped; 3], [x, y]: [i32; 2]) -> [f64; 3] {
+    match Triangle::new(corners) {
+        Some(triangle) => {
+            let area = triangle.doubled_area() as f64;
+            triangle.edges_at(x, y).map(|edge| edge as f64 / area)
+        }
+        None => [1.0, 0.0, 0.0],
     }
-    if shaded.vertex_colors {
-        let mesh = &plan.draws[triangle.draw as usize].model.mesh;
-        let own = mesh.triangles()[triangle.triangle as usize];
-        let colors = own.corners.map(|corner| {
-            let vertex = mesh.corners()[corner as usize].position as usize;
-            crate::scene::dvec3(mesh.colors()[vertex])
-        });
-        let color = interpolate(colors, weights).to_array().map(T::from_f64);
-        t = [t[0] * color[0], t[1] * color[1], t[2] * color[2]];
-    }
-    t
+}
+
+/// Whether the observer sees the back of a triangle.
+pub(super) fn shows_back(
+    draw: &Draw,
+    screen: &Screen,
+    number: u32,
+    at: Option<[Snapped; 3]>,
+) -> bool {
+    let front = match at {
+        Some(at) => doubled_area(at) < 0,
+        None => {
+            let order = draw.model.mesh.draw_order();
+            let vertices = order.vertices_of[number as usize];
+            faces_observer(vertices.map(|vertex| screen.clip(order.position(vertex))))
+        }
+    };
+    front == draw.mirrored
+}
+
+/// The parts of a cut triangle's corners in a pixel, with perspective.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+pub(super) fn cut_weights(plan: &FramePlan, draw: &Draw, number: u32, pixel: [i32; 2]) -> DVec3 {
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let order = draw.model.mesh.draw_order();
+    let vertices = order.vertices_of[number as usize];
+    let clip = vertices.map(|vertex| screen.clip(order.position(vertex)));
+    let x = (f64::from(pixel[0]) + 0.5) / plan.size.width as f64 * 2.0 - 1.0;
+    let y = 1.0 - (f64::from(pixel[1]) + 0.5) / plan.size.height as f64 * 2.0;
+    homogeneous_weights(clip, [x, y])
 }

@@ -60,6 +60,14 @@ impl DrawOrder {
         order
     }
 
+    /// Where a vertex is.
+    #[inline(always)]
+    #[must_use]
+    pub fn position(&self, vertex: u32) -> [f64; 3] {
+        let i = vertex as usize;
+        [self.x[i], self.y[i], self.z[i]].map(f64::from)
+    }
+
     fn push(&mut self, [x, y, z]: [f32; 3]) -> u32 {
         self.x.push(x);
         self.y.push(y);

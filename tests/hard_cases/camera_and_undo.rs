@@ -16,8 +16,9 @@ use glam::{DMat3, DVec3};
 use marraztu::base::math::Axis;
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{Gesture, History, Refusal, Stroke, items, look, place, selection};
+use marraztu::io::{self, Progress};
 use marraztu::scene::{
-    Command, Frame, ItemId, ObjectId, Pose, Scene, Subject, Transformation, View,
+    Command, Frame, ItemId, ObjectId, Pose, Scene, Settings, Subject, Transformation, View,
 };
 
 use super::common::three_objects;
@@ -284,4 +285,31 @@ fn case_63_deletion_and_return_and_joined_drags_bring_back_every_stack() {
         history.go_to(&mut scene, usize::MAX);
         assert!(Some(&scene) == seen.last());
     }
+}
+
+#[test]
+fn case_63_a_scene_saved_on_the_way_is_the_one_that_redo_comes_back_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.marraztu");
+    let (mut scene, mut view) = io::default_scene();
+    view.subject = Subject::Object;
+    let settings = Settings::default();
+    let text = |scene: &Scene| io::to_text(&path, scene, &view, &settings).unwrap();
+    let mut history = History::new();
+    for axis in Axis::ALL.into_iter().cycle().take(30) {
+        let command = transform::step(&scene, &view, axis, Sign::Positive, Stroke::First).unwrap();
+        history.perform(&mut scene, command, Gesture::Whole, "Move").unwrap();
+        if history.position() == 20 {
+            io::save(&path, &scene, &view, &settings).unwrap();
+            history.mark_saved();
+        }
+    }
+    history.go_to(&mut scene, 0);
+    history.go_to(&mut scene, 20);
+    assert!(history.is_saved());
+    assert_eq!(text(&scene), std::fs::read_to_string(&path).unwrap());
+    let opened = io::open(&path, &Progress::new()).unwrap().scene;
+    assert_eq!(text(&opened), text(&scene));
+    let depths = opened.objects.iter().map(|(_, object)| object.placement.depth());
+    assert_eq!(depths.sum::<usize>(), 0, "a loaded scene starts with no past");
 }

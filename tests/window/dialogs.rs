@@ -33,16 +33,15 @@ impl Editor {
     /// Presses a key, and says whether the program then leaves.
     fn leaves_by(&mut self, chord: marraztu::app::chord::Chord) -> bool {
         let (key, modifiers, _) = crate::editor::events_of(chord);
-        self.set_modifiers(modifiers);
-        self.key(key, true, modifiers);
-        self.key(key, false, modifiers);
-        self.set_modifiers(egui::Modifiers::NONE);
         let mut leaves = false;
-        // One event a frame.
-        for _ in 0..4 {
+        for pressed in [true, false] {
+            self.set_modifiers(if pressed { modifiers } else { egui::Modifiers::NONE });
+            self.harness.step();
+            self.key(key, pressed, modifiers);
             self.harness.step();
             leaves |= self.leaves();
         }
+        self.settle();
         leaves
     }
 
@@ -196,7 +195,7 @@ fn what_was_mended_is_told_and_listed_on_a_click() {
     editor.wait_until(|editor| editor.shows("Material of mended.obj"));
     editor.click_label("Load");
     editor.click_label("Details");
-    assert!(editor.shows("which"), "a sentence for each finding");
+    assert!(editor.shows("that the file does not have"), "a sentence for each finding");
     editor.click_label("Close");
     editor.click_label("Dismiss");
     assert!(editor.state().notices.is_empty());
@@ -227,4 +226,84 @@ fn the_picture_is_saved_as_it_is_shown() {
     let size = editor.state().statistics.size;
     assert_eq!((saved.width() as usize, saved.height() as usize), (size.width, size.height));
     assert_eq!(saved.get_pixel(0, 0).0, [0, 0, 179]);
+}
+
+#[test]
+fn a_scene_is_saved_and_opened_again_and_a_lost_model_is_asked_for() {
+    let (folder, path) = folder_with("cube.obj", CUBE);
+    let file = folder.path().join("my.marraztu");
+    let mut editor = Editor::new();
+    editor.ask(Ask::LoadFiles(vec![path.clone()]));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.click_label("Load");
+    assert!(!editor.state().history.is_saved());
+    editor.press(Command(Key::S));
+    // The ending is added.
+    editor.type_path(&folder.path().join("my"));
+    editor.wait_until(|_| file.is_file());
+    assert!(editor.state().history.is_saved());
+    assert_eq!(editor.state().path.as_deref(), Some(&*file));
+
+    editor.press(Lower(Key::Z));
+    editor.press(Command(Key::S));
+    assert!(editor.state().history.is_saved(), "the second time nothing is asked");
+    let saved = editor.scene();
+
+    let elsewhere = tempfile::tempdir().unwrap();
+    let moved = elsewhere.path().join("cube.obj");
+    std::fs::rename(&path, &moved).unwrap();
+    let mut other = Editor::new();
+    let first = other.scene();
+    other.ask(Ask::LoadFiles(vec![file.clone()]));
+    other.wait_until(|editor| editor.shows("Where is the missing model?"));
+    other.press(Named(Key::Escape));
+    assert!(other.shows("The scene was not opened"));
+    assert!(other.scene() == first);
+    other.click_label("Close");
+    other.ask(Ask::LoadFiles(vec![file]));
+    other.wait_until(|editor| editor.shows("Where is the missing model?"));
+    other.type_path(&moved);
+    other.wait_until(|editor| editor.scene().objects.len() == saved.objects.len());
+    let pose = |editor: &Editor| *editor.scene().selected_camera(&editor.view()).pose.now();
+    assert_eq!(pose(&other), pose(&editor));
+    assert!(other.state().history.is_saved());
+    assert_eq!(other.steps(), 0);
+}
+
+#[test]
+fn save_in_the_question_saves_and_then_leaves() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("work.marraztu");
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    assert!(!editor.leaves_by(Command(Key::Q)));
+    editor.click_label("Save");
+    assert!(editor.shows("Save the scene"));
+    editor.type_path(&file);
+    assert!(file.is_file());
+    assert!(editor.leaves_by(Named(Key::Escape)));
+}
+
+#[test]
+fn a_scene_that_cannot_be_saved_is_told_and_stays_unsaved() {
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    editor.press(Command(Key::S));
+    editor.type_path(Path::new("/proc/nowhere/x.marraztu"));
+    assert!(editor.shows("That did not work"));
+    assert!(!editor.state().history.is_saved());
+}
+
+#[test]
+fn opening_a_scene_over_unsaved_work_asks_first() {
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    for key in [Command(Key::O), Command(Key::N)] {
+        editor.press(key);
+        assert!(editor.shows("Save the scene?"), "{key}");
+        editor.click_label("Cancel");
+    }
+    editor.press(Command(Key::N));
+    editor.click_label("Discard");
+    assert_eq!(editor.steps(), 0);
 }

@@ -23,21 +23,19 @@ impl Editor {
         Self::showing(|ui, app| app.editor_ui(ui))
     }
 
-    /// An editor with a further panel in which every action is a button.
-    pub(crate) fn with_buttons() -> Self {
-        Self::showing(|ui, app| {
+    /// An editor in a small window, whose pictures are soon drawn.
+    pub(crate) fn small() -> Self {
+        Self::sized(egui::vec2(640.0, 240.0), |ui, app| app.editor_ui(ui))
+    }
+
+    /// An editor with a further panel in which these actions are buttons.
+    pub(crate) fn with_buttons(actions: &'static [Action]) -> Self {
+        Self::sized(egui::vec2(640.0, 240.0), move |ui, app| {
             let mut clicked = None;
             egui::Panel::left("buttons").show(ui, |ui| {
-                ui.spacing_mut().item_spacing = Vec2::ZERO;
-                ui.spacing_mut().button_padding = Vec2::ZERO;
-                egui::Grid::new("all").num_columns(3).spacing(Vec2::ZERO).show(ui, |ui| {
-                    for (at, action) in Action::ALL.iter().enumerate() {
-                        clicked = clicked.or(action.button(ui, app.state()));
-                        if at % 3 == 2 {
-                            ui.end_row();
-                        }
-                    }
-                });
+                for action in actions {
+                    clicked = clicked.or(action.button(ui, app.state()));
+                }
             });
             app.editor_ui(ui);
             if let Some(action) = clicked {
@@ -47,10 +45,14 @@ impl Editor {
     }
 
     pub(crate) fn showing(ui: impl FnMut(&mut egui::Ui, &mut App) + 'static) -> Self {
+        Self::sized(egui::vec2(1000.0, 700.0), ui)
+    }
+
+    fn sized(size: egui::Vec2, ui: impl FnMut(&mut egui::Ui, &mut App) + 'static) -> Self {
         let (scene, view) = io::default_scene();
         let mut editor = Self {
             harness: Harness::builder()
-                .with_size(egui::vec2(1000.0, 700.0))
+                .with_size(size)
                 .with_step_dt(1.0 / 60.0)
                 .build_ui_state(ui, App::new(scene, view)),
             modifiers: RefCell::default(),

@@ -2,6 +2,8 @@
 //!
 //! What each file catches is said at its top.
 
+#![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
+
 mod dialogs;
 mod editor;
 mod keys_and_clicks;

@@ -10,6 +10,7 @@ use std::marker::PhantomData;
 
 use fearless_simd::Level;
 
+use super::gather::Locate;
 use super::real::{Kernel, Machine, Number, Real, Triple};
 
 /// Places lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
@@ -328,7 +329,7 @@ fn add<M: Machine>(machine: M, more: Triple<M::R>, rows: &mut Rows<M::Number>, a
 }
 
 /// Numbers that effects are compiled for.
-pub trait Light: Number {
+pub trait Light: Number + Locate {
     /// Adds what an effect reflects at every place of the batch.
     fn add_light(
         variant: &Variant,

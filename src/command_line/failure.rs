@@ -1,0 +1,46 @@
+//! Why a command of the command line fails.
+
+use marraztu::app::StartError;
+use marraztu::edit::Refusal;
+use marraztu::io::{LoadError, SaveError, SceneFileError};
+use marraztu::scene::CommandError;
+
+/// Why a command fails, in one sentence.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    /// The arguments cannot be meant together.
+    #[error(transparent)]
+    Usage(Box<clap::Error>),
+    /// What failed has been said already.
+    #[error("some of it failed")]
+    Told,
+    /// Nothing of that number or key is in the scene.
+    #[error("{0}")]
+    Absent(String),
+    /// A model or a texture.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A scene.
+    #[error(transparent)]
+    Scene(#[from] SceneFileError),
+    /// The picture.
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    /// A change that the scene does not allow.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+    /// Standard output.
+    #[error("standard output: {0}")]
+    Output(std::io::Error),
+    /// The window.
+    #[error(
+        "{0}\nWithout a window, `marraztu render --out picture.png` draws the same pictures to files"
+    )]
+    Start(#[from] StartError),
+}
+
+impl From<CommandError> for Failure {
+    fn from(error: CommandError) -> Self {
+        Self::Refused(error.into())
+    }
+}

@@ -1,0 +1,90 @@
+//! `marraztu info`: what files hold, as plain text.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::path::Path;
+
+use marraztu::io::describe;
+use marraztu::scene::{LoadOptions, Observer, Projection, Scene, View};
+
+use super::arguments::{Info, Reading};
+use super::failure::Failure;
+use super::say;
+use super::stage::{Stage, is_scene, load};
+
+/// Describes each file; one that cannot be read does not keep the others from it.
+pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
+    let options = arguments.reading.options();
+    let mut failed = false;
+    for (i, file) in arguments.files.iter().enumerate() {
+        let described = match description(file, &options) {
+            Ok(described) => described,
+            Err(failure) => {
+                say("error", &failure);
+                failed = true;
+                continue;
+            }
+        };
+        let blank = if i == 0 { "" } else { "\n" };
+        match write!(io::stdout().lock(), "{blank}{described}") {
+            // Whoever read it has had enough, as `head` does.
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+            written => written.map_err(Failure::Output)?,
+        }
+    }
+    if failed { Err(Failure::Told) } else { Ok(()) }
+}
+
+fn description(file: &Path, options: &LoadOptions) -> Result<String, Failure> {
+    if !is_scene(file) {
+        return Ok(describe(&load(file, options)?));
+    }
+    let stage = Stage::of(&[file.to_owned()], &Reading::default())?;
+    let mut text = scene_text(file, &stage.scene, &stage.view);
+    for finding in &stage.findings {
+        // Writing to a text cannot fail.
+        let _ = writeln!(text, "  {finding}");
+    }
+    Ok(text)
+}
+
+/// The objects, cameras and lights of a scene, a line each; an asterisk before what is selected.
+fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
+    let mut lines = vec![format!("{:16}{}", "scene", file.display())];
+    let head = |what: &str, count: usize| format!("{what:16}{count}");
+    let mark = |selected| if selected { '*' } else { ' ' };
+    lines.push(head("objects", scene.objects.len()));
+    for (id, object) in scene.objects.iter() {
+        let mesh = &object.model.mesh;
+        let counts = format!("{} vertices, {} faces", mesh.positions().len(), mesh.polygon_count());
+        let hidden = if object.visible { "" } else { ", not shown" };
+        let mark = mark(view.object == Some(id));
+        lines.push(format!("{mark} {}: {counts}{hidden}", object.name));
+    }
+    lines.push(head("cameras", scene.cameras.len()));
+    for (id, camera) in scene.cameras.iter() {
+        let [x, y, z] = camera.pose.now().eye.to_array();
+        lines.push(format!("{} {}: at ({x}, {y}, {z})", mark(view.camera == id), camera.name));
+    }
+    lines.push(head("lights", scene.lights.len()));
+    for (id, light) in scene.lights.iter() {
+        let [r, g, b] = light.color.0;
+        let on = if light.on { "on" } else { "out" };
+        let mark = mark(view.light == Some(id));
+        let (slot, name) = (light.slot, &light.name);
+        lines.push(format!("{mark} {slot} {name}: {on}, ({r}, {g}, {b})"));
+    }
+    let [r, g, b] = scene.background.0;
+    lines.push(format!("{:16}({r}, {g}, {b})", "background"));
+    let projection = match view.projection {
+        Projection::Perspective => "in perspective",
+        Projection::Orthographic => "in parallel projection",
+    };
+    let observer = match view.observer {
+        Observer::Camera => "the selected camera",
+        Observer::Object => "the selected object",
+    };
+    lines.push(format!("{:16}{observer}, {projection}", "observer"));
+    lines.push(String::new());
+    lines.join("\n")
+}

@@ -1,0 +1,53 @@
+//! From arguments to the editor, a picture or a description, and back with an exit status.
+//!
+//! 0 where all was done, 1 where something failed, 2 where the arguments cannot be meant. What was
+//! asked for goes to standard output, everything said about it to standard error.
+
+mod arguments;
+mod bar;
+mod failure;
+mod info;
+mod render;
+mod stage;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use self::arguments::{Arguments, Headless};
+use self::failure::Failure;
+
+/// Does what the arguments of this process ask for.
+pub(crate) fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(wrong) => return usage(&wrong),
+    };
+    let done = match arguments.command {
+        Some(Headless::Render(arguments)) => render::render(&arguments),
+        Some(Headless::Info(arguments)) => info::info(&arguments),
+        None => marraztu::app::run(arguments.files).map_err(Failure::from),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Usage(wrong)) => usage(&wrong),
+        Err(Failure::Told) => ExitCode::FAILURE,
+        Err(failure) => {
+            say("error", &failure);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Shows clap's message: help and version too come this way, with exit status 0.
+fn usage(wrong: &clap::Error) -> ExitCode {
+    // Nobody is left to be told where this fails.
+    let _ = wrong.print();
+    ExitCode::from(u8::try_from(wrong.exit_code()).unwrap_or(2))
+}
+
+/// A line on standard error, in the form that clap's own errors have.
+fn say(kind: &str, what: &dyn std::fmt::Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{kind}: {what}");
+}

@@ -1,0 +1,117 @@
+//! `marraztu render`: a picture into a file.
+
+use marraztu::edit::{frame, items};
+use marraztu::io;
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
+
+use super::arguments::{Accuracy, Render, Seeing, Slots, Surfaces};
+use super::bar::Bar;
+use super::failure::Failure;
+use super::say;
+use super::stage::Stage;
+
+/// Draws the picture that the arguments describe.
+pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
+    let mut stage = Stage::of(&arguments.files, &arguments.reading)?;
+    for finding in &stage.findings {
+        say("note", finding);
+    }
+    cover(&mut stage, &arguments.surfaces)?;
+    look(&mut stage, &arguments.seeing)?;
+    choose(&mut stage, &arguments.accuracy);
+
+    let bar = Bar::unmeasured("drawing");
+    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.size);
+    let mut renderer = Renderer::default();
+    let picture = renderer.render(&plan);
+    drop(bar);
+    let _bar = Bar::unmeasured(&format!("writing {}", arguments.out.display()));
+    Ok(io::save_picture(&arguments.out, picture)?)
+}
+
+/// Gives all objects the surface that is asked for.
+fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
+    let texture = surfaces.texture.as_deref().map(io::load_texture).transpose()?;
+    let change = |object: &mut Object| {
+        if let Some(material) = &surfaces.material {
+            object.material = material.clone();
+        }
+        if texture.is_some() {
+            object.texture.clone_from(&texture);
+        }
+        object.surface = surfaces.surface.unwrap_or(object.surface);
+        object.file_normals &= !surfaces.no_file_normals;
+    };
+    let ids: Vec<_> = stage.scene.objects.ids().collect();
+    for id in ids {
+        stage.change(items::change_object(&stage.scene, id, change)?)?;
+    }
+    Ok(())
+}
+
+/// Looks at the scene as it is asked for.
+fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
+    if let Some(Slots(slots)) = &seeing.lights {
+        light(stage, slots)?;
+    }
+    if let Some(background) = seeing.background {
+        stage.change(Command::Background(background))?;
+    }
+    let view = &mut stage.view;
+    view.projection = seeing.projection.unwrap_or(view.projection);
+    view.time = seeing.time.unwrap_or(view.time);
+    if seeing.edges {
+        view.fill = Fill::Edges;
+    }
+    view.edges_over_fill |= seeing.edges_over;
+    view.back_faces |= seeing.back_faces;
+    view.face_normals |= seeing.face_normals;
+    view.vertex_normals |= seeing.vertex_normals;
+    view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
+    match seeing.camera {
+        Some(number) => stage.view.camera = camera(stage, number)?,
+        None if stage.models_alone => match frame::all(&stage.scene, &stage.view) {
+            Ok(command) => stage.change(command)?,
+            Err(refusal) => say("note", &refusal),
+        },
+        None => {}
+    }
+    Ok(())
+}
+
+/// Puts the lights in these slots on, and all others out.
+fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(), Failure> {
+    let lights: Vec<_> =
+        stage.scene.lights.iter().map(|(id, light)| (id, light.slot, light.on)).collect();
+    let has = |slot: &u32| lights.iter().any(|(_, other, _)| other == slot);
+    if let Some(empty) = slots.iter().find(|slot| !has(slot)) {
+        return Err(Failure::Absent(format!("the scene has no light in slot {empty}")));
+    }
+    for (id, slot, on) in lights {
+        if on != slots.contains(&slot) {
+            stage.change(items::toggle_shown(&stage.scene, ItemId::Light(id))?)?;
+        }
+    }
+    Ok(())
+}
+
+/// The camera at this place of the list, counted from 1.
+fn camera(stage: &Stage, number: u32) -> Result<CameraId, Failure> {
+    let index = usize::try_from(number).unwrap_or(usize::MAX) - 1;
+    stage.scene.cameras.ids().nth(index).ok_or_else(|| {
+        let count = stage.scene.cameras.len();
+        let cameras = if count == 1 { "camera" } else { "cameras" };
+        Failure::Absent(format!("the scene has {count} {cameras}: there is no camera {number}"))
+    })
+}
+
+/// Draws as exactly as it is asked for.
+fn choose(stage: &mut Stage, accuracy: &Accuracy) {
+    let settings = &mut stage.settings;
+    settings.light = accuracy.shading.unwrap_or(settings.light);
+    settings.arithmetic = accuracy.arithmetic.unwrap_or(settings.arithmetic);
+    settings.filter = accuracy.filter.unwrap_or(settings.filter);
+    settings.specular = accuracy.specular.unwrap_or(settings.specular);
+    stage.view.normals = accuracy.normals.unwrap_or(stage.view.normals);
+}

@@ -1,0 +1,497 @@
+//! What is known of the triangles that pixels show, gathered into rows, and what follows from it.
+//!
+//! Each quantity of each corner has a row, with one number for each pixel of a block, so that sixteen
+//! pixels are computed at once whichever triangles they show.
+
+use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
+use glam::{DMat3, DVec3};
+
+use super::clip::{Screen, ScreenVertex};
+use super::coverage::{SUBPIXELS, Snapped};
+use super::effects::{BATCH, Batch, Light, Rows, load, store};
+use super::light::Lit;
+use super::lines::point_of;
+use super::plan::{Back, Draw, Eye, FramePlan};
+use super::real::{Kernel, Machine, Triple};
+use super::surface::{cut_weights, exact_barycentric, shows_back};
+use crate::scene::{LightAt, Normals};
+
+/// The largest box, in parts of a pixel, whose edge functions fit 31 bits inside.
+const NARROW: i32 = 1 << 14;
+
+/// What is known of one triangle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Corners<T> {
+    at: [Snapped; 3],
+    inverse_w: [T; 3],
+    /// z in view space; in parallel projection only.
+    z: [T; 3],
+    normals: [[T; 3]; 3],
+    /// Diffuse and specular light; where it is not evaluated per pixel.
+    light: [[T; 6]; 3],
+    /// Whether it reaches beyond the planes that triangles are cut by.
+    cut: bool,
+    /// Whether its edge functions fit 31 bits inside.
+    narrow: bool,
+    back: bool,
+}
+
+impl<T: Light> Corners<T> {
+    pub(super) fn new(
+        plan: &FramePlan,
+        draw: &Draw,
+        vertices: &[ScreenVertex],
+        number: u32,
+    ) -> Self {
+        let order = draw.model.mesh.draw_order();
+        let ids = order.vertices_of[number as usize];
+        let own = ids.map(|vertex| vertices[vertex as usize]);
+        let at = own.map(|vertex| vertex.at());
+        let cut = !own.iter().all(ScreenVertex::is_inside);
+        let mut corners = Self { at, cut, ..Self::default() };
+        corners.narrow = !cut && is_narrow(at);
+        if draw.back != Back::Left {
+            let screen = Screen::new(draw.clip_from_object, plan.size);
+            corners.back = shows_back(draw, &screen, number, (!cut).then_some(at));
+        }
+        if T::EXACT {
+            let screen = Screen::new(draw.clip_from_object, plan.size);
+            let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
+            corners.inverse_w = w.map(|w| T::from_f64(1.0 / w));
+        } else {
+            corners.inverse_w = own.map(|vertex| T::from_f64(f64::from(vertex.inverse_w)));
+        }
+        if plan.eye == Eye::Parallel {
+            corners.z = ids.map(|vertex| {
+                let place = DVec3::from_array(order.position(vertex));
+                T::from_f64(draw.view_from_object.transform_point3(place).z)
+            });
+        }
+        corners
+    }
+
+    /// The parts that the corners have in a pixel, with perspective, in f64.
+    pub(super) fn weights(
+        &self,
+        plan: &FramePlan,
+        draw: &Draw,
+        number: u32,
+        pixel: [i32; 2],
+    ) -> DVec3 {
+        if self.cut {
+            return cut_weights(plan, draw, number, pixel);
+        }
+        let linear = DVec3::from_array(exact_barycentric(self.at, pixel));
+        let by_w = linear * DVec3::from_array(self.inverse_w.map(Into::into));
+        by_w / by_w.element_sum()
+    }
+}
+
+#[inline(always)]
+fn is_narrow([a, b, c]: [Snapped; 3]) -> bool {
+    let extent = |a: i32, b: i32, c: i32| a.max(b).max(c) - a.min(b).min(c);
+    extent(a.x, b.x, c.x) <= NARROW && extent(a.y, b.y, c.y) <= NARROW
+}
+
+/// Takes the normals at the corners, in object space.
+#[inline(always)]
+pub(super) fn gather_places<T: Light>(draw: &Draw, number: u32, corners: &mut Corners<T>) {
+    let mesh = &draw.model.mesh;
+    let own = mesh.triangles()[number as usize];
+    let wide = |normal: [f32; 3]| normal.map(|x| T::from_f64(f64::from(x)));
+    corners.normals = match draw.normals {
+        Normals::Face => [wide(mesh.polygon_normals()[own.polygon as usize]); 3],
+        Normals::Vertex => own.corners.map(|corner| {
+            let point = point_of(draw, &mesh.corners()[corner as usize]);
+            wide(mesh.points()[point as usize].normal)
+        }),
+    };
+}
+
+/// Takes light that was evaluated at the triangle's polygon or vertices.
+pub(super) fn gather_light<T: Light>(
+    plan: &FramePlan,
+    lit: &Lit<T>,
+    (index, draw): (u32, &Draw),
+    number: u32,
+    pipeline: u32,
+    corners: &mut Corners<T>,
+) {
+    let own = draw.model.mesh.triangles()[number as usize];
+    let table = lit.table(index, pipeline, corners.back);
+    corners.light = if table.is_empty() {
+        [[T::default(); 6]; 3]
+    } else if plan.light_at == LightAt::Face {
+        [table[own.polygon as usize]; 3]
+    } else {
+        own.corners.map(|corner| {
+            let place = match draw.normals {
+                Normals::Face => corner,
+                Normals::Vertex => point_of(draw, &draw.model.mesh.corners()[corner as usize]),
+            };
+            table[place as usize]
+        })
+    };
+}
+
+/// What is known at the pixels of a block. See the [module](self).
+#[derive(Debug)]
+pub struct Gathered<T> {
+    pub(super) len: usize,
+    /// The corners in parts of a pixel, and the middle of the pixel.
+    x: [[i32; BATCH]; 3],
+    y: [[i32; BATCH]; 3],
+    middle: [[i32; BATCH]; 2],
+    /// Column and row of the pixel's middle.
+    pixel: [[T; BATCH]; 2],
+    inverse_w: Rows<T>,
+    z: Rows<T>,
+    normals: [Rows<T>; 3],
+    light: [[[T; BATCH]; 6]; 3],
+    pub(super) back: [bool; BATCH],
+    /// Bit i: the barycentric coordinates of pixel i are already there.
+    pub(super) exact: u64,
+    /// The second and third barycentric coordinate, linear on the screen.
+    linear: [[T; BATCH]; 2],
+    /// The same with perspective.
+    weights: [[T; BATCH]; 2],
+    /// The distance along the observer's axis.
+    w: [T; BATCH],
+}
+
+impl<T: Light> Default for Gathered<T> {
+    fn default() -> Self {
+        let row = [T::default(); BATCH];
+        Self {
+            len: 0,
+            x: [[0; BATCH]; 3],
+            y: [[0; BATCH]; 3],
+            middle: [[0; BATCH]; 2],
+            pixel: [row; 2],
+            inverse_w: [row; 3],
+            z: [row; 3],
+            normals: [[row; 3]; 3],
+            light: [[row; 6]; 3],
+            back: [false; BATCH],
+            exact: 0,
+            linear: [row; 2],
+            weights: [row; 2],
+            w: row,
+        }
+    }
+}
+
+impl<T: Light> Gathered<T> {
+    /// Writes what pixel `i` of the group shows.
+    #[inline(always)]
+    pub(super) fn put(
+        &mut self,
+        i: usize,
+        at: [i32; 2],
+        corners: &Corners<T>,
+        plan: &FramePlan,
+        draw: &Draw,
+        number: u32,
+    ) {
+        for axis in 0..2 {
+            self.middle[axis][i] = at[axis] * SUBPIXELS + SUBPIXELS / 2;
+            self.pixel[axis][i] = T::from_f64(f64::from(at[axis]) + 0.5);
+        }
+        for corner in 0..3 {
+            self.x[corner][i] = corners.at[corner].x;
+            self.y[corner][i] = corners.at[corner].y;
+            self.inverse_w[corner][i] = corners.inverse_w[corner];
+        }
+        if plan.light_at == LightAt::Pixel {
+            for corner in 0..3 {
+                for axis in 0..3 {
+                    self.normals[corner][axis][i] = corners.normals[corner][axis];
+                }
+            }
+        } else {
+            for corner in 0..3 {
+                for part in 0..6 {
+                    self.light[corner][part][i] = corners.light[corner][part];
+                }
+            }
+        }
+        if plan.eye == Eye::Parallel {
+            for corner in 0..3 {
+                self.z[corner][i] = corners.z[corner];
+            }
+        }
+        self.back[i] = corners.back;
+        if T::EXACT || !corners.narrow {
+            self.put_exact(i, at, corners, plan, draw, number);
+        }
+    }
+
+    /// Writes the place in the triangle of a pixel that the fast way cannot say.
+    #[cold]
+    fn put_exact(
+        &mut self,
+        i: usize,
+        at: [i32; 2],
+        corners: &Corners<T>,
+        plan: &FramePlan,
+        draw: &Draw,
+        number: u32,
+    ) {
+        self.exact |= 1 << i;
+        let linear = if corners.cut {
+            // With one w for all corners, what has perspective already stays as it is.
+            let weights = cut_weights(plan, draw, number, at);
+            let screen = Screen::new(draw.clip_from_object, plan.size);
+            let order = draw.model.mesh.draw_order();
+            let w = order.vertices_of[number as usize]
+                .map(|vertex| screen.clip(order.position(vertex))[3]);
+            let w = weights.dot(DVec3::from_array(w));
+            for row in &mut self.inverse_w {
+                row[i] = T::from_f64(1.0 / w);
+            }
+            weights.to_array()
+        } else {
+            exact_barycentric(corners.at, at)
+        };
+        self.linear[0][i] = T::from_f64(linear[1]);
+        self.linear[1][i] = T::from_f64(linear[2]);
+    }
+
+    /// The parts that the corners have in pixel `i` of the group.
+    pub(super) fn weights(&self, i: usize) -> DVec3 {
+        let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
+        DVec3::new(1.0 - b - c, b, c)
+    }
+
+    /// Finds the barycentric coordinates of every pixel, first linear, then with perspective.
+    pub(super) fn locate(&mut self, level: Level) {
+        T::barycentric(level, self);
+        T::run(level, Perspective(self));
+    }
+}
+
+/// Numbers that attributes are computed in.
+pub trait Locate: Sized {
+    /// Whether barycentric coordinates come from whole numbers and f64 one by one.
+    const EXACT: bool;
+    /// Finds the linear barycentric coordinates that are not there yet.
+    fn barycentric(level: Level, gathered: &mut Gathered<Self>);
+}
+
+impl Locate for f64 {
+    const EXACT: bool = true;
+
+    fn barycentric(_: Level, _: &mut Gathered<Self>) {}
+}
+
+impl Locate for f32 {
+    const EXACT: bool = false;
+
+    fn barycentric(level: Level, gathered: &mut Gathered<Self>) {
+        let linear = gathered.linear;
+        dispatch!(level, simd => barycentric(simd, gathered));
+        let mut exact = gathered.exact;
+        while exact != 0 {
+            let i = exact.trailing_zeros() as usize;
+            exact &= exact - 1;
+            for (row, kept) in gathered.linear.iter_mut().zip(&linear) {
+                row[i] = kept[i];
+            }
+        }
+    }
+}
+
+/// The edge functions are exact in 32 bits, even where products of theirs are not: what overflows is
+/// taken away again.
+#[inline(always)]
+fn barycentric<S: Simd>(simd: S, gathered: &mut Gathered<f32>) {
+    for at in (0..gathered.len).step_by(16) {
+        let load = |row: &[i32; BATCH]| i32x16::from_slice(simd, &row[at..at + 16]);
+        let (x0, x1, x2) = (load(&gathered.x[0]), load(&gathered.x[1]), load(&gathered.x[2]));
+        let (y0, y1, y2) = (load(&gathered.y[0]), load(&gathered.y[1]), load(&gathered.y[2]));
+        let (cx, cy) = (load(&gathered.middle[0]), load(&gathered.middle[1]));
+        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+        let second = (y2 - y0) * (cx - x2) + (x0 - x2) * (cy - y2);
+        let third = (y0 - y1) * (cx - x0) + (x1 - x0) * (cy - y0);
+        let per_area = f32x16::splat(simd, 1.0) / area.to_float::<f32x16<S>>();
+        let second = second.to_float::<f32x16<S>>() * per_area;
+        let third = third.to_float::<f32x16<S>>() * per_area;
+        second.store_slice(&mut gathered.linear[0][at..at + 16]);
+        third.store_slice(&mut gathered.linear[1][at..at + 16]);
+    }
+}
+
+/// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; the sum is one by the pixel's own w.
+struct Perspective<'a, T>(&'a mut Gathered<T>);
+
+impl<T: Light> Kernel<T> for Perspective<'_, T> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self(rows) = self;
+        for at in (0..rows.len).step_by(M::LANES) {
+            let second = machine.load(&rows.linear[0], at);
+            let third = machine.load(&rows.linear[1], at);
+            let Triple([w0, w1, w2]) = load(machine, &rows.inverse_w, at);
+            let w = machine.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
+            machine.store(w, &mut rows.w, at);
+            machine.store(second * w1 * w, &mut rows.weights[0], at);
+            machine.store(third * w2 * w, &mut rows.weights[1], at);
+        }
+    }
+}
+
+/// Place, normal and direction to the observer of every pixel.
+pub(super) fn attributes<T: Light>(
+    level: Level,
+    plan: &FramePlan,
+    draw: &Draw,
+    rows: &Gathered<T>,
+    batch: &mut Batch<T>,
+) {
+    let back = draw.back == Back::Lit;
+    let rays = Rays::new(plan);
+    T::run(level, Attributes { rows, batch, normals: draw.view_from_normal, rays, back });
+}
+
+/// From a pixel to the way on which its surface lies: x = (column a + b), y = (row c + d), each times
+/// w in perspective, where -w is z.
+#[derive(Clone, Copy, Debug)]
+struct Rays {
+    parallel: bool,
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Rays {
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn new(plan: &FramePlan) -> Self {
+        let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
+        let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+        Self {
+            parallel: plan.eye == Eye::Parallel,
+            x: [2.0 / width / px, -1.0 / px],
+            y: [-2.0 / height / py, 1.0 / py],
+        }
+    }
+}
+
+struct Attributes<'a, T> {
+    rows: &'a Gathered<T>,
+    batch: &'a mut Batch<T>,
+    normals: DMat3,
+    rays: Rays,
+    back: bool,
+}
+
+impl<T: Light> Kernel<T> for Attributes<'_, T> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { rows, batch, normals, rays, back } = self;
+        let lift = |v: DVec3| Triple([v.x, v.y, v.z].map_lift(machine));
+        let (nx, ny, nz) = (lift(normals.x_axis), lift(normals.y_axis), lift(normals.z_axis));
+        for at in (0..rows.len).step_by(M::LANES) {
+            let second = machine.load(&rows.weights[0], at);
+            let third = machine.load(&rows.weights[1], at);
+            let n0 = load(machine, &rows.normals[0], at);
+            let n1 = load(machine, &rows.normals[1], at);
+            let n2 = load(machine, &rows.normals[2], at);
+            let n = n0.plus(n1.minus(n0).times(second)).plus(n2.minus(n0).times(third));
+            let n = nx.times(n.0[0]).plus(ny.times(n.0[1])).plus(nz.times(n.0[2])).unit();
+            store(machine, n, &mut batch.normal, at);
+
+            let x = machine.load(&rows.pixel[0], at) * machine.lift(rays.x[0])
+                + machine.lift(rays.x[1]);
+            let y = machine.load(&rows.pixel[1], at) * machine.lift(rays.y[0])
+                + machine.lift(rays.y[1]);
+            if rays.parallel {
+                let Triple([z0, z1, z2]) = load(machine, &rows.z, at);
+                let z = z0 + (z1 - z0) * second + (z2 - z0) * third;
+                store(machine, Triple([x, y, z]), &mut batch.position, at);
+                let to_eye = Triple::lift(z, [0.0, 0.0, 1.0]);
+                store(machine, to_eye, &mut batch.to_eye, at);
+            } else {
+                let w = machine.load(&rows.w, at);
+                let one = machine.lift(1.0);
+                store(machine, Triple([x * w, y * w, -w]), &mut batch.position, at);
+                store(machine, Triple([-x, -y, one]).unit(), &mut batch.to_eye, at);
+            }
+        }
+        if back {
+            turn_backs(rows, batch);
+        }
+    }
+}
+
+/// A back that is lit has its normal turned.
+#[inline(always)]
+fn turn_backs<T: Light>(rows: &Gathered<T>, batch: &mut Batch<T>) {
+    for i in (0..rows.len).filter(|i| rows.back[*i]) {
+        for row in &mut batch.normal {
+            row[i] = -row[i];
+        }
+    }
+}
+
+/// Constants of a machine; an own `map`, since the array's is not always compiled into its place.
+trait MapLift {
+    fn map_lift<M: Machine>(self, machine: M) -> [M::R; 3];
+}
+
+impl MapLift for [f64; 3] {
+    #[inline(always)]
+    fn map_lift<M: Machine>(self, machine: M) -> [M::R; 3] {
+        [machine.lift(self[0]), machine.lift(self[1]), machine.lift(self[2])]
+    }
+}
+
+/// Light of the corners mixed at every pixel.
+pub(super) fn mix<T: Light>(level: Level, rows: &Gathered<T>, batch: &mut Batch<T>) {
+    T::run(level, Mix { rows, batch });
+}
+
+struct Mix<'a, T> {
+    rows: &'a Gathered<T>,
+    batch: &'a mut Batch<T>,
+}
+
+impl<T: Light> Kernel<T> for Mix<'_, T> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { rows, batch } = self;
+        for at in (0..rows.len).step_by(M::LANES) {
+            let second = machine.load(&rows.weights[0], at);
+            let third = machine.load(&rows.weights[1], at);
+            for part in 0..6 {
+                let [a, b, c] = [0, 1, 2].load_part(machine, &rows.light, part, at);
+                let value = a + (b - a) * second + (c - a) * third;
+                let to = if part < 3 { &mut batch.diffuse } else { &mut batch.specular };
+                machine.store(value, &mut to[part % 3], at);
+            }
+        }
+    }
+}
+
+/// One part of the light of three corners; again an own `map`.
+trait LoadPart {
+    fn load_part<M: Machine>(
+        self,
+        machine: M,
+        rows: &[[[M::Number; BATCH]; 6]; 3],
+        part: usize,
+        at: usize,
+    ) -> [M::R; 3];
+}
+
+impl LoadPart for [usize; 3] {
+    #[inline(always)]
+    fn load_part<M: Machine>(
+        self,
+        machine: M,
+        rows: &[[[M::Number; BATCH]; 6]; 3],
+        part: usize,
+        at: usize,
+    ) -> [M::R; 3] {
+        let load = |i: usize| machine.load(&rows[i][part], at);
+        [load(self[0]), load(self[1]), load(self[2])]
+    }
+}
