@@ -8,9 +8,10 @@ use crate::app::ask::Ask;
 use crate::app::state::State;
 use crate::app::theme;
 
-const WIDTH: f32 = 560.0;
-const KEYS: f32 = 130.0;
-const NOW: f32 = 44.0;
+const WIDTH: f32 = 700.0;
+const KEYS: f32 = 160.0;
+const LABEL: f32 = 150.0;
+const NOW: f32 = 36.0;
 
 /// Shows it; what is asked for is added to `asks`.
 pub(super) fn show(ui: &Ui, state: &State, asks: &mut Vec<Ask>) {
@@ -33,11 +34,18 @@ fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let mut wanted: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let field = egui::TextEdit::singleline(&mut wanted)
         .hint_text("Search: an action, a key")
+        .vertical_align(egui::Align::Center)
+        .min_size(vec2(0.0, theme::ROW))
         .desired_width(f32::INFINITY);
     let response = ui.add(field).accessible_name("Search among the keys");
-    let just_opened =
-        ui.data(|data| data.get_temp::<u64>(id).unwrap_or(0)) + 1 < ui.ctx().cumulative_pass_nr();
-    ui.data_mut(|data| data.insert_temp(id, ui.ctx().cumulative_pass_nr()));
+    // It was not shown in the pass before this one.
+    let pass = ui.ctx().cumulative_pass_nr();
+    let last = ui.data_mut(|data| {
+        let last = data.get_temp::<u64>(id);
+        data.insert_temp(id, pass);
+        last
+    });
+    let just_opened = last.is_none_or(|last| last + 1 < pass);
     if just_opened {
         response.request_focus();
     }
@@ -112,7 +120,7 @@ fn line(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action) {
         cap(ui, &key);
     }
     let color = controls::text_color(ui, enabled);
-    let label = rect.with_min_x(rect.left() + KEYS).with_max_x(rect.left() + KEYS + 150.0);
+    let label = rect.with_min_x(rect.left() + KEYS).with_max_x(rect.left() + KEYS + LABEL);
     let text = |ui: &Ui, text: &str, width| controls::text(ui, text, TextStyle::Body, width);
     controls::put_text(ui, label, text(ui, look.label, label.width()), color);
     let now = match on {

@@ -1,6 +1,6 @@
 //! The menus, made from the table of actions.
 
-use egui::{MenuBar, ScrollArea, Ui};
+use egui::{Atom, IdSalt, MenuBar, ScrollArea, Ui, vec2};
 
 use crate::app::action::{Action, Group};
 use crate::app::ask::Ask;
@@ -20,20 +20,20 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         menu(ui, "Edit", |ui| {
             group_ui(ui, state, asks, Group::Edit);
             ui.separator();
-            ui.menu_button("History", |ui| history_ui(ui, state, asks));
-            ui.menu_button("Select", |ui| group_ui(ui, state, asks, Group::Select));
-            ui.menu_button("Transform", |ui| group_ui(ui, state, asks, Group::Transform));
+            submenu(ui, "History", |ui| history_ui(ui, state, asks));
+            submenu(ui, "Select", |ui| group_ui(ui, state, asks, Group::Select));
+            submenu(ui, "Transform", |ui| group_ui(ui, state, asks, Group::Transform));
         });
         menu(ui, "Add", |ui| group_ui(ui, state, asks, Group::Add));
         menu(ui, "View", |ui| {
             group_ui(ui, state, asks, Group::Show);
             ui.separator();
-            ui.menu_button("Camera", |ui| group_ui(ui, state, asks, Group::Camera));
-            ui.menu_button("Light", |ui| group_ui(ui, state, asks, Group::Light));
+            submenu(ui, "Camera", |ui| group_ui(ui, state, asks, Group::Camera));
+            submenu(ui, "Light", |ui| group_ui(ui, state, asks, Group::Light));
             ui.separator();
             let own = |action: &Action| !THEMES.contains(action) && !HELP.contains(action);
             items(ui, state, asks, Group::Window.actions().filter(own));
-            ui.menu_button("Theme", |ui| items(ui, state, asks, THEMES));
+            submenu(ui, "Theme", |ui| items(ui, state, asks, THEMES));
         });
         menu(ui, "Help", |ui| items(ui, state, asks, HELP));
     });
@@ -41,6 +41,15 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
 
 fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     ui.menu_button(name, |ui| {
+        ui.set_min_width(200.0);
+        add(ui);
+    });
+}
+
+/// A menu in a menu; its name stands where those of actions stand, behind the column of ticks.
+fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
+    let ticks = Atom::custom(IdSalt::new("tick"), vec2(12.0, 12.0));
+    ui.menu_button((ticks, name), |ui| {
         ui.set_min_width(200.0);
         add(ui);
     });

@@ -28,6 +28,8 @@ const WIDE: f32 = 1200.0;
 pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let wide = ui.available_width() >= WIDE;
     let (left, right) = if wide { (228.0, 280.0) } else { (204.0, 256.0) };
+    let most = |part: f32, least: f32| (ui.available_width() * part).max(least);
+    let (most_left, most_right) = (most(0.25, 200.0), most(0.3, 250.0));
     let fill = ui.visuals().panel_fill;
     let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
     let side = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 4));
@@ -36,7 +38,7 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     // A new name is typed in the outline.
     let outline = state.shown.outline || state.renaming.is_some();
     if outline || state.shown.view {
-        Panel::left("left").frame(side).default_size(left).size_range(170.0..=420.0).show(
+        Panel::left("left").frame(side).default_size(left).size_range(170.0..=most_left).show(
             ui,
             |ui| {
                 left_ui(ui, state, asks, outline);
@@ -47,7 +49,7 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         Panel::right("properties")
             .frame(side)
             .default_size(right)
-            .size_range(220.0..=480.0)
+            .size_range(220.0..=most_right)
             .show(ui, |ui| properties::show(ui, state, asks));
     }
     if state.shown.cheat_sheet {
@@ -67,7 +69,7 @@ fn left_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, outline: bool) {
             .frame(Frame::NONE)
             .resizable(true)
             .default_size(height)
-            .min_size(90.0)
+            .size_range(90.0..=(height + 40.0).max(90.0))
             .show(ui, |ui| view_switches::show(ui, state, asks));
     }
     outline::show(ui, state, asks);

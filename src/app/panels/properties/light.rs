@@ -9,6 +9,7 @@ use super::{number_row, steps_ui};
 use crate::app::ask::Ask;
 use crate::app::state::State;
 use crate::app::{gestures, theme};
+use crate::base::color;
 use crate::edit::{Gesture, items, lights, motion, place};
 use crate::scene::{
     Aim, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Placed, Scene, SpotOwner,
@@ -222,12 +223,21 @@ impl Shown<'_> {
 /// One channel of the colour: a slider and a number.
 fn channel_ui(ui: &mut Ui, name: &str, keys: &str, value: u8) -> Option<(u8, Gesture)> {
     row(ui, name, |ui| {
+        const FIELD: f32 = 46.0;
         let mut to = value;
-        ui.spacing_mut().slider_width = ui.available_width() - 46.0 - theme::GAP;
-        ui.spacing_mut().interact_size.x = 46.0;
-        let response = ui.add(Slider::new(&mut to, 0..=255)).accessible_name(name);
-        let response = response.on_hover_text(format!("0 to 255; keys {keys}"));
-        (to != value).then(|| (to, gestures::of(&response)))
+        let hint = format!("0 to 255; keys {keys}");
+        let slid = ui.scope(|ui| {
+            ui.spacing_mut().slider_width = ui.available_width() - FIELD - theme::GAP;
+            // The handle's size follows the height.
+            ui.spacing_mut().interact_size.y = 15.0;
+            ui.add(Slider::new(&mut to, 0..=255).show_value(false))
+        });
+        let response = slid.inner.accessible_name(name).on_hover_text(&hint);
+        let slid = (to != value).then(|| (to, gestures::of(&response)));
+        let number = Number::new(format!("{name} as a number"), &hint);
+        let number = number.range(0.0..=255.0).speed(0.5).whole();
+        let typed = number.ui(ui, FIELD, f64::from(value));
+        slid.or(typed.map(|(to, gesture)| (color::byte(to / 255.0), gesture)))
     })
 }
 
