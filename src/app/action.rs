@@ -4,7 +4,7 @@
 //! none of them changes anything. What an action means for a scene stands in one place too, and
 //! whether it can be done now is asked there.
 
-use egui::Key;
+use egui::{Key, ThemePreference};
 
 use super::chord::Chord::{self, Command, CommandShift, Either, Lower, Named, Text, Upper};
 use super::state::State;
@@ -210,6 +210,9 @@ actions! {
     ToggleProperties Window ONCE [] "Properties" "Shows the properties of the selected item.";
     ToggleViewPanel Window ONCE [] "View switches" "Shows every switch of the view.";
     ToggleStatistics Window ONCE [] "Statistics" "Shows how much is drawn and how long it takes.";
+    ThemeSystem    Window ONCE [] "As the system" "The window is light or dark as the system is.";
+    ThemeLight     Window ONCE [] "Light" "Dark text on light panels.";
+    ThemeDark      Window ONCE [] "Dark" "Light text on dark panels.";
 }
 }
 pub use table::Action;
@@ -261,6 +264,9 @@ impl Action {
             Self::ToggleProperties => shown.properties,
             Self::ToggleViewPanel => shown.view,
             Self::ToggleStatistics => shown.statistics,
+            Self::ThemeSystem => shown.theme == ThemePreference::System,
+            Self::ThemeLight => shown.theme == ThemePreference::Light,
+            Self::ThemeDark => shown.theme == ThemePreference::Dark,
             _ => light(self.slot()?),
         })
     }

@@ -2,10 +2,11 @@
 //!
 //! Each tells by its tooltip what it does, on which key it is, and why it cannot be done now.
 
-use egui::{Context, Response, RichText, Ui};
+use egui::{Atom, Context, IdSalt, Response, RichText, Ui};
 
 use super::action::Action;
 use super::keyboard::{Keyboard, Press};
+use super::panels::icons::Icon;
 use super::state::State;
 
 impl Action {
@@ -26,13 +27,22 @@ impl Action {
         self.add(ui, state, egui::Button::selectable(on, self.look().label))
     }
 
-    /// An entry of a menu with its key at the right. Gives the action back when clicked.
+    /// An entry of a menu with its key at the right and, while its switch is on, a tick at the
+    /// left. Gives the action back when clicked.
     pub fn menu_item(self, ui: &mut Ui, state: &State) -> Option<Self> {
         let look = self.look();
-        let on = self.is_on(state).unwrap_or(false);
         let key = look.keys.first().map(|key| key.name()).unwrap_or_default();
-        let button = egui::Button::new(look.label).selected(on).shortcut_text(key);
-        let clicked = self.add(ui, state, button);
+        let tick = IdSalt::new("tick");
+        let atoms = (Atom::custom(tick, egui::vec2(12.0, 12.0)), look.label);
+        let button = egui::Button::new(atoms).shortcut_text(key);
+        let enabled = self.availability(state).is_ok();
+        let shown = ui.add_enabled_ui(enabled, |ui| button.atom_ui(ui)).inner;
+        if self.is_on(state) == Some(true) {
+            for (_, rect) in shown.custom_rects().filter(|(id, _)| *id == tick) {
+                Icon::Tick.paint(ui.painter(), rect, 10.0, ui.visuals().text_color());
+            }
+        }
+        let clicked = self.finish(state, shown.response);
         if clicked.is_some() {
             ui.close();
         }
@@ -58,6 +68,11 @@ impl Action {
 
     fn add(self, ui: &mut Ui, state: &State, button: egui::Button<'_>) -> Option<Self> {
         let response = ui.add_enabled(self.availability(state).is_ok(), button);
+        self.finish(state, response)
+    }
+
+    /// Names and explains what stands for the action, and gives the action back when it is clicked.
+    fn finish(self, state: &State, response: Response) -> Option<Self> {
         if let Some(on) = self.is_on(state) {
             let enabled = response.enabled();
             response.widget_info(|| {

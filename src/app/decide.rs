@@ -155,7 +155,7 @@ fn look(action: Action, state: &State) -> Decided {
 }
 
 /// The one of two that `now` is not.
-fn other<T: PartialEq>(now: T, first: T, second: T) -> T {
+fn other<T: Copy + PartialEq>(now: T, first: T, second: T) -> T {
     if now == first { second } else { first }
 }
 

@@ -3,7 +3,7 @@
 //! Files are asked for with the system's own dialog, on a thread of its own. A system that has none
 //! answers at once, as no hand could; then a plain choice of our own stands in.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use egui::{Context, Id, Modal, Ui};
@@ -67,9 +67,19 @@ pub(super) struct Dialogs {
     pub(super) native: bool,
     /// Where the last file was.
     folder: PathBuf,
-    system: Option<(Wanted, Instant, Task<Option<Vec<PathBuf>>>, String)>,
+    system: Option<SystemDialog>,
     /// The last one is on top.
     open: Vec<Dialog>,
+}
+
+/// A dialog of the system's, on its thread.
+#[derive(Debug)]
+struct SystemDialog {
+    wanted: Wanted,
+    /// What is offered as the name.
+    name: String,
+    begun: Instant,
+    task: Task<Option<Vec<PathBuf>>>,
 }
 
 #[derive(Debug)]
@@ -141,7 +151,8 @@ impl Dialogs {
                 }
             });
             if let Ok(task) = task {
-                self.system = Some((wanted, Instant::now(), task, name.to_owned()));
+                let (begun, name) = (Instant::now(), name.to_owned());
+                self.system = Some(SystemDialog { wanted, name, begun, task });
                 return;
             }
         }
@@ -184,12 +195,11 @@ impl Dialogs {
     }
 
     fn hear_system(&mut self) -> Option<Answer> {
-        let (_, _, task, _) = self.system.as_ref()?;
-        let outcome = task.outcome();
+        let outcome = self.system.as_ref()?.task.outcome();
         if matches!(outcome, Outcome::Running) {
             return None;
         }
-        let (wanted, begun, _, name) = self.system.take()?;
+        let SystemDialog { wanted, name, begun, .. } = self.system.take()?;
         match outcome {
             Outcome::Done(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
             Outcome::Done(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
@@ -220,13 +230,6 @@ impl Dialogs {
             std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"))
         } else {
             self.folder.clone()
-        }
-    }
-
-    /// Begins the next choice of a file where this one is.
-    pub(super) fn start_from(&mut self, path: &Path) {
-        if let Some(folder) = path.parent() {
-            folder.clone_into(&mut self.folder);
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use egui::{CentralPanel, Context, Frame, Key, ViewportCommand};
+use egui::{CentralPanel, Context, Frame, Key, ThemePreference, ViewportCommand};
 
 use super::action::Action;
 use super::ask::Ask;
@@ -15,7 +15,8 @@ use super::dialogs::{After, Dialogs, Wanted};
 use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
 use super::material_dialog::MaterialDialog;
-use super::state::{Message, State, Tone};
+use super::scene_files::Waiting;
+use super::state::{Message, Shown, State, Tone};
 use super::viewport::{Purpose, Viewport};
 use super::worker::{Snapshot, Worker};
 use super::{notices, panels};
@@ -29,6 +30,8 @@ pub struct App {
     pub(super) state: State,
     pub(super) dialogs: Dialogs,
     pub(super) loading: Vec<Loading>,
+    /// A scene whose models are not where it says.
+    pub(super) waiting: Option<Waiting>,
     pub(super) viewport: Viewport,
     worker: Option<Worker<Purpose>>,
     /// It was decided to leave: nothing more is asked.
@@ -48,6 +51,7 @@ impl App {
             state: State::new(scene, view),
             dialogs: Dialogs::default(),
             loading: Vec::new(),
+            waiting: None,
             viewport: Viewport::default(),
             worker: None,
             leaving: false,
@@ -91,7 +95,7 @@ impl App {
             self.press(&ctx, press);
         }
         for ask in asks {
-            self.fulfil(&ctx, ask);
+            self.answer_ask(&ctx, ask);
         }
         if let Some(answer) = answer {
             self.take_answer(&ctx, answer);
@@ -182,7 +186,7 @@ impl App {
         if press.chord == Chord::Named(Key::Escape) {
             let mut asks = Vec::new();
             if self.viewport.cancel_drag(&mut asks) {
-                return asks.into_iter().for_each(|ask| self.fulfil(ctx, ask));
+                return asks.into_iter().for_each(|ask| self.answer_ask(ctx, ask));
             }
             if std::mem::take(&mut self.state.shown.cheat_sheet)
                 || self.state.renaming.take().is_some()
@@ -193,7 +197,8 @@ impl App {
         self.perform(ctx, press.action, press.gesture);
     }
 
-    fn fulfil(&mut self, ctx: &Context, ask: Ask) {
+    /// Does what a panel asks for.
+    pub fn answer_ask(&mut self, ctx: &Context, ask: Ask) {
         let state = &mut self.state;
         match ask {
             Ask::Do(action) => self.perform(ctx, action, Gesture::Whole),
@@ -289,6 +294,9 @@ impl App {
             Action::ToggleProperties => shown.properties ^= true,
             Action::ToggleViewPanel => shown.view ^= true,
             Action::ToggleStatistics => shown.statistics ^= true,
+            Action::ThemeSystem => set_theme(ctx, shown, ThemePreference::System),
+            Action::ThemeLight => set_theme(ctx, shown, ThemePreference::Light),
+            Action::ThemeDark => set_theme(ctx, shown, ThemePreference::Dark),
             Action::ToPanels => Keyboard::change_owner(ctx),
             // What is left is decided, and never comes here.
             _ => {}
@@ -380,6 +388,11 @@ impl App {
     pub(super) fn refuse(&mut self, why: String) {
         self.state.message = Some(Message { text: why, tone: Tone::Refused });
     }
+}
+
+fn set_theme(ctx: &Context, shown: &mut Shown, theme: ThemePreference) {
+    shown.theme = theme;
+    ctx.set_theme(theme);
 }
 
 impl eframe::App for App {

@@ -32,11 +32,19 @@ pub(super) struct Loading {
 #[derive(Debug)]
 pub(super) enum Fetched {
     /// A model; the material is asked for where it is not known.
-    Model(PathBuf, Option<MaterialChoice>, Result<(Loaded, Option<Shared<Texture>>), LoadError>),
+    Model(Box<FetchedModel>),
     /// A texture for an object.
     Texture(ObjectId, Result<Shared<Texture>, LoadError>),
     /// A scene.
     Scene(Box<Opening>),
+}
+
+/// A model that was read, or could not be.
+#[derive(Debug)]
+pub(super) struct FetchedModel {
+    path: PathBuf,
+    material: Option<MaterialChoice>,
+    result: Result<(Loaded, Option<Shared<Texture>>), LoadError>,
 }
 
 /// How a model is to be loaded.
@@ -84,6 +92,7 @@ impl App {
     pub(super) fn take_answer(&mut self, ctx: &Context, answer: Answer) {
         match answer {
             Answer::Files(wanted, paths) => self.take_files(ctx, wanted, paths),
+            Answer::NoFile(Wanted::Missing(old)) => self.give_up_missing(&old),
             Answer::NoFile(_) => {}
             Answer::Save(after) => self.save(ctx, Some(after)),
             Answer::Discard(after) => self.after(ctx, after),
@@ -152,7 +161,7 @@ impl App {
                 let texture = wish.texture.as_deref().map(io::load_texture).transpose()?;
                 Ok((loaded, texture))
             });
-            Fetched::Model(path, wish.material, result)
+            Fetched::Model(Box::new(FetchedModel { path, material: wish.material, result }))
         });
     }
 
@@ -207,21 +216,19 @@ impl App {
 
     fn take_fetched(&mut self, ctx: &Context, fetched: Fetched) {
         match fetched {
-            Fetched::Model(_, _, Err(LoadError::Cancelled))
-            | Fetched::Texture(_, Err(LoadError::Cancelled)) => {
-                self.state.tell(Some("Loading was cancelled".to_owned()));
+            Fetched::Model(model) => {
+                let FetchedModel { path, material, result } = *model;
+                match (result, material) {
+                    (Err(error), _) => self.tell_load_error(&error),
+                    (Ok((loaded, texture)), Some(material)) => {
+                        self.insert(loaded, material, texture);
+                    }
+                    (Ok((loaded, _)), None) => {
+                        self.dialogs.ask_material(MaterialDialog::of_model(path, loaded));
+                    }
+                }
             }
-            Fetched::Model(_, _, Err(error)) | Fetched::Texture(_, Err(error)) => {
-                self.dialogs.tell_fault(format!("{error}."));
-            }
-            Fetched::Model(_, Some(material), Ok((loaded, texture))) => {
-                let silver = own_or_silver(&loaded);
-                let material = if material == MaterialChoice::File { silver } else { material };
-                self.insert(loaded, material, texture);
-            }
-            Fetched::Model(path, None, Ok((loaded, _))) => {
-                self.dialogs.ask_material(MaterialDialog::of_model(path, loaded));
-            }
+            Fetched::Texture(_, Err(error)) => self.tell_load_error(&error),
             Fetched::Texture(id, Ok(texture)) => {
                 let set = |object: &mut Object| object.texture = Some(texture);
                 match items::change_object(&self.state.scene, id, set) {
@@ -233,6 +240,15 @@ impl App {
         }
     }
 
+    fn tell_load_error(&mut self, error: &LoadError) {
+        match error {
+            LoadError::Cancelled => self.state.tell(Some("Loading was cancelled".to_owned())),
+            LoadError::File { .. } | LoadError::Line { .. } => {
+                self.dialogs.tell_fault(format!("{error}."));
+            }
+        }
+    }
+
     /// Puts a loaded model into the scene, and tells what was found in its file.
     fn insert(
         &mut self,
@@ -241,6 +257,7 @@ impl App {
         texture: Option<Shared<Texture>>,
     ) {
         let found = summary(&loaded);
+        let material = settled(material, &loaded);
         let details = loaded.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
         let mut object = Object::new(Shared::new(loaded.model), material);
         object.texture = texture;
@@ -264,8 +281,7 @@ impl App {
             self.refuse("there is no picture yet".to_owned());
             return;
         };
-        let _ = picture;
-        match Ok::<(), LoadError>(()) {
+        match io::save_picture(path, &picture) {
             Ok(()) => self.state.tell(Some(format!("Saved {}", path.display()))),
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),
         }
@@ -289,6 +305,11 @@ impl App {
         let (shown, statistics) = (self.state.shown, self.state.statistics);
         self.state = State { shown, statistics, ..state };
     }
+}
+
+/// The file's own material only where it has one.
+fn settled(material: MaterialChoice, loaded: &Loaded) -> MaterialChoice {
+    if material == MaterialChoice::File { own_or_silver(loaded) } else { material }
 }
 
 /// Whether an object would be outside of what is seen now, or too small to be noticed.

@@ -96,11 +96,20 @@ pub struct Shown {
     pub statistics: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
+    /// Whether the window is light or dark.
+    pub theme: egui::ThemePreference,
 }
 
 impl Default for Shown {
     fn default() -> Self {
-        Self { outline: true, properties: true, view: true, statistics: false, cheat_sheet: false }
+        Self {
+            outline: true,
+            properties: true,
+            view: true,
+            statistics: false,
+            cheat_sheet: false,
+            theme: egui::ThemePreference::System,
+        }
     }
 }
 

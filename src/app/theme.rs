@@ -1,6 +1,256 @@
 //! How the window looks: colours, sizes, distances.
+//!
+//! The picture is the star, so that everything about it is grey; one accent says what is selected and
+//! what has the keyboard. A light and a dark palette hold the same places, and every text keeps a
+//! contrast of at least 4.5 to 1 on whatever it stands on (WCAG 2.1, success criterion 1.4.3).
 
-/// Gives `ctx` the program's looks.
-pub fn install(ctx: &egui::Context) {
-    ctx.set_theme(egui::ThemePreference::System);
+use egui::style::{HandleShape, ScrollStyle, WidgetVisuals, Widgets};
+use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style};
+use egui::{TextStyle, Theme, Visuals, vec2};
+
+use crate::base::math::Axis;
+
+/// The height of a row, of a button, of a field, in points.
+pub const ROW: f32 = 22.0;
+/// Between things that belong together.
+pub const GAP: f32 = 4.0;
+/// From the border of a panel to what stands in it.
+pub const MARGIN: i8 = 10;
+/// Where the labels of a panel's rows end and its controls begin.
+pub const LABEL: f32 = 66.0;
+/// Small text: keys, units, what can be missed.
+pub const SMALL: f32 = 11.0;
+/// Text.
+pub const BODY: f32 = 12.5;
+/// Names of panels.
+pub const HEADING: f32 = 15.0;
+
+/// The colours of one theme.
+#[derive(Clone, Copy, Debug)]
+struct Palette {
+    panel: Color32,
+    /// Where one types.
+    field: Color32,
+    /// Buttons at rest, under the pointer, pressed.
+    control: Color32,
+    hovered: Color32,
+    pressed: Color32,
+    line: Color32,
+    text: Color32,
+    weak: Color32,
+    accent: Color32,
+    selected: Color32,
+    selected_text: Color32,
+    error: Color32,
+    axes: [Color32; 3],
+}
+
+const DARK: Palette = Palette {
+    panel: gray(0x2a),
+    field: gray(0x1b),
+    control: gray(0x3a),
+    hovered: gray(0x46),
+    pressed: gray(0x50),
+    line: gray(0x40),
+    text: gray(0xe4),
+    weak: gray(0xb4),
+    accent: Color32::from_rgb(0x7d, 0xb8, 0xf7),
+    selected: Color32::from_rgb(0x2c, 0x50, 0x7c),
+    selected_text: Color32::WHITE,
+    error: Color32::from_rgb(0xff, 0xa2, 0x9a),
+    axes: [
+        Color32::from_rgb(0xff, 0x9d, 0x94),
+        Color32::from_rgb(0xa5, 0xdd, 0x8a),
+        Color32::from_rgb(0x92, 0xbf, 0xff),
+    ],
+};
+
+const LIGHT: Palette = Palette {
+    panel: gray(0xf2),
+    field: gray(0xff),
+    control: gray(0xe2),
+    hovered: gray(0xd6),
+    pressed: gray(0xca),
+    line: gray(0xcc),
+    text: gray(0x1c),
+    weak: gray(0x50),
+    accent: Color32::from_rgb(0x17, 0x5c, 0xb0),
+    selected: Color32::from_rgb(0xc6, 0xdc, 0xf6),
+    selected_text: Color32::from_rgb(0x0b, 0x2a, 0x50),
+    error: Color32::from_rgb(0x9c, 0x1c, 0x16),
+    axes: [
+        Color32::from_rgb(0xa0, 0x1f, 0x18),
+        Color32::from_rgb(0x1d, 0x5c, 0x0c),
+        Color32::from_rgb(0x17, 0x55, 0xa4),
+    ],
+};
+
+const fn gray(level: u8) -> Color32 {
+    Color32::from_gray(level)
+}
+
+/// Gives `ctx` the program's looks, for both themes.
+pub fn install(ctx: &Context) {
+    ctx.set_style_of(Theme::Dark, style(Visuals::dark(), &DARK));
+    ctx.set_style_of(Theme::Light, style(Visuals::light(), &LIGHT));
+}
+
+/// What marks the selected and the focused.
+pub(super) fn accent(visuals: &Visuals) -> Color32 {
+    palette(visuals).accent
+}
+
+/// What says that something was not done.
+pub(super) fn error(visuals: &Visuals) -> Color32 {
+    palette(visuals).error
+}
+
+/// The colour of an axis' letter.
+pub(super) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
+    palette(visuals).axes[axis.index()]
+}
+
+/// The line between panels and about fields.
+pub(super) fn line(visuals: &Visuals) -> Color32 {
+    palette(visuals).line
+}
+
+/// The ring about what has the keyboard.
+pub(super) fn ring(visuals: &Visuals) -> Stroke {
+    Stroke::new(2.0, palette(visuals).accent)
+}
+
+const fn palette(visuals: &Visuals) -> &'static Palette {
+    if visuals.dark_mode { &DARK } else { &LIGHT }
+}
+
+fn style(visuals: Visuals, palette: &Palette) -> Style {
+    let mut style = Style { visuals: colors(visuals, palette), ..Style::default() };
+    let font = |size| FontId::new(size, FontFamily::Proportional);
+    style.text_styles = [
+        (TextStyle::Small, font(SMALL)),
+        (TextStyle::Body, font(BODY)),
+        (TextStyle::Button, font(BODY)),
+        (TextStyle::Heading, font(HEADING)),
+        (TextStyle::Monospace, FontId::new(SMALL, FontFamily::Monospace)),
+    ]
+    .into();
+    style.compact_menu_style = false;
+    style.interaction.selectable_labels = false;
+    style.interaction.tooltip_delay = 0.4;
+    style.animation_time = 0.08;
+    let spacing = &mut style.spacing;
+    spacing.item_spacing = vec2(GAP, GAP);
+    spacing.button_padding = vec2(8.0, 2.0);
+    spacing.interact_size = vec2(ROW, ROW);
+    spacing.indent = 14.0;
+    spacing.icon_width = 14.0;
+    spacing.icon_spacing = 6.0;
+    spacing.window_margin = Margin::same(MARGIN);
+    spacing.menu_margin = Margin::same(6);
+    spacing.tooltip_width = 300.0;
+    spacing.slider_rail_height = 4.0;
+    spacing.scroll = ScrollStyle {
+        floating_allocated_width: 0.0,
+        bar_width: 6.0,
+        floating_width: 4.0,
+        ..ScrollStyle::floating()
+    };
+    style
+}
+
+fn colors(base: Visuals, palette: &Palette) -> Visuals {
+    let shadow =
+        Shadow { offset: [0, 4], blur: 16, spread: 0, color: Color32::from_black_alpha(80) };
+    Visuals {
+        weak_text_color: Some(palette.weak),
+        widgets: widgets(palette),
+        selection: egui::style::Selection {
+            bg_fill: palette.selected,
+            stroke: Stroke::new(1.0, palette.selected_text),
+        },
+        hyperlink_color: palette.accent,
+        faint_bg_color: palette.panel.lerp_to_gamma(palette.control, 0.4),
+        extreme_bg_color: palette.field,
+        code_bg_color: palette.field,
+        warn_fg_color: palette.error,
+        error_fg_color: palette.error,
+        window_fill: palette.panel,
+        window_stroke: Stroke::new(1.0, palette.line),
+        window_shadow: shadow,
+        popup_shadow: shadow,
+        window_highlight_topmost: false,
+        panel_fill: palette.panel,
+        slider_trailing_fill: true,
+        handle_shape: HandleShape::Circle,
+        // What cannot be used now can still be read.
+        disabled_alpha: 0.6,
+        ..base
+    }
+}
+
+fn widgets(palette: &Palette) -> Widgets {
+    let Palette { panel, control, hovered, pressed, line, text, .. } = *palette;
+    let visuals = |fill, stroke| WidgetVisuals {
+        bg_fill: fill,
+        weak_bg_fill: fill,
+        bg_stroke: stroke,
+        corner_radius: CornerRadius::same(4),
+        fg_stroke: Stroke::new(1.0, text),
+        expansion: 0.0,
+    };
+    Widgets {
+        noninteractive: visuals(panel, Stroke::new(1.0, line)),
+        inactive: visuals(control, Stroke::NONE),
+        hovered: visuals(hovered, Stroke::NONE),
+        // egui draws what has the keyboard with these: the ring is the accent.
+        active: visuals(pressed, Stroke::new(2.0, palette.accent)),
+        open: visuals(hovered, Stroke::NONE),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The contrast ratio of WCAG 2.1: (L1 + 0.05) / (L2 + 0.05), L the relative luminance.
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let luminance = |color: Color32| {
+            let linear = |byte: u8| {
+                let c = f64::from(byte) / 255.0;
+                if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
+            };
+            let [r, g, b, _] = color.to_array();
+            0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn every_text_can_be_read_on_everything_that_it_stands_on() {
+        assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
+        for palette in [&DARK, &LIGHT] {
+            let Palette { panel, field, control, hovered, pressed, .. } = *palette;
+            for ground in [panel, field, control, hovered, pressed] {
+                assert!(contrast(palette.text, ground) >= 4.5, "text on {ground:?}");
+            }
+            for ground in [panel, field, control] {
+                let texts = [palette.weak, palette.error];
+                for text in texts.iter().chain(&palette.axes) {
+                    assert!(contrast(*text, ground) >= 4.5, "{text:?} on {ground:?}");
+                }
+            }
+            assert!(contrast(palette.selected_text, palette.selected) >= 4.5);
+        }
+    }
+
+    #[test]
+    fn the_ring_about_what_has_the_keyboard_stands_out_from_all_that_is_about_it() {
+        for palette in [&DARK, &LIGHT] {
+            for ground in [palette.panel, palette.pressed, palette.field, palette.selected] {
+                assert!(contrast(palette.accent, ground) >= 3.0, "on {ground:?}");
+            }
+        }
+    }
 }

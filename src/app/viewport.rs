@@ -93,7 +93,7 @@ impl Viewport {
     /// Shows the picture in all of `ui`.
     pub(super) fn ui(
         &mut self,
-        ui: &mut Ui,
+        ui: &Ui,
         state: &State,
         worker: &Worker<Purpose>,
         asks: &mut Vec<Ask>,

@@ -1,9 +1,160 @@
 //! Every key, with what it would do now.
 
+use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
+
+use super::controls;
+use crate::app::action::{Action, Group};
 use crate::app::ask::Ask;
 use crate::app::state::State;
+use crate::app::theme;
+
+const WIDTH: f32 = 700.0;
+const KEYS: f32 = 160.0;
+const LABEL: f32 = 150.0;
+const NOW: f32 = 36.0;
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut egui::Ui, state: &State, asks: &mut Vec<Ask>) {
-    let _ = (ui, state, asks);
+pub(super) fn show(ui: &Ui, state: &State, asks: &mut Vec<Ask>) {
+    let mut open = true;
+    let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
+    Window::new("Keys")
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_pos(ui.ctx().content_rect().center() - vec2(WIDTH, room.y) / 2.0)
+        .fixed_size(vec2(WIDTH.min(room.x), room.y.min(520.0)))
+        .show(ui.ctx(), |ui| contents(ui, state, asks));
+    if !open {
+        asks.push(Action::CheatSheet.into());
+    }
+}
+
+fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let id = Id::unique("search among the keys");
+    let mut wanted: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let field = egui::TextEdit::singleline(&mut wanted)
+        .hint_text("Search: an action, a key")
+        .vertical_align(egui::Align::Center)
+        .min_size(vec2(0.0, theme::ROW))
+        .desired_width(f32::INFINITY);
+    let response = ui.add(field).accessible_name("Search among the keys");
+    // It was not shown in the pass before this one.
+    let pass = ui.ctx().cumulative_pass_nr();
+    let last = ui.data_mut(|data| {
+        let last = data.get_temp::<u64>(id);
+        data.insert_temp(id, pass);
+        last
+    });
+    let just_opened = last.is_none_or(|last| last + 1 < pass);
+    if just_opened {
+        response.request_focus();
+    }
+    if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
+        asks.push(Action::CheatSheet.into());
+    }
+    ui.data_mut(|data| data.insert_temp(id, wanted.clone()));
+    ui.add_space(theme::GAP);
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let mut found = false;
+        for group in Group::ALL {
+            let actions: Vec<Action> =
+                group.actions().filter(|action| matches(*action, &wanted)).collect();
+            if actions.is_empty() {
+                continue;
+            }
+            found = true;
+            ui.add_space(theme::GAP);
+            ui.label(RichText::new(group.label()).strong());
+            for action in actions {
+                line(ui, state, asks, action);
+            }
+        }
+        if !found {
+            ui.weak("Nothing of this name, and no such key.");
+        }
+    });
+}
+
+/// Whether an action is what is searched for: by one of its keys as it is written, or by any of its
+/// words.
+fn matches(action: Action, wanted: &str) -> bool {
+    let look = action.look();
+    let wanted = wanted.trim();
+    let keys = || look.keys.iter().flat_map(|key| key.names());
+    if wanted.chars().count() == 1 && keys().any(|key| key == wanted) {
+        return true;
+    }
+    let text = format!("{} {} {}", look.label, look.hint, look.group.label()).to_lowercase();
+    let wanted = wanted.to_lowercase();
+    wanted.split_whitespace().all(|word| {
+        text.contains(word) || keys().any(|key| key.len() > 1 && key.to_lowercase().contains(word))
+    })
+}
+
+/// One action: a click does it.
+fn line(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action) {
+    let look = action.look();
+    let available = action.availability(state);
+    let enabled = available.is_ok();
+    let size = vec2(ui.available_width(), theme::ROW);
+    let sense = if enabled { egui::Sense::click() } else { egui::Sense::hover() };
+    let (rect, response) = ui.allocate_exact_size(size, sense);
+    let on = action.is_on(state);
+    response.widget_info(|| match on {
+        Some(on) => {
+            egui::WidgetInfo::selected(egui::Role::MenuItemCheckBox, enabled, on, look.label)
+        }
+        None => egui::WidgetInfo::labeled(egui::Role::MenuItem, enabled, look.label),
+    });
+    if enabled && response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, ui.visuals().widgets.inactive.bg_fill);
+    }
+    let mut left = rect.left() + theme::GAP;
+    let mut cap = |ui: &Ui, key: &str| {
+        let width = controls::key_width(ui, key);
+        let at = egui::pos2(left + width, rect.center().y);
+        controls::key_cap(ui, at, key, enabled);
+        left += width + theme::GAP;
+    };
+    for key in look.keys.iter().flat_map(|key| key.names()) {
+        cap(ui, &key);
+    }
+    let color = controls::text_color(ui, enabled);
+    let label = rect.with_min_x(rect.left() + KEYS).with_max_x(rect.left() + KEYS + LABEL);
+    let text = |ui: &Ui, text: &str, width| controls::text(ui, text, TextStyle::Body, width);
+    controls::put_text(ui, label, text(ui, look.label, label.width()), color);
+    let now = match on {
+        Some(true) => "on",
+        Some(false) => "off",
+        None => "",
+    };
+    let now_rect = rect.with_min_x(label.right() + theme::GAP);
+    controls::put_text(ui, now_rect, text(ui, now, NOW), color);
+    let rest = rect.with_min_x(label.right() + NOW).with_max_x(rect.right() - theme::GAP);
+    let hint =
+        available.as_ref().err().map_or(look.hint.to_owned(), |why| format!("Not now: {why}."));
+    let weak = ui.visuals().weak_text_color();
+    controls::put_text(ui, rest, text(ui, &hint, rest.width()), weak);
+    controls::focus_ring(ui, rect, &response);
+    if action.explain(response, state).clicked() {
+        asks.push(action.into());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(wanted: &str) -> Vec<Action> {
+        Action::ALL.iter().copied().filter(|action| matches(*action, wanted)).collect()
+    }
+
+    #[test]
+    fn an_action_is_found_by_its_key_and_by_its_words() {
+        assert!(found("l").contains(&Action::ToggleEdges));
+        assert!(found("ctrl+z").contains(&Action::Undo));
+        assert_eq!(found("vertex normals draws"), [Action::ToggleVertexNormals]);
+        assert_eq!(found(""), Action::ALL);
+        assert!(found("no such words").is_empty());
+    }
 }

@@ -1,9 +1,91 @@
 //! The menus, made from the table of actions.
 
+use egui::{Atom, IdSalt, MenuBar, ScrollArea, Ui, vec2};
+
+use crate::app::action::{Action, Group};
 use crate::app::ask::Ask;
 use crate::app::state::State;
 
+/// The actions of [`Group::Window`] that have a menu of their own.
+const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
+
+/// Those that stand under Help.
+const HELP: [Action; 2] = [Action::CheatSheet, Action::ToPanels];
+
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut egui::Ui, state: &State, asks: &mut Vec<Ask>) {
-    let _ = (ui, state, asks);
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.spacing_mut().button_padding.x = 8.0;
+        menu(ui, "File", |ui| group_ui(ui, state, asks, Group::File));
+        menu(ui, "Edit", |ui| {
+            group_ui(ui, state, asks, Group::Edit);
+            ui.separator();
+            submenu(ui, "History", |ui| history_ui(ui, state, asks));
+            submenu(ui, "Select", |ui| group_ui(ui, state, asks, Group::Select));
+            submenu(ui, "Transform", |ui| group_ui(ui, state, asks, Group::Transform));
+        });
+        menu(ui, "Add", |ui| group_ui(ui, state, asks, Group::Add));
+        menu(ui, "View", |ui| {
+            group_ui(ui, state, asks, Group::Show);
+            ui.separator();
+            submenu(ui, "Camera", |ui| group_ui(ui, state, asks, Group::Camera));
+            submenu(ui, "Light", |ui| group_ui(ui, state, asks, Group::Light));
+            ui.separator();
+            let own = |action: &Action| !THEMES.contains(action) && !HELP.contains(action);
+            items(ui, state, asks, Group::Window.actions().filter(own));
+            submenu(ui, "Theme", |ui| items(ui, state, asks, THEMES));
+        });
+        menu(ui, "Help", |ui| items(ui, state, asks, HELP));
+    });
+}
+
+fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
+    ui.menu_button(name, |ui| {
+        ui.set_min_width(200.0);
+        add(ui);
+    });
+}
+
+/// A menu in a menu; its name stands where those of actions stand, behind the column of ticks.
+fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
+    let ticks = Atom::custom(IdSalt::new("tick"), vec2(12.0, 12.0));
+    ui.menu_button((ticks, name), |ui| {
+        ui.set_min_width(200.0);
+        add(ui);
+    });
+}
+
+fn group_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, group: Group) {
+    items(ui, state, asks, group.actions());
+}
+
+fn items(
+    ui: &mut Ui,
+    state: &State,
+    asks: &mut Vec<Ask>,
+    actions: impl IntoIterator<Item = Action>,
+) {
+    for action in actions {
+        asks.extend(action.menu_item(ui, state).map(Ask::from));
+    }
+}
+
+/// The steps of the history; a click goes to where a step is the last one done.
+fn history_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let history = &state.history;
+    let labels: Vec<&str> = std::iter::once("Beginning").chain(history.steps()).collect();
+    ui.set_min_width(200.0);
+    let row = ui.spacing().interact_size.y;
+    ScrollArea::vertical().max_height(12.0 * row).show_rows(ui, row, labels.len(), |ui, range| {
+        for position in range {
+            let here = position == history.position();
+            let text = format!("{position}  {}", labels[position]);
+            let button = egui::Button::selectable(here, text);
+            let response = ui.add_sized([ui.available_width(), row], button);
+            if response.on_hover_text("Goes to where this step is the last one done").clicked() {
+                asks.push(Ask::GoTo(position));
+                ui.close();
+            }
+        }
+    });
 }

@@ -2,35 +2,75 @@
 //! nothing.
 
 mod cheat_sheet;
+mod controls;
+mod expression;
+pub(super) mod icons;
 mod menu_bar;
+mod number;
 mod outline;
+mod outline_row;
 mod properties;
+mod spheres;
 mod status_line;
 mod view_switches;
 
-use egui::Panel;
+use egui::{Frame, Margin, Panel, Ui};
 
 use super::ask::Ask;
 use super::state::State;
+use super::theme;
+
+/// Below this width of the window the panels at the sides are narrower, so that the picture stays the
+/// largest thing.
+const WIDE: f32 = 1200.0;
 
 /// Shows all panels that are to be shown. What is left of `ui` is the viewport's.
-pub fn show(ui: &mut egui::Ui, state: &State, asks: &mut Vec<Ask>) {
-    Panel::top("menu bar").show(ui, |ui| menu_bar::show(ui, state, asks));
-    Panel::bottom("status line").show(ui, |ui| status_line::show(ui, state, asks));
-    if state.shown.outline {
-        Panel::left("outline").show(ui, |ui| outline::show(ui, state, asks));
+pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let wide = ui.available_width() >= WIDE;
+    let (left, right) = if wide { (228.0, 280.0) } else { (204.0, 256.0) };
+    let most = |part: f32, least: f32| (ui.available_width() * part).max(least);
+    let (most_left, most_right) = (most(0.25, 200.0), most(0.3, 250.0));
+    let fill = ui.visuals().panel_fill;
+    let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
+    let side = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 4));
+    Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, asks));
+    Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, asks));
+    // A new name is typed in the outline.
+    let outline = state.shown.outline || state.renaming.is_some();
+    if outline || state.shown.view {
+        Panel::left("left").frame(side).default_size(left).size_range(170.0..=most_left).show(
+            ui,
+            |ui| {
+                left_ui(ui, state, asks, outline);
+            },
+        );
     }
-    if state.shown.properties || state.shown.view {
-        Panel::right("properties").show(ui, |ui| {
-            if state.shown.properties {
-                properties::show(ui, state, asks);
-            }
-            if state.shown.view {
-                view_switches::show(ui, state, asks);
-            }
-        });
+    if state.shown.properties {
+        Panel::right("properties")
+            .frame(side)
+            .default_size(right)
+            .size_range(220.0..=most_right)
+            .show(ui, |ui| properties::show(ui, state, asks));
     }
     if state.shown.cheat_sheet {
         cheat_sheet::show(ui, state, asks);
     }
+}
+
+/// The outline, and the switches of the view under it.
+fn left_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, outline: bool) {
+    if !outline {
+        view_switches::show(ui, state, asks);
+        return;
+    }
+    if state.shown.view {
+        let height = (ui.available_height() * 0.56).round();
+        Panel::bottom("view switches")
+            .frame(Frame::NONE)
+            .resizable(true)
+            .default_size(height)
+            .size_range(90.0..=(height + 40.0).max(90.0))
+            .show(ui, |ui| view_switches::show(ui, state, asks));
+    }
+    outline::show(ui, state, asks);
 }

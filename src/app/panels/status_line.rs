@@ -1,9 +1,236 @@
 //! What the next key would do, and the last word to the user.
+//!
+//! Where there is no room for all, what matters least is left out from the middle; nothing is cut off.
 
+use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
+
+use super::controls;
+use super::icons::Icon;
+use super::number::short;
 use crate::app::ask::Ask;
-use crate::app::state::State;
+use crate::app::state::{Message, State, Tone};
+use crate::app::theme;
+use crate::scene::{
+    CameraMode, Frame, ItemId, LightKind, Observer, Projection, Subject, Transformation,
+};
+
+/// What stands between the parts of the line.
+const BETWEEN: &str = "  |  ";
+
+/// A longer name is written with dots in its middle.
+const LONGEST_NAME: usize = 28;
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut egui::Ui, state: &State, asks: &mut Vec<Ask>) {
-    let _ = (ui, state, asks);
+pub(super) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Ask>) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if let Some(message) = &state.message {
+                message_ui(ui, message, ui.available_width() * 0.5);
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| line_ui(ui, state));
+        });
+    });
+}
+
+fn line_ui(ui: &mut Ui, state: &State) {
+    let parts = parts(state);
+    let width = |text: &str| {
+        controls::text(ui, RichText::new(text), TextStyle::Body, f32::INFINITY).size().x
+    };
+    let room = ui.available_width() - 2.0 * theme::GAP;
+    let text = fitted(&parts, |text| width(text) <= room);
+    let whole = parts.join(BETWEEN);
+    let response = ui.add(egui::Label::new(text).truncate());
+    response.widget_info(|| WidgetInfo::labeled(Role::Status, true, &whole));
+    response.on_hover_text(whole);
+}
+
+fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
+    let (icon, color) = match message.tone {
+        Tone::Done => (Icon::Tick, ui.visuals().weak_text_color()),
+        Tone::Refused => (Icon::Warning, theme::error(ui.visuals())),
+    };
+    let text = RichText::new(&message.text).color(color);
+    let galley = controls::text(ui, text, TextStyle::Body, room - theme::ROW);
+    let size = vec2(galley.size().x + theme::ROW, theme::ROW);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    icon.paint(ui.painter(), rect.with_max_x(rect.left() + 16.0), 12.0, color);
+    controls::put_text(ui, rect.with_min_x(rect.left() + 20.0), galley, color);
+    response.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &message.text));
+    response.on_hover_text(&message.text);
+}
+
+/// The parts of the line, in order: what is selected, what the keys do to it, who looks, what it cost.
+fn parts(state: &State) -> Vec<String> {
+    let (scene, view) = (&state.scene, &state.view);
+    let mut parts = vec![selected(state), transformation(state).to_owned()];
+    parts.extend(frame(state).map(str::to_owned));
+    parts.extend(step(state));
+    let projection = match view.projection {
+        Projection::Perspective => "perspective",
+        Projection::Orthographic => "orthographic",
+    };
+    let camera = &scene.selected_camera(view).name;
+    parts.push(match view.object.and_then(|id| scene.objects.get(id)) {
+        Some(object) if view.observer == Observer::Object => {
+            format!("seen from {}, {projection}", middle_elided(&object.name, LONGEST_NAME))
+        }
+        _ => format!("{}, {projection}", middle_elided(camera, LONGEST_NAME)),
+    });
+    let on = scene.lights.iter().filter(|(_, light)| light.on).count();
+    parts.push(match on {
+        1 => "1 light".to_owned(),
+        _ => format!("{on} lights"),
+    });
+    if state.statistics.pictures > 0 {
+        parts.push(format!("{:.1} ms", state.statistics.time.as_secs_f64() * 1000.0));
+    }
+    parts
+}
+
+fn selected(state: &State) -> String {
+    let (scene, view) = (&state.scene, &state.view);
+    let (kind, place, count, name) = match view.subject {
+        Subject::Object => {
+            let id = view.object.filter(|id| scene.objects.get(*id).is_some());
+            let place = id.and_then(|id| scene.objects.iter().position(|(other, _)| other == id));
+            let name = id.and_then(|id| scene.objects.get(id)).map(|object| &object.name);
+            ("Object", place, scene.objects.len(), name)
+        }
+        Subject::Camera => {
+            let place = scene.cameras.iter().position(|(other, _)| other == view.camera);
+            let name = scene.cameras.get(view.camera).map(|camera| &camera.name);
+            ("Camera", place, scene.cameras.len(), name)
+        }
+        Subject::Light => {
+            let id = view.light;
+            let place = id.and_then(|id| scene.lights.iter().position(|(other, _)| other == id));
+            let name = id.and_then(|id| scene.lights.get(id)).map(|light| &light.name);
+            ("Light", place, scene.lights.len(), name)
+        }
+    };
+    match (place, name) {
+        (Some(place), Some(name)) => {
+            format!("{kind} {}/{count} {}", place + 1, middle_elided(name, LONGEST_NAME))
+        }
+        _ => format!("No {}", kind.to_lowercase()),
+    }
+}
+
+/// What x, y and z do to what is selected.
+fn transformation(state: &State) -> &'static str {
+    let (scene, view) = (&state.scene, &state.view);
+    if let Some(ItemId::Light(id)) = state.selected() {
+        return match scene.lights.get(id).map(|light| &light.kind) {
+            Some(LightKind::Sun { .. }) => "rotate",
+            Some(LightKind::Bulb { .. }) => "move",
+            Some(LightKind::Spot { owner: crate::scene::SpotOwner::Fixed(_), .. }) => {
+                verb(view.transformation)
+            }
+            Some(LightKind::Spot { .. }) => "follows its owner",
+            Some(LightKind::Ambient) | None => "from everywhere",
+        };
+    }
+    verb(view.transformation)
+}
+
+const fn verb(transformation: Transformation) -> &'static str {
+    match transformation {
+        Transformation::Translation => "move",
+        Transformation::Rotation => "rotate",
+        Transformation::Scaling => "scale",
+    }
+}
+
+fn frame(state: &State) -> Option<&'static str> {
+    let view = &state.view;
+    match view.subject {
+        Subject::Camera => {
+            let camera = state.scene.selected_camera(view);
+            Some(match camera.pose.now().mode_with(view.object) {
+                CameraMode::Fly => "fly",
+                CameraMode::Analysis { .. } => "analysis",
+            })
+        }
+        Subject::Object => Some(match view.frame {
+            Frame::Local => "local",
+            Frame::Global => "global",
+        }),
+        Subject::Light => None,
+    }
+}
+
+/// How far the next press of x, y or z goes.
+fn step(state: &State) -> Option<String> {
+    let steps = &state.view.steps;
+    let does = match transformation(state) {
+        "move" => Transformation::Translation,
+        "rotate" => Transformation::Rotation,
+        "scale" => Transformation::Scaling,
+        _ => return None,
+    };
+    Some(match does {
+        Transformation::Translation if steps.by_size => "step by size".to_owned(),
+        Transformation::Translation => format!("step {}", short(steps.translation)),
+        Transformation::Rotation => format!("step {} deg", short(steps.rotation)),
+        Transformation::Scaling => format!("step x {}", short(steps.scaling)),
+    })
+}
+
+/// The parts joined; where that does not fit, dots stand for those in the middle.
+fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
+    let whole = parts.join(BETWEEN);
+    // The first part and the last ones say most.
+    for left_out in 0..parts.len().saturating_sub(1) {
+        if left_out == 0 {
+            if fits(&whole) {
+                return whole;
+            }
+            continue;
+        }
+        let first = (parts.len() - left_out).div_ceil(2);
+        let mut kept: Vec<&str> = parts[..first].iter().map(String::as_str).collect();
+        kept.push("...");
+        kept.extend(parts[first + left_out..].iter().map(String::as_str));
+        let text = kept.join(BETWEEN);
+        if fits(&text) {
+            return text;
+        }
+    }
+    parts.first().cloned().unwrap_or_default()
+}
+
+/// `name`, with dots in its middle where it has more than `longest` letters.
+pub(super) fn middle_elided(name: &str, longest: usize) -> String {
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() <= longest {
+        return name.to_owned();
+    }
+    let kept = longest.saturating_sub(3);
+    let (head, tail) = (kept.div_ceil(2), kept / 2);
+    let head: String = letters[..head].iter().collect();
+    let tail: String = letters[letters.len() - tail..].iter().collect();
+    format!("{head}...{tail}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_name_keeps_its_beginning_and_its_end() {
+        assert_eq!(middle_elided("teapot", 10), "teapot");
+        assert_eq!(middle_elided("a_very_long_name_2", 10), "a_ve...e_2");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_left_out_from_the_middle() {
+        let parts: Vec<String> = ["first", "second", "third", "fourth"].map(String::from).into();
+        let within = |room: usize| fitted(&parts, |text| text.len() <= room);
+        assert_eq!(within(99), "first  |  second  |  third  |  fourth");
+        assert_eq!(within(33), "first  |  second  |  ...  |  fourth");
+        assert_eq!(within(24), "first  |  ...  |  fourth");
+        assert_eq!(within(1), "first");
+    }
 }

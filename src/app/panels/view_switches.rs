@@ -1,9 +1,253 @@
-//! Every switch of the view, with its key.
+//! Every switch of the view, with its key, and how exactly pictures are drawn.
 
+use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
+
+use super::controls::{self, Choice, action_switch, change, choices, row, section, swatch};
+use crate::app::action::Action;
 use crate::app::ask::Ask;
 use crate::app::state::State;
+use crate::app::theme;
+use crate::scene::{
+    Arithmetic, CameraMode, Command, Filter, Frame, LightAt, Normals, Observer, Projection,
+    Settings, SpecularForm, Subject, Transformation,
+};
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut egui::Ui, state: &State, asks: &mut Vec<Ask>) {
-    let _ = (ui, state, asks);
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    ScrollArea::vertical().id_salt("view switches").auto_shrink(false).show(ui, |ui| {
+        section(ui, "Keys act on", true, |ui| {
+            subject_ui(ui, state, asks);
+            transformation_ui(ui, state, asks);
+            frame_ui(ui, state, asks);
+        });
+        section(ui, "Seen", true, |ui| {
+            observer_ui(ui, state, asks);
+            projection_ui(ui, state, asks);
+            background_ui(ui, state, asks);
+        });
+        section(ui, "Drawn", true, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for action in [
+                Action::ToggleEdges,
+                Action::ToggleEdgesOverFill,
+                Action::TogglePolygons,
+                Action::ToggleOthers,
+                Action::ToggleBackFaces,
+                Action::ToggleFaceNormals,
+                Action::ToggleVertexNormals,
+                Action::ToggleNormalLength,
+                Action::ToggleMarks,
+            ] {
+                action_switch(ui, state, asks, action);
+            }
+        });
+        section(ui, "Light", true, |ui| {
+            slots_ui(ui, state, asks);
+            normals_ui(ui, state, asks);
+            settings_ui(ui, state, asks);
+        });
+    });
+}
+
+/// Choices among actions: each with its name, whether it is the one, and the action that makes it so.
+fn actions_ui(
+    ui: &mut Ui,
+    state: &State,
+    asks: &mut Vec<Ask>,
+    of: &str,
+    actions: &[(&str, bool, Action)],
+) {
+    let all: Vec<Choice<'_>> = actions
+        .iter()
+        .map(|(label, on, action)| Choice::of_action(of, label, *on, *action, state))
+        .collect();
+    if let Some(clicked) = choices(ui, &all) {
+        asks.push(actions[clicked].2.into());
+    }
+}
+
+/// What the keys act on. The key `c` goes from one to the next.
+pub(super) fn subject_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let subject = state.view.subject;
+    let all = [
+        ("Camera", Subject::Camera, Action::SubjectCamera),
+        ("Object", Subject::Object, Action::SubjectObject),
+        ("Light", Subject::Light, Action::SubjectLight),
+    ];
+    let next = match subject {
+        Subject::Camera => Subject::Object,
+        Subject::Object => Subject::Light,
+        Subject::Light => Subject::Camera,
+    };
+    let all_choices: Vec<Choice<'_>> = all
+        .iter()
+        .map(|(label, this, action)| Choice {
+            key: (*this == next).then(|| "c".to_owned()),
+            ..Choice::of_action("Subject", label, *this == subject, *action, state)
+        })
+        .collect();
+    if let Some(clicked) = choices(ui, &all_choices) {
+        asks.push(all[clicked].2.into());
+    }
+}
+
+fn transformation_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let now = state.view.transformation;
+    let all = [
+        ("Move", now == Transformation::Translation, Action::Translate),
+        ("Rotate", now == Transformation::Rotation, Action::Rotate),
+        ("Scale", now == Transformation::Scaling, Action::Scale),
+    ];
+    actions_ui(ui, state, asks, "Transformation", &all);
+}
+
+/// How cameras move, or in which frame objects are transformed.
+pub(super) fn frame_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let view = &state.view;
+    let (of, [first, second], is_second) = match view.subject {
+        Subject::Camera => {
+            let pose = state.scene.selected_camera(view).pose.now();
+            let analysis = pose.mode_with(view.object) != CameraMode::Fly;
+            ("Camera mode", ["Fly", "Analysis"], analysis)
+        }
+        Subject::Object | Subject::Light => {
+            ("Frame", ["Local", "Global"], view.frame == Frame::Global)
+        }
+    };
+    let all = [(first, !is_second, Action::ToggleFrame), (second, is_second, Action::ToggleFrame)];
+    actions_ui(ui, state, asks, of, &all);
+}
+
+fn observer_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let object = state.view.observer == Observer::Object;
+    let all = [
+        ("From camera", !object, Action::ToggleObserver),
+        ("From object", object, Action::ToggleObserver),
+    ];
+    actions_ui(ui, state, asks, "Observer", &all);
+}
+
+fn projection_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let parallel = state.view.projection == Projection::Orthographic;
+    let all = [
+        ("Perspective", !parallel, Action::ToggleProjection),
+        ("Parallel", parallel, Action::ToggleProjection),
+    ];
+    actions_ui(ui, state, asks, "Projection", &all);
+}
+
+fn background_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    row(ui, "Background", |ui| {
+        let color = state.scene.background;
+        let changed = swatch(ui, "Background", "What is seen where nothing is", color);
+        if let Some((color, gesture)) = changed {
+            change(asks, "Set the background", gesture, Ok(Command::Background(color)));
+        }
+    });
+}
+
+/// The lights with a key of their own, as a row of small switches.
+fn slots_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let width = ((ui.available_width() - 9.0 * 2.0) / 10.0).floor();
+        for action in Action::ALL.iter().copied() {
+            if let Some(slot) = action.slot() {
+                slot_ui(ui, state, asks, action, slot, width);
+            }
+        }
+    });
+}
+
+fn slot_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action, slot: u32, width: f32) {
+    let light = state.scene.lights.iter().find(|(_, light)| light.slot == slot);
+    let on = light.is_some_and(|(_, light)| light.on);
+    let enabled = light.is_some();
+    let sense = if enabled { Sense::click() } else { Sense::hover() };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, theme::ROW), sense);
+    let label = action.look().label;
+    response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, enabled, on, label));
+    let visuals = ui.visuals();
+    let (fill, color) = match (on, enabled) {
+        (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),
+        (false, true) => (visuals.widgets.inactive.bg_fill, visuals.text_color()),
+        (false, false) => (visuals.panel_fill, visuals.disable(visuals.weak_text_color())),
+    };
+    ui.painter().rect_filled(rect, 3.0, fill);
+    if !enabled {
+        let line = egui::Stroke::new(1.0, theme::line(visuals));
+        ui.painter().rect_stroke(rect, 3.0, line, StrokeKind::Inside);
+    }
+    if on {
+        // What shines is underlined, too.
+        let bar = rect.with_min_y(rect.bottom() - 2.0).shrink2(vec2(3.0, 0.0));
+        ui.painter().rect_filled(bar, 1.0, theme::accent(visuals));
+    }
+    let digit = controls::text(ui, slot.to_string(), TextStyle::Body, width);
+    let at = rect.center() - digit.size() / 2.0;
+    ui.painter().galley_with_override_text_color(at, digit, color);
+    controls::focus_ring(ui, rect, &response);
+    let name = light.map_or("No light has this key", |(_, light)| light.name.as_str());
+    let response = action.explain(response, state).on_hover_text(name);
+    if response.clicked() {
+        asks.push(action.into());
+    }
+}
+
+fn normals_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let face = state.view.normals == Normals::Face;
+    let all =
+        [("Vertex", !face, Action::ToggleLightNormals), ("Face", face, Action::ToggleLightNormals)];
+    row(ui, "Normals", |ui| actions_ui(ui, state, asks, "Normals", &all));
+}
+
+/// How exactly pictures are drawn.
+fn settings_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let now = state.settings;
+    let mut setting = |ui: &mut Ui, name, all: &[(&str, Settings, &str)]| {
+        let all_choices: Vec<Choice<'_>> = all
+            .iter()
+            .map(|(label, to, hint)| Choice::new(name, label, *to == now, hint))
+            .collect();
+        if let Some(clicked) = row(ui, name, |ui| choices(ui, &all_choices)) {
+            asks.push(Ask::Settings(all[clicked].1));
+        }
+    };
+    let at = |light| Settings { light, ..now };
+    setting(
+        ui,
+        "Shading",
+        &[
+            ("Face", at(LightAt::Face), "Light is evaluated once a polygon (flat)."),
+            ("Vertex", at(LightAt::Vertex), "Light is evaluated at vertices (Gouraud)."),
+            ("Pixel", at(LightAt::Pixel), "Light is evaluated at each pixel (Phong)."),
+        ],
+    );
+    let form = |specular| Settings { specular, ..now };
+    setting(
+        ui,
+        "Highlight",
+        &[
+            ("R.V", form(SpecularForm::Reflection), "Phong's highlight: (R.V)^Ns."),
+            ("N.H", form(SpecularForm::HalfVector), "Blinn's highlight: (N.H)^Ns."),
+        ],
+    );
+    let filter = |filter| Settings { filter, ..now };
+    setting(
+        ui,
+        "Textures",
+        &[
+            ("Nearest", filter(Filter::Nearest), "The texel that a place falls into."),
+            ("Bilinear", filter(Filter::Bilinear), "A mean of the four texels around a place."),
+        ],
+    );
+    let numbers = |arithmetic| Settings { arithmetic, ..now };
+    setting(
+        ui,
+        "Arithmetic",
+        &[
+            ("32 bits", numbers(Arithmetic::F32), "Light in 32-bit numbers, sixteen at once."),
+            ("64 bits", numbers(Arithmetic::F64), "Light in 64-bit numbers: the reference, slow."),
+        ],
+    );
 }

@@ -1,0 +1,259 @@
+//! The properties of a light.
+
+use egui::{ComboBox, Slider, Ui};
+use glam::{DMat4, DVec3};
+
+use super::super::controls::{Switch, change, row, section, swatch};
+use super::super::number::{Number, vector};
+use super::{number_row, steps_ui};
+use crate::app::ask::Ask;
+use crate::app::state::State;
+use crate::app::{gestures, theme};
+use crate::base::color;
+use crate::edit::{Gesture, items, lights, motion, place};
+use crate::scene::{
+    Aim, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Placed, Scene, SpotOwner,
+};
+
+/// A light that is being shown.
+struct Shown<'a> {
+    state: &'a State,
+    id: LightId,
+    light: &'a Light,
+}
+
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: LightId) {
+    let Some(light) = state.scene.lights.get(id) else { return };
+    let shown = Shown { state, id, light };
+    section(ui, "Colour", true, |ui| shown.color_ui(ui, asks));
+    match &light.kind {
+        LightKind::Ambient => {}
+        LightKind::Sun { direction } => {
+            section(ui, "Direction", true, |ui| shown.direction_ui(ui, asks, *direction.now()));
+        }
+        LightKind::Bulb { position, orbit } => {
+            section(ui, "Place", true, |ui| {
+                shown.position_ui(ui, asks, *position.now());
+                shown.orbit_ui(ui, asks, *orbit);
+            });
+        }
+        LightKind::Spot { owner, half_aperture, exponent } => {
+            section(ui, "Cone", true, |ui| shown.cone_ui(ui, asks, *half_aperture, *exponent));
+            section(ui, "Place", true, |ui| {
+                shown.owner_ui(ui, asks, owner);
+                if let SpotOwner::Fixed(aim) = owner {
+                    shown.position_ui(ui, asks, aim.now().position);
+                    shown.direction_ui(ui, asks, aim.now().direction);
+                }
+            });
+        }
+    }
+    if matches!(light.kind, LightKind::Bulb { .. } | LightKind::Spot { .. }) {
+        section(ui, "Fading", false, |ui| shown.fading_ui(ui, asks));
+    }
+    if !matches!(light.kind, LightKind::Ambient) {
+        steps_ui(ui, state, asks, false);
+    }
+}
+
+impl Shown<'_> {
+    fn label(&self, verb: &str) -> String {
+        format!("{verb} {}", self.light.name)
+    }
+
+    fn color_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>) {
+        let Self { state, id, light } = *self;
+        let scene = &state.scene;
+        if Switch::new("Shines", light.on).ui(ui).on_hover_text(self.key_hint()).clicked() {
+            let command = items::toggle_shown(scene, ItemId::Light(id));
+            change(asks, self.label("Switch"), Gesture::Whole, command);
+        }
+        let mut set = |color, gesture| {
+            let command = items::change_light(scene, id, |light| light.color = color);
+            change(asks, self.label("Colour"), gesture, command);
+        };
+        let channels = [("Red", "q and Q"), ("Green", "v and V"), ("Blue", "a and A")];
+        for (i, (name, keys)) in channels.into_iter().enumerate() {
+            if let Some((to, gesture)) = channel_ui(ui, name, keys, light.color.0[i]) {
+                let mut color = light.color;
+                color.0[i] = to;
+                set(color, gesture);
+            }
+        }
+        row(ui, "Picker", |ui| {
+            if let Some((color, gesture)) = swatch(ui, "Colour", "The light's colour", light.color)
+            {
+                set(color, gesture);
+            }
+        });
+        let hint = "0 to 9 is the key that switches the light; no two lights have the same";
+        let number = Number::new("Key", hint).speed(0.05).range(0.0..=9999.0).whole();
+        if let Some((to, gesture)) = number_row(ui, "Key", number, f64::from(light.slot)) {
+            let command = lights::set_slot(scene, id, whole(to));
+            change(asks, self.label("Key of"), gesture, command);
+        }
+    }
+
+    fn key_hint(&self) -> String {
+        match self.light.slot {
+            key @ 0..=9 => format!("Key: {key}"),
+            _ => "It has no key of its own".to_owned(),
+        }
+    }
+
+    fn position_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, position: DVec3) {
+        let hint = "Where the light is";
+        let changed =
+            row(ui, "Position", |ui| vector(ui, &Number::new("Position", hint), position));
+        if let Some((to, gesture)) = changed {
+            let stroke = self.state.stroke(gesture);
+            let command = place::light_position(&self.state.scene, self.id, to, stroke);
+            change(asks, self.label("Move"), gesture, command);
+        }
+    }
+
+    fn direction_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, direction: DVec3) {
+        let hint = "The way its light goes; brought to length 1";
+        let field = Number::new("Direction", hint).speed(0.01).range(-1.0..=1.0);
+        let changed = row(ui, "Direction", |ui| vector(ui, &field, direction));
+        if let Some((to, gesture)) = changed {
+            let stroke = self.state.stroke(gesture);
+            let command = place::light_direction(&self.state.scene, self.id, to, stroke);
+            change(asks, self.label("Turn"), gesture, command);
+        }
+    }
+
+    fn orbit_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, orbit: Orbit) {
+        let (scene, time) = (&self.state.scene, self.state.view.time);
+        let hint = "Circles the world's Y axis";
+        if Switch::new("Circles", orbit.on).ui(ui).on_hover_text(hint).clicked() {
+            let command = motion::toggle_orbit(scene, self.id, time);
+            change(asks, self.label("Circle"), Gesture::Whole, command);
+        }
+        let number = Number::new("Circling speed", "Degrees a second").suffix(" deg/s");
+        if let Some((speed, gesture)) = number_row(ui, "Speed", number, orbit.speed) {
+            let to = Orbit { speed, ..orbit };
+            let stroke = self.state.stroke(gesture);
+            let command = motion::set_orbit(scene, self.id, to, time, stroke);
+            change(asks, self.label("Circle"), gesture, command);
+        }
+    }
+
+    fn cone_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, half_aperture: f64, exponent: f64) {
+        let scene = &self.state.scene;
+        let hint = "Degrees from the axis to the border of the cone; keys + and -";
+        let number = Number::new("Half-aperture", hint).speed(0.2).range(0.0..=90.0);
+        let number = number.suffix(" deg");
+        if let Some((to, gesture)) = number_row(ui, "Aperture", number, half_aperture) {
+            let command = lights::set_aperture(scene, self.id, to);
+            change(asks, self.label("Aperture of"), gesture, command);
+        }
+        let hint = "How much the light is gathered along the axis";
+        let number = Number::new("Concentration", hint).speed(0.1).range(0.0..=1000.0);
+        if let Some((to, gesture)) = number_row(ui, "Exponent", number, exponent) {
+            let command = lights::set_exponent(scene, self.id, to);
+            change(asks, self.label("Concentration of"), gesture, command);
+        }
+    }
+
+    /// What the spot is fixed to.
+    fn owner_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, owner: &SpotOwner) {
+        let scene = &self.state.scene;
+        let mut owners = vec![SpotOwner::SelectedObject, SpotOwner::SelectedCamera];
+        owners.extend(scene.objects.ids().map(SpotOwner::Object));
+        owners.extend(scene.cameras.ids().map(SpotOwner::Camera));
+        owners.push(match owner {
+            SpotOwner::Fixed(_) => owner.clone(),
+            _ => SpotOwner::Fixed(Placed::new(self.aim(owner))),
+        });
+        row(ui, "Shines from", |ui| {
+            let combo = ComboBox::from_id_salt("owner")
+                .selected_text(owner_name(scene, owner))
+                .width(ui.available_width())
+                .truncate();
+            let shown = combo.show_ui(ui, |ui| {
+                for to in owners {
+                    let name = owner_name(scene, &to);
+                    if ui.selectable_label(to == *owner, name).clicked() && to != *owner {
+                        let command = lights::set_owner(scene, self.id, to);
+                        change(asks, self.label("Fix"), Gesture::Whole, command);
+                    }
+                }
+            });
+            shown
+                .response
+                .accessible_name("Shines from")
+                .on_hover_text("What the spot is fixed to: it shines from there along -Z");
+        });
+    }
+
+    /// Where the spot is now, as a place and a direction of its own.
+    fn aim(&self, owner: &SpotOwner) -> Aim {
+        let (scene, view) = (&self.state.scene, &self.state.view);
+        let object = |id| scene.objects.get(id).map(|o| Scene::frame_of_object(o, view.time));
+        let camera = |id| scene.cameras.get(id).map(|c| c.pose.now().world_from_camera());
+        let frame = match owner {
+            SpotOwner::SelectedObject => view.object.and_then(object),
+            SpotOwner::SelectedCamera => camera(view.camera),
+            SpotOwner::Object(id) => object(*id),
+            SpotOwner::Camera(id) => camera(*id),
+            SpotOwner::Fixed(aim) => return *aim.now(),
+        };
+        let frame = frame.unwrap_or(DMat4::IDENTITY);
+        Aim { position: frame.w_axis.truncate(), direction: -frame.z_axis.truncate() }
+    }
+
+    fn fading_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>) {
+        ui.weak("1 / (constant + linear d + quadratic d^2)");
+        let now = self.light.attenuation;
+        let mut set = |label: &str, value: f64, to: &dyn Fn(f64) -> Attenuation| {
+            let number = Number::new(label, "At least 0; one of the three above 0");
+            let number = number.speed(value.abs().max(1e-6) / 50.0).range(0.0..=1e12);
+            if let Some((value, gesture)) = number_row(ui, label, number, value) {
+                let command = lights::set_attenuation(&self.state.scene, self.id, to(value));
+                change(asks, self.label("Fading of"), gesture, command);
+            }
+        };
+        set("Constant", now.constant, &|constant| Attenuation { constant, ..now });
+        set("Linear", now.linear, &|linear| Attenuation { linear, ..now });
+        set("Quadratic", now.quadratic, &|quadratic| Attenuation { quadratic, ..now });
+    }
+}
+
+/// One channel of the colour: a slider and a number.
+fn channel_ui(ui: &mut Ui, name: &str, keys: &str, value: u8) -> Option<(u8, Gesture)> {
+    row(ui, name, |ui| {
+        const FIELD: f32 = 46.0;
+        let mut to = value;
+        let hint = format!("0 to 255; keys {keys}");
+        let slid = ui.scope(|ui| {
+            ui.spacing_mut().slider_width = ui.available_width() - FIELD - theme::GAP;
+            // The handle's size follows the height.
+            ui.spacing_mut().interact_size.y = 15.0;
+            ui.add(Slider::new(&mut to, 0..=255).show_value(false))
+        });
+        let response = slid.inner.accessible_name(name).on_hover_text(&hint);
+        let slid = (to != value).then(|| (to, gestures::of(&response)));
+        let number = Number::new(format!("{name} as a number"), &hint);
+        let number = number.range(0.0..=255.0).speed(0.5).whole();
+        let typed = number.ui(ui, FIELD, f64::from(value));
+        slid.or(typed.map(|(to, gesture)| (color::byte(to / 255.0), gesture)))
+    })
+}
+
+fn owner_name(scene: &Scene, owner: &SpotOwner) -> String {
+    let named = |name: Option<&String>| name.cloned().unwrap_or_else(|| "nothing".to_owned());
+    match owner {
+        SpotOwner::SelectedObject => "the selected object".to_owned(),
+        SpotOwner::SelectedCamera => "the selected camera".to_owned(),
+        SpotOwner::Object(id) => named(scene.objects.get(*id).map(|object| &object.name)),
+        SpotOwner::Camera(id) => named(scene.cameras.get(*id).map(|camera| &camera.name)),
+        SpotOwner::Fixed(_) => "a place of its own".to_owned(),
+    }
+}
+
+/// A field's whole number as one.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "kept from 0 to 9999")]
+fn whole(number: f64) -> u32 {
+    number.clamp(0.0, 9999.0) as u32
+}

@@ -1,0 +1,163 @@
+//! Which material something has: the nineteen as small spheres, the file's, the user's own.
+
+use egui::{Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
+
+use super::super::controls::{self, row, swatch};
+use super::super::number::Number;
+use super::super::spheres::{self, Sphere};
+use super::number_row;
+use crate::app::theme;
+use crate::base::color::Color;
+use crate::edit::Gesture;
+use crate::scene::{Material, MaterialChoice, Object, PresetId};
+
+/// Spheres in a row: the nineteen, the file's and the user's own fill three rows.
+const COLUMNS: u8 = 7;
+
+/// Shows the choice; `object` is what has the material, where it is an object. Gives the choice that
+/// was made.
+pub(super) fn choice_ui(
+    ui: &mut Ui,
+    choice: &MaterialChoice,
+    object: Option<&Object>,
+) -> Option<(MaterialChoice, Gesture)> {
+    let own = coefficients(choice, object);
+    let mut cells: Vec<(MaterialChoice, Sphere, String)> = PresetId::all()
+        .map(|id| (MaterialChoice::Preset(id), Sphere::Preset(id), id.get().name.to_owned()))
+        .collect();
+    let file = coefficients(&MaterialChoice::File, object);
+    cells.push((MaterialChoice::File, Sphere::File(file), "the file's own".to_owned()));
+    cells.push((MaterialChoice::Own(own), Sphere::Own(own), "your own".to_owned()));
+    let mut chosen = None;
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
+        let gaps = f32::from(COLUMNS - 1) * theme::GAP;
+        let side = ((ui.available_width() - gaps) / f32::from(COLUMNS)).floor();
+        for cells in cells.chunks(usize::from(COLUMNS)) {
+            ui.horizontal(|ui| {
+                for (to, sphere, name) in cells {
+                    let on = same_kind(choice, to);
+                    if cell_ui(ui, side, *sphere, name, on) && !on {
+                        chosen = Some((to.clone(), Gesture::Whole));
+                    }
+                }
+            });
+        }
+    });
+    let on = cells.iter().find(|(to, ..)| same_kind(choice, to));
+    ui.label(on.map_or("", |(.., name)| name.as_str()));
+    if let MaterialChoice::Own(material) = choice {
+        let edited = own_ui(ui, *material);
+        chosen = chosen.or(edited.map(|(to, gesture)| (MaterialChoice::Own(to), gesture)));
+    }
+    chosen
+}
+
+/// The coefficients of a choice; of the file's, those of its first part.
+fn coefficients(choice: &MaterialChoice, object: Option<&Object>) -> Material {
+    match choice {
+        MaterialChoice::Preset(id) => id.get().material,
+        MaterialChoice::Own(material) => *material,
+        MaterialChoice::File => object.map_or_else(Material::default, |object| {
+            let object = Object { material: MaterialChoice::File, ..object.clone() };
+            object.part_look(0).material
+        }),
+    }
+}
+
+fn same_kind(a: &MaterialChoice, b: &MaterialChoice) -> bool {
+    match (a, b) {
+        (MaterialChoice::Preset(a), MaterialChoice::Preset(b)) => a == b,
+        (MaterialChoice::File, MaterialChoice::File)
+        | (MaterialChoice::Own(_), MaterialChoice::Own(_)) => true,
+        _ => false,
+    }
+}
+
+fn cell_ui(ui: &mut Ui, side: f32, sphere: Sphere, name: &str, on: bool) -> bool {
+    let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
+    let label = format!("Material: {name}");
+    response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, on, &label));
+    let visuals = ui.visuals();
+    if on {
+        ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill);
+        let ring = Stroke::new(1.5, theme::accent(visuals));
+        ui.painter().rect_stroke(rect, 4.0, ring, StrokeKind::Inside);
+    } else if response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, visuals.widgets.hovered.bg_fill);
+    }
+    spheres::paint(ui, rect.shrink(3.0), sphere);
+    // What is not one of the nineteen carries a letter.
+    let letter = match sphere {
+        Sphere::Preset(_) => "",
+        Sphere::File(_) => "F",
+        Sphere::Own(_) => "own",
+    };
+    if !letter.is_empty() {
+        corner_text(ui, rect, letter);
+    }
+    controls::focus_ring(ui, rect, &response);
+    let hint = match sphere {
+        Sphere::Preset(_) => name.to_owned(),
+        Sphere::File(_) => "What the model's file says, part by part".to_owned(),
+        Sphere::Own(_) => "Your own: begins as what is chosen now".to_owned(),
+    };
+    response.on_hover_text(hint).clicked()
+}
+
+fn corner_text(ui: &Ui, rect: Rect, letter: &str) {
+    let galley = controls::text(ui, letter, TextStyle::Small, rect.width());
+    let size = galley.size() + vec2(4.0, 0.0);
+    let ground = Rect::from_min_max(rect.max - size, rect.max);
+    ui.painter().rect_filled(ground, 2.0, ui.visuals().panel_fill);
+    let at = pos2(ground.left() + 2.0, ground.top());
+    ui.painter().galley_with_override_text_color(at, galley, ui.visuals().text_color());
+}
+
+/// Ka, Kd, Ks and Ns of the user's own material.
+fn own_ui(ui: &mut Ui, material: Material) -> Option<(Material, Gesture)> {
+    let mut changed = None;
+    let rows: [(&str, &str, [f64; 3]); 3] = [
+        ("Ambient", "Ka: the part of ambient light that is sent back", material.ambient),
+        ("Diffuse", "Kd: the part of a lamp's light that is scattered", material.diffuse),
+        ("Specular", "Ks: the part of a lamp's light that is mirrored", material.specular),
+    ];
+    for (i, (name, hint, factors)) in rows.into_iter().enumerate() {
+        if let Some((to, gesture)) = factors_ui(ui, name, hint, factors) {
+            let mut own = material;
+            *[&mut own.ambient, &mut own.diffuse, &mut own.specular][i] = to;
+            changed = Some((own, gesture));
+        }
+    }
+    let number = Number::new("Exponent", "Ns: how small the highlight is").range(0.0..=1000.0);
+    if let Some((exponent, gesture)) = number_row(ui, "Exponent", number, material.exponent) {
+        changed = Some((Material { exponent, ..material }, gesture));
+    }
+    changed
+}
+
+fn factors_ui(
+    ui: &mut Ui,
+    name: &str,
+    hint: &str,
+    factors: [f64; 3],
+) -> Option<([f64; 3], Gesture)> {
+    row(ui, name, |ui| {
+        let mut changed = None;
+        let color = Color::from_factors(factors);
+        if let Some((to, gesture)) = swatch(ui, &format!("{name} colour"), hint, color) {
+            changed = Some((to.factors(), gesture));
+        }
+        let width = (ui.available_width() - 2.0 * theme::GAP) / 3.0;
+        for (i, channel) in ["red", "green", "blue"].iter().enumerate() {
+            let number = Number::new(format!("{name} {channel}"), hint);
+            let number = number.speed(0.005).range(0.0..=1.0).room(5);
+            if let Some((to, gesture)) = number.ui(ui, width, factors[i]) {
+                let mut factors = factors;
+                factors[i] = to;
+                changed = Some((factors, gesture));
+            }
+        }
+        changed
+    })
+}

@@ -1,0 +1,115 @@
+//! The properties of the selected item.
+
+mod camera;
+mod light;
+mod material;
+mod object;
+mod surface;
+
+use egui::{ScrollArea, Sense, TextStyle, Ui, vec2};
+
+use super::controls::{self, Switch, look, row, section};
+use super::icons::Icon;
+use super::number::Number;
+use super::outline_row::name;
+use crate::app::ask::Ask;
+use crate::app::state::State;
+use crate::app::theme;
+use crate::scene::{ItemId, Transformation};
+
+/// Shows it; what is asked for is added to `asks`.
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let Some(item) = state.selected().filter(|item| state.scene.contains(*item)) else {
+        ui.add_space(theme::GAP);
+        ui.weak("Nothing is selected.");
+        return;
+    };
+    title(ui, state, item);
+    // Ids of fields go with the item, so that a number typed for one never lands in another.
+    let area = ScrollArea::vertical().id_salt("properties").auto_shrink(false);
+    area.show(ui, |ui| {
+        ui.push_id(item, |ui| match item {
+            ItemId::Object(id) => object::show(ui, state, asks, id),
+            ItemId::Camera(id) => camera::show(ui, state, asks, id),
+            ItemId::Light(id) => light::show(ui, state, asks, id),
+        });
+    });
+}
+
+fn title(ui: &mut Ui, state: &State, item: ItemId) {
+    let kind = match item {
+        ItemId::Object(_) => "Object",
+        ItemId::Camera(_) => "Camera",
+        ItemId::Light(_) => "Light",
+    };
+    let size = vec2(ui.available_width(), theme::ROW + 6.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let color = ui.visuals().strong_text_color();
+    let icon = rect.with_max_x(rect.left() + 18.0);
+    Icon::of(&state.scene, item).paint(ui.painter(), icon, 15.0, color);
+    let weak = ui.visuals().weak_text_color();
+    let kind = controls::text(ui, kind, TextStyle::Small, 60.0);
+    let right = rect.right() - kind.size().x;
+    controls::put_text(ui, rect.with_min_x(right), kind, weak);
+    let left = rect.with_min_x(icon.right() + 6.0).with_max_x(right - theme::GAP);
+    let text = controls::text(ui, name(state, item), TextStyle::Heading, left.width());
+    controls::put_text(ui, left, text, color);
+    response.on_hover_text(name(state, item));
+}
+
+/// How far one press of x, y or z goes.
+fn steps_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, scaling: bool) {
+    section(ui, "Steps of x, y, z", false, |ui| {
+        let steps = state.view.steps;
+        let does = |to| match to {
+            Transformation::Translation => ("Move", "Units that a press of x, y or z moves"),
+            Transformation::Rotation => ("Rotate", "Degrees that a press of x, y or z rotates"),
+            Transformation::Scaling => ("Scale", "The factor of a press of x, y or z"),
+        };
+        let mut field = |ui: &mut Ui, to: Transformation, value: f64| {
+            let (label, hint) = does(to);
+            let number = Number::new(format!("Step: {label}"), hint);
+            let number = match to {
+                Transformation::Translation => number.speed(0.1).range(1e-9..=1e9),
+                Transformation::Rotation => number.speed(0.5).range(0.001..=180.0).suffix(" deg"),
+                Transformation::Scaling => number.speed(0.01).range(1.000_001..=1000.0),
+            };
+            let changed = row(ui, label, |ui| {
+                let width = ui.available_width();
+                number.ui(ui, width, value)
+            });
+            if let Some((value, _)) = changed {
+                look(asks, state, |view| match to {
+                    Transformation::Translation => view.steps.translation = value,
+                    Transformation::Rotation => view.steps.rotation = value,
+                    Transformation::Scaling => view.steps.scaling = value,
+                });
+            }
+        };
+        ui.add_enabled_ui(!steps.by_size, |ui| {
+            field(ui, Transformation::Translation, steps.translation);
+        });
+        field(ui, Transformation::Rotation, steps.rotation);
+        if scaling {
+            field(ui, Transformation::Scaling, steps.scaling);
+        }
+        let by_size = Switch::new("Move by size", steps.by_size).ui(ui);
+        let hint = "A press moves by 1/20 of the selected object's largest extent";
+        if by_size.on_hover_text(hint).clicked() {
+            look(asks, state, |view| view.steps.by_size ^= true);
+        }
+    });
+}
+
+/// A number in a row of its own.
+fn number_row(
+    ui: &mut Ui,
+    label: &str,
+    number: Number<'_>,
+    value: f64,
+) -> Option<(f64, crate::edit::Gesture)> {
+    row(ui, label, |ui| {
+        let width = ui.available_width();
+        number.ui(ui, width, value)
+    })
+}

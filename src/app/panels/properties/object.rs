@@ -1,0 +1,221 @@
+//! The properties of an object.
+
+use egui::{Button, Ui};
+use glam::{DMat3, DVec3};
+
+use super::super::controls::{Switch, change, fact, row, section, swatch};
+use super::super::number::{Number, keep_angles, kept_angles, short, vector};
+use super::{material, number_row, steps_ui, surface};
+use crate::app::ask::Ask;
+use crate::app::state::State;
+use crate::base::math::{self, Axis};
+use crate::edit::{Gesture, items, motion, place, transform};
+use crate::scene::{Frame, Object, ObjectId, Spin};
+
+const LETTERS: [&str; 3] = ["X", "Y", "Z"];
+
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId) {
+    let Some(object) = state.scene.objects.get(id) else { return };
+    section(ui, "Placement", true, |ui| placement_ui(ui, state, asks, id, object));
+    section(ui, "Material", true, |ui| {
+        let label = format!("Material of {}", object.name);
+        let chosen = material::choice_ui(ui, &object.material, Some(object));
+        if let Some((to, gesture)) = chosen {
+            let command = items::change_object(&state.scene, id, |object| object.material = to);
+            change(asks, label, gesture, command);
+        }
+    });
+    section(ui, "Surface", true, |ui| surface::show(ui, state, asks, id, object));
+    steps_ui(ui, state, asks, true);
+    section(ui, "Spin", false, |ui| spin_ui(ui, state, asks, id, object));
+    section(ui, "Drawing", false, |ui| drawing_ui(ui, state, asks, id, object));
+    section(ui, "Model", false, |ui| model_ui(ui, object));
+}
+
+fn placement_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+    let (scene, view) = (&state.scene, &state.view);
+    let placement = object.placement.now();
+    let speed = (object.largest_extent() / 200.0).clamp(1e-3, 10.0);
+    let hint = "Where the object's origin is";
+    let field = Number::new("Position", hint).speed(speed);
+    let now = place::translation(placement);
+    let position = row(ui, "Position", |ui| vector(ui, &field, now));
+    if let Some((to, gesture)) = position {
+        let command = place::object_translation(scene, view, id, to, state.stroke(gesture));
+        change(asks, format!("Move {}", object.name), gesture, command);
+    }
+    let hint = "Degrees about X, then Y, then Z of the object";
+    let canonical = place::turn_degrees(placement);
+    let given = kept_angles(ui, "rotation", canonical, |given| {
+        same_turn(object_turn(given), object_turn(canonical))
+    });
+    let field = Number::new("Rotation", hint).speed(0.5);
+    let turn = row(ui, "Rotation", |ui| vector(ui, &field, given));
+    if let Some((to, gesture)) = turn {
+        keep_angles(ui, "rotation", to);
+        let command = place::object_turn(scene, view, id, to, state.stroke(gesture));
+        change(asks, format!("Rotate {}", object.name), gesture, command);
+    }
+    let hint = "How much longer the object's own axes are than in its file; negative mirrors";
+    let field = Number::new("Scale", hint).speed(0.01);
+    let scale = row(ui, "Scale", |ui| vector(ui, &field, place::scale(placement)));
+    if let Some((to, gesture)) = scale {
+        let command = place::object_scale(scene, view, id, to, state.stroke(gesture));
+        change(asks, format!("Scale {}", object.name), gesture, command);
+    }
+    stretch_ui(ui, state, asks, object);
+}
+
+/// Factors along the axes of the chosen frame, and the button that multiplies by them.
+fn stretch_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, object: &Object) {
+    let id = ui.scope_id().with("stretch");
+    let kept: [f64; 3] = ui.data(|data| data.get_temp(id)).unwrap_or([1.0; 3]);
+    let hint = "A factor along each axis of the frame that is chosen";
+    let field = Number::new("Stretch", hint).speed(0.01);
+    let factors = row(ui, "Stretch", |ui| vector(ui, &field, DVec3::from_array(kept)));
+    if let Some((to, _)) = factors {
+        ui.data_mut(|data| data.insert_temp(id, to.to_array()));
+    }
+    let (axes, hint) = match state.view.frame {
+        Frame::Local => ("own axes", "Multiplies along the object's own axes"),
+        Frame::Global => ("world's axes", "Multiplies along the world's axes, about its centre"),
+    };
+    row(ui, "", |ui| {
+        let button = Button::new(format!("Stretch along {axes}"));
+        let response = ui.add_enabled(kept != [1.0; 3], button);
+        if response.on_hover_text(hint).on_disabled_hover_text("Set a factor first").clicked() {
+            let factors = DVec3::from_array(kept);
+            let stroke = state.stroke(Gesture::Whole);
+            let command = transform::stretch(&state.scene, &state.view, factors, stroke);
+            change(asks, format!("Stretch {}", object.name), Gesture::Whole, command);
+        }
+    });
+}
+
+/// R = Rx Ry Rz of degrees.
+fn object_turn(degrees: DVec3) -> DMat3 {
+    Axis::ALL.iter().fold(DMat3::IDENTITY, |turn, axis| {
+        turn * math::rotation(axis.unit(), degrees[axis.index()].to_radians())
+    })
+}
+
+/// Whether two turns are the same but for rounding.
+pub(super) fn same_turn(a: DMat3, b: DMat3) -> bool {
+    let difference = a - b;
+    let columns = [difference.x_axis, difference.y_axis, difference.z_axis];
+    columns.iter().all(|column| column.abs().max_element() < 1e-9)
+}
+
+fn spin_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+    let (scene, time) = (&state.scene, state.view.time);
+    let spin = object.spin;
+    for axis in Axis::ALL {
+        let letter = LETTERS[axis.index()];
+        let label = format!("About own {letter}");
+        let response = Switch::new(&label, spin.axes[axis.index()]).ui(ui);
+        let hint = "Turns by itself; what it has turned stays when it is switched off";
+        if response.on_hover_text(hint).clicked() {
+            let command = motion::toggle_spin(scene, id, axis, time);
+            change(asks, format!("Spin {}", object.name), Gesture::Whole, command);
+        }
+    }
+    let number = Number::new("Spin speed", "Degrees a second").suffix(" deg/s");
+    if let Some((speed, gesture)) = number_row(ui, "Speed", number, spin.speed) {
+        let to = Spin { speed, ..spin };
+        let command = motion::set_spin(scene, id, to, time, state.stroke(gesture));
+        change(asks, format!("Spin {}", object.name), gesture, command);
+    }
+    row(ui, "", |ui| {
+        let response = ui.add_enabled(spin.is_on(), Button::new("Apply the turn"));
+        let hint = "Makes what it has turned so far its placement";
+        if response.on_hover_text(hint).on_disabled_hover_text("It does not turn").clicked() {
+            let command = motion::apply_spin(scene, id, time);
+            change(asks, format!("Apply the spin of {}", object.name), Gesture::Whole, command);
+        }
+    });
+}
+
+fn drawing_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+    let scene = &state.scene;
+    let mut set = |verb: &str, gesture, command| {
+        change(asks, format!("{verb} {}", object.name), gesture, command);
+    };
+    let two_sided = Switch::new("Light both sides", object.two_sided).ui(ui);
+    let hint = "Back faces are lit too, with their normals turned";
+    if two_sided.on_hover_text(hint).clicked() {
+        let command = items::change_object(scene, id, |object| object.two_sided ^= true);
+        set("Light both sides of", Gesture::Whole, command);
+    }
+    let file_normals = Switch {
+        enabled: object.model.mesh.has_file_normals(),
+        ..Switch::new("Normals of the file", object.file_normals)
+    };
+    let hint = match file_normals.enabled {
+        true => "Uses the file's normals where a polygon has them, else computed ones",
+        false => "The file has no normals: they are computed",
+    };
+    if file_normals.ui(ui).on_hover_text(hint).clicked() {
+        let command = items::change_object(scene, id, |object| object.file_normals ^= true);
+        set("Change the normals of", Gesture::Whole, command);
+    }
+    row(ui, "Edges", |ui| {
+        let hint = "Edges and normals are drawn in it";
+        if let Some((color, gesture)) = swatch(ui, "Edge colour", hint, object.edge_color) {
+            let command = items::change_object(scene, id, |object| object.edge_color = color);
+            set("Colour the edges of", gesture, command);
+        }
+    });
+}
+
+/// What the model is, in numbers.
+fn model_ui(ui: &mut Ui, object: &Object) {
+    let model = &object.model;
+    let mesh = &model.mesh;
+    let source = model.source.as_deref().and_then(|path| path.file_name()).map_or_else(
+        || format!("{} (the program's own)", model.name),
+        |name| name.to_string_lossy().into_owned(),
+    );
+    fact(ui, "File", &source);
+    fact(ui, "Vertices", &counted(mesh.positions().len()));
+    fact(ui, "Polygons", &counted(mesh.polygon_count()));
+    fact(ui, "Triangles", &counted(mesh.triangles().len()));
+    fact(ui, "Parts", &counted(mesh.parts().len()));
+    if let Some(bounds) = mesh.bounds() {
+        let [x, y, z] = bounds.extent().to_array().map(short);
+        fact(ui, "Extent", &format!("{x} x {y} x {z}"));
+    }
+}
+
+/// A number with its thousands apart.
+pub(super) fn counted(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_stand_apart() {
+        let all = [0, 999, 1000, 12_480, 1_234_567].map(counted);
+        assert_eq!(all, ["0", "999", "1,000", "12,480", "1,234,567"]);
+    }
+
+    #[test]
+    fn angles_that_a_user_gave_say_the_same_as_those_that_are_computed() {
+        let given = DVec3::new(10.0, 95.0, -20.0);
+        let placement = glam::DMat4::from_mat3(object_turn(given));
+        let canonical = place::turn_degrees(&placement);
+        assert!(canonical.y < 90.0, "{canonical}");
+        assert!(same_turn(object_turn(given), object_turn(canonical)));
+        assert!(!same_turn(object_turn(given), object_turn(given + DVec3::X * 1e-3)));
+    }
+}

@@ -1,0 +1,64 @@
+//! What an object's surface shows: its material, its texture, a tint.
+
+use egui::Ui;
+
+use super::super::controls::{Choice, change, choices, row, swatch};
+use crate::app::ask::Ask;
+use crate::app::state::State;
+use crate::edit::{Gesture, items};
+use crate::scene::{Object, ObjectId, Surface};
+
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+    let all = [
+        ("Material", Surface::Material, "The material, lit."),
+        ("Texture", Surface::Texture, "The texture, not lit."),
+        ("Both", Surface::TextureAndLight, "The texture, lit; the material where there is none."),
+    ];
+    let choice = |(label, surface, hint): &(&'static str, Surface, &'static str)| {
+        Choice::new("Surface", label, object.surface == *surface, hint)
+    };
+    let all_choices: Vec<Choice<'_>> = all.iter().map(choice).collect();
+    if let Some(clicked) = choices(ui, &all_choices) {
+        let to = all[clicked].1;
+        let command = items::change_object(&state.scene, id, |object| object.surface = to);
+        change(asks, format!("Change the surface of {}", object.name), Gesture::Whole, command);
+    }
+    texture_ui(ui, state, asks, id, object);
+    row(ui, "Tint", |ui| {
+        let hint = "Multiplied with the texture";
+        if let Some((tint, gesture)) = swatch(ui, "Tint", hint, object.tint) {
+            let command = items::change_object(&state.scene, id, |object| object.tint = tint);
+            change(asks, format!("Tint {}", object.name), gesture, command);
+        }
+    });
+}
+
+fn texture_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+    let by_hand = object.texture.as_ref().map(|texture| {
+        let name = texture.source.file_name().unwrap_or(texture.source.as_os_str());
+        name.to_string_lossy().into_owned()
+    });
+    let of_file = object.model.materials.iter().any(|material| material.texture.is_some());
+    let mapped = !object.model.mesh.uvs().is_empty();
+    let text = by_hand.clone().unwrap_or_else(|| match (of_file, mapped) {
+        (true, _) => "the file's own".to_owned(),
+        (false, true) => "none".to_owned(),
+        (false, false) => "none; the model has no places for one".to_owned(),
+    });
+    row(ui, "Texture", |ui| {
+        ui.add(egui::Label::new(&text).truncate()).on_hover_text(&text);
+    });
+    row(ui, "", |ui| {
+        let choose = ui.button("Choose...");
+        if choose.on_hover_text("Lays a picture over the object").clicked() {
+            asks.push(Ask::ChooseTexture(id));
+        }
+        let remove = ui.add_enabled(by_hand.is_some(), egui::Button::new("Remove"));
+        let hint = "Takes the picture away that was chosen by hand";
+        if remove.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
+            let command = items::change_object(&state.scene, id, |object| object.texture = None);
+            let label = format!("Remove the texture of {}", object.name);
+            change(asks, label, Gesture::Whole, command);
+        }
+    });
+}

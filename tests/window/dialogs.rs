@@ -1,0 +1,309 @@
+//! Files, materials, unsaved work, faults.
+//!
+//! Catches: work that is lost without a question, questions that are not needed, a bad file that
+//! changes the scene, keys that act behind a dialog.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
+use marraztu::app::ask::Ask;
+use marraztu::app::chord::Chord::{Command, Lower, Named, Upper};
+use marraztu::scene::{MaterialChoice, PresetId};
+
+use crate::editor::Editor;
+
+const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+fn folder_with(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+impl Editor {
+    /// Whether the window was told to close in the last frame.
+    fn leaves(&self) -> bool {
+        let commands = self.harness.output().viewport_output.get(&ViewportId::ROOT);
+        commands.is_some_and(|output| output.commands.contains(&ViewportCommand::Close))
+    }
+
+    /// Presses a key, and says whether the program then leaves.
+    fn leaves_by(&mut self, chord: marraztu::app::chord::Chord) -> bool {
+        let (key, modifiers, _) = crate::editor::events_of(chord);
+        let mut leaves = false;
+        for pressed in [true, false] {
+            self.set_modifiers(if pressed { modifiers } else { egui::Modifiers::NONE });
+            self.harness.step();
+            self.key(key, pressed, modifiers);
+            self.harness.step();
+            leaves |= self.leaves();
+        }
+        self.settle();
+        leaves
+    }
+
+    /// Waits for threads that load.
+    fn wait_until(&mut self, done: impl Fn(&Self) -> bool) {
+        let begun = Instant::now();
+        while !done(self) {
+            assert!(begun.elapsed() < Duration::from_secs(20), "waited too long");
+            self.settle();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// Types a path into the own choice of files.
+    fn type_path(&mut self, path: &Path) {
+        // The whole field is chosen and written over.
+        self.press(Command(Key::A));
+        self.harness.event(egui::Event::Text(path.display().to_string()));
+        self.settle();
+        self.press(Named(Key::Enter));
+    }
+}
+
+#[test]
+fn esc_leaves_at_once_while_nothing_is_unsaved() {
+    for chord in [Named(Key::Escape), Command(Key::Q)] {
+        assert!(Editor::new().leaves_by(chord), "{chord}");
+    }
+}
+
+#[test]
+fn esc_asks_while_something_is_unsaved_and_cancel_keeps_everything() {
+    for chord in [Named(Key::Escape), Command(Key::Q)] {
+        let mut editor = Editor::new();
+        editor.press(Lower(Key::Z));
+        let scene = editor.scene();
+        assert!(!editor.leaves_by(chord));
+        assert!(editor.shows("Save the scene?"));
+        editor.press(Lower(Key::Z));
+        assert!(editor.scene() == scene, "keys do not act behind a question");
+        editor.click_label("Cancel");
+        assert!(!editor.shows("Save the scene?"));
+        assert!(!editor.leaves_by(chord), "and it asks again");
+        assert!(!editor.leaves_by(Named(Key::Escape)), "Esc is Cancel there");
+        assert!(!editor.shows("Save the scene?"));
+        assert!(!editor.leaves_by(chord));
+        editor.harness.step();
+        let left = {
+            use egui_kittest::kittest::Queryable as _;
+            editor.harness.get_by_label("Discard").click();
+            (0..4).any(|_| {
+                editor.harness.step();
+                editor.leaves()
+            })
+        };
+        assert!(left);
+    }
+}
+
+#[test]
+fn undoing_all_needs_no_saving() {
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    editor.press(Command(Key::Z));
+    assert!(editor.leaves_by(Named(Key::Escape)));
+}
+
+#[test]
+fn the_cross_of_the_window_asks_too() {
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    let viewport = editor.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
+    viewport.events.push(ViewportEvent::Close);
+    editor.harness.step();
+    let output = &editor.harness.output().viewport_output[&ViewportId::ROOT];
+    assert!(output.commands.contains(&ViewportCommand::CancelClose));
+    editor.settle();
+    assert!(editor.shows("Save the scene?"));
+}
+
+#[test]
+fn a_model_is_loaded_by_key_path_and_material() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::new();
+    let before = editor.scene();
+    editor.press(Lower(Key::F));
+    assert!(editor.shows("Load a model"));
+    editor.type_path(&path);
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    assert!(editor.scene() == before, "nothing is changed before the material is chosen");
+    editor.click_label("gold");
+    editor.click_label("Load");
+    let view = editor.view();
+    let scene = editor.scene();
+    let (first, object) = scene.objects.iter().next().unwrap();
+    assert_eq!((object.name.as_str(), view.object), ("cube", Some(first)));
+    assert_eq!(object.material, MaterialChoice::Preset(PresetId::named("gold").unwrap()));
+    assert_eq!(object.placement.depth(), 0);
+    assert_eq!(editor.steps(), 1);
+    assert!(editor.shows("can hardly be seen from here"), "a cube of one unit is tiny");
+    editor.click_label("Frame selection");
+    assert!(!editor.shows("can hardly be seen from here"));
+    assert_eq!(editor.steps(), 2);
+    editor.press(Command(Key::Z));
+    editor.press(Command(Key::Z));
+    assert!(editor.scene().objects == before.objects);
+}
+
+#[test]
+fn a_dropped_file_loads_as_by_key_and_cancelling_changes_nothing() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::new();
+    let before = editor.scene();
+    editor.ask(Ask::LoadFiles(vec![path.clone(), path]));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.press(Named(Key::Escape));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.click_label("Cancel");
+    editor.settle();
+    assert!(!editor.shows("Material of cube.obj"));
+    assert!(editor.scene() == before);
+}
+
+#[test]
+fn a_bad_file_is_told_in_one_sentence_with_its_line_and_changes_nothing() {
+    let (_folder, path) = folder_with("bad.obj", "v 0 0 0\nv 1 zero 0\nf 1 2 2\n");
+    let mut editor = Editor::new();
+    let before = editor.scene();
+    editor.ask(Ask::LoadFiles(vec![path]));
+    editor.wait_until(|editor| editor.shows("That did not work"));
+    assert!(editor.shows("bad.obj, line 2"));
+    assert!(editor.scene() == before);
+    editor.press(Named(Key::Enter));
+    assert!(!editor.shows("That did not work"), "Enter closes it");
+}
+
+#[test]
+fn a_file_that_is_not_there_is_told() {
+    let mut editor = Editor::new();
+    editor.ask(Ask::LoadFiles(vec![PathBuf::from("nowhere.obj")]));
+    editor.wait_until(|editor| editor.shows("That did not work"));
+    assert!(editor.shows("there is no such file"));
+}
+
+#[test]
+fn what_was_mended_is_told_and_listed_on_a_click() {
+    let text = format!("{CUBE}f 1 2 99\nf 1 2\n");
+    let (_folder, path) = folder_with("mended.obj", &text);
+    let mut editor = Editor::new();
+    editor.ask(Ask::LoadFiles(vec![path]));
+    editor.wait_until(|editor| editor.shows("Material of mended.obj"));
+    editor.click_label("Load");
+    editor.click_label("Details");
+    assert!(editor.shows("that the file does not have"), "a sentence for each finding");
+    editor.click_label("Close");
+    editor.click_label("Dismiss");
+    assert!(editor.state().notices.is_empty());
+}
+
+#[test]
+fn a_new_camera_asks_for_its_material() {
+    let mut editor = Editor::new();
+    editor.press(Upper(Key::F));
+    editor.click_label("jade");
+    editor.click_label("Add");
+    let (scene, view) = (editor.scene(), editor.view());
+    let camera = scene.cameras.get(view.camera).unwrap();
+    assert_eq!(scene.cameras.len(), 2);
+    assert_eq!(camera.material, MaterialChoice::Preset(PresetId::named("jade").unwrap()));
+    assert_eq!(camera.pose.now().eye, glam::DVec3::ZERO);
+}
+
+#[test]
+fn the_picture_is_saved_as_it_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("view.png");
+    let mut editor = Editor::new();
+    editor.press(Named(Key::F12));
+    editor.type_path(&path);
+    editor.wait_until(|_| path.is_file());
+    let saved = image::open(&path).unwrap().to_rgb8();
+    let size = editor.state().statistics.size;
+    assert_eq!((saved.width() as usize, saved.height() as usize), (size.width, size.height));
+    assert_eq!(saved.get_pixel(0, 0).0, [0, 0, 179]);
+}
+
+#[test]
+fn a_scene_is_saved_and_opened_again_and_a_lost_model_is_asked_for() {
+    let (folder, path) = folder_with("cube.obj", CUBE);
+    let file = folder.path().join("my.marraztu");
+    let mut editor = Editor::new();
+    editor.ask(Ask::LoadFiles(vec![path.clone()]));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.click_label("Load");
+    assert!(!editor.state().history.is_saved());
+    editor.press(Command(Key::S));
+    // The ending is added.
+    editor.type_path(&folder.path().join("my"));
+    editor.wait_until(|_| file.is_file());
+    assert!(editor.state().history.is_saved());
+    assert_eq!(editor.state().path.as_deref(), Some(&*file));
+
+    editor.press(Lower(Key::Z));
+    editor.press(Command(Key::S));
+    assert!(editor.state().history.is_saved(), "the second time nothing is asked");
+    let saved = editor.scene();
+
+    let elsewhere = tempfile::tempdir().unwrap();
+    let moved = elsewhere.path().join("cube.obj");
+    std::fs::rename(&path, &moved).unwrap();
+    let mut other = Editor::new();
+    let first = other.scene();
+    other.ask(Ask::LoadFiles(vec![file.clone()]));
+    other.wait_until(|editor| editor.shows("Where is the missing model?"));
+    other.press(Named(Key::Escape));
+    assert!(other.shows("The scene was not opened"));
+    assert!(other.scene() == first);
+    other.click_label("Close");
+    other.ask(Ask::LoadFiles(vec![file]));
+    other.wait_until(|editor| editor.shows("Where is the missing model?"));
+    other.type_path(&moved);
+    other.wait_until(|editor| editor.scene().objects.len() == saved.objects.len());
+    let pose = |editor: &Editor| *editor.scene().selected_camera(&editor.view()).pose.now();
+    assert_eq!(pose(&other), pose(&editor));
+    assert!(other.state().history.is_saved());
+    assert_eq!(other.steps(), 0);
+}
+
+#[test]
+fn save_in_the_question_saves_and_then_leaves() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("work.marraztu");
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    assert!(!editor.leaves_by(Command(Key::Q)));
+    editor.click_label("Save");
+    assert!(editor.shows("Save the scene"));
+    editor.type_path(&file);
+    assert!(file.is_file());
+    assert!(editor.leaves_by(Named(Key::Escape)));
+}
+
+#[test]
+fn a_scene_that_cannot_be_saved_is_told_and_stays_unsaved() {
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    editor.press(Command(Key::S));
+    editor.type_path(Path::new("/proc/nowhere/x.marraztu"));
+    assert!(editor.shows("That did not work"));
+    assert!(!editor.state().history.is_saved());
+}
+
+#[test]
+fn opening_a_scene_over_unsaved_work_asks_first() {
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    for key in [Command(Key::O), Command(Key::N)] {
+        editor.press(key);
+        assert!(editor.shows("Save the scene?"), "{key}");
+        editor.click_label("Cancel");
+    }
+    editor.press(Command(Key::N));
+    editor.click_label("Discard");
+    assert_eq!(editor.steps(), 0);
+}

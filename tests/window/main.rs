@@ -1,0 +1,10 @@
+//! The window without a window: keys, mouse and dialogs, event by event.
+//!
+//! What each file catches is said at its top.
+
+#![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
+
+mod dialogs;
+mod editor;
+mod keys_and_clicks;
+mod mouse;
