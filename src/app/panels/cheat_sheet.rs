@@ -34,7 +34,7 @@ fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let mut wanted: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let field = egui::TextEdit::singleline(&mut wanted)
         .hint_text("Search: an action, a key")
-        .vertical_align(egui::Align::Center)
+        .align(egui::Align2::LEFT_CENTER)
         .min_size(vec2(0.0, theme::ROW))
         .desired_width(f32::INFINITY);
     let response = ui.add(field).accessible_name("Search among the keys");

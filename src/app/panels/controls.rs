@@ -352,9 +352,14 @@ pub(super) fn swatch(
     color: Color,
 ) -> Option<(Color, Gesture)> {
     let mut bytes = color.0;
-    ui.spacing_mut().interact_size.x = 34.0;
-    let response = ui.color_edit_button_srgb(&mut bytes).accessible_name(name);
-    let response = response.on_hover_text(hint);
+    let button = ui.scope(|ui| {
+        ui.spacing_mut().interact_size.x = 34.0;
+        // Its border: a white one must be seen on a white ground.
+        let border = ui.visuals().weak_text_color();
+        ui.visuals_mut().widgets.inactive.bg_fill = border;
+        ui.color_edit_button_srgb(&mut bytes)
+    });
+    let response = button.inner.accessible_name(name).on_hover_text(hint);
     (response.changed() && bytes != color.0).then(|| (Color(bytes), gestures::of(&response)))
 }
 

@@ -34,6 +34,9 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         .show_separator_line(false)
         .frame(egui::Frame::NONE)
         .show(ui, |ui| tools_ui(ui, state, asks));
+    if state.renaming.is_none() {
+        outline_row::forget_new_name(ui);
+    }
     let id = Id::unique("unfolded objects");
     let mut unfolded: BTreeSet<ObjectId> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let lines = lines(state, &unfolded);

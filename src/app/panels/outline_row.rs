@@ -153,9 +153,19 @@ fn light_ui(ui: &Ui, color: [u8; 4], slot: u32, at: Pos2) -> f32 {
     rect.left()
 }
 
+/// Where the name is kept that is being typed.
+fn new_name() -> Id {
+    Id::unique("new name")
+}
+
+/// Forgets what was typed as a name that is no longer asked for.
+pub(super) fn forget_new_name(ui: &Ui) {
+    ui.data_mut(|data| data.remove_temp::<String>(new_name()));
+}
+
 /// A field for another name. It is left with Enter, by Esc without a new name, by a click elsewhere.
 fn rename_ui(ui: &mut Ui, asks: &mut Vec<Ask>, rect: Rect, name: &str) {
-    let id = Id::unique("new name");
+    let id = new_name();
     let begun: Option<String> = ui.data(|data| data.get_temp(id));
     let mut text = begun.clone().unwrap_or_else(|| name.to_owned());
     let field = TextEdit::singleline(&mut text).id(id).margin(vec2(3.0, 1.0));

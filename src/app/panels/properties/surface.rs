@@ -43,7 +43,7 @@ fn texture_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, obj
     let text = by_hand.clone().unwrap_or_else(|| match (of_file, mapped) {
         (true, _) => "the file's own".to_owned(),
         (false, true) => "none".to_owned(),
-        (false, false) => "none; the model has no places for one".to_owned(),
+        (false, false) => "none; the model has no uv".to_owned(),
     });
     row(ui, "Texture", |ui| {
         ui.add(egui::Label::new(&text).truncate()).on_hover_text(&text);
