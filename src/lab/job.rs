@@ -91,7 +91,6 @@ const BACKGROUND: Color = Color([26, 26, 31]);
 pub fn run(job: &Job, model: &Model) -> Result<Measured, CommandError> {
     let mesh = prepared(model, job.raw);
     let triangles = mesh.mesh.triangles().len();
-    mesh.mesh.draw_order();
     let (scene, view, settings) = scene(job, Shared::new(mesh))?;
     let mut renderer = Renderer::default();
     let mut frame = |i: usize| -> Result<f64, CommandError> {

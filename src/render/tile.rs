@@ -63,7 +63,6 @@ pub(super) const fn seen(word: u64) -> Seen {
 }
 
 /// The depth that a word says.
-#[expect(clippy::cast_possible_truncation, reason = "the upper half is meant")]
 pub(super) const fn depth(word: u64) -> f32 {
     f32::from_bits((word >> 32) as u32)
 }
@@ -478,7 +477,8 @@ mod tests {
                     let place = from * 256 + random(extent * 256);
                     if random(2) == 0 { place } else { place / 128 * 128 }
                 };
-                let corners = [0, 1, 2].map(|_| Snapped { x: coordinate(left), y: coordinate(top) });
+                let corners =
+                    [0, 1, 2].map(|_| Snapped { x: coordinate(left), y: coordinate(top) });
                 let mut want = Vec::new();
                 if let Some(triangle) = Triangle::new(corners) {
                     triangle.covered(BOUNDS, |pixel| want.push((pixel.x, pixel.y)));
