@@ -43,7 +43,10 @@ impl Editor {
             let mut clicked = None;
             egui::Panel::left("buttons").show(ui, |ui| {
                 for action in actions {
-                    clicked = clicked.or(action.button(ui, app.state()));
+                    let button = ui.scope(|ui| action.button(ui, app.state()));
+                    clicked = clicked.or(button.inner);
+                    let place = button.response.rect.center();
+                    ui.data_mut(|data| data.insert_temp(egui::Id::unique(action), place));
                 }
             });
             app.editor_ui(ui);
@@ -181,9 +184,17 @@ impl Editor {
         self.button(places[places.len() - 1], button, false);
     }
 
+    /// Clicks what has this label; where several have it, the one that is on top.
     pub(crate) fn click_label(&mut self, label: &str) {
-        self.harness.get_by_label(label).click();
+        let found = self.harness.query_all_by_label(label).last();
+        found.unwrap_or_else(|| panic!("nothing is called {label}")).click();
         self.settle();
+    }
+
+    /// Clicks a button of the further panel.
+    pub(crate) fn click_button(&mut self, action: Action) {
+        let place = self.harness.ctx.data(|data| data.get_temp(egui::Id::unique(action)));
+        self.click(place.expect("the panel has this button"), PointerButton::Primary);
     }
 
     pub(crate) fn shows(&self, label: &str) -> bool {

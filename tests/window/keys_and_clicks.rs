@@ -43,7 +43,7 @@ fn every_action_does_the_same_by_each_of_its_keys_and_by_its_button() {
                 editor
             };
             let mut clicked = in_situation(Editor::with_buttons(chunk));
-            clicked.click_label(action.look().label);
+            clicked.click_button(action);
             for key in action.look().keys {
                 let mut pressed = in_situation(Editor::small());
                 pressed.press(*key);
@@ -300,13 +300,17 @@ fn a_new_item_is_selected_and_a_removed_one_gives_way_to_the_next() {
 fn a_renamed_item_has_its_name_and_a_name_of_blanks_is_refused() {
     let mut editor = Editor::new();
     let id = ItemId::Camera(editor.view().camera);
-    editor.press(Named(Key::F2));
-    assert_eq!(editor.state().renaming, Some(id));
-    editor.ask(Ask::EndRename(Some("  eye ".to_owned())));
-    assert_eq!(editor.state().name(id), Some("eye"));
-    editor.press(Named(Key::F2));
-    editor.ask(Ask::EndRename(Some("  ".to_owned())));
-    assert_eq!((editor.state().name(id), editor.state().renaming), (Some("eye"), None));
+    let mut rename = |name: &str| {
+        editor.press(Named(Key::F2));
+        assert_eq!(editor.state().renaming, Some(id));
+        editor.press(Command(Key::A));
+        editor.harness.event(Event::Text(name.to_owned()));
+        editor.settle();
+        editor.press(Named(Key::Enter));
+        (editor.state().name(id).map(str::to_owned), editor.state().renaming)
+    };
+    assert_eq!(rename("  eye "), (Some("eye".to_owned()), None));
+    assert_eq!(rename("  "), (Some("eye".to_owned()), None));
 }
 
 #[test]

@@ -5,8 +5,9 @@
 
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Vec2, vec2};
 use marraztu::app::action::Action;
+use marraztu::app::ask::Ask;
 use marraztu::app::chord::Chord::{Command, Either, Lower, Named, Upper};
-use marraztu::scene::{CameraMode, ItemId, Subject};
+use marraztu::scene::{CameraMode, ItemId, PolygonMode, Subject};
 
 use crate::editor::Editor;
 
@@ -23,16 +24,18 @@ fn pose(editor: &Editor) -> marraztu::scene::Pose {
     *editor.scene().selected_camera(&editor.view()).pose.now()
 }
 
-/// Where the ship on the right is, and the one on the left.
-const X_WING: (f32, f32) = (0.66, 0.5);
-const R_FALKE: (f32, f32) = (0.335, 0.5);
+/// How far to the right the ships are, in units of half of the picture's shorter side.
+const X_WING: f32 = 0.6;
+const R_FALKE: f32 = -0.6;
 
 /// A place in the picture at which this object is seen.
-fn place_of(editor: &mut Editor, name: &str, (x, y): (f32, f32)) -> egui::Pos2 {
-    for step in 0..40 {
-        let at = editor.at(x, y - 0.1 + 0.005 * step as f32);
+fn place_of(editor: &mut Editor, name: &str, aside: f32) -> egui::Pos2 {
+    let rect = editor.picture();
+    let half = rect.size().min_elem() / 2.0;
+    for step in -10..10_i8 {
         // Far enough from the last click in time not to be its second half.
         editor.harness.run_steps(30);
+        let at = rect.center() + vec2(aside, 0.02 * f32::from(step)) * half;
         editor.click(at, LEFT);
         if name_of_selected(editor) == name && editor.view().subject == Subject::Object {
             return at;
@@ -58,22 +61,20 @@ fn a_click_in_polygon_mode_selects_the_polygon_that_is_seen() {
     let mut editor = Editor::new();
     let at = place_of(&mut editor, "r_falke", R_FALKE);
     editor.press(Either(Key::O));
-    // All polygons of the object are shown once; then some are seen where it is.
-    let count = 400;
-    for _ in 0..count {
-        editor.perform(Action::NextPolygon);
-    }
-    let current = |editor: &Editor| editor.view().polygons.map(|mode| mode.current);
-    let before = current(&editor);
-    let mut clicked = false;
-    for dx in -60..60_i16 {
-        editor.click(at + vec2(f32::from(dx), 0.0), LEFT);
-        clicked |= current(&editor) != before;
-        if clicked {
-            break;
-        }
-    }
-    assert!(clicked, "no polygon could be selected");
+    // All polygons of the object are shown, so that one of them is seen there.
+    let mut view = editor.view();
+    let object = editor.scene().objects.get(view.object.unwrap()).unwrap().clone();
+    let count = u32::try_from(object.model.mesh.polygon_count()).unwrap();
+    view.polygons = Some(PolygonMode { current: 0, shown: (0..count).collect() });
+    editor.ask(Ask::Look(Box::new(view)));
+    editor.harness.run_steps(30);
+    editor.click(at, LEFT);
+    let current = editor.view().polygons.unwrap().current;
+    assert_ne!(current, 0);
+    let forward = -pose(&editor).axes.z_axis;
+    let normal = object.model.mesh.polygon_normals()[current as usize].map(f64::from);
+    assert!(glam::DVec3::from_array(normal).dot(forward) < 0.0, "it faces the camera");
+    assert_eq!(editor.steps(), 0);
 }
 
 #[test]
@@ -240,11 +241,11 @@ fn a_right_click_opens_the_menu_of_the_thing_under_it_and_selects_it() {
     place_of(&mut editor, "r_falke", R_FALKE);
     editor.click(at + vec2(1.0, 0.0), RIGHT);
     assert_eq!(name_of_selected(&editor), "x_wing");
-    assert!(editor.shows("Duplicate"));
+    assert!(editor.shows("Split into parts"));
     let count = editor.scene().objects.len();
     editor.click_label("Duplicate Ctrl+D");
     assert_eq!(editor.scene().objects.len(), count + 1);
-    assert!(!editor.shows("Duplicate"), "the menu is closed");
+    assert!(!editor.shows("Split into parts"), "the menu is closed");
 }
 
 #[test]
