@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use marraztu::app::action::Action;
 use marraztu::app::chord::Chord;
