@@ -4,7 +4,7 @@
 //! (`tests/floors.rs` reads the sources and fails otherwise).
 //!
 //! ```text
-//! base  <  scene  <  { io, edit, render }  <  app
+//! base  <  scene  <  { io, edit, render }  <  lab  <  app
 //! ```
 //!
 //! * [`base`]: the conventions of the mathematics, colours, pictures.
@@ -12,11 +12,13 @@
 //! * [`io`]: models, textures, scene files and pictures, to and from the disk.
 //! * [`edit`]: which command a key means, and the history of commands.
 //! * [`render`]: from a scene to a picture: plan, geometry, bins, tiles, stages.
+//! * [`lab`]: what drawing costs in time.
 //! * [`app`]: the window. The only floor that knows of egui.
 
 pub mod app;
 pub mod base;
 pub mod edit;
 pub mod io;
+pub mod lab;
 pub mod render;
 pub mod scene;

@@ -3,12 +3,11 @@
 //! Each test is a small file. Those of the first part are read wrongly, or not at all, by `tobj`
 //! alone; breaking the pass over the bytes that stands before it makes them fail.
 
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
 use marraztu::base::color::Color;
-use marraztu::base::image::{Picture, Size};
-use marraztu::io::{
-    Finding, FindingKind, LoadError, Loaded, Progress, describe, load, parse, save_picture,
-};
-use marraztu::scene::{LoadOptions, Mesh, NONE, Scale, UpAxis, Winding, Wrap};
+use marraztu::io::{Finding, FindingKind, LoadError, Loaded, Progress, describe, load, parse};
+use marraztu::scene::{LoadOptions, Mesh, NONE, Scale, UpAxis, Winding};
 use proptest::prelude::*;
 
 fn read_bytes(bytes: &[u8]) -> Result<Loaded, LoadError> {
@@ -229,11 +228,15 @@ fn corners_are_written_in_all_their_ways() {
 fn runs_with_the_same_names_are_one_part_and_are_called_by_group_object_or_material() {
     let mesh = read(&triangle_and(
         "f 1 2 3\no ship\nf 1 2 3\ng  hull  left \nf 1 2 3\nusemtl red\nf 1 2 3\ng hull  left\n\
-         f 1 2 3\no\ng\nusemtl red\nf 1 2 3\no ship\nusemtl red\nf 1 2 3\n",
+         f 1 2 3\no\ng\nusemtl red\nf 1 2 3\no ship\nusemtl red\nf 1 2 3\ng wing\n\
+         f 1 2 3\no boat\nf 1 2 3\n",
     ));
     let parts: Vec<&str> = mesh.model.mesh.parts().iter().map(|part| part.name.as_str()).collect();
-    assert_eq!(parts, ["part 1", "ship", "hull  left", "hull  left", "red", "ship"]);
-    assert_eq!(mesh.model.mesh.polygon_parts(), [0, 1, 2, 3, 3, 4, 5]);
+    assert_eq!(
+        parts,
+        ["part 1", "ship", "hull  left", "hull  left", "red", "ship", "wing", "boat"]
+    );
+    assert_eq!(mesh.model.mesh.polygon_parts(), [0, 1, 2, 3, 3, 4, 5, 6, 7]);
 }
 
 #[test]
@@ -401,93 +404,6 @@ fn work_is_watched_and_cancelled() {
     progress.cancel();
     let error = parse(text.as_bytes(), "a.obj", None, &options, &progress).unwrap_err();
     assert_eq!(error, LoadError::Cancelled);
-}
-
-// Materials and textures, beside the file.
-
-/// A folder with an OBJ file of this text, an MTL file, and a texture in a folder of its own.
-fn with_files(obj: &str, mtl: (&str, &str)) -> Loaded {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.obj");
-    std::fs::write(&path, triangle_and(obj)).unwrap();
-    std::fs::create_dir(folder.path().join("Maps")).unwrap();
-    std::fs::write(folder.path().join(mtl.0), mtl.1).unwrap();
-    let picture = Picture::filled(Size::new(1, 2), [1, 2, 3, 255]);
-    save_picture(&folder.path().join("Maps/wood 1.png"), &picture).unwrap();
-    load(&path, &LoadOptions::default(), &Progress::new()).unwrap()
-}
-
-const RED: &str = "newmtl red\nKa 0.1 0 0\nKd 0.5 0 0\nKs 0 0 0\n";
-
-#[test]
-fn a_material_is_found_under_names_with_blanks_and_in_any_order_of_statements() {
-    for (line, file) in [
-        ("mtllib a b.mtl", "a b.mtl"),
-        ("mtllib none.mtl a b.mtl other.mtl", "a b.mtl"),
-        ("mtllib \"a b.mtl\"", "a b.mtl"),
-        ("mtllib C:\\models\\A.MTL # from there", "a.mtl"),
-    ] {
-        let loaded = with_files(&format!("usemtl red\nf 1 2 3\n{line}\n"), (file, RED));
-        assert_eq!(loaded.model.materials.len(), 1, "{line}: {:?}", loaded.findings);
-        assert_eq!(loaded.model.mesh.parts()[0].material, Some(0), "{line}");
-        let missing = kinds(&loaded.findings);
-        assert!(missing.iter().all(|kind| *kind == FindingKind::MtlMissing), "{missing:?}");
-        assert_eq!(missing.len(), if line.contains("none") { 2 } else { 0 }, "{line}");
-    }
-}
-
-#[test]
-fn missing_materials_and_files_are_listed() {
-    let loaded = with_files("mtllib x.mtl y.mtl\nusemtl blue\nf 1 2 3\n", ("z.mtl", RED));
-    let texts: Vec<String> = loaded.findings.iter().map(ToString::to_string).collect();
-    assert_eq!(
-        texts,
-        [
-            "a.obj: the material file \"x.mtl\" was not found (line 4)",
-            "a.obj: the material file \"y.mtl\" was not found (line 4)",
-            "a.obj: the material \"blue\" is not known: silver is taken (line 5)",
-        ]
-    );
-}
-
-#[test]
-fn a_material_and_its_use_may_both_have_no_name() {
-    let mtl = RED.replace("newmtl red", "newmtl");
-    let loaded = with_files("mtllib m.mtl\nusemtl\nf 1 2 3\n", ("m.mtl", &mtl));
-    assert_eq!(loaded.model.mesh.parts()[0].material, Some(0));
-    assert_eq!(loaded.findings, []);
-}
-
-#[test]
-fn a_texture_is_found_by_back_slashes_by_its_last_name_and_in_another_case() {
-    for name in ["Maps\\wood 1.png", ".\\\\maps\\\\WOOD 1.PNG", "maps/wood 1.png"] {
-        let mtl = format!("{RED}map_Kd -clamp on -o 0.5 -s 2 3 {name}\n");
-        let loaded = with_files("mtllib m.mtl\nusemtl red\nf 1 2 3\n", ("m.mtl", &mtl));
-        assert_eq!(loaded.findings, [], "{name}");
-        let texture = loaded.model.materials[0].texture.clone().unwrap();
-        assert_eq!(texture.picture.size(), Size::new(1, 2));
-        assert_eq!((texture.wrap, texture.offset), (Wrap::Clamp, [0.5, 0.0]));
-        assert_eq!(texture.scale, [2.0, 3.0]);
-    }
-}
-
-#[test]
-fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
-    let mtl = format!("{RED}map_Kd none.png\n");
-    let loaded = with_files("mtllib m.mtl\nusemtl red\nf 1 2 3\n", ("m.mtl", &mtl));
-    assert_eq!(
-        only(&loaded),
-        (FindingKind::TextureMissing, "the texture \"none.png\" was not found (line 5)")
-    );
-    let mtl = format!("{RED}map_Kd a.obj\n");
-    let loaded = with_files("mtllib m.mtl\nusemtl red\nf 1 2 3\n", ("m.mtl", &mtl));
-    assert_eq!(
-        only(&loaded),
-        (
-            FindingKind::TextureUnreadable,
-            "the texture cannot be read: a.obj: this is no PNG, JPEG, BMP, TGA or GIF (line 5)"
-        )
-    );
 }
 
 proptest! {

@@ -4,6 +4,8 @@
 //! left out, loudly; `MARRAZTU_REQUIRE_SHARED=1` makes that a failure, `MARRAZTU_SHARED` says where
 //! they are.
 
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
@@ -11,6 +13,7 @@ use marraztu::io::{Finding, FindingKind, LoadError, Progress, load};
 use marraztu::scene::{Corner, LoadOptions, Mesh, dvec3, newell};
 
 /// The folder of the models, where it is there.
+#[expect(clippy::print_stderr, reason = "who runs the tests has to see what is left out")]
 fn models() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared");
     let shared = std::env::var_os("MARRAZTU_SHARED").map_or_else(beside, PathBuf::from);

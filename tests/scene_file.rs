@@ -1,5 +1,7 @@
 //! Scene files: what is saved comes back, and nothing is lost where it cannot.
 
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 

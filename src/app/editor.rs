@@ -76,6 +76,7 @@ impl App {
     pub fn editor_ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut asks = Vec::new();
+        Keyboard::begin(&ctx);
         self.begin(&ctx, &mut asks);
         panels::show(ui, &self.state, &mut asks);
         if let Some(worker) = &self.worker {

@@ -49,6 +49,15 @@ impl Axis {
     }
 }
 
+/// What `f` makes of each of three values.
+///
+/// In code for many lanes at once, the array's own `map` is not always compiled into its place, and
+/// every operation becomes a call.
+#[inline(always)]
+pub fn each<A, B>([a, b, c]: [A; 3], mut f: impl FnMut(A) -> B) -> [B; 3] {
+    [f(a), f(b), f(c)]
+}
+
 /// `v` at length 1, whatever its length was; `None` for zero and for what is not finite.
 ///
 /// The largest component is brought to 1 first, so that squares neither overflow nor vanish.

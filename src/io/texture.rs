@@ -69,3 +69,48 @@ fn reason(error: &image::ImageError) -> String {
         other => format!("the picture is damaged: {other}"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_picture_is_read_whatever_its_name_ends_in() {
+        use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga};
+        let folder = tempfile::tempdir().unwrap();
+        let texels = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]];
+        let drawn = image::RgbaImage::from_fn(8, 8, |x, y| {
+            image::Rgba(texels[(x / 4 + y / 4 * 2) as usize])
+        });
+        for format in [Bmp, Gif, Jpeg, Png, Tga] {
+            // Only a TGA has nothing in it that tells what it is.
+            let path = folder.path().join(if format == Tga { "a.tga" } else { "a.picture" });
+            let written = image::DynamicImage::from(drawn.clone()).to_rgb8();
+            written.save_with_format(&path, format).unwrap();
+            let read = load_picture(&path).unwrap();
+            assert_eq!(read.size(), Size::new(8, 8), "{format:?}");
+            for (x, y, texel) in [(0, 0, texels[0]), (7, 0, texels[1]), (0, 7, texels[2])] {
+                for (got, expected) in read.pixel(x, y).into_iter().zip(texel) {
+                    // JPEG blurs; a row or a channel in the wrong place is farther off.
+                    assert!(got.abs_diff(expected) < 64, "{format:?} at {x}, {y}: {got}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_picture_that_is_none_or_too_large_or_cut_off_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let refusal = || load_picture(&path).unwrap_err().to_string();
+        assert_eq!(refusal(), "a.png: there is no such file");
+        image::RgbImage::new(16_385, 1).save(&path).unwrap();
+        assert_eq!(refusal(), "a.png: the picture is larger than 16384 x 16384");
+        image::RgbImage::new(64, 64).save(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+        assert!(refusal().starts_with("a.png: "), "{}", refusal());
+        std::fs::write(&path, b"hello").unwrap();
+        assert!(refusal().starts_with("a.png: the picture is damaged"), "{}", refusal());
+    }
+}

@@ -98,8 +98,8 @@ impl Screen {
     /// The place on the screen, or [`BEYOND`] it.
     #[inline(always)]
     pub(super) fn vertex(&self, clip: Clip) -> ScreenVertex {
-        let [a, b, c, d, e, f] = self.distances(clip).map(|distance| distance >= 0.0);
-        let inside = a & b & c & d & e & f;
+        let [a, b, c, d, e, f] = self.distances(clip);
+        let inside = (a >= 0.0) & (b >= 0.0) & (c >= 0.0) & (d >= 0.0) & (e >= 0.0) & (f >= 0.0);
         let vertex = self.project(clip);
         ScreenVertex { x: if inside { vertex.x } else { BEYOND }, ..vertex }
     }

@@ -10,6 +10,8 @@
 //! Coordinates stay within 2^28 (the guard band of 2^20 pixels), so that an edge function stays below
 //! 2^59 and nothing overflows.
 
+use crate::base::math::each;
+
 /// Parts that a pixel is cut into, in each direction.
 pub const SUBPIXELS: i32 = 256;
 
@@ -83,7 +85,8 @@ struct Edge {
 impl Edge {
     #[inline(always)]
     fn new(p: Snapped, q: Snapped) -> Self {
-        let [px, py, qx, qy] = [p.x, p.y, q.x, q.y].map(i64::from);
+        let (px, py) = (i64::from(p.x), i64::from(p.y));
+        let (qx, qy) = (i64::from(q.x), i64::from(q.y));
         Self { a: py - qy, b: qx - px, c: px * qy - py * qx }
     }
 
@@ -157,8 +160,8 @@ impl Triangle {
     #[must_use]
     #[inline(always)]
     pub fn edges_at(&self, x: i32, y: i32) -> [i64; 3] {
-        let [cx, cy] = [x, y].map(centre);
-        self.edges.map(|edge| edge.at(cx, cy))
+        let (cx, cy) = (centre(x), centre(y));
+        each(self.edges, |edge| edge.at(cx, cy))
     }
 
     /// What the edge functions gain by a pixel to the right, and by one down.
@@ -220,7 +223,9 @@ impl Triangle {
 #[must_use]
 #[inline(always)]
 pub fn doubled_area([p, q, r]: [Snapped; 3]) -> i64 {
-    let [px, py, qx, qy, rx, ry] = [p.x, p.y, q.x, q.y, r.x, r.y].map(i64::from);
+    let (px, py) = (i64::from(p.x), i64::from(p.y));
+    let (qx, qy) = (i64::from(q.x), i64::from(q.y));
+    let (rx, ry) = (i64::from(r.x), i64::from(r.y));
     (qx - px) * (ry - py) - (qy - py) * (rx - px)
 }
 

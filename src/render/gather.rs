@@ -7,13 +7,13 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, 
 use glam::{DMat3, DVec3};
 
 use super::clip::{Screen, ScreenVertex};
-use super::coverage::{SUBPIXELS, Snapped};
+use super::coverage::{SUBPIXELS, Snapped, Triangle};
 use super::effects::{BATCH, Batch, Light, Rows, load, store};
 use super::light::Lit;
-use super::lines::point_of;
 use super::plan::{Back, Draw, Eye, FramePlan};
 use super::real::{Kernel, Machine, Triple};
-use super::surface::{cut_weights, exact_barycentric, shows_back};
+use super::surface::{cut_weights, shows_back};
+use crate::base::math::each;
 use crate::scene::{LightAt, Normals};
 
 /// The largest box, in parts of a pixel, whose edge functions fit 31 bits inside.
@@ -31,12 +31,20 @@ pub(super) struct Corners<T> {
     light: [[T; 6]; 3],
     /// Whether it reaches beyond the planes that triangles are cut by.
     cut: bool,
-    /// Whether its edge functions fit 31 bits inside.
-    narrow: bool,
+    /// Its edges, where their functions do not fit 31 bits inside.
+    wide: Option<Wide>,
     back: bool,
 }
 
+/// A triangle whose edge functions need 64 bits.
+#[derive(Clone, Copy, Debug)]
+struct Wide {
+    triangle: Triangle,
+    per_area: f64,
+}
+
 impl<T: Light> Corners<T> {
+    #[inline(always)]
     pub(super) fn new(
         plan: &FramePlan,
         draw: &Draw,
@@ -44,12 +52,14 @@ impl<T: Light> Corners<T> {
         number: u32,
     ) -> Self {
         let order = draw.model.mesh.draw_order();
-        let ids = order.vertices_of[number as usize];
-        let own = ids.map(|vertex| vertices[vertex as usize]);
-        let at = own.map(|vertex| vertex.at());
-        let cut = !own.iter().all(ScreenVertex::is_inside);
+        let ids = order.vertices_of(number);
+        let own = each(ids, |vertex| vertices[vertex as usize]);
+        let at = each(own, |vertex| vertex.at());
+        let cut = !(own[0].is_inside() & own[1].is_inside() & own[2].is_inside());
         let mut corners = Self { at, cut, ..Self::default() };
-        corners.narrow = !cut && is_narrow(at);
+        if !cut && (T::EXACT || !is_narrow(at)) {
+            corners.wide = Wide::new(at);
+        }
         if draw.back != Back::Left {
             let screen = Screen::new(draw.clip_from_object, plan.size);
             corners.back = shows_back(draw, &screen, number, (!cut).then_some(at));
@@ -59,7 +69,7 @@ impl<T: Light> Corners<T> {
             let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
             corners.inverse_w = w.map(|w| T::from_f64(1.0 / w));
         } else {
-            corners.inverse_w = own.map(|vertex| T::from_f64(f64::from(vertex.inverse_w)));
+            corners.inverse_w = each(own, |vertex| T::from_f64(f64::from(vertex.inverse_w)));
         }
         if plan.eye == Eye::Parallel {
             corners.z = ids.map(|vertex| {
@@ -81,9 +91,26 @@ impl<T: Light> Corners<T> {
         if self.cut {
             return cut_weights(plan, draw, number, pixel);
         }
-        let linear = DVec3::from_array(exact_barycentric(self.at, pixel));
+        let [second, third] = self.wide.map_or([0.0; 2], |wide| wide.barycentric(pixel));
+        let linear = DVec3::new(1.0 - second - third, second, third);
         let by_w = linear * DVec3::from_array(self.inverse_w.map(Into::into));
         by_w / by_w.element_sum()
+    }
+}
+
+impl Wide {
+    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+    fn new(at: [Snapped; 3]) -> Option<Self> {
+        let triangle = Triangle::new(at)?;
+        Some(Self { triangle, per_area: 1.0 / triangle.doubled_area() as f64 })
+    }
+
+    /// The second and third barycentric coordinate of a pixel, linear on the screen.
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+    fn barycentric(&self, [x, y]: [i32; 2]) -> [f64; 2] {
+        let [_, second, third] = self.triangle.edges_at(x, y);
+        [second as f64 * self.per_area, third as f64 * self.per_area]
     }
 }
 
@@ -96,15 +123,18 @@ fn is_narrow([a, b, c]: [Snapped; 3]) -> bool {
 /// Takes the normals at the corners, in object space.
 #[inline(always)]
 pub(super) fn gather_places<T: Light>(draw: &Draw, number: u32, corners: &mut Corners<T>) {
-    let mesh = &draw.model.mesh;
-    let own = mesh.triangles()[number as usize];
-    let wide = |normal: [f32; 3]| normal.map(|x| T::from_f64(f64::from(x)));
+    let wide = |normal: [f32; 3]| each(normal, |x| T::from_f64(f64::from(x)));
     corners.normals = match draw.normals {
-        Normals::Face => [wide(mesh.polygon_normals()[own.polygon as usize]); 3],
-        Normals::Vertex => own.corners.map(|corner| {
-            let point = point_of(draw, &mesh.corners()[corner as usize]);
-            wide(mesh.points()[point as usize].normal)
-        }),
+        Normals::Face => {
+            let mesh = &draw.model.mesh;
+            let own = mesh.triangles()[number as usize];
+            [wide(mesh.polygon_normals()[own.polygon as usize]); 3]
+        }
+        Normals::Vertex => {
+            let order = draw.model.mesh.draw_order();
+            let points = order.points(draw.normal_source);
+            each(points.of[order.place(number)], |point| wide(points.normals[point as usize]))
+        }
     };
 }
 
@@ -117,20 +147,18 @@ pub(super) fn gather_light<T: Light>(
     pipeline: u32,
     corners: &mut Corners<T>,
 ) {
-    let own = draw.model.mesh.triangles()[number as usize];
+    let mesh = &draw.model.mesh;
     let table = lit.table(index, pipeline, corners.back);
     corners.light = if table.is_empty() {
         [[T::default(); 6]; 3]
     } else if plan.light_at == LightAt::Face {
-        [table[own.polygon as usize]; 3]
+        [table[mesh.triangles()[number as usize].polygon as usize]; 3]
+    } else if draw.normals == Normals::Face {
+        each(mesh.triangles()[number as usize].corners, |corner| table[corner as usize])
     } else {
-        own.corners.map(|corner| {
-            let place = match draw.normals {
-                Normals::Face => corner,
-                Normals::Vertex => point_of(draw, &draw.model.mesh.corners()[corner as usize]),
-            };
-            table[place as usize]
-        })
+        let order = mesh.draw_order();
+        let points = order.points(draw.normal_source);
+        each(points.of[order.place(number)], |point| table[point as usize])
     };
 }
 
@@ -193,6 +221,7 @@ impl<T: Light> Gathered<T> {
         draw: &Draw,
         number: u32,
     ) {
+        assert!(i < BATCH, "a group has no more pixels than a block");
         for axis in 0..2 {
             self.middle[axis][i] = at[axis] * SUBPIXELS + SUBPIXELS / 2;
             self.pixel[axis][i] = T::from_f64(f64::from(at[axis]) + 0.5);
@@ -221,40 +250,31 @@ impl<T: Light> Gathered<T> {
             }
         }
         self.back[i] = corners.back;
-        if T::EXACT || !corners.narrow {
-            self.put_exact(i, at, corners, plan, draw, number);
+        if let Some(wide) = &corners.wide {
+            let [second, third] = wide.barycentric(at);
+            self.exact |= 1 << i;
+            self.linear[0][i] = T::from_f64(second);
+            self.linear[1][i] = T::from_f64(third);
+        } else if corners.cut {
+            self.put_cut(i, at, plan, draw, number);
         }
     }
 
-    /// Writes the place in the triangle of a pixel that the fast way cannot say.
+    /// Writes the place in the triangle of a pixel of a triangle that was cut.
     #[cold]
-    fn put_exact(
-        &mut self,
-        i: usize,
-        at: [i32; 2],
-        corners: &Corners<T>,
-        plan: &FramePlan,
-        draw: &Draw,
-        number: u32,
-    ) {
+    fn put_cut(&mut self, i: usize, at: [i32; 2], plan: &FramePlan, draw: &Draw, number: u32) {
+        // With one w for all corners, what has perspective already stays as it is.
+        let weights = cut_weights(plan, draw, number, at);
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let order = draw.model.mesh.draw_order();
+        let w = order.vertices_of(number).map(|vertex| screen.clip(order.position(vertex))[3]);
+        let w = weights.dot(DVec3::from_array(w));
+        for row in &mut self.inverse_w {
+            row[i] = T::from_f64(1.0 / w);
+        }
         self.exact |= 1 << i;
-        let linear = if corners.cut {
-            // With one w for all corners, what has perspective already stays as it is.
-            let weights = cut_weights(plan, draw, number, at);
-            let screen = Screen::new(draw.clip_from_object, plan.size);
-            let order = draw.model.mesh.draw_order();
-            let w = order.vertices_of[number as usize]
-                .map(|vertex| screen.clip(order.position(vertex))[3]);
-            let w = weights.dot(DVec3::from_array(w));
-            for row in &mut self.inverse_w {
-                row[i] = T::from_f64(1.0 / w);
-            }
-            weights.to_array()
-        } else {
-            exact_barycentric(corners.at, at)
-        };
-        self.linear[0][i] = T::from_f64(linear[1]);
-        self.linear[1][i] = T::from_f64(linear[2]);
+        self.linear[0][i] = T::from_f64(weights.y);
+        self.linear[1][i] = T::from_f64(weights.z);
     }
 
     /// The parts that the corners have in pixel `i` of the group.
@@ -288,6 +308,10 @@ impl Locate for f32 {
     const EXACT: bool = false;
 
     fn barycentric(level: Level, gathered: &mut Gathered<Self>) {
+        if gathered.exact == 0 {
+            dispatch!(level, simd => barycentric(simd, gathered));
+            return;
+        }
         let linear = gathered.linear;
         dispatch!(level, simd => barycentric(simd, gathered));
         let mut exact = gathered.exact;
@@ -387,7 +411,8 @@ impl<T: Light> Kernel<T> for Attributes<'_, T> {
     #[inline(always)]
     fn run<M: Machine<Number = T>>(self, machine: M) {
         let Self { rows, batch, normals, rays, back } = self;
-        let lift = |v: DVec3| Triple([v.x, v.y, v.z].map_lift(machine));
+        let zero = machine.lift(0.0);
+        let lift = |v: DVec3| Triple::lift(zero, [v.x, v.y, v.z]);
         let (nx, ny, nz) = (lift(normals.x_axis), lift(normals.y_axis), lift(normals.z_axis));
         for at in (0..rows.len).step_by(M::LANES) {
             let second = machine.load(&rows.weights[0], at);
@@ -432,18 +457,6 @@ fn turn_backs<T: Light>(rows: &Gathered<T>, batch: &mut Batch<T>) {
     }
 }
 
-/// Constants of a machine; an own `map`, since the array's is not always compiled into its place.
-trait MapLift {
-    fn map_lift<M: Machine>(self, machine: M) -> [M::R; 3];
-}
-
-impl MapLift for [f64; 3] {
-    #[inline(always)]
-    fn map_lift<M: Machine>(self, machine: M) -> [M::R; 3] {
-        [machine.lift(self[0]), machine.lift(self[1]), machine.lift(self[2])]
-    }
-}
-
 /// Light of the corners mixed at every pixel.
 pub(super) fn mix<T: Light>(level: Level, rows: &Gathered<T>, batch: &mut Batch<T>) {
     T::run(level, Mix { rows, batch });
@@ -462,36 +475,11 @@ impl<T: Light> Kernel<T> for Mix<'_, T> {
             let second = machine.load(&rows.weights[0], at);
             let third = machine.load(&rows.weights[1], at);
             for part in 0..6 {
-                let [a, b, c] = [0, 1, 2].load_part(machine, &rows.light, part, at);
+                let [a, b, c] = each([0, 1, 2], |i: usize| machine.load(&rows.light[i][part], at));
                 let value = a + (b - a) * second + (c - a) * third;
                 let to = if part < 3 { &mut batch.diffuse } else { &mut batch.specular };
                 machine.store(value, &mut to[part % 3], at);
             }
         }
-    }
-}
-
-/// One part of the light of three corners; again an own `map`.
-trait LoadPart {
-    fn load_part<M: Machine>(
-        self,
-        machine: M,
-        rows: &[[[M::Number; BATCH]; 6]; 3],
-        part: usize,
-        at: usize,
-    ) -> [M::R; 3];
-}
-
-impl LoadPart for [usize; 3] {
-    #[inline(always)]
-    fn load_part<M: Machine>(
-        self,
-        machine: M,
-        rows: &[[[M::Number; BATCH]; 6]; 3],
-        part: usize,
-        at: usize,
-    ) -> [M::R; 3] {
-        let load = |i: usize| machine.load(&rows[i][part], at);
-        [load(self[0]), load(self[1]), load(self[2])]
     }
 }

@@ -72,9 +72,11 @@ fn light_of<T: Light>(
     let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { return Vec::new() };
     let Some(stages) = &shaded.light else { return Vec::new() };
     let mesh = &draw.model.mesh;
+    let order = mesh.draw_order();
+    let points = order.points(draw.normal_source);
     let count = match (plan.light_at, draw.normals) {
         (LightAt::Face, _) => mesh.polygon_count(),
-        (_, Normals::Vertex) => mesh.points().len(),
+        (_, Normals::Vertex) => points.normals.len(),
         (_, Normals::Face) => mesh.corners().len(),
     };
     let polygon_of = match (plan.light_at, draw.normals) {
@@ -89,8 +91,8 @@ fn light_of<T: Light>(
                 [centre, mesh.polygon_normals()[i]]
             }
             (_, Normals::Vertex) => {
-                let point = mesh.points()[i];
-                [mesh.positions()[point.position as usize], point.normal]
+                let vertex = points.vertices[i] as usize;
+                [[order.x[vertex], order.y[vertex], order.z[vertex]], points.normals[i]]
             }
             (_, Normals::Face) => {
                 let position = mesh.corners()[i].position as usize;

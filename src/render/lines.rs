@@ -12,7 +12,7 @@ use super::coverage::{PixelBox, SUBPIXELS, Snapped, doubled_area};
 use super::plan::{Back, Draw, Lines};
 use crate::base::color::Color;
 use crate::base::image::Size;
-use crate::scene::{Corner, Mesh, dvec3};
+use crate::scene::{Corner, Mesh, NormalSource, dvec3};
 
 /// How many steps of depth lines are nearer than the surfaces that they lie on.
 const NEARER: u32 = 2;
@@ -84,6 +84,7 @@ fn outline(draw: &Draw, screen: &Screen, vertices: &[ScreenVertex], polygon: u32
     }
     let area: i64 = mesh
         .triangles_of(polygon)
+        .map(|triangle| u32::try_from(triangle).expect("triangles have 32-bit numbers"))
         .map(|triangle| area_on_screen(mesh, screen, vertices, triangle))
         .sum();
     let front = (area < 0) != draw.mirrored;
@@ -97,9 +98,9 @@ fn outline(draw: &Draw, screen: &Screen, vertices: &[ScreenVertex], polygon: u32
 }
 
 /// Twice the area of what is seen of a triangle, in square parts of a pixel.
-fn area_on_screen(mesh: &Mesh, screen: &Screen, vertices: &[ScreenVertex], triangle: usize) -> i64 {
+fn area_on_screen(mesh: &Mesh, screen: &Screen, vertices: &[ScreenVertex], triangle: u32) -> i64 {
     let order = mesh.draw_order();
-    let corners = order.vertices_of[triangle];
+    let corners = order.vertices_of(triangle);
     let own = corners.map(|vertex| vertices[vertex as usize]);
     if own.iter().all(ScreenVertex::is_inside) {
         return doubled_area(own.map(|corner| corner.at()));
@@ -140,9 +141,11 @@ fn normals(draw: &Draw, outlines: &[Option<Color>]) -> Vec<([DVec3; 2], u32)> {
 }
 
 /// The point of a corner with the vertex normals that the draw uses.
-#[inline(always)]
-pub(super) fn point_of(draw: &Draw, corner: &Corner) -> u32 {
-    if draw.file_normals { corner.filed } else { corner.smooth }
+fn point_of(draw: &Draw, corner: &Corner) -> u32 {
+    match draw.normal_source {
+        NormalSource::File => corner.filed,
+        NormalSource::Computed => corner.smooth,
+    }
 }
 
 /// A drawn normal in object space: it stands on the placed surface, and is as long as `length` units

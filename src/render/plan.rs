@@ -12,9 +12,9 @@ use super::marks;
 use crate::base::image::Size;
 use crate::base::{Shared, color::Color, math};
 use crate::scene::{
-    Arithmetic, Fill, Filter, ItemId, LightAt, LightId, LightKind, Model, NormalLength, Normals,
-    Object, Observer, PartLook, Projection, Scene, Settings, SpecularForm, SpotOwner, Surface,
-    Texture, View,
+    Arithmetic, Fill, Filter, ItemId, LightAt, LightId, LightKind, Model, NormalLength,
+    NormalSource, Normals, Object, Observer, PartLook, Projection, Scene, Settings, SpecularForm,
+    SpotOwner, Surface, Texture, View,
 };
 
 /// Everything that a frame needs.
@@ -69,7 +69,7 @@ pub(super) struct Draw {
     pub(super) mirrored: bool,
     pub(super) back: Back,
     pub(super) normals: Normals,
-    pub(super) file_normals: bool,
+    pub(super) normal_source: NormalSource,
     /// The pipeline of each part; `None` for parts that are not drawn.
     pub(super) part_pipelines: Vec<Option<u32>>,
     /// The pipeline of all parts, where they share one.
@@ -434,7 +434,11 @@ impl Planner<'_> {
         };
         let draw = Draw {
             back,
-            file_normals: object.file_normals,
+            normal_source: if object.file_normals {
+                NormalSource::File
+            } else {
+                NormalSource::Computed
+            },
             part_pipelines,
             polygons,
             lines: self.lines(&object.model, object.edge_color),
@@ -456,7 +460,7 @@ impl Planner<'_> {
             mirrored: linear.determinant() < 0.0,
             back: Back::Left,
             normals: self.view.normals,
-            file_normals: true,
+            normal_source: NormalSource::File,
             part_pipelines: Vec::new(),
             uniform: None,
             polygons: None,

@@ -11,6 +11,7 @@ use super::clip::{Screen, ScreenVertex};
 use super::coverage::{PixelBox, SUBPIXELS, doubled_area};
 use super::plan::{Back, Draw, Pipeline};
 use crate::base::image::Size;
+use crate::base::math::each;
 use crate::scene::{DrawOrder, DrawTriangle};
 
 /// The largest box, in parts of a pixel, whose doubled area fits 31 bits.
@@ -96,8 +97,8 @@ impl<'a> Setup<'a> {
                 beyond |= u64::from(!vertex.is_inside()) << lane;
             }
         }
-        let x = [0, 1, 2].map_lanes(simd, &x);
-        let y = [0, 1, 2].map_lanes(simd, &y);
+        let x = each([0, 1, 2], |i: usize| i32x16::from_slice(simd, &x[i]));
+        let y = each([0, 1, 2], |i: usize| i32x16::from_slice(simd, &y[i]));
         let (low_x, high_x) = (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
         let (low_y, high_y) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
 
@@ -127,12 +128,20 @@ impl<'a> Setup<'a> {
         let odd = (beyond | (wide.to_bitmask() & seen.to_bitmask())) & there;
         let mut plain = seen.to_bitmask() & !turned & !wide.to_bitmask() & !beyond & there;
         if plain != 0 {
-            let bounds = [left, top, right, bottom].each_lane();
+            let mut bounds = [[0; 16]; 4];
+            left.store_slice(&mut bounds[0]);
+            top.store_slice(&mut bounds[1]);
+            right.store_slice(&mut bounds[2]);
+            bottom.store_slice(&mut bounds[3]);
             while plain != 0 {
                 let lane = plain.trailing_zeros() as usize;
                 plain &= plain - 1;
-                let [left, top, right, bottom] = [0, 1, 2, 3].map(|i| bounds[i][lane]);
-                let bounds = PixelBox { left, top, right, bottom };
+                let bounds = PixelBox {
+                    left: bounds[0][lane],
+                    top: bounds[1][lane],
+                    right: bounds[2][lane],
+                    bottom: bounds[3][lane],
+                };
                 self.add(&triangles[lane], bounds, pipelines, bins);
             }
         }
@@ -154,7 +163,7 @@ impl<'a> Setup<'a> {
         bins: &mut Bins,
     ) {
         let number = self.base + triangle.number;
-        let corners = triangle.vertices.map(|vertex| &self.vertices[vertex as usize]);
+        let corners = each(triangle.vertices, |vertex| &self.vertices[vertex as usize]);
         let kind = if self.choosy { self.kind(triangle.number, pipelines) } else { Kind::Plain };
         let side = (bounds.right - bounds.left).max(bounds.bottom - bounds.top);
         match kind {
@@ -164,7 +173,7 @@ impl<'a> Setup<'a> {
             Kind::Not => {}
             _ => {
                 let cutout = kind == Kind::Cutout;
-                let corners = corners.map(|corner| *corner);
+                let corners = each(corners, |corner| *corner);
                 bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
             }
         }
@@ -212,34 +221,5 @@ impl<'a> Setup<'a> {
             Some(pipeline) if pipelines[pipeline as usize].is_cutout() => Kind::Cutout,
             Some(_) => Kind::Plain,
         }
-    }
-}
-
-/// Loads three rows; an own `map`, since the array's is not always compiled into its place.
-trait MapLanes {
-    fn map_lanes<S: Simd>(self, simd: S, rows: &[[i32; 16]; 3]) -> [i32x16<S>; 3];
-}
-
-impl MapLanes for [usize; 3] {
-    #[inline(always)]
-    fn map_lanes<S: Simd>(self, simd: S, rows: &[[i32; 16]; 3]) -> [i32x16<S>; 3] {
-        let load = |i: usize| i32x16::from_slice(simd, &rows[i]);
-        [load(self[0]), load(self[1]), load(self[2])]
-    }
-}
-
-/// Stores four rows.
-trait EachLane {
-    fn each_lane(self) -> [[i32; 16]; 4];
-}
-
-impl<S: Simd> EachLane for [i32x16<S>; 4] {
-    #[inline(always)]
-    fn each_lane(self) -> [[i32; 16]; 4] {
-        let mut rows = [[0; 16]; 4];
-        for (row, lanes) in rows.iter_mut().zip(self) {
-            lanes.store_slice(row);
-        }
-        rows
     }
 }

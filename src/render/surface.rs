@@ -14,12 +14,13 @@ use fearless_simd::Level;
 use glam::DVec3;
 
 use super::clip::{Screen, faces_observer, homogeneous_weights};
-use super::coverage::{Snapped, Triangle, doubled_area};
+use super::coverage::{Snapped, doubled_area};
 use super::effects::{BATCH, Batch, Light, Rows};
 use super::frame::Frame;
 use super::gather::{Corners, Gathered, attributes, gather_light, gather_places, mix};
 use super::light::Lit;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded};
+use super::real::{Kernel, Machine};
 use super::texture;
 use super::tile::{BLOCK, BLOCK_PIXELS, Seen, TILE_SIDE, seen};
 use crate::base::color::Color;
@@ -66,7 +67,7 @@ impl<'a, T: Light> Shader<'a, T> {
             gathered: Gathered::default(),
             batch: Batch::default(),
             texels: [[T::default(); BATCH]; 3],
-            colors: [[0; 4]; BATCH],
+            colors: [[255; 4]; BATCH],
         };
         Self { plan, frame, lit, level, rows: Box::new(rows) }
     }
@@ -140,7 +141,8 @@ impl<'a, T: Light> Shader<'a, T> {
                 self.texels(group, shaded);
                 let rows = &mut *self.rows;
                 let lit = shaded.light.is_some();
-                finish(&rows.batch, &rows.texels, lit, &mut rows.colors);
+                let RowsOfBlock { batch, texels, colors, .. } = rows;
+                T::run(self.level, Finish { batch, texels, lit, colors });
             }
         }
         if group.draw.back == Back::Red {
@@ -231,14 +233,25 @@ impl<'a, T: Light> Shader<'a, T> {
 }
 
 /// I = t D + S where lit, t elsewhere; as bytes.
-fn finish<T: Light>(batch: &Batch<T>, texels: &Rows<T>, lit: bool, colors: &mut [[u8; 4]; BATCH]) {
-    for (i, color) in colors.iter_mut().enumerate().take(batch.len) {
+struct Finish<'a, T> {
+    batch: &'a Batch<T>,
+    texels: &'a Rows<T>,
+    lit: bool,
+    colors: &'a mut [[u8; 4]; BATCH],
+}
+
+impl<T: Light> Kernel<T> for Finish<'_, T> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, _: M) {
+        let Self { batch, texels, lit, colors } = self;
         for axis in 0..3 {
-            let t = texels[axis][i];
-            let light = if lit { t * batch.diffuse[axis][i] + batch.specular[axis][i] } else { t };
-            color[axis] = light.byte();
+            for i in 0..BATCH {
+                let t = texels[axis][i];
+                let light =
+                    if lit { t * batch.diffuse[axis][i] + batch.specular[axis][i] } else { t };
+                colors[i][axis] = light.byte();
+            }
         }
-        color[3] = 255;
     }
 }
 
@@ -299,18 +312,6 @@ pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i3
     texture::sample::<f64>(texture, uv, plan.filter)[3] * opacity >= 0.5
 }
 
-/// The parts of a triangle's corners in a pixel, linear on the screen: from whole numbers.
-#[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
-pub(super) fn exact_barycentric(corners: [Snapped; 3], [x, y]: [i32; 2]) -> [f64; 3] {
-    match Triangle::new(corners) {
-        Some(triangle) => {
-            let area = triangle.doubled_area() as f64;
-            triangle.edges_at(x, y).map(|edge| edge as f64 / area)
-        }
-        None => [1.0, 0.0, 0.0],
-    }
-}
-
 /// Whether the observer sees the back of a triangle.
 pub(super) fn shows_back(
     draw: &Draw,
@@ -322,7 +323,7 @@ pub(super) fn shows_back(
         Some(at) => doubled_area(at) < 0,
         None => {
             let order = draw.model.mesh.draw_order();
-            let vertices = order.vertices_of[number as usize];
+            let vertices = order.vertices_of(number);
             faces_observer(vertices.map(|vertex| screen.clip(order.position(vertex))))
         }
     };
@@ -334,7 +335,7 @@ pub(super) fn shows_back(
 pub(super) fn cut_weights(plan: &FramePlan, draw: &Draw, number: u32, pixel: [i32; 2]) -> DVec3 {
     let screen = Screen::new(draw.clip_from_object, plan.size);
     let order = draw.model.mesh.draw_order();
-    let vertices = order.vertices_of[number as usize];
+    let vertices = order.vertices_of(number);
     let clip = vertices.map(|vertex| screen.clip(order.position(vertex)));
     let x = (f64::from(pixel[0]) + 0.5) / plan.size.width as f64 * 2.0 - 1.0;
     let y = 1.0 - (f64::from(pixel[1]) + 0.5) / plan.size.height as f64 * 2.0;

@@ -20,7 +20,9 @@ use super::coverage::{PixelBox, SUBPIXELS, Triangle};
 use super::frame::Frame;
 use super::lines;
 use super::plan::FramePlan;
+use super::real::Real;
 use super::surface;
+use crate::base::math::each;
 
 /// Pixels to a side of a tile.
 pub(super) const TILE_SIDE: usize = 64;
@@ -162,7 +164,7 @@ impl Visibility {
     }
 
     fn draw_cutout(&mut self, plan: &FramePlan, frame: &Frame, large: &LargeTriangle) {
-        let corners = large.corners.map(|corner| corner.at());
+        let corners = each(large.corners, |corner| corner.at());
         let Some(triangle) = Triangle::new(corners) else { return };
         let depth = DepthPlane::new(large, &triangle);
         triangle.covered(self.bounds, |pixel| {
@@ -174,7 +176,9 @@ impl Visibility {
 
     #[inline(always)]
     fn draw_large<S: Simd>(&mut self, _: S, large: &LargeTriangle) {
-        let Some(triangle) = Triangle::new(large.corners.map(|corner| corner.at())) else { return };
+        let Some(triangle) = Triangle::new(each(large.corners, |corner| corner.at())) else {
+            return;
+        };
         let plane = DepthPlane::new(large, &triangle);
         let area = triangle.bounds().intersection(self.bounds);
         if area.is_empty() {
@@ -293,47 +297,38 @@ struct PackLanes<S: Simd> {
 impl<S: Simd> PackLanes<S> {
     #[inline(always)]
     fn new(simd: S, pack: &Pack) -> Self {
-        let load = |row: &[f32; PACK]| f32x16::from_slice(simd, row);
-        let splat = |x: f32| f32x16::splat(simd, x);
-        let (x0, x1, x2) = (load(&pack.x[0]), load(&pack.x[1]), load(&pack.x[2]));
-        let (y0, y1, y2) = (load(&pack.y[0]), load(&pack.y[1]), load(&pack.y[2]));
-        let (d0, d1, d2) = (load(&pack.depth[0]), load(&pack.depth[1]), load(&pack.depth[2]));
+        let [x0, x1, x2] = each([0, 1, 2], |i: usize| f32x16::from_slice(simd, &pack.x[i]));
+        let [y0, y1, y2] = each([0, 1, 2], |i: usize| f32x16::from_slice(simd, &pack.y[i]));
+        let [d0, d1, d2] = each([0, 1, 2], |i: usize| f32x16::from_slice(simd, &pack.depth[i]));
         let left = i32x16::from_slice(simd, &pack.left);
         let top = i32x16::from_slice(simd, &pack.top);
 
         let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
-        let sign = area.simd_lt(0.0).select(splat(-1.0), splat(1.0));
+        let one = f32x16::splat(simd, 1.0);
+        let sign = area.simd_lt(0.0).select(f32x16::splat(simd, -1.0), one);
         let (parts, half) = (SUBPIXELS as f32, (SUBPIXELS / 2) as f32);
         let cx: f32x16<S> = left.to_float::<f32x16<S>>() * parts + half;
         let cy: f32x16<S> = top.to_float::<f32x16<S>>() * parts + half;
-        // Edges as in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y).
-        let edge = |px: f32x16<S>, py: f32x16<S>, qx: f32x16<S>, qy: f32x16<S>| {
-            let (a, b) = ((py - qy) * sign, (qx - px) * sign);
-            let value = a * (cx - px) + b * (cy - py);
-            let on_edge = a.simd_gt(0.0) | (a.simd_eq(0.0) & b.simd_gt(0.0));
-            (value, on_edge.select(splat(0.0), splat(1.0)), a * parts, b * parts)
-        };
-        let e0 = edge(x1, y1, x2, y2);
-        let e1 = edge(x2, y2, x0, y0);
-        let e2 = edge(x0, y0, x1, y1);
+        let middle = [cx, cy];
+        let e0 = lanes_edge([x1, y1], [x2, y2], sign, middle);
+        let e1 = lanes_edge([x2, y2], [x0, y0], sign, middle);
+        let e2 = lanes_edge([x0, y0], [x1, y1], sign, middle);
         // Triangles without area cover nothing; 1 keeps their quotients finite.
         let area = area * sign;
-        let per_area = splat(1.0) / area.simd_gt(0.0).select(area, splat(1.0));
-        let smaller = |a: f32x16<S>, b: f32x16<S>| a.simd_lt(b).select(a, b);
-        let larger = |a: f32x16<S>, b: f32x16<S>| a.simd_gt(b).select(a, b);
+        let per_area = one / area.simd_gt(0.0).select(area, one);
         Self {
             left,
             top,
             number: u32x16::from_slice(simd, &pack.number),
-            first: [e0.0, e1.0, e2.0],
-            least: [e0.1, e1.1, e2.1],
-            a: [e0.2, e1.2, e2.2],
-            b: [e0.3, e1.3, e2.3],
+            first: [e0.value, e1.value, e2.value],
+            least: [e0.least, e1.least, e2.least],
+            a: [e0.a, e1.a, e2.a],
+            b: [e0.b, e1.b, e2.b],
             depth: d0,
             to_second: (d1 - d0) * per_area,
             to_third: (d2 - d0) * per_area,
-            low: smaller(smaller(d0, d1), d2),
-            high: larger(larger(d0, d1), d2),
+            low: Real::min(Real::min(d0, d1), d2),
+            high: Real::max(Real::max(d0, d1), d2),
         }
     }
 
@@ -351,6 +346,35 @@ impl<S: Simd> PackLanes<S> {
     }
 }
 
+/// An edge function of sixteen triangles.
+struct LanesEdge<S: Simd> {
+    value: f32x16<S>,
+    least: f32x16<S>,
+    a: f32x16<S>,
+    b: f32x16<S>,
+}
+
+/// As in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y); turned by the sign
+/// of the area, and with what it gains by a whole pixel.
+#[inline(always)]
+fn lanes_edge<S: Simd>(
+    [px, py]: [f32x16<S>; 2],
+    [qx, qy]: [f32x16<S>; 2],
+    sign: f32x16<S>,
+    [x, y]: [f32x16<S>; 2],
+) -> LanesEdge<S> {
+    let (a, b) = ((py - qy) * sign, (qx - px) * sign);
+    let on_edge = a.simd_gt(0.0) | (a.simd_eq(0.0) & b.simd_gt(0.0));
+    let simd = px.simd;
+    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+    LanesEdge {
+        value: a * (x - px) + b * (y - py),
+        least: on_edge.select(zero, one),
+        a: a * (SUBPIXELS as f32),
+        b: b * (SUBPIXELS as f32),
+    }
+}
+
 /// The depth of a large triangle: linear on the screen, within the depths of its corners.
 #[derive(Clone, Copy, Debug)]
 struct DepthPlane {
@@ -365,7 +389,7 @@ impl DepthPlane {
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     fn new(large: &LargeTriangle, triangle: &Triangle) -> Self {
-        let [a, b, c] = large.corners.map(|corner| corner.depth);
+        let [a, b, c] = each(large.corners, |corner| corner.depth);
         let per_area = 1.0 / triangle.doubled_area() as f64;
         Self {
             depth: f64::from(a),

@@ -34,6 +34,6 @@ pub(super) fn transform(
 #[inline(always)]
 fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [ScreenVertex]) {
     for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
-        *out = screen.vertex(screen.clip([x, y, z].map(|x| f64::from(*x))));
+        *out = screen.vertex(screen.clip([f64::from(*x), f64::from(*y), f64::from(*z)]));
     }
 }

@@ -27,7 +27,7 @@ pub use mesh::{
 };
 pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Winding, Wrap};
 pub use object::{Object, PartLook, Spin, Surface};
-pub use order::{DrawOrder, DrawTriangle};
+pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;
 pub use settings::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
 pub use view::{

@@ -5,7 +5,7 @@
 //! between equal depths, so that the order cannot show. Morton, "A Computer Oriented Geodetic Data
 //! Base", IBM 1966.
 
-use super::{Bounds, Mesh, NONE, dvec3};
+use super::{Bounds, Corner, Mesh, NONE, dvec3};
 
 /// A triangle as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,8 +27,31 @@ pub struct DrawOrder {
     pub z: Vec<f32>,
     /// The triangles.
     pub triangles: Vec<DrawTriangle>,
-    /// For each triangle of the mesh its vertices, as places in [`Self::x`].
-    pub vertices_of: Vec<[u32; 3]>,
+    /// For each triangle of the mesh its place in [`Self::triangles`].
+    places: Vec<u32>,
+    smooth: Points,
+    /// Empty where no polygon has normals of the file's own.
+    filed: Points,
+}
+
+/// The points of a mesh with one kind of normals, numbered by first use.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// The points of each triangle, in the order of [`DrawOrder::triangles`].
+    pub of: Vec<[u32; 3]>,
+    /// Their normals, of length 1.
+    pub normals: Vec<[f32; 3]>,
+    /// Their vertices, as places in [`DrawOrder::x`].
+    pub vertices: Vec<u32>,
+}
+
+/// Which of a file's normals are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalSource {
+    /// The mean of those of the faces around.
+    Computed,
+    /// The file's own, where a polygon has them.
+    File,
 }
 
 impl DrawOrder {
@@ -44,9 +67,9 @@ impl DrawOrder {
             .collect();
         keyed.sort_unstable();
 
-        let mut order = Self { vertices_of: vec![[0; 3]; count], ..Self::default() };
+        let mut order = Self { places: vec![0; count], ..Self::default() };
         let mut places = vec![NONE; mesh.positions().len()];
-        for (_, number) in keyed {
+        for (place, (_, number)) in keyed.into_iter().enumerate() {
             let vertices = vertices(number as usize).map(|vertex| {
                 let place = &mut places[vertex as usize];
                 if *place == NONE {
@@ -54,10 +77,56 @@ impl DrawOrder {
                 }
                 *place
             });
-            order.vertices_of[number as usize] = vertices;
+            order.places[number as usize] = index(place);
             order.triangles.push(DrawTriangle { vertices, number });
         }
+        order.smooth = order.points_of(mesh, |corner| corner.smooth);
+        if mesh.has_file_normals() {
+            order.filed = order.points_of(mesh, |corner| corner.filed);
+        }
         order
+    }
+
+    /// The vertices of a triangle of the mesh, as places in [`Self::x`].
+    #[inline(always)]
+    #[must_use]
+    pub fn vertices_of(&self, number: u32) -> [u32; 3] {
+        self.triangles[self.place(number)].vertices
+    }
+
+    /// Where a triangle of the mesh stands in [`Self::triangles`].
+    #[inline(always)]
+    #[must_use]
+    pub fn place(&self, number: u32) -> usize {
+        self.places[number as usize] as usize
+    }
+
+    /// The points with one kind of normals.
+    #[must_use]
+    pub const fn points(&self, source: NormalSource) -> &Points {
+        match source {
+            NormalSource::File if !self.filed.of.is_empty() => &self.filed,
+            _ => &self.smooth,
+        }
+    }
+
+    fn points_of(&self, mesh: &Mesh, pick: impl Fn(&Corner) -> u32) -> Points {
+        let mut points = Points::default();
+        let mut places = vec![NONE; mesh.points().len()];
+        for triangle in &self.triangles {
+            let corners = mesh.triangles()[triangle.number as usize].corners;
+            let of = std::array::from_fn(|i| {
+                let point = pick(&mesh.corners()[corners[i] as usize]) as usize;
+                if places[point] == NONE {
+                    places[point] = index(points.normals.len());
+                    points.normals.push(mesh.points()[point].normal);
+                    points.vertices.push(triangle.vertices[i]);
+                }
+                places[point]
+            });
+            points.of.push(of);
+        }
+        points
     }
 
     /// Where a vertex is.
@@ -65,7 +134,7 @@ impl DrawOrder {
     #[must_use]
     pub fn position(&self, vertex: u32) -> [f64; 3] {
         let i = vertex as usize;
-        [self.x[i], self.y[i], self.z[i]].map(f64::from)
+        [f64::from(self.x[i]), f64::from(self.y[i]), f64::from(self.z[i])]
     }
 
     fn push(&mut self, [x, y, z]: [f32; 3]) -> u32 {

@@ -11,7 +11,7 @@
 //!
 //! Ear clipping is Meisters', "Polygons Have Ears", American Mathematical Monthly 1975. A hole that
 //! is joined to the outline by a bridge names positions twice; a corner that stands on a corner of
-//! the ear blocks it only where it has a side inside the ear.
+//! the ear does not block it.
 
 use std::collections::VecDeque;
 
@@ -114,9 +114,8 @@ struct Ring {
     turn: Vec<Turn>,
     /// Corners that are not convex, or were not when this list was last swept.
     inward: Vec<u32>,
-    /// Corners that may be ears, in the order in which they are looked at: those beside straight
-    /// ones, then the others.
-    candidates: [VecDeque<u32>; 2],
+    /// Corners that may be ears, in the order in which they are looked at.
+    candidates: VecDeque<u32>,
     gone: Vec<bool>,
     left: usize,
     tolerance: f64,
@@ -131,7 +130,7 @@ impl Ring {
             last: std::iter::once(corners - 1).chain(0..corners - 1).collect(),
             turn: vec![Turn::Straight; flat.len()],
             inward: Vec::new(),
-            candidates: [VecDeque::new(), VecDeque::new()],
+            candidates: VecDeque::new(),
             gone: vec![false; flat.len()],
             left: flat.len(),
             tolerance: tolerance(&flat),
@@ -173,11 +172,12 @@ impl Ring {
         self.gone[ear as usize] = true;
         self.left -= 1;
         for corner in [last, next] {
-            self.turn[corner as usize] = self.turn_at(corner);
-        }
-        // The ears beside a corner go first where the cut has left it straight.
-        let [last, next] = [last, next].map(|i| i as usize);
-        for corner in [self.last[last], number(last), number(next), self.next[next]] {
+            let now = self.turn_at(corner);
+            let before = std::mem::replace(&mut self.turn[corner as usize], now);
+            // Only where the outline crosses itself.
+            if before == Turn::Convex && now != Turn::Convex {
+                self.inward.push(corner);
+            }
             self.queue(corner);
         }
     }
@@ -205,27 +205,16 @@ impl Ring {
         [at(self.last[corner as usize]), at(corner), at(self.next[corner as usize])]
     }
 
-    fn is_straight(&self, corner: u32) -> bool {
-        self.turn[corner as usize] == Turn::Straight
-    }
-
     fn queue(&mut self, corner: u32) {
-        let i = corner as usize;
-        let line = match self.turn[i] {
-            // An ear beside a straight corner makes a corner of it that has an ear of its own;
-            // cut last, it would leave a triangle without area.
-            Turn::Convex if !self.is_straight(self.last[i]) && !self.is_straight(self.next[i]) => 1,
-            Turn::Convex | Turn::Back => 0,
-            Turn::Straight | Turn::Reflex => return,
-        };
-        self.candidates[line].push_back(corner);
+        if matches!(self.turn[corner as usize], Turn::Convex | Turn::Back) {
+            self.candidates.push_back(corner);
+        }
     }
 
     /// The next ear of those that are waiting.
     fn ear(&mut self) -> Option<u32> {
         loop {
-            let [first, later] = &mut self.candidates;
-            let corner = first.pop_front().or_else(|| later.pop_front())?;
+            let corner = self.candidates.pop_front()?;
             if self.gone[corner as usize] {
                 continue;
             }
@@ -285,7 +274,7 @@ impl Ring {
     }
 
     fn blocks(&self, [a, b, c]: [DVec2; 3], other: u32, how: Blocked) -> bool {
-        let [before, p, after] = self.triangle(other);
+        let p = self.flat[other as usize];
         let error = self.tolerance * ((b - a).abs() + (c - b).abs()).max_element();
         let least = area(a, b, p).min(area(b, c, p)).min(area(c, a, p));
         let inside = match how {
@@ -295,193 +284,11 @@ impl Ring {
         if !inside {
             return false;
         }
-        // On a corner of the ear: in the way only with a side that goes into it.
-        let into = |corner: DVec2, next: DVec2, last: DVec2| {
-            [before, after].iter().any(|end| {
-                let side = *end - p;
-                (next - corner).perp_dot(side) > 0.0 && side.perp_dot(last - corner) > 0.0
-            })
-        };
-        if p == a {
-            into(a, b, c)
-        } else if p == b {
-            into(b, c, a)
-        } else if p == c {
-            into(c, a, b)
-        } else {
-            true
-        }
+        // On a corner of the ear: a bridge, or a place where the outline touches itself. Its sides
+        // lead away from the ear, or to corners that are in the way themselves.
+        p != a && p != b && p != c
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::base::math;
-    use crate::scene::newell;
-
-    fn outline(places: &[(f64, f64)]) -> Vec<DVec3> {
-        places.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect()
-    }
-
-    /// Twice the signed areas of the triangles about `normal`.
-    fn areas(outline: &[DVec3], normal: DVec3, triangles: &[[u32; 3]]) -> Vec<f64> {
-        let area = |t: &[u32; 3]| newell(t.iter().map(|&i| outline[i as usize])).dot(normal);
-        triangles.iter().map(area).collect()
-    }
-
-    /// The areas of the triangles, all of them checked to be positive and to sum to the polygon's.
-    fn sound(outline: &[DVec3]) -> Vec<f64> {
-        let twice = newell(outline.iter().copied());
-        let normal = math::unit(twice).unwrap();
-        let triangles = triangulate(outline, normal);
-        assert_eq!(triangles.len(), outline.len() - 2);
-        let areas = areas(outline, normal, &triangles);
-        let sum: f64 = areas.iter().sum();
-        assert!((sum / twice.length() - 1.0).abs() < 1e-9, "{sum} is not {}", twice.length());
-        let worst = areas.iter().copied().fold(f64::INFINITY, f64::min);
-        assert!(worst >= -1e-9 * sum, "a triangle of {worst} in a polygon of {sum}");
-        areas
-    }
-
-    /// A square with a square hole, joined by a bridge from the one's first corner to the other's.
-    fn square_with_a_hole() -> Vec<DVec3> {
-        outline(&[
-            (0.0, 0.0),
-            (4.0, 0.0),
-            (4.0, 4.0),
-            (0.0, 4.0),
-            (0.0, 0.0),
-            (1.0, 1.0),
-            (1.0, 3.0),
-            (3.0, 3.0),
-            (3.0, 1.0),
-            (1.0, 1.0),
-        ])
-    }
-
-    #[test]
-    fn an_arrow_is_cut_from_its_notch_wherever_its_corners_begin() {
-        let mut arrow = outline(&[(0.0, 0.0), (4.0, 0.0), (1.0, 1.0), (0.0, 4.0)]);
-        for _ in 0..4 {
-            sound(&arrow);
-            arrow.rotate_left(1);
-        }
-    }
-
-    #[test]
-    fn a_hole_joined_by_a_bridge_stays_a_hole_seen_from_any_side() {
-        let mut ring = square_with_a_hole();
-        for turn in 0..ring.len() {
-            let turned = math::rotation(DVec3::new(0.6, 0.0, 0.8), turn as f64);
-            let placed: Vec<DVec3> = ring.iter().map(|p| turned * *p + DVec3::X * 1e3).collect();
-            assert!((sound(&placed).iter().sum::<f64>() - 24.0).abs() < 1e-6);
-            ring.rotate_left(1);
-        }
-    }
-
-    #[test]
-    fn corners_in_a_row_leave_no_triangle_without_area() {
-        let mut square: Vec<(f64, f64)> = Vec::new();
-        for i in 0..4 {
-            let t = f64::from(i);
-            square.extend([(t, 0.0), (4.0, t), (4.0 - t, 4.0), (0.0, 4.0 - t)]);
-        }
-        square.sort_by(|a, b| {
-            let angle = |p: &(f64, f64)| libm::atan2(p.1 - 2.0, p.0 - 2.0);
-            angle(a).total_cmp(&angle(b))
-        });
-        let mut square = outline(&square);
-        for _ in 0..square.len() {
-            assert!(sound(&square).iter().all(|area| *area > 0.5));
-            square.rotate_left(1);
-        }
-    }
-
-    #[test]
-    fn a_thin_quad_far_from_the_origin_keeps_its_shape() {
-        let at = |x: f32, z: f32| DVec3::new(f64::from(x), 0.0, f64::from(z));
-        sound(&[
-            at(14680.0, 9605.0),
-            at(14680.002, 9606.5),
-            at(14680.001, 9608.0),
-            at(14679.999, 9608.0),
-        ]);
-    }
-
-    #[test]
-    fn a_polygon_that_crosses_itself_has_as_many_triangles_as_any_other() {
-        let star: Vec<(f64, f64)> = (0..5)
-            .map(|i| f64::from(i) * 2.513_274)
-            .map(|a| (libm::cos(a), libm::sin(a)))
-            .collect();
-        let bow = [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
-        for places in [&star[..], &bow, &[(1.0, 1.0); 7]] {
-            let corners = outline(places);
-            let triangles = triangulate(&corners, DVec3::Z);
-            assert_eq!(triangles.len(), corners.len() - 2);
-            let sum: f64 = areas(&corners, DVec3::Z, &triangles).iter().sum();
-            assert!((sum - newell(corners.iter().copied()).z).abs() < 1e-9);
-        }
-    }
-
-    #[test]
-    fn a_million_corners_are_cut_in_no_more_than_seconds() {
-        let comb = |i: u32| (f64::from(i), if i.is_multiple_of(2) { 0.0 } else { 1.0 });
-        let teeth = (0..1_000_000).map(comb).chain([(1e6, -1.0), (0.0, -1.0)]);
-        let corners = outline(&teeth.rev().collect::<Vec<_>>());
-        let begin = std::time::Instant::now();
-        let triangles = triangulate(&corners, DVec3::NEG_Z);
-        assert_eq!(triangles.len(), corners.len() - 2);
-        assert!(begin.elapsed().as_secs() < 10, "{:?}", begin.elapsed());
-    }
-
-    proptest! {
-        /// Polygons that are stars about the origin: simple, and as concave as can be.
-        #[test]
-        fn simple_polygons_are_cut_into_triangles_inside_them(
-            radii in prop::collection::vec(1_u8..=10, 4..80),
-            turn in 0.0..6.3_f64,
-        ) {
-            let sector = 2.0 * std::f64::consts::PI / radii.len() as f64;
-            let corner = |(i, r): (usize, &u8)| {
-                let angle = sector * i as f64;
-                DVec3::new(libm::cos(angle), libm::sin(angle), 0.0) * f64::from(*r)
-            };
-            let turned = math::rotation(DVec3::new(0.0, 0.6, 0.8), turn);
-            let corners: Vec<DVec3> =
-                radii.iter().enumerate().map(corner).map(|p| turned * p).collect();
-            sound(&corners);
-        }
-
-        /// Stairs on a grid: many corners in a row, many that touch the ears' borders.
-        #[test]
-        fn stairs_are_cut_into_triangles_inside_them(
-            heights in prop::collection::vec(1_u8..6, 2..30),
-        ) {
-            let mut places = vec![(0.0, 0.0)];
-            places.extend((0..=heights.len()).skip(1).map(|x| (x as f64, 0.0)));
-            for (x, height) in heights.iter().enumerate().rev() {
-                let top = f64::from(*height);
-                places.extend([((x + 1) as f64, top), (x as f64, top)]);
-            }
-            sound(&outline(&places));
-        }
-
-        /// Any corners at all on a small grid: many fall together, most outlines cross themselves.
-        #[test]
-        fn areas_sum_to_the_polygons_whatever_its_shape(
-            places in prop::collection::vec((0_u8..4, 0_u8..4), 3..24),
-        ) {
-            let places: Vec<(f64, f64)> =
-                places.iter().map(|&(x, y)| (f64::from(x), f64::from(y))).collect();
-            let corners = outline(&places);
-            let triangles = triangulate(&corners, DVec3::Z);
-            prop_assert_eq!(triangles.len(), corners.len() - 2);
-            let sum: f64 = areas(&corners, DVec3::Z, &triangles).iter().sum();
-            prop_assert!((sum - newell(corners.iter().copied()).z).abs() < 1e-9);
-        }
-    }
-}
+mod tests;

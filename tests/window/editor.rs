@@ -76,7 +76,7 @@ impl Editor {
 
     /// Lets frames go by until everything that was asked for is done and shown.
     pub(crate) fn settle(&mut self) {
-        for _ in 0..3 {
+        for _ in 0..2 {
             self.harness.step();
             self.harness.state().wait_for_picture();
         }
@@ -101,8 +101,14 @@ impl Editor {
     }
 
     pub(crate) fn perform(&mut self, action: Action) {
+        self.perform_all(&[action]);
+    }
+
+    pub(crate) fn perform_all(&mut self, actions: &[Action]) {
         let ctx = self.harness.ctx.clone();
-        self.harness.state_mut().perform(&ctx, action, Gesture::Whole);
+        for action in actions {
+            self.harness.state_mut().perform(&ctx, *action, Gesture::Whole);
+        }
         self.settle();
     }
 

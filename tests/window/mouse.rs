@@ -298,3 +298,21 @@ fn with_an_object_as_observer_drags_do_nothing_and_say_why() {
     assert!(editor.scene() == before);
     assert!(editor.state().message.is_some());
 }
+
+#[test]
+fn a_click_that_begins_and_ends_in_one_frame_is_a_click() {
+    for button in [LEFT, RIGHT] {
+        let mut editor = Editor::new();
+        let at = place_of(&mut editor, "x_wing", X_WING);
+        place_of(&mut editor, "r_falke", R_FALKE);
+        editor.hover(at);
+        let modifiers = Modifiers::NONE;
+        for pressed in [true, false] {
+            let event = Event::PointerButton { pos: at, button, pressed, modifiers };
+            editor.harness.input_mut().events.push(event);
+        }
+        editor.settle();
+        assert_eq!(name_of_selected(&editor), "x_wing", "{button:?}");
+        assert_eq!(editor.shows("Split into parts"), button == RIGHT);
+    }
+}

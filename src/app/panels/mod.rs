@@ -10,7 +10,7 @@ mod number;
 mod outline;
 mod outline_row;
 mod properties;
-mod spheres;
+pub(super) mod spheres;
 mod status_line;
 mod view_switches;
 

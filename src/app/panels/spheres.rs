@@ -28,7 +28,7 @@ const FINER: usize = 2;
 
 /// What a sphere shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Sphere {
+pub(in crate::app) enum Sphere {
     /// One of the nineteen.
     Preset(PresetId),
     /// What a file says.
@@ -56,9 +56,10 @@ impl Sphere {
 }
 
 /// Paints the sphere of a material into a square.
-pub(super) fn paint(ui: &Ui, rect: Rect, sphere: Sphere) {
+pub(in crate::app) fn paint(ui: &Ui, rect: Rect, sphere: Sphere) {
     let side = (rect.width().min(rect.height()) * ui.pixels_per_point()).round();
-    let id = Id::unique("spheres of materials");
+    // A dialog shows them in a size of its own.
+    let id = Id::unique(("spheres of materials", ui.layer_id()));
     let all = ui.data_mut(|data| data.get_temp_mut_or_default::<Arc<Mutex<Spheres>>>(id).clone());
     let texture = all.lock().texture(ui, sphere, pixels(side));
     let rect =

@@ -71,11 +71,17 @@ fn checked(mesh: tobj::Mesh, counts: [u32; 3], faces: &SoundFaces) -> Option<Num
     let [vertices, uvs, normals] = counts.map(|count| count as usize);
     let first = first_face(counts) as usize;
     let with_none = |count: usize| if count > 0 { count + 1 } else { 0 };
+    let same = |ours: fn(&SourceCorner) -> u32, none: usize, theirs: &[u32]| {
+        let ours =
+            faces.corners.iter().map(ours).map(|i| if i == NONE { none } else { i as usize });
+        none == 0 || theirs.iter().skip(first).map(|i| *i as usize).eq(ours)
+    };
     let right = mesh.positions.len() == 3 * vertices
         && mesh.texcoords.len() == 2 * with_none(uvs)
         && mesh.normals.len() == 3 * with_none(normals)
-        && mesh.indices.len() == first + faces.corners.len()
-        && mesh.indices[first..].iter().eq(faces.corners.iter().map(|corner| &corner.position))
+        && same(|corner| corner.position, vertices, &mesh.indices)
+        && same(|corner| corner.uv, uvs, &mesh.texcoord_indices)
+        && same(|corner| corner.normal, normals, &mesh.normal_indices)
         && mesh.positions.iter().all(|x| x.is_finite());
     right.then_some(Numbers {
         positions: mesh.positions,

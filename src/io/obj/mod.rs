@@ -13,13 +13,15 @@
 
 mod canonical;
 pub(super) mod lines;
+mod parts;
 mod scan;
 mod sound;
 
 use std::path::Path;
 
 use self::canonical::Numbers;
-use self::scan::{PartNames, Scan};
+use self::parts::PartNames;
+use self::scan::Scan;
 use self::sound::SoundFaces;
 use super::error::{LoadError, short_name};
 use super::findings::{Finding, FindingKind, Findings};
@@ -78,16 +80,7 @@ pub fn parse(
         findings.add(FindingKind::NoFaces, "", None);
     }
 
-    let mut library = Library::default();
-    for (line, names) in &scan.libraries {
-        for (name, path) in folder.map_or_else(Vec::new, |folder| locate_all(folder, names, ".mtl"))
-        {
-            match path {
-                Some(path) => library.read(&path, folder.unwrap_or(Path::new(""))),
-                None => findings.add(FindingKind::MtlMissing, &name, Some(*line)),
-            }
-        }
-    }
+    let library = libraries(&scan, folder, &mut findings);
     let parts = named_parts(&scan.parts.list, &library, &mut findings);
     let colors = std::mem::take(&mut scan.colors);
     let edge_color = scan.edge_color;
@@ -179,6 +172,21 @@ fn refuse_nothing(file: &str, scan: &Scan, faces: &SoundFaces) -> Result<(), Loa
             _ => "none of its vertices is finite",
         },
     ))
+}
+
+/// The materials of the MTL files that are found in `folder`.
+fn libraries(scan: &Scan, folder: Option<&Path>, findings: &mut Findings) -> Library {
+    let mut library = Library::default();
+    let Some(folder) = folder else { return library };
+    for (line, names) in &scan.libraries {
+        for (name, path) in locate_all(folder, names, ".mtl") {
+            match path {
+                Some(path) => library.read(&path, folder),
+                None => findings.add(FindingKind::MtlMissing, &name, Some(*line)),
+            }
+        }
+    }
+    library
 }
 
 /// The parts, by the names of their groups, objects or materials.

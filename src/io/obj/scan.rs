@@ -4,9 +4,8 @@
 //! Indices are resolved here, for a negative one counts back from where it stands; whether a
 //! positive one is in range is known only at the end.
 
-use std::collections::HashMap;
-
 use super::lines::{Line, Lines, decode, number, words};
+use super::parts::Parts;
 use crate::base::color::{Color, byte};
 use crate::io::error::LoadError;
 use crate::io::findings::{FindingKind, Findings};
@@ -76,44 +75,6 @@ pub(super) struct Faces {
     pub(super) parts: Vec<u32>,
     /// The first face statement that cannot be used, with the reason.
     pub(super) refused: Option<(u32, String)>,
-}
-
-/// The runs of `o`, `g` and `usemtl`, those with the same names together.
-#[derive(Debug, Default)]
-pub(super) struct Parts {
-    pub(super) list: Vec<PartNames>,
-    places: HashMap<PartNames, u32>,
-    now: PartNames,
-    /// The place of `now`, once a face has needed it.
-    place: Option<u32>,
-}
-
-/// What a part is called: by its object, its group and its material.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub(super) struct PartNames {
-    pub(super) object: Option<String>,
-    pub(super) group: Option<String>,
-    pub(super) material: Option<String>,
-    /// The line of the `usemtl`.
-    pub(super) line: u32,
-}
-
-impl Parts {
-    fn rename(&mut self, rename: impl FnOnce(&mut PartNames)) {
-        rename(&mut self.now);
-        self.place = None;
-    }
-
-    fn place(&mut self) -> u32 {
-        *self.place.get_or_insert_with(|| {
-            let key = PartNames { line: 0, ..self.now.clone() };
-            let next = u32::try_from(self.list.len()).unwrap_or(NONE);
-            *self.places.entry(key).or_insert_with(|| {
-                self.list.push(self.now.clone());
-                next
-            })
-        })
-    }
 }
 
 /// Reads all statements.

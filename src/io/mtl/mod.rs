@@ -3,16 +3,20 @@
 //! A file that cannot be understood is never a reason not to show the model: whatever is wrong is
 //! listed, and the rest is taken.
 
+mod map;
+mod mend;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use self::map::{Map, map};
 use super::error::{reason, short_name};
 use super::findings::{Finding, FindingKind, Findings};
 use super::locate::locate;
 use super::obj::lines::{Line, Lines, decode, number, words};
 use super::texture::load_picture;
 use crate::base::Shared;
-use crate::scene::{FileMaterial, Material, Texture, Wrap};
+use crate::scene::{FileMaterial, Texture, Wrap};
 
 /// The materials of the files that a model names, in their order.
 #[derive(Debug, Default)]
@@ -36,15 +40,6 @@ struct Statements {
     transparency: Option<f64>,
     illumination: Option<f64>,
     map: Option<(u32, Map)>,
-}
-
-/// The arguments of `map_Kd`.
-#[derive(Clone, Debug, PartialEq)]
-struct Map {
-    name: String,
-    wrap: Wrap,
-    offset: [f64; 2],
-    scale: [f64; 2],
 }
 
 impl Library {
@@ -168,65 +163,6 @@ impl Statements {
             findings.add(FindingKind::MtlNumber, &decode(keyword), Some(line.number));
         }
     }
-
-    /// The material, with what is missing or nonsense replaced.
-    fn mended(self, texture: Option<Shared<Texture>>, findings: &mut Findings) -> FileMaterial {
-        let mut note = |kind| findings.add(kind, &self.name, Some(self.line));
-        let clamped = |color: [f64; 3], note: &mut dyn FnMut(FindingKind)| {
-            let within = color.map(|x| x.clamp(0.0, 1.0));
-            if within != color {
-                note(FindingKind::MendedRange);
-            }
-            within
-        };
-        let diffuse = match self.diffuse {
-            Some(color) => clamped(color, &mut note),
-            None => {
-                note(FindingKind::MendedDiffuse);
-                // The texture named is what the material shows, found or not.
-                [if self.map.is_some() { 1.0 } else { 0.8 }; 3]
-            }
-        };
-        let shade = diffuse.map(|x| 0.2 * x);
-        let nonsense = |ambient: [f64; 3]| {
-            Some(ambient) == self.diffuse
-                || ambient.iter().all(|x| *x >= 1.0)
-                || ambient.iter().any(|x| *x > 1.0)
-        };
-        let ambient = match self.ambient {
-            Some(ambient) if !nonsense(ambient) => clamped(ambient, &mut note),
-            given => {
-                if given != Some(shade) {
-                    note(FindingKind::MendedAmbient);
-                }
-                shade
-            }
-        };
-        let unlit = self.illumination.is_some_and(|model| model == 0.0 || model == 1.0);
-        let specular = match self.specular {
-            Some(specular) if !unlit => clamped(specular, &mut note),
-            given => {
-                if given != Some([0.0; 3]) {
-                    note(FindingKind::MendedSpecular);
-                }
-                [0.0; 3]
-            }
-        };
-        let exponent = self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0);
-        // Without a highlight nobody sees its size.
-        if self.exponent != Some(exponent) && specular != [0.0; 3] {
-            note(FindingKind::MendedExponent);
-        }
-        let opacity = self.opacity.or_else(|| self.transparency.map(|x| 1.0 - x)).unwrap_or(1.0);
-        let [opacity, ..] = clamped([opacity; 3], &mut note);
-        if opacity < 0.5 {
-            note(FindingKind::Transparent);
-        } else if opacity < 1.0 {
-            note(FindingKind::Translucent);
-        }
-        let material = Material { ambient, diffuse, specular, exponent };
-        FileMaterial { name: self.name, material, opacity, texture }
-    }
 }
 
 /// Sets what could be read; says whether it could.
@@ -258,61 +194,10 @@ fn finite(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(text).ok()?.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-/// A file's name with options before or after it.
-fn map(rest: &[u8]) -> Option<Map> {
-    let mut map =
-        Map { name: String::new(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
-    // Words with where they begin, for blanks inside a name are kept.
-    let text = decode(rest);
-    let mut words: Vec<(usize, &str)> = Vec::new();
-    for word in text.split_whitespace() {
-        // The address of a part of a text tells where in the text it stands.
-        words.push((word.as_ptr().addr() - text.as_ptr().addr(), word));
-    }
-    let mut name: Option<(usize, usize)> = None;
-    let mut at = 0;
-    while let Some(&(begin, word)) = words.get(at) {
-        at += 1;
-        if word == "#" {
-            break;
-        }
-        let numbers = |most: usize| -> Vec<f64> {
-            let following = words[at..].iter().take(most);
-            following.map_while(|(_, word)| finite(word.as_bytes())).collect()
-        };
-        match word.to_ascii_lowercase().as_str() {
-            "-clamp" => {
-                let on = words.get(at).is_some_and(|(_, word)| word.eq_ignore_ascii_case("on"));
-                map.wrap = if on { Wrap::Clamp } else { Wrap::Repeat };
-                at += 1;
-            }
-            "-o" | "-s" => {
-                let given = numbers(3);
-                let target =
-                    if word.ends_with(['o', 'O']) { &mut map.offset } else { &mut map.scale };
-                for (target, given) in target.iter_mut().zip(&given) {
-                    *target = *given;
-                }
-                at += given.len();
-            }
-            "-t" => at += numbers(3).len(),
-            "-mm" => at += numbers(2).len(),
-            "-bm" | "-boost" | "-texres" => at += numbers(1).len(),
-            "-blendu" | "-blendv" | "-cc" | "-imfchan" | "-type" | "-colorspace" => at += 1,
-            _ => {
-                let first = name.map_or(begin, |(first, _)| first);
-                name = Some((first, begin + word.len()));
-            }
-        }
-    }
-    let (begin, end) = name?;
-    text[begin..end].clone_into(&mut map.name);
-    Some(map)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Material;
 
     fn read(text: &str) -> (FileMaterial, Vec<FindingKind>) {
         let mut findings = Findings::new("a.mtl");
@@ -372,19 +257,6 @@ mod tests {
         let (material, findings) = read("newmtl m\nKa 0 0 0\nKs 0 0 0\nmap_Kd t.png\n");
         assert_eq!(material.material.diffuse, [1.0; 3]);
         assert_eq!(findings, [FindingKind::MendedDiffuse, FindingKind::TextureMissing]);
-    }
-
-    #[test]
-    fn options_of_a_map_stand_before_or_after_a_name_with_blanks() {
-        let map = |text: &str| map(text.as_bytes());
-        let plain =
-            Map { name: "a  b.png".into(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
-        assert_eq!(map("a  b.png"), Some(plain.clone()));
-        assert_eq!(
-            map("-clamp on -o 0.1 -s 2 3 0 -mm 0 1 -imfchan r a  b.png -bm 1.5"),
-            Some(Map { wrap: Wrap::Clamp, offset: [0.1, 0.0], scale: [2.0, 3.0], ..plain })
-        );
-        assert_eq!(map("-s 1 1 1"), None);
     }
 
     #[test]

@@ -1,0 +1,95 @@
+//! The arguments of `map_Kd`: a file's name, with options before or after it.
+
+use super::finite;
+use crate::io::obj::lines::decode;
+use crate::scene::Wrap;
+
+/// Which texture, and how it lies.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Map {
+    /// As the file names it.
+    pub(super) name: String,
+    pub(super) wrap: Wrap,
+    pub(super) offset: [f64; 2],
+    pub(super) scale: [f64; 2],
+}
+
+/// Reads them; `None` where there is no name.
+pub(super) fn map(rest: &[u8]) -> Option<Map> {
+    let mut map =
+        Map { name: String::new(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
+    let text = decode(rest);
+    let words = words_with_places(&text);
+    // Where the name begins and ends: blanks inside it are kept.
+    let mut name: Option<(usize, usize)> = None;
+    let mut at = 0;
+    while let Some(&(begin, word)) = words.get(at) {
+        if word == "#" {
+            break;
+        }
+        match map.option(word, &words[at + 1..]) {
+            Some(arguments) => at += arguments,
+            None => name = Some((name.map_or(begin, |(first, _)| first), begin + word.len())),
+        }
+        at += 1;
+    }
+    let (begin, end) = name?;
+    text[begin..end].clone_into(&mut map.name);
+    Some(map)
+}
+
+impl Map {
+    /// Takes an option with the words that follow it; says how many of them are its arguments, or
+    /// `None` where the word is no option.
+    fn option(&mut self, word: &str, following: &[(usize, &str)]) -> Option<usize> {
+        let numbers = |most: usize| -> Vec<f64> {
+            let words = following.iter().take(most);
+            words.map_while(|(_, word)| finite(word.as_bytes())).collect()
+        };
+        let set = |target: &mut [f64; 2], given: &[f64]| {
+            for (target, given) in target.iter_mut().zip(given) {
+                *target = *given;
+            }
+            given.len()
+        };
+        Some(match word.to_ascii_lowercase().as_str() {
+            "-clamp" => {
+                let on = following.first().is_some_and(|(_, word)| word.eq_ignore_ascii_case("on"));
+                self.wrap = if on { Wrap::Clamp } else { Wrap::Repeat };
+                1
+            }
+            "-o" => set(&mut self.offset, &numbers(3)),
+            "-s" => set(&mut self.scale, &numbers(3)),
+            "-t" => numbers(3).len(),
+            "-mm" => numbers(2).len(),
+            "-bm" | "-boost" | "-texres" => numbers(1).len(),
+            "-blendu" | "-blendv" | "-cc" | "-imfchan" | "-type" | "-colorspace" => 1,
+            _ => return None,
+        })
+    }
+}
+
+/// The words of a text, each with where it begins.
+fn words_with_places(text: &str) -> Vec<(usize, &str)> {
+    // The address of a part of a text tells where in the text it stands.
+    let place = |word: &str| word.as_ptr().addr() - text.as_ptr().addr();
+    text.split_whitespace().map(|word| (place(word), word)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_of_a_map_stand_before_or_after_a_name_with_blanks() {
+        let map = |text: &str| map(text.as_bytes());
+        let plain =
+            Map { name: "a  b.png".into(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
+        assert_eq!(map("a  b.png"), Some(plain.clone()));
+        assert_eq!(
+            map("-clamp on -o 0.1 -s 2 3 0 -mm 0 1 -imfchan r a  b.png -bm 1.5 # x"),
+            Some(Map { wrap: Wrap::Clamp, offset: [0.1, 0.0], scale: [2.0, 3.0], ..plain })
+        );
+        assert_eq!(map("-s 1 1 1"), None);
+    }
+}

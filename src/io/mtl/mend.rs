@@ -1,0 +1,91 @@
+//! What a material is whose statements are missing or nonsense.
+//!
+//! Exporters write Ka as a copy of Kd, or white, which lights everything from everywhere; Ks for
+//! surfaces that are not to shine; no Kd besides a texture. Each rule has its finding.
+
+use super::Statements;
+use crate::base::Shared;
+use crate::io::findings::{FindingKind, Findings};
+use crate::scene::{FileMaterial, Material, Texture};
+
+impl Statements {
+    /// The material, with what is missing or nonsense replaced.
+    pub(super) fn mended(
+        self,
+        texture: Option<Shared<Texture>>,
+        findings: &mut Findings,
+    ) -> FileMaterial {
+        let mut note = |kind| findings.add(kind, &self.name, Some(self.line));
+        let diffuse = self.mended_diffuse(&mut note);
+        let ambient = self.mended_ambient(diffuse, &mut note);
+        let specular = self.mended_specular(&mut note);
+        let exponent = self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0);
+        // Without a highlight nobody sees its size.
+        if self.exponent != Some(exponent) && specular != [0.0; 3] {
+            note(FindingKind::MendedExponent);
+        }
+        let opacity = self.mended_opacity(&mut note);
+        let material = Material { ambient, diffuse, specular, exponent };
+        FileMaterial { name: self.name, material, opacity, texture }
+    }
+
+    fn mended_diffuse(&self, note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
+        if let Some(color) = self.diffuse {
+            return clamped(color, note);
+        }
+        note(FindingKind::MendedDiffuse);
+        // The texture named is what the material shows, found or not.
+        [if self.map.is_some() { 1.0 } else { 0.8 }; 3]
+    }
+
+    fn mended_ambient(&self, diffuse: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
+        let shade = diffuse.map(|x| 0.2 * x);
+        let nonsense = |ambient: [f64; 3]| {
+            Some(ambient) == self.diffuse
+                || ambient.iter().all(|x| *x >= 1.0)
+                || ambient.iter().any(|x| *x > 1.0)
+        };
+        match self.ambient {
+            Some(ambient) if !nonsense(ambient) => clamped(ambient, note),
+            given => {
+                if given != Some(shade) {
+                    note(FindingKind::MendedAmbient);
+                }
+                shade
+            }
+        }
+    }
+
+    fn mended_specular(&self, note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
+        let unlit = self.illumination.is_some_and(|model| model == 0.0 || model == 1.0);
+        match self.specular {
+            Some(specular) if !unlit => clamped(specular, note),
+            given => {
+                if given != Some([0.0; 3]) {
+                    note(FindingKind::MendedSpecular);
+                }
+                [0.0; 3]
+            }
+        }
+    }
+
+    fn mended_opacity(&self, note: &mut dyn FnMut(FindingKind)) -> f64 {
+        let given = self.opacity.or_else(|| self.transparency.map(|x| 1.0 - x)).unwrap_or(1.0);
+        let [opacity, ..] = clamped([given; 3], note);
+        if opacity < 0.5 {
+            note(FindingKind::Transparent);
+        } else if opacity < 1.0 {
+            note(FindingKind::Translucent);
+        }
+        opacity
+    }
+}
+
+/// Three numbers brought to 0 to 1.
+fn clamped(color: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
+    let within = color.map(|x| x.clamp(0.0, 1.0));
+    if within != color {
+        note(FindingKind::MendedRange);
+    }
+    within
+}

@@ -1,0 +1,43 @@
+//! The parts of a model: what its `o`, `g` and `usemtl` call its faces.
+
+use std::collections::HashMap;
+
+use crate::scene::NONE;
+
+/// The runs of `o`, `g` and `usemtl`, those with the same names together.
+#[derive(Debug, Default)]
+pub(super) struct Parts {
+    pub(super) list: Vec<PartNames>,
+    places: HashMap<PartNames, u32>,
+    now: PartNames,
+    /// The place of `now`, once a face has needed it.
+    place: Option<u32>,
+}
+
+/// What a part is called: by its object, its group and its material.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct PartNames {
+    pub(super) object: Option<String>,
+    pub(super) group: Option<String>,
+    pub(super) material: Option<String>,
+    /// The line of the `usemtl`.
+    pub(super) line: u32,
+}
+
+impl Parts {
+    pub(super) fn rename(&mut self, rename: impl FnOnce(&mut PartNames)) {
+        rename(&mut self.now);
+        self.place = None;
+    }
+
+    pub(super) fn place(&mut self) -> u32 {
+        *self.place.get_or_insert_with(|| {
+            let key = PartNames { line: 0, ..self.now.clone() };
+            let next = u32::try_from(self.list.len()).unwrap_or(NONE);
+            *self.places.entry(key).or_insert_with(|| {
+                self.list.push(self.now.clone());
+                next
+            })
+        })
+    }
+}

@@ -1,0 +1,3 @@
+//! What drawing costs in time: measured, never guessed.
+
+pub mod job;

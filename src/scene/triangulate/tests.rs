@@ -1,0 +1,273 @@
+//! Polygons from the hard places: notches, bridges, corners in a row, outlines that touch themselves.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::base::math;
+use crate::scene::newell;
+
+fn outline(places: &[(f64, f64)]) -> Vec<DVec3> {
+    places.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect()
+}
+
+/// Twice the signed areas of the triangles about `normal`.
+fn areas(outline: &[DVec3], normal: DVec3, triangles: &[[u32; 3]]) -> Vec<f64> {
+    let area = |t: &[u32; 3]| newell(t.iter().map(|&i| outline[i as usize])).dot(normal);
+    triangles.iter().map(area).collect()
+}
+
+/// The areas of the triangles, all of them checked to be positive and to sum to the polygon's.
+fn sound(outline: &[DVec3]) -> Vec<f64> {
+    let twice = newell(outline.iter().copied());
+    let normal = math::unit(twice).unwrap();
+    let triangles = triangulate(outline, normal);
+    assert_eq!(triangles.len(), outline.len() - 2);
+    let areas = areas(outline, normal, &triangles);
+    let sum: f64 = areas.iter().sum();
+    assert!((sum / twice.length() - 1.0).abs() < 1e-9, "{sum} is not {}", twice.length());
+    let worst = areas.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(worst >= -1e-9 * sum, "a triangle of {worst} in a polygon of {sum}");
+    areas
+}
+
+/// A square with a square hole, joined by a bridge from the one's first corner to the other's.
+fn square_with_a_hole() -> Vec<DVec3> {
+    outline(&[
+        (0.0, 0.0),
+        (4.0, 0.0),
+        (4.0, 4.0),
+        (0.0, 4.0),
+        (0.0, 0.0),
+        (1.0, 1.0),
+        (1.0, 3.0),
+        (3.0, 3.0),
+        (3.0, 1.0),
+        (1.0, 1.0),
+    ])
+}
+
+#[test]
+fn an_arrow_is_cut_from_its_notch_wherever_its_corners_begin() {
+    let mut arrow = outline(&[(0.0, 0.0), (4.0, 0.0), (1.0, 1.0), (0.0, 4.0)]);
+    for _ in 0..4 {
+        sound(&arrow);
+        arrow.rotate_left(1);
+    }
+}
+
+#[test]
+fn a_hole_joined_by_a_bridge_stays_a_hole_seen_from_any_side() {
+    let mut ring = square_with_a_hole();
+    for turn in 0..ring.len() {
+        let turned = math::rotation(DVec3::new(0.6, 0.0, 0.8), turn as f64);
+        let placed: Vec<DVec3> = ring.iter().map(|p| turned * *p + DVec3::X * 1e3).collect();
+        assert!((sound(&placed).iter().sum::<f64>() - 24.0).abs() < 1e-6);
+        ring.rotate_left(1);
+    }
+}
+
+/// The outline of an island of 6 x 6 cells, one side of a cell after the other: the cells that
+/// hang together by sides with the first, and what they shut in.
+fn island(cells: &[bool; 36]) -> Vec<DVec3> {
+    type Cell = (i32, i32);
+    let land = |(x, y): Cell| {
+        (0..6).contains(&x) && (0..6).contains(&y) && (cells[(y * 6 + x) as usize] || y == 0)
+    };
+    let flood = |from: Cell, steps: &[Cell], into: &dyn Fn(Cell) -> bool| {
+        let (mut found, mut open) = (std::collections::BTreeSet::from([from]), vec![from]);
+        while let Some((x, y)) = open.pop() {
+            for (dx, dy) in steps {
+                let cell = (x + dx, y + dy);
+                if into(cell) && found.insert(cell) {
+                    open.push(cell);
+                }
+            }
+        }
+        found
+    };
+    let sides = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+    let around = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
+    let island = flood((0, 0), &sides, &land);
+    let near = |(x, y): Cell| (-1..7).contains(&x) && (-1..7).contains(&y);
+    let sea = flood((-1, -1), &around, &|cell| near(cell) && !island.contains(&cell));
+    // Along the cells' sides with the island to the left; at a corner where two cells touch the
+    // way stays at the same cell.
+    let ahead_left = |(x, y): Cell, (dx, dy): Cell| match (dx, dy) {
+        (1, 0) => (x, y),
+        (0, 1) => (x - 1, y),
+        (-1, 0) => (x - 1, y - 1),
+        _ => (x, y - 1),
+    };
+    let runs = |at: Cell, step: Cell| {
+        let right = match step {
+            (1, 0) => (at.0, at.1 - 1),
+            (0, 1) => (at.0, at.1),
+            (-1, 0) => (at.0 - 1, at.1),
+            _ => (at.0 - 1, at.1 - 1),
+        };
+        !sea.contains(&ahead_left(at, step)) && sea.contains(&right)
+    };
+    let (mut at, mut step, mut outline) = ((0, 0), (1, 0), Vec::new());
+    loop {
+        outline.push(DVec3::new(f64::from(at.0), f64::from(at.1), 0.0));
+        at = (at.0 + step.0, at.1 + step.1);
+        let turns = [(-step.1, step.0), step, (step.1, -step.0)];
+        step = turns.into_iter().find(|step| runs(at, *step)).unwrap();
+        if at == (0, 0) && step == (1, 0) {
+            return outline;
+        }
+    }
+}
+
+/// A plate with square holes in a row, each joined to the one before it.
+fn plate(holes: u8) -> Vec<DVec3> {
+    let x = |i: u8| f64::from(i) * 4.0;
+    let mut places = vec![(0.0, 0.0), (x(holes), 0.0), (x(holes), 4.0), (0.0, 4.0), (0.0, 0.0)];
+    for i in 0..holes {
+        let left = x(i) + 1.0;
+        places.extend([(left, 1.0), (left, 3.0), (left + 2.0, 3.0), (left + 2.0, 1.0)]);
+    }
+    for i in (0..holes).rev() {
+        places.push((x(i) + 1.0, 1.0));
+        if i > 0 {
+            places.push((x(i) - 1.0, 1.0));
+        }
+    }
+    outline(&places)
+}
+
+#[test]
+fn holes_joined_one_to_the_other_stay_holes_wherever_the_corners_begin() {
+    for holes in 1..6 {
+        let mut plate = plate(holes);
+        for _ in 0..plate.len() {
+            let areas = sound(&plate);
+            assert!((areas.iter().sum::<f64>() - 24.0 * f64::from(holes)).abs() < 1e-9);
+            plate.rotate_left(1);
+        }
+    }
+}
+
+#[test]
+fn corners_in_a_row_leave_no_triangle_without_area() {
+    let mut square: Vec<(f64, f64)> = Vec::new();
+    for i in 0..4 {
+        let t = f64::from(i);
+        square.extend([(t, 0.0), (4.0, t), (4.0 - t, 4.0), (0.0, 4.0 - t)]);
+    }
+    square.sort_by(|a, b| {
+        let angle = |p: &(f64, f64)| libm::atan2(p.1 - 2.0, p.0 - 2.0);
+        angle(a).total_cmp(&angle(b))
+    });
+    let mut square = outline(&square);
+    for _ in 0..square.len() {
+        assert!(sound(&square).iter().all(|area| *area > 0.5));
+        square.rotate_left(1);
+    }
+}
+
+#[test]
+fn a_thin_quad_far_from_the_origin_keeps_its_shape() {
+    let at = |x: f32, z: f32| DVec3::new(f64::from(x), 0.0, f64::from(z));
+    sound(&[
+        at(14680.0, 9605.0),
+        at(14680.002, 9606.5),
+        at(14680.001, 9608.0),
+        at(14679.999, 9608.0),
+    ]);
+}
+
+#[test]
+fn a_polygon_that_crosses_itself_has_as_many_triangles_as_any_other() {
+    let star: Vec<(f64, f64)> =
+        (0..5).map(|i| f64::from(i) * 2.513_274).map(|a| (libm::cos(a), libm::sin(a))).collect();
+    let bow = [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
+    for places in [&star[..], &bow, &[(1.0, 1.0); 7]] {
+        let corners = outline(places);
+        let triangles = triangulate(&corners, DVec3::Z);
+        assert_eq!(triangles.len(), corners.len() - 2);
+        let sum: f64 = areas(&corners, DVec3::Z, &triangles).iter().sum();
+        assert!((sum - newell(corners.iter().copied()).z).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_million_corners_are_cut_in_no_more_than_seconds() {
+    let comb = |i: u32| (f64::from(i), if i.is_multiple_of(2) { 0.0 } else { 1.0 });
+    let teeth = (0..1_000_000).map(comb).chain([(1e6, -1.0), (0.0, -1.0)]);
+    let corners = outline(&teeth.rev().collect::<Vec<_>>());
+    let begin = std::time::Instant::now();
+    let triangles = triangulate(&corners, DVec3::NEG_Z);
+    assert_eq!(triangles.len(), corners.len() - 2);
+    assert!(begin.elapsed().as_secs() < 10, "{:?}", begin.elapsed());
+}
+
+proptest! {
+    /// Polygons that are stars about the origin: simple, and as concave as can be.
+    #[test]
+    fn simple_polygons_are_cut_into_triangles_inside_them(
+        radii in prop::collection::vec(1_u8..=10, 4..80),
+        turn in 0.0..6.3_f64,
+    ) {
+        let sector = 2.0 * std::f64::consts::PI / radii.len() as f64;
+        let corner = |(i, r): (usize, &u8)| {
+            let angle = sector * i as f64;
+            DVec3::new(libm::cos(angle), libm::sin(angle), 0.0) * f64::from(*r)
+        };
+        let turned = math::rotation(DVec3::new(0.0, 0.6, 0.8), turn);
+        let corners: Vec<DVec3> =
+            radii.iter().enumerate().map(corner).map(|p| turned * p).collect();
+        sound(&corners);
+    }
+
+    /// Islands of cells: outlines that touch themselves at corners, around bays that are closed
+    /// but for such a corner, with or without the corners inside their straight sides.
+    #[test]
+    fn islands_that_touch_themselves_are_cut_into_triangles_inside_them(
+        cells in prop::array::uniform::<_, 36>(prop::bool::weighted(0.65)),
+        all_corners in any::<bool>(),
+        first in 0..100_usize,
+    ) {
+        let mut corners = island(&cells);
+        if !all_corners {
+            let turns = |i: usize| {
+                let at = |i: usize| corners[i % corners.len()];
+                (at(i + 1) - at(i)).cross(at(i + 2) - at(i + 1)) != DVec3::ZERO
+            };
+            let kept = (0..corners.len()).filter(|&i| turns(i));
+            corners = kept.map(|i| corners[(i + 1) % corners.len()]).collect();
+        }
+        let length = corners.len();
+        corners.rotate_left(first % length);
+        let areas = sound(&corners);
+        prop_assert!(areas.iter().all(|area| *area > 0.5), "{areas:?}");
+    }
+
+    /// Stairs on a grid: many corners in a row, many that touch the ears' borders.
+    #[test]
+    fn stairs_are_cut_into_triangles_inside_them(
+        heights in prop::collection::vec(1_u8..6, 2..30),
+    ) {
+        let mut places = vec![(0.0, 0.0)];
+        places.extend((0..=heights.len()).skip(1).map(|x| (x as f64, 0.0)));
+        for (x, height) in heights.iter().enumerate().rev() {
+            let top = f64::from(*height);
+            places.extend([((x + 1) as f64, top), (x as f64, top)]);
+        }
+        sound(&outline(&places));
+    }
+
+    /// Any corners at all on a small grid: many fall together, most outlines cross themselves.
+    #[test]
+    fn areas_sum_to_the_polygons_whatever_its_shape(
+        places in prop::collection::vec((0_u8..4, 0_u8..4), 3..24),
+    ) {
+        let places: Vec<(f64, f64)> =
+            places.iter().map(|&(x, y)| (f64::from(x), f64::from(y))).collect();
+        let corners = outline(&places);
+        let triangles = triangulate(&corners, DVec3::Z);
+        prop_assert_eq!(triangles.len(), corners.len() - 2);
+        let sum: f64 = areas(&corners, DVec3::Z, &triangles).iter().sum();
+        prop_assert!((sum - newell(corners.iter().copied()).z).abs() < 1e-9);
+    }
+}
