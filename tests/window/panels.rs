@@ -416,3 +416,18 @@ fn the_picture_is_the_largest_thing_in_the_window() {
         assert!(picture.height() > 0.85 * height, "{picture} in {width} x {height}");
     }
 }
+
+#[test]
+fn statistics_count_what_is_in_the_scene_and_what_is_drawn() {
+    let mut editor = Editor::new();
+    assert!(!editor.shows("Polygons"));
+    editor.perform(Action::ToggleStatistics);
+    let meshes = editor.scene();
+    let meshes = meshes.objects.iter().map(|(_, object)| &object.model.mesh);
+    let polygons: usize = meshes.map(|mesh| mesh.polygon_count()).sum();
+    let text = polygons.to_string();
+    let (thousands, rest) = text.split_at(text.len() - 3);
+    let value = format!("{thousands},{rest}");
+    assert!(editor.harness.query_all_by_value(&value).next().is_some(), "{value} polygons");
+    assert!(editor.state().statistics.triangles > 0);
+}

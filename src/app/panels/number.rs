@@ -102,6 +102,7 @@ impl<'a> Number<'a> {
             .clamp_existing_to_range(false)
             .update_while_editing(false)
             .min_size(vec2(width, theme::ROW))
+            .clip_text(true)
             .custom_formatter(format)
             .custom_parser(expression::value);
         if self.whole {
