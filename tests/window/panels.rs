@@ -6,10 +6,9 @@
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Node;
-use egui_kittest::kittest::{NodeT as _, Queryable as _, By};
+use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::app::action::{Action, Group};
 use marraztu::app::chord::Chord::{Command, Either, Named};
-use marraztu::base::image::Size;
 use marraztu::scene::{
     Arithmetic, Filter, ItemId, LightAt, LightKind, Settings, SpecularForm, Subject,
 };
@@ -137,9 +136,8 @@ fn every_action_is_in_a_menu() {
         &["Edit", "History"],
     ];
     for path in paths {
-        for name in path {
-            let of_menu = By::new().role(Role::Button).label(name);
-            editor.harness.query_all(of_menu).last().expect("the menu is there").click();
+        for (depth, name) in path.iter().enumerate() {
+            click(&mut editor, if depth == 0 { Role::Button } else { Role::MenuItem }, name);
             // Menus inside of menus open a little later.
             editor.harness.run_steps(30);
         }
@@ -147,25 +145,16 @@ fn every_action_is_in_a_menu() {
             let entries = editor.harness.query_all_by_label(action.look().label);
             entries.into_iter().any(|entry| {
                 let role = entry.accesskit_node().role();
-                // The panels have buttons of these names too, but at the sides.
-                matches!(role, Role::Button | Role::CheckBox) && in_a_popup(&entry)
+                matches!(role, Role::MenuItem | Role::MenuItemCheckBox)
             })
         };
         found.extend(Action::ALL.iter().filter(is_open));
         editor.press(Named(Key::Escape));
-        editor.press(Named(Key::Escape));
         editor.harness.run_steps(10);
-        assert!(!editor.state().shown.cheat_sheet);
     }
     for action in Action::ALL {
         assert!(found.contains(action), "{action:?} is in no menu");
     }
-}
-
-/// Whether a control stands on something that is open over the panels.
-fn in_a_popup(node: &Node<'_>) -> bool {
-    std::iter::successors(Some(*node), |node| node.parent())
-        .any(|node| matches!(node.accesskit_node().role(), Role::Menu | Role::Dialog))
 }
 
 #[test]
@@ -177,13 +166,13 @@ fn the_history_is_a_list_and_a_click_goes_there() {
     editor.perform(Action::StepZUp);
     for (entry, expected) in [(1, &after_one), (0, &before), (2, &editor.scene())] {
         click(&mut editor, Role::Button, "Edit");
-        click(&mut editor, Role::Button, "History");
+        click(&mut editor, Role::MenuItem, "History");
         editor.harness.run_steps(30);
         let label = std::iter::once("Beginning").chain(editor.state().history.steps()).nth(entry);
         let label = format!("{entry}  {}", label.unwrap());
         editor.click_label(&label);
         assert!(editor.scene() == *expected, "{label}");
-        editor.press(Named(Key::Escape));
+        editor.harness.run_steps(30);
     }
 }
 
@@ -208,7 +197,8 @@ fn a_click_in_the_outline_selects_and_makes_the_subject() {
         click(&mut editor, Role::ListBoxOption, &name);
         assert_eq!(editor.state().selected(), Some(id), "{name}");
         let row = control(&editor, Role::ListBoxOption, &name);
-        assert_eq!(row.accesskit_node().is_selected(), Some(true), "{name}");
+        let marked = row.accesskit_node().toggled();
+        assert_eq!(marked, Some(egui::accesskit::Toggled::True), "{name}");
     }
     click(&mut editor, Role::Button, "Cameras");
     assert_eq!(editor.view().subject, Subject::Camera);
@@ -317,7 +307,10 @@ fn parts_of_a_model_are_listed_and_hidden_one_by_one() {
 fn lights_are_added_from_the_outline_and_items_deleted() {
     let mut editor = Editor::tall();
     for (label, fits) in [
-        ("Sun", (|kind: &LightKind| matches!(kind, LightKind::Sun { .. })) as fn(&LightKind) -> bool),
+        (
+            "Sun",
+            (|kind: &LightKind| matches!(kind, LightKind::Sun { .. })) as fn(&LightKind) -> bool,
+        ),
         ("Bulb", |kind| matches!(kind, LightKind::Bulb { .. })),
         ("Spot", |kind| matches!(kind, LightKind::Spot { .. })),
     ] {
@@ -378,6 +371,7 @@ fn the_list_of_keys_is_searched_and_does_what_is_clicked() {
     assert_eq!(entries(&editor), ["Back faces"]);
     click(&mut editor, Role::MenuItemCheckBox, "Back faces");
     assert!(editor.view().back_faces);
+    click(&mut editor, Role::TextInput, "Search among the keys");
     editor.press(Command(Key::A));
     type_text(&mut editor, "Ctrl+S");
     let found = entries(&editor);
@@ -417,8 +411,23 @@ fn every_control_has_a_name_whatever_is_selected_and_however_small_the_window() 
 fn the_picture_is_the_largest_thing_in_the_window() {
     for (width, height) in [(1280.0, 800.0), (1024.0, 640.0)] {
         let editor = Editor::of_size(width, height);
-        let Size { width: w, height: h } = editor.state().statistics.size;
-        let share = (w * h) as f64 / f64::from(width * height);
-        assert!(share > 0.5, "{share} of {width} x {height}");
+        let picture = editor.picture();
+        assert!(picture.width() > 0.5 * width, "{picture} in {width} x {height}");
+        assert!(picture.height() > 0.85 * height, "{picture} in {width} x {height}");
     }
+}
+
+#[test]
+fn statistics_count_what_is_in_the_scene_and_what_is_drawn() {
+    let mut editor = Editor::new();
+    assert!(!editor.shows("Polygons"));
+    editor.perform(Action::ToggleStatistics);
+    let meshes = editor.scene();
+    let meshes = meshes.objects.iter().map(|(_, object)| &object.model.mesh);
+    let polygons: usize = meshes.map(|mesh| mesh.polygon_count()).sum();
+    let text = polygons.to_string();
+    let (thousands, rest) = text.split_at(text.len() - 3);
+    let value = format!("{thousands},{rest}");
+    assert!(editor.harness.query_all_by_value(&value).next().is_some(), "{value} polygons");
+    assert!(editor.state().statistics.triangles > 0);
 }

@@ -6,13 +6,12 @@
 
 use egui::accesskit::Role;
 use egui::{Key, PointerButton, Pos2, vec2};
-use egui_kittest::kittest::NodeT as _;
 use glam::DVec3;
 use marraztu::app::action::Action;
 use marraztu::app::ask::Ask;
 use marraztu::app::chord::Chord::{Command, Either, Lower, Named, Upper};
 use marraztu::base::color::Color;
-use marraztu::edit::{Gesture, items, place};
+use marraztu::edit::{Gesture, place};
 use marraztu::scene::{
     Camera, CameraMode, Light, LightKind, MaterialChoice, Object, PresetId, SpotOwner, Surface,
     View,
@@ -119,7 +118,8 @@ fn fields_set_what_they_name(mut editor: Editor, fields: &[(&str, Read)]) {
         assert!(dragged > 27.0, "{field} is dragged to {dragged}");
         assert_eq!(editor.steps(), steps + 2, "{field} dragged");
         editor.press(Command(Key::Z));
-        assert!((read(&editor) - 27.0).abs() < 1e-9, "{field} back from the drag");
+        let back = read(&editor);
+        assert!((back - 27.0).abs() < 1e-9, "{field} is {back} without the drag to {dragged}");
         editor.press(Command(Key::Z));
         assert!(editor.scene() == before, "{field} back from all");
     }
@@ -155,7 +155,7 @@ fn fields_of_lights_set_what_they_name() {
             ("Constant", |e| light(e).attenuation.constant),
             ("Linear", |e| light(e).attenuation.linear),
             ("Quadratic", |e| light(e).attenuation.quadratic),
-            ("Red as a number", |e| f64::from(light(e).color.0[0]) * 27.0 / 27.0),
+            ("Red as a number", |e| f64::from(light(e).color.0[0])),
             ("Key", |e| f64::from(light(e).slot)),
         ],
     );
@@ -210,7 +210,8 @@ fn an_angle_beyond_a_right_one_stays_as_it_was_given_while_it_is_dragged_on() {
     assert!(degrees > 100.0, "{turned}");
     assert_eq!(shown(&editor, "Rotation X"), "X 0");
     let z = object(&editor).placement.now().z_axis.truncate();
-    let expected = DVec3::new(libm::sin(degrees.to_radians()), 0.0, libm::cos(degrees.to_radians()));
+    let expected =
+        DVec3::new(libm::sin(degrees.to_radians()), 0.0, libm::cos(degrees.to_radians()));
     assert!((z - expected).length() < 1e-9, "{z} is not {expected}");
 }
 
@@ -238,8 +239,7 @@ fn walking_through_the_fields_changes_nothing() {
     let command = place::object_turn(&scene, &view, id, third * 3.1, stroke).unwrap();
     let label = String::new();
     editor.ask(Ask::Change { command, gesture: Gesture::Whole, label: label.clone() });
-    let command =
-        place::object_translation(&editor.scene(), &view, id, third, stroke).unwrap();
+    let command = place::object_translation(&editor.scene(), &view, id, third, stroke).unwrap();
     editor.ask(Ask::Change { command, gesture: Gesture::Whole, label });
     let before = editor.scene();
     click(&mut editor, Role::SpinButton, "Position X");
@@ -247,8 +247,9 @@ fn walking_through_the_fields_changes_nothing() {
         editor.press(Named(Key::Tab));
     }
     editor.press(Named(Key::Escape));
+    let steps: Vec<String> = editor.state().history.steps().map(str::to_owned).collect();
+    assert_eq!(steps.len(), 2, "{steps:?}");
     assert!(editor.scene() == before);
-    assert_eq!(editor.steps(), 2);
 }
 
 #[test]
@@ -383,9 +384,8 @@ fn a_key_that_another_light_has_is_refused() {
 
 #[test]
 fn a_spot_gets_a_place_of_its_own_where_it_was() {
-    let mut editor = with_light(|kind| {
-        matches!(kind, LightKind::Spot { owner: SpotOwner::SelectedCamera, .. })
-    });
+    let mut editor =
+        with_light(|kind| matches!(kind, LightKind::Spot { owner: SpotOwner::SelectedCamera, .. }));
     click(&mut editor, Role::ComboBox, "Shines from");
     editor.click_label("a place of its own");
     let LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } = light(&editor).kind else {
@@ -432,9 +432,4 @@ fn the_fields_show_what_the_keys_do() {
     editor.perform(Action::StepXUp);
     let shown = control(&editor, Role::SpinButton, "Position X").value();
     assert_eq!(shown.as_deref(), Some("X -90"));
-    let id = editor.view().object.unwrap();
-    let command = items::change_object(&editor.scene(), id, |object| object.visible = false);
-    let label = "Hide".to_owned();
-    editor.ask(Ask::Change { command: command.unwrap(), gesture: Gesture::Whole, label });
-    assert!(control(&editor, Role::ListBoxOption, "r_falke").accesskit_node().is_selected().is_some());
 }
