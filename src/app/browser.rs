@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Ui};
 
 /// Whether the file is to be read or to be written.
@@ -71,10 +72,18 @@ impl Browser {
         ui.set_width(ui.available_width().clamp(240.0, 520.0));
         ui.heading(self.title);
         let label = ui.label("Path");
-        let field = egui::TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
-        let field = ui.add(field).labelled_by(label.id);
+        let output = egui::TextEdit::singleline(&mut self.path)
+            .desired_width(f32::INFINITY)
+            .align(egui::Align2::LEFT_CENTER)
+            .show(ui);
+        let field = output.response.response.labelled_by(label.id);
         if !self.shown_once {
             field.request_focus();
+            // A name can be typed at once behind the folder.
+            let end = CCursorRange::one(CCursor::new(self.path.chars().count()));
+            let mut editing = output.state;
+            editing.cursor.set_char_range(Some(end));
+            editing.store(ui.ctx(), field.id);
             self.shown_once = true;
         }
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));

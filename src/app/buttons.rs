@@ -2,7 +2,7 @@
 //!
 //! Each tells by its tooltip what it does, on which key it is, and why it cannot be done now.
 
-use egui::{Atom, Context, IdSalt, Response, RichText, Ui};
+use egui::{Atom, Context, IdSalt, Response, RichText, Role, Ui, WidgetInfo};
 
 use super::action::Action;
 use super::keyboard::{Keyboard, Press};
@@ -42,7 +42,11 @@ impl Action {
                 Icon::Tick.paint(ui.painter(), rect, 10.0, ui.visuals().text_color());
             }
         }
-        let clicked = self.finish(state, shown.response);
+        shown.response.widget_info(|| match self.is_on(state) {
+            Some(on) => WidgetInfo::selected(Role::MenuItemCheckBox, enabled, on, look.label),
+            None => WidgetInfo::labeled(Role::MenuItem, enabled, look.label),
+        });
+        let clicked = self.explain(shown.response, state).clicked().then_some(self);
         if clicked.is_some() {
             ui.close();
         }
@@ -68,15 +72,10 @@ impl Action {
 
     fn add(self, ui: &mut Ui, state: &State, button: egui::Button<'_>) -> Option<Self> {
         let response = ui.add_enabled(self.availability(state).is_ok(), button);
-        self.finish(state, response)
-    }
-
-    /// Names and explains what stands for the action, and gives the action back when it is clicked.
-    fn finish(self, state: &State, response: Response) -> Option<Self> {
         if let Some(on) = self.is_on(state) {
             let enabled = response.enabled();
             response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::CheckBox, enabled, on, self.look().label)
+                WidgetInfo::selected(Role::CheckBox, enabled, on, self.look().label)
             });
         }
         self.explain(response, state).clicked().then_some(self)

@@ -140,11 +140,13 @@ impl Dialogs {
         let own_name = name.to_owned();
         if self.native {
             let task = Task::start(ctx, title.to_owned(), move |_| {
-                let dialog = rfd::FileDialog::new()
+                let mut dialog = rfd::FileDialog::new()
                     .set_title(title)
                     .add_filter(endings.join(", "), endings)
-                    .set_directory(folder)
-                    .set_file_name(&own_name);
+                    .set_directory(folder);
+                if !own_name.is_empty() {
+                    dialog = dialog.set_file_name(own_name);
+                }
                 match mode {
                     Mode::Open => dialog.pick_files(),
                     Mode::Save => dialog.save_file().map(|path| vec![path]),
@@ -166,7 +168,8 @@ impl Dialogs {
         }
         let number = self.open.len();
         let dialog = self.open.last_mut()?;
-        let modal = Modal::new(Id::unique(("dialog", number)));
+        let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
+        let modal = Modal::new(Id::unique(("dialog", number))).frame(frame);
         let response = modal.show(ctx, |ui| dialog.ui(ui));
         let ended = match response.inner {
             Some(end) => end,

@@ -16,6 +16,7 @@ use super::state::{Notice, State};
 use super::tasks::{Outcome, Task};
 use super::worker;
 use crate::base::Shared;
+use crate::base::image::Size;
 use crate::edit::{Gesture, items};
 use crate::io::{self, LoadError, Loaded};
 use crate::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Projection, Texture};
@@ -44,6 +45,7 @@ pub(super) enum Fetched {
 pub(super) struct FetchedModel {
     path: PathBuf,
     material: Option<MaterialChoice>,
+    keeps_saved: bool,
     result: Result<(Loaded, Option<Shared<Texture>>), LoadError>,
 }
 
@@ -53,6 +55,8 @@ struct Wish {
     options: LoadOptions,
     material: Option<MaterialChoice>,
     texture: Option<PathBuf>,
+    /// Whether a scene that is saved counts as saved afterwards.
+    keeps_saved: bool,
 }
 
 impl App {
@@ -67,14 +71,16 @@ impl App {
         }
     }
 
-    /// Loads what the command line names: models with their files' own materials, else silver.
-    pub(super) fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+    /// Loads what the command line names: models with their files' own materials, else silver. They
+    /// are no work that could be lost.
+    pub fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         for path in paths {
             if scene_files::is_scene(&path) {
                 self.open_scene(ctx, path);
             } else {
                 let material = Some(MaterialChoice::File);
-                self.load_model(ctx, path, Wish { material, ..Wish::default() });
+                let wish = Wish { material, keeps_saved: true, ..Wish::default() };
+                self.load_model(ctx, path, wish);
             }
         }
     }
@@ -149,7 +155,11 @@ impl App {
         if loaded.model.options == options && texture.is_none() {
             self.insert(loaded, material, None);
         } else {
-            self.load_model(ctx, path, Wish { options, material: Some(material), texture });
+            self.load_model(
+                ctx,
+                path,
+                Wish { options, material: Some(material), texture, keeps_saved: false },
+            );
         }
     }
 
@@ -161,7 +171,8 @@ impl App {
                 let texture = wish.texture.as_deref().map(io::load_texture).transpose()?;
                 Ok((loaded, texture))
             });
-            Fetched::Model(Box::new(FetchedModel { path, material: wish.material, result }))
+            let Wish { material, keeps_saved, .. } = wish;
+            Fetched::Model(Box::new(FetchedModel { path, material, keeps_saved, result }))
         });
     }
 
@@ -190,19 +201,17 @@ impl App {
 
     /// Takes what was read meanwhile.
     pub(super) fn hear_loading(&mut self, ctx: &Context) {
-        let mut at = 0;
-        while let Some(loading) = self.loading.get(at) {
+        // In the order in which they were asked for, however long each takes.
+        while let Some(loading) = self.loading.first() {
             // One question at a time; what is read waits for its own.
             if loading.asks && self.dialogs.asks_material() {
-                at += 1;
-                continue;
+                return;
             }
             let outcome = loading.task.outcome();
             if matches!(outcome, Outcome::Running) {
-                at += 1;
-                continue;
+                return;
             }
-            let Loading { task, .. } = self.loading.remove(at);
+            let Loading { task, .. } = self.loading.remove(0);
             ctx.request_repaint();
             match outcome {
                 Outcome::Done(fetched) => self.take_fetched(ctx, fetched),
@@ -217,11 +226,15 @@ impl App {
     fn take_fetched(&mut self, ctx: &Context, fetched: Fetched) {
         match fetched {
             Fetched::Model(model) => {
-                let FetchedModel { path, material, result } = *model;
+                let FetchedModel { path, material, keeps_saved, result } = *model;
                 match (result, material) {
                     (Err(error), _) => self.tell_load_error(&error),
                     (Ok((loaded, texture)), Some(material)) => {
+                        let keeps_saved = keeps_saved && self.state.history.is_saved();
                         self.insert(loaded, material, texture);
+                        if keeps_saved {
+                            self.state.history.mark_saved();
+                        }
                     }
                     (Ok((loaded, _)), None) => {
                         self.dialogs.ask_material(MaterialDialog::of_model(path, loaded));
@@ -262,7 +275,8 @@ impl App {
         let mut object = Object::new(Shared::new(loaded.model), material);
         object.texture = texture;
         let name = object.name.clone();
-        let unseen = out_of_sight(&self.state, &object);
+        let size = self.viewport.size().unwrap_or(Size::new(800, 600));
+        let unseen = out_of_sight(&self.state, &object, size);
         let command = items::insert_object(&self.state.scene, object);
         self.change(command, Gesture::Whole, &format!("Load {name}"));
         self.state.tell(Some(format!("Loaded {name}: {found}")));
@@ -314,13 +328,12 @@ fn settled(material: MaterialChoice, loaded: &Loaded) -> MaterialChoice {
 
 /// Whether an object would be outside of what is seen now, or too small to be noticed.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-fn out_of_sight(state: &State, object: &Object) -> bool {
+fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
     let Some((centre, radius)) = object.bounding_sphere(0.0) else { return false };
     let (view, scene) = (&state.view, &state.scene);
     let centre = scene.observer_frame(view).inverse().transform_point3(centre);
     let lens = scene.selected_camera(view).lens;
-    let size = state.statistics.size;
-    let (width, height) = (size.width.max(1) as f64, size.height.max(1) as f64);
+    let (width, height) = (size.width as f64, size.height as f64);
     let shorter = width.min(height);
     let before = -centre.z;
     let (near, far, half) = match view.projection {
@@ -347,11 +360,10 @@ mod tests {
         let (scene, view) = io::default_scene();
         let (_, object) = scene.objects.iter().next().unwrap();
         let mut object = object.clone();
-        let mut state = State::new(scene.clone(), view);
-        state.statistics.size = crate::base::image::Size::new(800, 600);
+        let state = State::new(scene.clone(), view);
         let mut at = |m: DMat4| {
             object.placement = crate::scene::Placed::new(m);
-            out_of_sight(&state, &object)
+            out_of_sight(&state, &object, Size::new(800, 600))
         };
         assert!(!at(DMat4::IDENTITY));
         assert!(at(DMat4::from_translation(DVec3::Z * 900.0)), "behind the camera");

@@ -36,6 +36,8 @@ pub(super) struct Keyboard {
     /// Whether the last key event was sent by a held key: its text follows it.
     last_was_repeat: bool,
     presses: u64,
+    /// For so many frames more the keyboard is on its way to the panels.
+    leaving: u8,
     waiting: Vec<Press>,
 }
 
@@ -59,13 +61,36 @@ impl Keyboard {
 
     /// From the viewport to the panels, or back.
     pub(super) fn change_owner(ctx: &Context) {
-        let viewport = ctx.plugin_or_default::<Self>().lock().viewport;
-        ctx.memory_mut(|memory| match (memory.focused(), viewport) {
-            (focused, Some(viewport)) if focused != Some(viewport) => {
-                memory.request_focus(viewport);
+        let handle = ctx.plugin_or_default::<Self>();
+        let mut keyboard = handle.lock();
+        let focused = ctx.memory(|memory| memory.focused());
+        match keyboard.viewport {
+            Some(viewport) if focused.is_some_and(|id| id != viewport) => {
+                ctx.memory_mut(|memory| memory.request_focus(viewport));
             }
-            _ => memory.move_focus(egui::FocusDirection::Next),
-        });
+            // The focus goes on as widgets are shown: from the viewport, which is the last of them,
+            // to the first one of the frame after.
+            _ => keyboard.leaving = 3,
+        }
+        ctx.request_repaint();
+    }
+
+    /// At the beginning of a frame.
+    pub(super) fn begin(ctx: &Context) {
+        let handle = ctx.plugin_or_default::<Self>();
+        let mut keyboard = handle.lock();
+        if keyboard.leaving == 3 {
+            ctx.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next));
+        }
+        if keyboard.leaving > 0 {
+            keyboard.leaving -= 1;
+            ctx.request_repaint();
+        }
+    }
+
+    /// Whether the keyboard is on its way to the panels, and the viewport must not take it.
+    pub(super) fn is_leaving(ctx: &Context) -> bool {
+        ctx.plugin_or_default::<Self>().lock().leaving > 0
     }
 
     fn whose(&self, ctx: &Context) -> Owner {

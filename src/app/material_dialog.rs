@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Color32, Ui};
+use egui::Ui;
 
 use super::dialogs::take_focus;
+use super::panels::spheres::{self, Sphere};
 use crate::base::color::Color;
 use crate::io::Loaded;
 use crate::scene::{LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding};
@@ -111,7 +112,8 @@ impl MaterialDialog {
             for (at, id) in PresetId::all().enumerate() {
                 let choice = MaterialChoice::Preset(id);
                 ui.horizontal(|ui| {
-                    swatch(ui, &id.get().material);
+                    let (_, rect) = ui.allocate_space(egui::vec2(22.0, 22.0));
+                    spheres::paint(ui, rect, Sphere::Preset(id));
                     if ui.selectable_label(*now == choice, id.get().name).clicked() {
                         *now = choice;
                     }
@@ -186,7 +188,7 @@ pub(super) fn summary(loaded: &Loaded) -> String {
 }
 
 /// A number with a comma between thousands.
-fn grouped(number: usize) -> String {
+pub(super) fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (at, digit) in digits.chars().enumerate() {
@@ -222,14 +224,6 @@ fn own_ui(ui: &mut Ui, material: &mut Material) {
         let value = egui::DragValue::new(&mut material.exponent).range(0.0..=1000.0).speed(0.5);
         ui.add(value).labelled_by(label.id);
     });
-}
-
-/// A spot of the colour in which the material looks lit from the front.
-fn swatch(ui: &mut Ui, material: &Material) {
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
-    let lit = std::array::from_fn(|i| material.ambient[i] + material.diffuse[i]);
-    let [r, g, b] = Color::from_factors(lit).0;
-    ui.painter().circle_filled(rect.center(), 6.0, Color32::from_rgb(r, g, b));
 }
 
 #[cfg(test)]

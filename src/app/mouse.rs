@@ -10,7 +10,7 @@
 //!
 //! Each drag is one gesture. So are the turns of the wheel while the pointer rests.
 
-use egui::{Event, Key, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Ui, Vec2};
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Ui, Vec2};
 use glam::{DVec2, DVec3};
 
 use super::ask::Ask;
@@ -54,6 +54,9 @@ struct Drag {
     button: PointerButton,
     gesture: Gesture,
     from: Pos2,
+    /// How far it was acted on, and how far it has come.
+    at: Pos2,
+    to: Pos2,
     /// Whether it has left the place where a click would stay.
     moved: bool,
     /// Taken back: it does nothing more until the button is let go.
@@ -112,9 +115,28 @@ impl Mouse {
         asks: &mut Vec<Ask>,
     ) -> Vec<(Pos2, Purpose)> {
         let mut picks = Vec::new();
-        self.begin(ui, response, state, asks);
+        // Event by event: on a slow machine a whole click fits into one frame.
+        for event in ui.input(|input| input.events.clone()) {
+            match event {
+                Event::PointerButton { pos, button, pressed: true, modifiers } => {
+                    self.press(ui, response, state, (pos, button, modifiers), asks);
+                }
+                Event::PointerMoved(at) => {
+                    if let Some(drag) = &mut self.drag {
+                        drag.to = at;
+                    }
+                }
+                Event::PointerButton { pos, button, pressed: false, .. } => {
+                    self.release(ui, state, under.size, (pos, button), asks, &mut picks);
+                }
+                _ => {}
+            }
+        }
         self.go_on(ui, state, under.size, asks);
-        self.end(ui, &mut picks);
+        if self.drag.is_some_and(|drag| !ui.input(|input| input.pointer.button_down(drag.button))) {
+            // It was let go where the window does not hear of it.
+            self.drag = None;
+        }
         if response.double_clicked_by(PointerButton::Primary) {
             picks.extend(response.interact_pointer_pos().map(|at| (at, Purpose::Frame)));
         }
@@ -124,10 +146,16 @@ impl Mouse {
         picks
     }
 
-    fn begin(&mut self, ui: &Ui, response: &Response, state: &State, asks: &mut Vec<Ask>) {
-        let pressed = |button| ui.input(|input| input.pointer.button_pressed(button));
+    fn press(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        state: &State,
+        (from, button, modifiers): (Pos2, PointerButton, Modifiers),
+        asks: &mut Vec<Ask>,
+    ) {
         if self.drag.is_some() {
-            if pressed(PointerButton::Secondary) {
+            if button == PointerButton::Secondary {
                 self.cancel(asks);
             }
             return;
@@ -136,36 +164,38 @@ impl Mouse {
         if !response.contains_pointer() || egui::Popup::is_any_open(ui.ctx()) {
             return;
         }
-        let buttons = [PointerButton::Primary, PointerButton::Middle, PointerButton::Secondary];
-        let Some(button) = buttons.into_iter().find(|button| pressed(*button)) else { return };
-        let Some(from) = ui.input(|input| input.pointer.press_origin()) else { return };
-        let modifiers = ui.input(|input| input.modifiers);
         let pose = state.scene.selected_camera(&state.view).pose.now();
         let motion = match button {
             PointerButton::Secondary => Motion::Fly,
             PointerButton::Middle => Motion::Pan,
-            _ if modifiers.alt => Motion::Orbit,
-            _ if modifiers.shift => Motion::Pan,
-            _ if pose.mode_with(state.view.object) == CameraMode::Fly => Motion::Look,
-            _ => Motion::Orbit,
+            PointerButton::Primary if modifiers.alt => Motion::Orbit,
+            PointerButton::Primary if modifiers.shift => Motion::Pan,
+            PointerButton::Primary => match pose.mode_with(state.view.object) {
+                CameraMode::Fly => Motion::Look,
+                CameraMode::Analysis { .. } => Motion::Orbit,
+            },
+            PointerButton::Extra1 | PointerButton::Extra2 => return,
         };
         let gesture = self.gesture("drag");
-        self.drag = Some(Drag { motion, button, gesture, from, moved: false, over: false });
+        let (to, at) = (from, from);
+        let (moved, over) = (false, false);
+        self.drag = Some(Drag { motion, button, gesture, from, at, to, moved, over });
     }
 
+    /// Does what the pointer's way since the last time means.
     fn go_on(&mut self, ui: &Ui, state: &State, size: Size, asks: &mut Vec<Ask>) {
         let Some(drag) = &mut self.drag else { return };
-        let (mut by, at) = ui.input(|input| (input.pointer.delta(), input.pointer.latest_pos()));
-        if !drag.moved {
-            // What was not acted on while it could still become a click is made up for.
-            by = at.map_or(Vec2::ZERO, |at| at - drag.from);
-            drag.moved = by.length() > CLICK;
+        // What was not acted on while it could still become a click is made up for.
+        drag.moved |= (drag.to - drag.from).length() > CLICK;
+        let by = if drag.moved { drag.to - drag.at } else { Vec2::ZERO };
+        if drag.moved {
+            drag.at = drag.to;
         }
         let drag = *drag;
         if drag.over {
             return;
         }
-        if drag.moved && by != Vec2::ZERO {
+        if by != Vec2::ZERO {
             let pixels = by * ui.ctx().pixels_per_point();
             let command = moving(drag, state, pixels, size);
             asks.push(changing(command, drag.gesture, "Move the view"));
@@ -175,12 +205,21 @@ impl Mouse {
         }
     }
 
-    fn end(&mut self, ui: &Ui, picks: &mut Vec<(Pos2, Purpose)>) {
-        let Some(drag) = self.drag else { return };
-        if ui.input(|input| input.pointer.button_down(drag.button)) {
-            return;
+    fn release(
+        &mut self,
+        ui: &Ui,
+        state: &State,
+        size: Size,
+        (to, button): (Pos2, PointerButton),
+        asks: &mut Vec<Ask>,
+        picks: &mut Vec<(Pos2, Purpose)>,
+    ) {
+        match &mut self.drag {
+            Some(drag) if drag.button == button => drag.to = to,
+            _ => return,
         }
-        self.drag = None;
+        self.go_on(ui, state, size, asks);
+        let Some(drag) = self.drag.take() else { return };
         if drag.moved || drag.over {
             return;
         }

@@ -23,8 +23,8 @@ pub enum StartError {
     #[error("the system lacks a library that windows need: {0}")]
     Library(String),
     /// No OpenGL, not even in software.
-    #[error("no OpenGL was found to show a window with, which libgl1 or a driver provides: {0}")]
-    NoGl(String),
+    #[error("no OpenGL was found to show a window with: a driver or, in software, libgl1 has it")]
+    NoGl,
     /// Something else.
     #[error("the window could not be opened: {0}")]
     Other(String),
@@ -97,12 +97,15 @@ fn explained(error: &eframe::Error) -> StartError {
         eframe::Error::WinitEventLoop(error) => {
             // "os error at <a file of the library>:<line>: <what happened>"
             let text = error.to_string();
-            let reason = text.rsplit(": ").next().unwrap_or(&text);
-            StartError::Display(reason.to_owned())
+            let reason = text.rsplit(": ").next().unwrap_or(&text).to_owned();
+            match reason.contains("shared librar") {
+                true => StartError::Library(reason),
+                false => StartError::Display(reason),
+            }
         }
         eframe::Error::Glutin(_)
         | eframe::Error::NoGlutinConfigs(..)
-        | eframe::Error::OpenGL(_) => StartError::NoGl(error.to_string()),
+        | eframe::Error::OpenGL(_) => StartError::NoGl,
         _ => StartError::Other(error.to_string()),
     }
 }

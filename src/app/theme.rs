@@ -17,7 +17,7 @@ pub const GAP: f32 = 4.0;
 /// From the border of a panel to what stands in it.
 pub const MARGIN: i8 = 10;
 /// Where the labels of a panel's rows end and its controls begin.
-pub const LABEL: f32 = 72.0;
+pub const LABEL: f32 = 62.0;
 /// Small text: keys, units, what can be missed.
 pub const SMALL: f32 = 11.0;
 /// Text.

@@ -307,3 +307,23 @@ fn opening_a_scene_over_unsaved_work_asks_first() {
     editor.click_label("Discard");
     assert_eq!(editor.steps(), 0);
 }
+
+#[test]
+fn files_of_the_command_line_stand_in_their_order_and_are_no_unsaved_work() {
+    let (folder, small) = folder_with("small.obj", CUBE);
+    let large = folder.path().join("large.obj");
+    std::fs::write(&large, CUBE.repeat(3000)).unwrap();
+    let mut editor = Editor::new();
+    let before = editor.scene().objects.len();
+    let ctx = editor.harness.ctx.clone();
+    editor.harness.state_mut().load_at_start(&ctx, vec![large, small]);
+    editor.wait_until(|editor| editor.scene().objects.len() == before + 2);
+    let scene = editor.scene();
+    let names: Vec<&str> = scene.objects.iter().map(|(_, object)| &*object.name).collect();
+    assert_eq!(names[..2], ["small", "large"], "each goes to the front");
+    let silver = MaterialChoice::Preset(PresetId::SILVER);
+    assert!(scene.objects.iter().take(2).all(|(_, object)| object.material == silver));
+    assert!(editor.leaves_by(Named(Key::Escape)));
+    editor.press(Lower(Key::Z));
+    assert!(!editor.leaves_by(Named(Key::Escape)));
+}

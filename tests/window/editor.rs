@@ -28,6 +28,15 @@ impl Editor {
         Self::sized(egui::vec2(640.0, 240.0), |ui, app| app.editor_ui(ui))
     }
 
+    /// An editor in a window so high that nothing in its panels has to be scrolled to.
+    pub(crate) fn tall() -> Self {
+        Self::sized(egui::vec2(1200.0, 1600.0), |ui, app| app.editor_ui(ui))
+    }
+
+    pub(crate) fn of_size(width: f32, height: f32) -> Self {
+        Self::sized(egui::vec2(width, height), |ui, app| app.editor_ui(ui))
+    }
+
     /// An editor with a further panel in which these actions are buttons.
     pub(crate) fn with_buttons(actions: &'static [Action]) -> Self {
         Self::sized(egui::vec2(640.0, 240.0), move |ui, app| {
@@ -57,6 +66,7 @@ impl Editor {
             harness: Harness::builder()
                 .with_size(size)
                 .with_step_dt(1.0 / 60.0)
+                .with_context_setup(marraztu::app::theme::install)
                 .build_ui_state(ui, App::new(scene, view)),
             modifiers: RefCell::default(),
         };
@@ -66,7 +76,7 @@ impl Editor {
 
     /// Lets frames go by until everything that was asked for is done and shown.
     pub(crate) fn settle(&mut self) {
-        for _ in 0..3 {
+        for _ in 0..2 {
             self.harness.step();
             self.harness.state().wait_for_picture();
         }
@@ -91,8 +101,14 @@ impl Editor {
     }
 
     pub(crate) fn perform(&mut self, action: Action) {
+        self.perform_all(&[action]);
+    }
+
+    pub(crate) fn perform_all(&mut self, actions: &[Action]) {
         let ctx = self.harness.ctx.clone();
-        self.harness.state_mut().perform(&ctx, action, Gesture::Whole);
+        for action in actions {
+            self.harness.state_mut().perform(&ctx, *action, Gesture::Whole);
+        }
         self.settle();
     }
 

@@ -37,9 +37,7 @@ fn every_action_does_the_same_by_each_of_its_keys_and_by_its_button() {
         for chunk in tried {
             let action = chunk[0];
             let in_situation = |mut editor: Editor| {
-                for action in *situation {
-                    editor.perform(*action);
-                }
+                editor.perform_all(situation);
                 editor
             };
             let mut clicked = in_situation(Editor::with_buttons(chunk));
@@ -396,5 +394,27 @@ fn a_scene_that_stays_as_it_is_is_drawn_once() {
     assert_eq!(editor.state().statistics.pictures, pictures);
     editor.press(Lower(Key::Z));
     assert_eq!(editor.state().statistics.pictures, pictures + 1);
+    assert_eq!(editor.view().subject, Subject::Object);
+}
+
+#[test]
+fn the_panels_get_the_keyboard_by_f6_and_give_it_back_by_esc() {
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    let is_focused = |editor: &Editor| editor.harness.get_by_label("Viewport").is_focused();
+    for way_back in [Key::Escape, Key::F6] {
+        assert!(is_focused(&editor));
+        editor.press(Named(Key::F6));
+        assert!(!is_focused(&editor));
+        let view = editor.view();
+        for key in [Named(Key::Tab), Named(Key::Tab), Named(Key::Tab), Lower(Key::C)] {
+            editor.press(key);
+        }
+        assert!(!is_focused(&editor), "Tab goes on in the panels");
+        assert_eq!(editor.view(), view, "letters ask for nothing there");
+        editor.press(Named(way_back));
+        assert!(!editor.shows("Save the scene?"));
+    }
+    editor.press(Lower(Key::C));
     assert_eq!(editor.view().subject, Subject::Object);
 }

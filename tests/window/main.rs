@@ -8,3 +8,5 @@ mod dialogs;
 mod editor;
 mod keys_and_clicks;
 mod mouse;
+mod panels;
+mod properties;

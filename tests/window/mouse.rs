@@ -243,7 +243,7 @@ fn a_right_click_opens_the_menu_of_the_thing_under_it_and_selects_it() {
     assert_eq!(name_of_selected(&editor), "x_wing");
     assert!(editor.shows("Split into parts"));
     let count = editor.scene().objects.len();
-    editor.click_label("Duplicate Ctrl+D");
+    editor.click_label("Duplicate");
     assert_eq!(editor.scene().objects.len(), count + 1);
     assert!(!editor.shows("Split into parts"), "the menu is closed");
 }
@@ -297,4 +297,52 @@ fn with_an_object_as_observer_drags_do_nothing_and_say_why() {
     editor.drag(LEFT, &places);
     assert!(editor.scene() == before);
     assert!(editor.state().message.is_some());
+}
+
+#[test]
+fn a_click_that_begins_and_ends_in_one_frame_is_a_click() {
+    for button in [LEFT, RIGHT] {
+        let mut editor = Editor::new();
+        let at = place_of(&mut editor, "x_wing", X_WING);
+        place_of(&mut editor, "r_falke", R_FALKE);
+        editor.hover(at);
+        let modifiers = Modifiers::NONE;
+        for pressed in [true, false] {
+            let event = Event::PointerButton { pos: at, button, pressed, modifiers };
+            editor.harness.input_mut().events.push(event);
+        }
+        editor.settle();
+        assert_eq!(name_of_selected(&editor), "x_wing", "{button:?}");
+        assert_eq!(editor.shows("Split into parts"), button == RIGHT);
+    }
+}
+
+#[test]
+fn clicking_again_goes_to_the_object_behind_and_round() {
+    let mut editor = Editor::new();
+    // From the right, one ship stands before the other.
+    editor.perform(Action::FrameAll);
+    editor.perform(Action::LookRight);
+    let mut view = editor.view();
+    view.subject = Subject::Camera;
+    view.steps.translation = 400.0;
+    editor.ask(Ask::Look(Box::new(view)));
+    editor.perform(Action::StepZUp);
+    let rect = editor.picture();
+    let half = rect.size().min_elem() / 2.0;
+    let mut names = Vec::new();
+    for step in -30..30_i8 {
+        let at = rect.center() + vec2(0.03 * f32::from(step) * half, 0.0);
+        names.clear();
+        for _ in 0..3 {
+            editor.harness.run_steps(30);
+            editor.click(at, LEFT);
+            names.push(name_of_selected(&editor));
+        }
+        if names[0] != names[1] {
+            break;
+        }
+    }
+    assert_eq!(names, ["x_wing", "r_falke", "x_wing"], "the nearer one first");
+    assert_eq!(editor.steps(), 3, "to frame, to look from the right and to step back");
 }

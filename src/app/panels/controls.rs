@@ -87,9 +87,10 @@ pub(super) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
 pub(super) fn row<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = theme::GAP;
-        let (rect, _) = ui.allocate_exact_size(vec2(theme::LABEL, theme::ROW), Sense::hover());
-        let color = ui.visuals().weak_text_color();
-        put_text(ui, rect, text(ui, label, TextStyle::Body, rect.width()), color);
+        let label = text(ui, label, TextStyle::Body, ui.available_width() / 2.0);
+        let width = theme::LABEL.max(label.size().x + 2.0);
+        let (rect, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
+        put_text(ui, rect, label, ui.visuals().weak_text_color());
         add(ui)
     })
     .inner

@@ -1,6 +1,6 @@
 //! The menus, made from the table of actions.
 
-use egui::{Atom, IdSalt, MenuBar, ScrollArea, Ui, vec2};
+use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
 use crate::app::action::{Action, Group};
 use crate::app::ask::Ask;
@@ -49,10 +49,11 @@ fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
 /// A menu in a menu; its name stands where those of actions stand, behind the column of ticks.
 fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     let ticks = Atom::custom(IdSalt::new("tick"), vec2(12.0, 12.0));
-    ui.menu_button((ticks, name), |ui| {
+    let shown = ui.menu_button((ticks, name), |ui| {
         ui.set_min_width(200.0);
         add(ui);
     });
+    shown.response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, name));
 }
 
 fn group_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, group: Group) {

@@ -10,7 +10,8 @@ mod number;
 mod outline;
 mod outline_row;
 mod properties;
-mod spheres;
+pub(super) mod spheres;
+mod statistics;
 mod status_line;
 mod view_switches;
 
@@ -51,6 +52,9 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             .default_size(right)
             .size_range(220.0..=most_right)
             .show(ui, |ui| properties::show(ui, state, asks));
+    }
+    if state.shown.statistics {
+        statistics::show(ui, state, ui.available_rect_before_wrap());
     }
     if state.shown.cheat_sheet {
         cheat_sheet::show(ui, state, asks);

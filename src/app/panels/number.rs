@@ -6,7 +6,8 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{DragValue, RichText, TextStyle, Ui, vec2};
+use egui::text::CCursorRange;
+use egui::{DragValue, RichText, TextEdit, TextStyle, Ui, vec2};
 use glam::DVec3;
 
 use super::expression;
@@ -14,8 +15,14 @@ use crate::app::{gestures, theme};
 use crate::base::math::Axis;
 use crate::edit::Gesture;
 
-/// As many characters as a field of a row of three has room for.
-const ROOM: usize = 7;
+/// As many characters as a number at rest has at most.
+const ROOM: usize = 8;
+
+/// The width of a digit, in parts of the font's size.
+const DIGIT: f32 = 0.53;
+
+/// From the border of a field to what stands in it.
+const PADDING: f32 = 3.0;
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
@@ -29,7 +36,6 @@ pub(super) struct Number<'a> {
     speed: f64,
     range: RangeInclusive<f64>,
     whole: bool,
-    room: usize,
 }
 
 impl<'a> Number<'a> {
@@ -43,7 +49,6 @@ impl<'a> Number<'a> {
             speed: 1.0,
             range: f64::NEG_INFINITY..=f64::INFINITY,
             whole: false,
-            room: ROOM,
         }
     }
 
@@ -68,30 +73,36 @@ impl<'a> Number<'a> {
         Self { range, ..self }
     }
 
-    /// As many characters fit.
-    pub(super) fn room(self, room: usize) -> Self {
-        Self { room, ..self }
-    }
-
     /// Only whole numbers.
     pub(super) fn whole(self) -> Self {
         Self { whole: true, ..self }
     }
 
+    /// As many characters as there is room for beside the letter and the unit.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 3 and 8")]
+    fn room(&self, width: f32) -> usize {
+        let signs =
+            if self.axis.is_some() { 1.8 } else { 0.0 } + self.suffix.chars().count() as f32;
+        let room = (width - 2.0 * PADDING) / (DIGIT * theme::BODY) - signs;
+        room.clamp(3.0, ROOM as f32) as usize
+    }
+
     /// Shows it, `width` points wide. Gives the number that it should become.
     pub(super) fn ui(self, ui: &mut Ui, width: f32, value: f64) -> Option<(f64, Gesture)> {
         let id = ui.next_auto_id();
-        let edited = ui.memory(|memory| memory.has_focus(id));
         let mut to = value;
-        let format = move |number: f64, _| {
-            if edited { exact(number) } else { short_in(number, self.room) }
-        };
+        // Asked when the text is made, for Tab gives the field the keyboard just before that.
+        let (ctx, room) = (ui.ctx().clone(), self.room(width));
+        let edited = move || ctx.memory(|memory| memory.has_focus(id));
+        let format =
+            move |number: f64, _| if edited() { exact(number) } else { short_in(number, room) };
         let mut field = DragValue::new(&mut to)
             .speed(self.speed)
             .range(self.range)
             .clamp_existing_to_range(false)
             .update_while_editing(false)
             .min_size(vec2(width, theme::ROW))
+            .clip_text(true)
             .custom_formatter(format)
             .custom_parser(expression::value);
         if self.whole {
@@ -107,7 +118,16 @@ impl<'a> Number<'a> {
         if !self.suffix.is_empty() {
             field = field.suffix(RichText::new(self.suffix).weak());
         }
+        // A scope would give the field another id.
+        let padding = std::mem::replace(&mut ui.spacing_mut().button_padding.x, PADDING);
         let response = ui.add(field).accessible_name(&self.name);
+        ui.spacing_mut().button_padding.x = padding;
+        if response.clicked() {
+            // egui marks as much of the text as the field showed at rest.
+            let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+            state.cursor.set_char_range(Some(CCursorRange::select_all_str(&exact(value))));
+            state.store(ui.ctx(), id);
+        }
         let response = response.on_hover_ui(|ui| {
             ui.label(self.hint);
             ui.label(RichText::new("Drag, or click and type a number or a sum").weak());
@@ -148,7 +168,8 @@ fn short_in(number: f64, room: usize) -> String {
             return text;
         }
     }
-    format!("{number:.1e}")
+    let text = format!("{number:.1e}");
+    if text.len() <= room { text } else { format!("{number:.0e}") }
 }
 
 /// A number with all digits that a person could mean.
@@ -197,14 +218,19 @@ mod tests {
             (-200.0, "-200"),
             (1.2, "1.2"),
             (33.333_333, "33.333"),
-            (-1234.5678, "-1234.6"),
-            (1_234_567.0, "1234567"),
+            (-1234.5678, "-1234.57"),
+            (12_345_678.0, "12345678"),
             (5e-6, "5.0e-6"),
-            (12_345_678.9, "1.2e7"),
+            (123_456_789.0, "1.2e8"),
             (1e-300, "0"),
         ] {
             assert_eq!(short(number), expected);
         }
+        let narrow = [-0.000_12, 33.333_333, -1234.5678, 123_456.0, -123_456.0];
+        assert_eq!(
+            narrow.map(|number| short_in(number, 5)),
+            ["-1e-4", "33.33", "-1235", "1.2e5", "-1e5"]
+        );
     }
 
     #[test]

@@ -45,6 +45,8 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         let count = u16::try_from(lines.len()).unwrap_or(u16::MAX);
         let size = vec2(ui.available_width(), f32::from(count) * theme::ROW);
         let (all, _) = ui.allocate_exact_size(size, Sense::hover());
+        // Other lines come to the same places when the list is scrolled or unfolded.
+        ui.ctx().allow_widget_id_changes_in(all);
         for (i, line) in (0..count).zip(&lines) {
             let top = all.top() + f32::from(i) * theme::ROW;
             let rect = Rect::from_min_size(pos2(all.left(), top), vec2(all.width(), theme::ROW));

@@ -39,7 +39,7 @@ pub(super) fn item_ui(
     unfolded: bool,
 ) -> bool {
     let name = name(state, item);
-    let response = ui.interact(rect, ui.scope_id().with(item), Sense::click_and_drag());
+    let response = ui.interact(rect, ui.scope_id().with(("item", item)), Sense::click_and_drag());
     let is_subject = state.selected() == Some(item);
     response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, true, is_subject, name));
     ground(ui, state, item, rect, &response);
@@ -123,7 +123,7 @@ fn shown_ui(
     };
     let label = format!("{verb} {}", name(state, item));
     let rect = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
-    let response = ui.interact(rect, ui.scope_id().with((item, "shown")), Sense::click());
+    let response = ui.interact(rect, ui.scope_id().with(("shown", item)), Sense::click());
     icon_at(ui, rect, &response, icon, &label, true);
     let key = match item {
         ItemId::Light(id) => state.scene.lights.get(id).map(|light| light.slot),
@@ -221,7 +221,7 @@ fn fold_ui(
         return false;
     }
     let rect = Rect::from_min_size(rect.min + vec2(4.0, 0.0), vec2(15.0, rect.height()));
-    let response = ui.interact(rect, ui.scope_id().with((item, "parts")), Sense::click());
+    let response = ui.interact(rect, ui.scope_id().with(("parts", item)), Sense::click());
     let label = format!("Parts of {}", object.name);
     response.widget_info(|| WidgetInfo::selected(Role::DisclosureTriangle, true, unfolded, &label));
     let icon = if unfolded { Icon::Down } else { Icon::Right };
@@ -247,7 +247,7 @@ pub(super) fn part_ui(
     let (icon, verb) = if shown { (Icon::Eye, "Hide") } else { (Icon::EyeClosed, "Show") };
     let label = format!("{verb} part {name}");
     let button = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
-    let response = ui.interact(button, ui.scope_id().with((id, part)), Sense::click());
+    let response = ui.interact(button, ui.scope_id().with(("part", id, part)), Sense::click());
     icon_at(ui, button, &response, icon, &label, true);
     let color = ground_color(ui, false, shown && object.visible);
     let mark = Rect::from_min_size(rect.min + vec2(INDENT + 16.0, 0.0), vec2(12.0, rect.height()));

@@ -3,7 +3,7 @@
 //! A sphere of radius 1 before an orthographic camera, lit by ambient light and by a sun from the
 //! upper left. It is drawn at twice its size and every four pixels become one. Its outline is not the
 //! renderer's, which covers a pixel or does not, but a disk whose border is as transparent as it
-//! covers its pixels.
+//! covers its pixels; the sphere goes a little beyond it.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ const FINER: usize = 2;
 
 /// What a sphere shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Sphere {
+pub(in crate::app) enum Sphere {
     /// One of the nineteen.
     Preset(PresetId),
     /// What a file says.
@@ -56,9 +56,10 @@ impl Sphere {
 }
 
 /// Paints the sphere of a material into a square.
-pub(super) fn paint(ui: &Ui, rect: Rect, sphere: Sphere) {
+pub(in crate::app) fn paint(ui: &Ui, rect: Rect, sphere: Sphere) {
     let side = (rect.width().min(rect.height()) * ui.pixels_per_point()).round();
-    let id = Id::unique("spheres of materials");
+    // A dialog shows them in a size of its own.
+    let id = Id::unique(("spheres of materials", ui.layer_id()));
     let all = ui.data_mut(|data| data.get_temp_mut_or_default::<Arc<Mutex<Spheres>>>(id).clone());
     let texture = all.lock().texture(ui, sphere, pixels(side));
     let rect =
@@ -113,7 +114,7 @@ fn studio() -> (Scene, Renderer) {
         model: cam_model(),
         material: MaterialChoice::File,
         pose: Placed::new(Pose::facing_minus_z(DVec3::Z * 5.0)),
-        lens: Lens { half_size: 1.0, parallel_far: 10.0, ..Lens::default() },
+        lens: Lens { half_size: 0.95, parallel_far: 10.0, ..Lens::default() },
     });
     let direction = math::unit(DVec3::new(0.5, -0.6, -0.75)).unwrap_or(DVec3::NEG_Z);
     let sun = LightKind::Sun { direction: Placed::new(direction) };

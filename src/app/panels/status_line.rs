@@ -229,7 +229,7 @@ mod tests {
         let parts: Vec<String> = ["first", "second", "third", "fourth"].map(String::from).into();
         let within = |room: usize| fitted(&parts, |text| text.len() <= room);
         assert_eq!(within(99), "first  |  second  |  third  |  fourth");
-        assert_eq!(within(33), "first  |  second  |  ...  |  fourth");
+        assert_eq!(within(35), "first  |  second  |  ...  |  fourth");
         assert_eq!(within(24), "first  |  ...  |  fourth");
         assert_eq!(within(1), "first");
     }

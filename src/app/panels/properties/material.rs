@@ -151,7 +151,7 @@ fn factors_ui(
         let width = (ui.available_width() - 2.0 * theme::GAP) / 3.0;
         for (i, channel) in ["red", "green", "blue"].iter().enumerate() {
             let number = Number::new(format!("{name} {channel}"), hint);
-            let number = number.speed(0.005).range(0.0..=1.0).room(5);
+            let number = number.speed(0.005).range(0.0..=1.0);
             if let Some((to, gesture)) = number.ui(ui, width, factors[i]) {
                 let mut factors = factors;
                 factors[i] = to;

@@ -17,6 +17,8 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::scene::{ItemId, Transformation};
 
+pub(super) use object::counted;
+
 /// Shows it; what is asked for is added to `asks`.
 pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let Some(item) = state.selected().filter(|item| state.scene.contains(*item)) else {

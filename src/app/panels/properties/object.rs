@@ -187,7 +187,7 @@ fn model_ui(ui: &mut Ui, object: &Object) {
 }
 
 /// A number with its thousands apart.
-pub(super) fn counted(count: usize) -> String {
+pub(in crate::app::panels) fn counted(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {

@@ -1,0 +1,435 @@
+//! The properties of what is selected.
+//!
+//! Catches: a field that sets another thing than it names, drags that are many steps, a number typed
+//! for one item that lands in another, fields that round what they only show, sliders that do other
+//! than keys.
+
+use egui::accesskit::Role;
+use egui::{Key, PointerButton, Pos2, vec2};
+use glam::DVec3;
+use marraztu::app::action::Action;
+use marraztu::app::ask::Ask;
+use marraztu::app::chord::Chord::{Command, Either, Lower, Named, Upper};
+use marraztu::base::color::Color;
+use marraztu::edit::{Gesture, place};
+use marraztu::scene::{
+    Camera, CameraMode, Light, LightKind, MaterialChoice, Object, PresetId, SpotOwner, Surface,
+    View,
+};
+
+use crate::editor::Editor;
+use crate::panels::{click, control, type_text};
+
+fn object(editor: &Editor) -> Object {
+    let id = editor.view().object.unwrap();
+    editor.scene().objects.get(id).unwrap().clone()
+}
+
+fn camera(editor: &Editor) -> Camera {
+    editor.scene().selected_camera(&editor.view()).clone()
+}
+
+fn light(editor: &Editor) -> Light {
+    let id = editor.view().light.unwrap();
+    editor.scene().lights.get(id).unwrap().clone()
+}
+
+/// An editor in which the first light of this kind is selected.
+fn with_light(wanted: impl Fn(&LightKind) -> bool) -> Editor {
+    let mut editor = Editor::tall();
+    editor.perform(Action::SubjectLight);
+    while !wanted(&light(&editor).kind) {
+        editor.perform(Action::NextItem);
+    }
+    editor
+}
+
+fn with_object() -> Editor {
+    let mut editor = Editor::tall();
+    editor.perform(Action::SubjectObject);
+    for section in ["Steps of x, y, z", "Spin", "Drawing", "Model"] {
+        click(&mut editor, Role::DisclosureTriangle, section);
+    }
+    editor
+}
+
+fn with_camera() -> Editor {
+    let mut editor = Editor::tall();
+    click(&mut editor, Role::DisclosureTriangle, "Steps of x, y, z");
+    editor
+}
+
+/// Types into a field as a person does: a click, the text, Enter.
+fn type_into(editor: &mut Editor, field: &str, text: &str) {
+    click(editor, Role::SpinButton, field);
+    type_text(editor, text);
+    editor.press(Named(Key::Enter));
+}
+
+/// Drags a control by so many points to the right.
+fn drag(editor: &mut Editor, role: Role, label: &str, by: f32) {
+    let at = control(editor, role, label).rect().center();
+    let places: Vec<Pos2> = (0..=4_u8).map(|i| at + vec2(by * f32::from(i) / 4.0, 0.0)).collect();
+    editor.drag(PointerButton::Primary, &places);
+}
+
+type Read = fn(&Editor) -> f64;
+
+/// What each field of an object sets.
+const OF_OBJECT: &[(&str, Read)] = &[
+    ("Position X", |e| place::translation(object(e).placement.now()).x),
+    ("Position Y", |e| place::translation(object(e).placement.now()).y),
+    ("Position Z", |e| place::translation(object(e).placement.now()).z),
+    ("Rotation X", |e| place::turn_degrees(object(e).placement.now()).x),
+    ("Rotation Y", |e| place::turn_degrees(object(e).placement.now()).y),
+    ("Rotation Z", |e| place::turn_degrees(object(e).placement.now()).z),
+    ("Scale X", |e| place::scale(object(e).placement.now()).x),
+    ("Scale Y", |e| place::scale(object(e).placement.now()).y),
+    ("Scale Z", |e| place::scale(object(e).placement.now()).z),
+    ("Spin speed", |e| object(e).spin.speed),
+];
+
+/// What each field of a camera sets.
+const OF_CAMERA: &[(&str, Read)] = &[
+    ("Position X", |e| camera(e).pose.now().eye.x),
+    ("Position Y", |e| camera(e).pose.now().eye.y),
+    ("Position Z", |e| camera(e).pose.now().eye.z),
+    ("Yaw", |e| place::camera_degrees(camera(e).pose.now()).x),
+    ("Pitch", |e| place::camera_degrees(camera(e).pose.now()).y),
+    ("Roll", |e| place::camera_degrees(camera(e).pose.now()).z),
+    ("Half-angle", |e| camera(e).lens.half_angle),
+    ("Near", |e| camera(e).lens.near),
+    ("Far", |e| camera(e).lens.far),
+    ("Half-size", |e| camera(e).lens.half_size),
+    ("Parallel near", |e| camera(e).lens.parallel_near),
+    ("Parallel far", |e| camera(e).lens.parallel_far),
+];
+
+/// What is typed, and dragged, into each field becomes its value in one step, and one step of undo
+/// takes it back.
+fn fields_set_what_they_name(mut editor: Editor, fields: &[(&str, Read)]) {
+    for (field, read) in fields {
+        let (before, steps) = (editor.scene(), editor.steps());
+        type_into(&mut editor, field, "2*13.5");
+        assert!((read(&editor) - 27.0).abs() < 1e-9, "{field} is {}", read(&editor));
+        assert_eq!(editor.steps(), steps + 1, "{field} typed");
+        drag(&mut editor, Role::SpinButton, field, 40.0);
+        let dragged = read(&editor);
+        assert!(dragged > 27.0, "{field} is dragged to {dragged}");
+        assert_eq!(editor.steps(), steps + 2, "{field} dragged");
+        editor.press(Command(Key::Z));
+        let back = read(&editor);
+        assert!((back - 27.0).abs() < 1e-9, "{field} is {back} without the drag to {dragged}");
+        editor.press(Command(Key::Z));
+        assert!(editor.scene() == before, "{field} back from all");
+    }
+}
+
+#[test]
+fn fields_of_an_object_set_what_they_name() {
+    fields_set_what_they_name(with_object(), OF_OBJECT);
+}
+
+#[test]
+fn fields_of_a_camera_set_what_they_name() {
+    fields_set_what_they_name(with_camera(), OF_CAMERA);
+}
+
+#[test]
+fn fields_of_lights_set_what_they_name() {
+    let position: Read = |e| match light(e).kind {
+        LightKind::Bulb { position, .. } => position.now().y,
+        _ => f64::NAN,
+    };
+    let orbit: Read = |e| match light(e).kind {
+        LightKind::Bulb { orbit, .. } => orbit.speed,
+        _ => f64::NAN,
+    };
+    let mut bulb = with_light(|kind| matches!(kind, LightKind::Bulb { .. }));
+    click(&mut bulb, Role::DisclosureTriangle, "Fading");
+    fields_set_what_they_name(
+        bulb,
+        &[
+            ("Position Y", position),
+            ("Circling speed", orbit),
+            ("Constant", |e| light(e).attenuation.constant),
+            ("Linear", |e| light(e).attenuation.linear),
+            ("Quadratic", |e| light(e).attenuation.quadratic),
+            ("Red as a number", |e| f64::from(light(e).color.0[0])),
+            ("Key", |e| f64::from(light(e).slot)),
+        ],
+    );
+    let aperture: Read = |e| match light(e).kind {
+        LightKind::Spot { half_aperture, .. } => half_aperture,
+        _ => f64::NAN,
+    };
+    let exponent: Read = |e| match light(e).kind {
+        LightKind::Spot { exponent, .. } => exponent,
+        _ => f64::NAN,
+    };
+    let spot = with_light(|kind| matches!(kind, LightKind::Spot { .. }));
+    fields_set_what_they_name(spot, &[("Half-aperture", aperture), ("Concentration", exponent)]);
+}
+
+#[test]
+fn steps_of_keys_are_set_and_are_no_step_of_undo() {
+    let mut editor = with_object();
+    for (field, read) in [
+        ("Step: Move", (|view| view.steps.translation) as fn(&View) -> f64),
+        ("Step: Rotate", |view| view.steps.rotation),
+        ("Step: Scale", |view| view.steps.scaling),
+    ] {
+        type_into(&mut editor, field, "2.5");
+        assert!((read(&editor.view()) - 2.5).abs() < 1e-12, "{field}");
+    }
+    click(&mut editor, Role::CheckBox, "Move by size");
+    assert!(editor.view().steps.by_size);
+    assert_eq!(editor.steps(), 0);
+}
+
+#[test]
+fn the_u_key_takes_a_whole_drag_back() {
+    let mut editor = with_object();
+    let before = *object(&editor).placement.now();
+    drag(&mut editor, Role::SpinButton, "Position X", 60.0);
+    assert!(*object(&editor).placement.now() != before);
+    editor.perform(Action::TakeBack);
+    assert_eq!(*object(&editor).placement.now(), before);
+}
+
+#[test]
+fn an_angle_beyond_a_right_one_stays_as_it_was_given_while_it_is_dragged_on() {
+    let mut editor = with_object();
+    type_into(&mut editor, "Rotation Y", "85");
+    drag(&mut editor, Role::SpinButton, "Rotation Y", 100.0);
+    let shown = |editor: &Editor, field| {
+        control(editor, Role::SpinButton, field).value().unwrap_or_default()
+    };
+    let turned = shown(&editor, "Rotation Y");
+    let degrees: f64 = turned.trim_start_matches("Y ").parse().unwrap();
+    assert!(degrees > 100.0, "{turned}");
+    assert_eq!(shown(&editor, "Rotation X"), "X 0");
+    let z = object(&editor).placement.now().z_axis.truncate();
+    let expected =
+        DVec3::new(libm::sin(degrees.to_radians()), 0.0, libm::cos(degrees.to_radians()));
+    assert!((z - expected).length() < 1e-9, "{z} is not {expected}");
+}
+
+#[test]
+fn a_number_typed_for_one_item_never_lands_in_another() {
+    let mut editor = with_object();
+    let first = editor.view().object.unwrap();
+    click(&mut editor, Role::SpinButton, "Position Y");
+    type_text(&mut editor, "33");
+    click(&mut editor, Role::ListBoxOption, "x_wing");
+    let scene = editor.scene();
+    let height = |id| place::translation(scene.objects.get(id).unwrap().placement.now()).y;
+    let second = editor.view().object.unwrap();
+    assert_ne!(first, second);
+    assert_eq!((height(first), height(second)), (33.0, 0.0));
+    assert_eq!(editor.steps(), 1);
+}
+
+#[test]
+fn walking_through_the_fields_changes_nothing() {
+    let mut editor = with_object();
+    let (scene, view, id) = (editor.scene(), editor.view(), editor.view().object.unwrap());
+    let third = DVec3::new(1.0 / 3.0, 200.0 / 7.0, 1e-7);
+    let stroke = marraztu::edit::Stroke::First;
+    let command = place::object_turn(&scene, &view, id, third * 3.1, stroke).unwrap();
+    let label = String::new();
+    editor.ask(Ask::Change { command, gesture: Gesture::Whole, label: label.clone() });
+    let command = place::object_translation(&editor.scene(), &view, id, third, stroke).unwrap();
+    editor.ask(Ask::Change { command, gesture: Gesture::Whole, label });
+    let before = editor.scene();
+    click(&mut editor, Role::SpinButton, "Position X");
+    for _ in 0..12 {
+        editor.press(Named(Key::Tab));
+    }
+    editor.press(Named(Key::Escape));
+    let steps: Vec<String> = editor.state().history.steps().map(str::to_owned).collect();
+    assert_eq!(steps.len(), 2, "{steps:?}");
+    assert!(editor.scene() == before);
+}
+
+#[test]
+fn what_is_no_number_and_what_would_flatten_the_object_change_nothing() {
+    let mut editor = with_object();
+    let before = editor.scene();
+    for (field, text) in
+        [("Position X", "abc"), ("Position X", "1/0"), ("Scale X", "0"), ("Rotation Z", "nan")]
+    {
+        type_into(&mut editor, field, text);
+        assert!(editor.scene() == before, "{field} {text}");
+    }
+    type_into(&mut editor, "Scale X", "0");
+    let message = editor.state().message.clone().unwrap();
+    assert!(message.text.contains("flatten"), "{}", message.text);
+    assert_eq!(editor.steps(), 0);
+}
+
+#[test]
+fn a_stretch_goes_along_the_axes_of_the_chosen_frame() {
+    let mut editor = with_object();
+    type_into(&mut editor, "Rotation Z", "90");
+    for (frame, button, expected) in [
+        (None, "Stretch along own axes", DVec3::new(3.0, 1.0, 1.0)),
+        (Some(Action::ToggleFrame), "Stretch along world's axes", DVec3::new(3.0, 3.0, 1.0)),
+    ] {
+        if let Some(action) = frame {
+            editor.perform(action);
+        }
+        type_into(&mut editor, "Stretch X", "3");
+        let steps = editor.steps();
+        click(&mut editor, Role::Button, button);
+        let scale = place::scale(object(&editor).placement.now());
+        assert!((scale - expected).length() < 1e-9, "{button}: {scale}");
+        assert_eq!(editor.steps(), steps + 1);
+    }
+}
+
+#[test]
+fn every_material_is_chosen_by_its_sphere() {
+    let mut editor = with_object();
+    for id in PresetId::all() {
+        click(&mut editor, Role::RadioButton, &format!("Material: {}", id.get().name));
+        assert_eq!(object(&editor).material, MaterialChoice::Preset(id));
+    }
+    click(&mut editor, Role::RadioButton, "Material: the file's own");
+    assert_eq!(object(&editor).material, MaterialChoice::File);
+    editor.press(Command(Key::Z));
+    let last = PresetId::all().last().unwrap();
+    assert_eq!(object(&editor).material, MaterialChoice::Preset(last));
+}
+
+#[test]
+fn ones_own_material_begins_as_the_one_before_and_is_changed_number_by_number() {
+    let mut editor = with_object();
+    click(&mut editor, Role::RadioButton, "Material: your own");
+    let mut expected = PresetId::RUBY.get().material;
+    assert_eq!(object(&editor).material, MaterialChoice::Own(expected));
+    for (row, channels) in [("Ambient", 0), ("Diffuse", 1), ("Specular", 2)] {
+        for (i, channel) in ["red", "green", "blue"].into_iter().enumerate() {
+            type_into(&mut editor, &format!("{row} {channel}"), "1/4");
+            let factors = [&mut expected.ambient, &mut expected.diffuse, &mut expected.specular];
+            factors.into_iter().nth(channels).unwrap()[i] = 0.25;
+            assert_eq!(object(&editor).material, MaterialChoice::Own(expected), "{row} {channel}");
+        }
+    }
+    type_into(&mut editor, "Exponent", "12");
+    expected.exponent = 12.0;
+    assert_eq!(object(&editor).material, MaterialChoice::Own(expected));
+}
+
+#[test]
+fn the_surface_and_the_drawing_of_an_object_are_chosen() {
+    let mut editor = with_object();
+    for (label, surface) in [
+        ("Surface: Material", Surface::Material),
+        ("Surface: Texture", Surface::Texture),
+        ("Surface: Both", Surface::TextureAndLight),
+    ] {
+        click(&mut editor, Role::RadioButton, label);
+        assert_eq!(object(&editor).surface, surface);
+    }
+    click(&mut editor, Role::CheckBox, "Light both sides");
+    assert!(object(&editor).two_sided);
+    click(&mut editor, Role::CheckBox, "About own Y");
+    assert_eq!(object(&editor).spin.axes, [false, true, false]);
+    let steps = editor.steps();
+    click(&mut editor, Role::Button, "Apply the turn");
+    assert_eq!(editor.steps(), steps + 1);
+}
+
+#[test]
+fn a_slider_of_red_green_or_blue_does_what_its_keys_do() {
+    let sun = |kind: &LightKind| matches!(kind, LightKind::Sun { .. });
+    for (slider, less, more) in [("Red", Key::Q, 0), ("Green", Key::V, 1), ("Blue", Key::A, 2)] {
+        let (mut slid, mut pressed) = (with_light(sun), with_light(sun));
+        control(&slid, Role::Slider, slider).set_value_accesskit(252.0);
+        slid.settle();
+        pressed.hold(Upper(less), 2);
+        assert_eq!(light(&slid).color.0[more], 252, "{slider}");
+        assert!(slid.scene() == pressed.scene(), "{slider}");
+        assert_eq!((slid.steps(), pressed.steps()), (1, 1));
+        pressed.press(Lower(less));
+        type_into(&mut slid, &format!("{slider} as a number"), "253");
+        assert!(slid.scene() == pressed.scene(), "{slider}");
+    }
+}
+
+#[test]
+fn a_drag_of_a_colours_slider_is_one_step() {
+    let mut editor = with_light(|kind| matches!(kind, LightKind::Sun { .. }));
+    drag(&mut editor, Role::Slider, "Green", -50.0);
+    let Color([r, g, b]) = light(&editor).color;
+    assert!(r == 255 && g < 255 && b == 255, "{:?}", light(&editor).color);
+    assert_eq!(editor.steps(), 1);
+    editor.press(Command(Key::Z));
+    assert_eq!(light(&editor).color, Color::WHITE);
+}
+
+#[test]
+fn a_key_that_another_light_has_is_refused() {
+    let mut editor = with_light(|kind| matches!(kind, LightKind::Sun { .. }));
+    type_into(&mut editor, "Key", "2");
+    assert_eq!(light(&editor).slot, 1);
+    let message = editor.state().message.clone().unwrap();
+    assert!(message.text.contains("another light"), "{}", message.text);
+    type_into(&mut editor, "Key", "7");
+    assert_eq!(light(&editor).slot, 7);
+    click(&mut editor, Role::CheckBox, "Shines");
+    assert!(!light(&editor).on);
+}
+
+#[test]
+fn a_spot_gets_a_place_of_its_own_where_it_was() {
+    let mut editor =
+        with_light(|kind| matches!(kind, LightKind::Spot { owner: SpotOwner::SelectedCamera, .. }));
+    click(&mut editor, Role::ComboBox, "Shines from");
+    editor.click_label("a place of its own");
+    let LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } = light(&editor).kind else {
+        panic!("it follows {:?}", light(&editor).kind)
+    };
+    assert_eq!(aim.now().position, camera(&editor).pose.now().eye);
+    assert_eq!(aim.now().direction, DVec3::NEG_Z);
+    type_into(&mut editor, "Position X", "5");
+    type_into(&mut editor, "Direction X", "1");
+    let LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } = light(&editor).kind else {
+        panic!("it follows {:?}", light(&editor).kind)
+    };
+    assert!((aim.now().position - DVec3::new(5.0, 0.0, 400.0)).length() < 1e-9);
+    let way = DVec3::new(1.0, 0.0, -1.0) / 2_f64.sqrt();
+    assert!((aim.now().direction - way).length() < 1e-9, "{}", aim.now().direction);
+}
+
+#[test]
+fn a_camera_goes_to_analysis_by_its_properties_as_by_the_key() {
+    let (mut clicked, mut pressed) = (with_camera(), with_camera());
+    let mode = |editor: &Editor| camera(editor).pose.now().mode;
+    // In the switches of the view and in the properties: the last one is the properties'.
+    clicked.click_label("Camera mode: Analysis");
+    pressed.press(Either(Key::G));
+    assert!(matches!(mode(&clicked), CameraMode::Analysis { .. }));
+    assert!(clicked.scene() == pressed.scene());
+    click(&mut clicked, Role::CheckBox, "Seen by others");
+    assert!(!camera(&clicked).visible);
+}
+
+#[test]
+fn a_lens_that_makes_no_picture_is_refused_in_words() {
+    let mut editor = with_camera();
+    let before = editor.scene();
+    type_into(&mut editor, "Near", "5000");
+    assert!(editor.scene() == before);
+    let message = editor.state().message.clone().unwrap();
+    assert!(message.text.contains("near before far"), "{}", message.text);
+}
+
+#[test]
+fn the_fields_show_what_the_keys_do() {
+    let mut editor = with_object();
+    editor.perform(Action::StepXUp);
+    let shown = control(&editor, Role::SpinButton, "Position X").value();
+    assert_eq!(shown.as_deref(), Some("X -90"));
+}
