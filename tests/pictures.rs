@@ -6,6 +6,7 @@
 mod common;
 
 use common::{at, ball, covered, cube, draw, edit, scene, square};
+use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -48,6 +49,49 @@ fn every_way_of_lighting_is_the_same_to_a_step_in_both_arithmetics() {
             }
         }
     }
+}
+
+#[test]
+fn the_first_scene_is_the_same_to_a_step_in_both_arithmetics_and_everywhere_at_its_borders() {
+    let (scene, view) = marraztu::io::default_scene();
+    let exact = Settings { arithmetic: Arithmetic::F64, ..Settings::default() };
+    let fast = draw(&scene, &view, &Settings::default(), 800);
+    let exact = draw(&scene, &view, &exact, 800);
+    assert!(steps_apart(&fast, &exact) <= 1);
+    assert_eq!(covered(&fast, &scene), covered(&exact, &scene));
+    let differing = fast.pixels().iter().zip(exact.pixels()).filter(|(a, b)| a != b).count();
+    assert!(differing * 2000 < 800 * 800 * 4, "{differing} pixels differ");
+}
+
+#[test]
+fn threads_and_instructions_do_not_show() {
+    let (scene, view) = marraztu::io::default_scene();
+    let view = View { edges_over_fill: true, ..view };
+    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(333, 257));
+    let picture = |level: Level, threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| Renderer::new(level).render(&plan).clone())
+    };
+    let first = picture(Level::baseline(), 1);
+    for level in levels() {
+        for threads in [1, 2, 5] {
+            assert!(first == picture(level, threads), "{level:?} with {threads} threads");
+        }
+    }
+}
+
+/// The levels that this processor has, the oldest first.
+fn levels() -> Vec<Level> {
+    let best = Level::new();
+    let mut levels = vec![Level::baseline()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(
+        [best.as_sse4_2().map(Level::Sse4_2), best.as_avx2().map(Level::Avx2)]
+            .into_iter()
+            .flatten(),
+    );
+    levels.push(best);
+    levels
 }
 
 #[test]

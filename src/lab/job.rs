@@ -227,6 +227,9 @@ fn lights(mode: Mode) -> Vec<Light> {
         attenuation: Attenuation::default(),
         ..Light::new("light", slot, kind)
     };
+    // The job's spots do not fade.
+    let steady = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 };
+    let unfading = |slot, color, kind| Light { attenuation: steady, ..light(slot, color, kind) };
     let spot = |position: DVec3| LightKind::Spot {
         owner: SpotOwner::Fixed(Placed::new(Aim {
             position,
@@ -241,8 +244,8 @@ fn lights(mode: Mode) -> Vec<Light> {
         light(0, ambient, LightKind::Ambient),
         light(1, [0.45, 0.43, 0.40], LightKind::Sun { direction: Placed::new(sun) }),
         light(2, [0.50, 0.45, 0.40], LightKind::Bulb { position: bulb, orbit: Orbit::default() }),
-        light(3, [0.50, 0.20, 0.20], spot(DVec3::new(-200.0, 150.0, 150.0))),
-        light(4, [0.20, 0.30, 0.60], spot(DVec3::new(100.0, -180.0, 200.0))),
+        unfading(3, [0.50, 0.20, 0.20], spot(DVec3::new(-200.0, 150.0, 150.0))),
+        unfading(4, [0.20, 0.30, 0.60], spot(DVec3::new(100.0, -180.0, 200.0))),
     ]
 }
 
