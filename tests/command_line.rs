@@ -382,3 +382,16 @@ fn the_readme_has_the_table_of_keys_that_the_program_prints() {
     let found = readme.contains(&table);
     assert!(found, "README.md lacks the output of `marraztu keys --markdown`:\n{table}");
 }
+
+#[test]
+fn the_scene_that_the_readme_shows_can_be_drawn() {
+    let folder = folder();
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let readme = std::fs::read_to_string(readme).unwrap();
+    let scene = readme.split("```ron").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    std::fs::write(folder.path().join("pot.marraztu"), scene).unwrap();
+    let square = "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 0\nf 1 2 3 4\n";
+    std::fs::write(folder.path().join("teapot.obj"), square).unwrap();
+    let picture = drawn(folder.path(), &["pot.marraztu"]);
+    assert!(picture.pixels().iter().any(|pixel| *pixel != picture.pixel(0, 0)));
+}
