@@ -9,7 +9,8 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("io", &["base", "scene"]),
     ("edit", &["base", "scene"]),
     ("render", &["base", "scene"]),
-    ("app", &["base", "scene", "io", "edit", "render"]),
+    ("lab", &["base", "scene", "io", "edit", "render"]),
+    ("app", &["base", "scene", "io", "edit", "render", "lab"]),
 ];
 
 /// Crates that only one floor may use.

@@ -1,5 +1,8 @@
 //! What pictures show, on scenes small enough to know the answer.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+#![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
+
 mod common;
 
 use common::{at, ball, covered, cube, draw, edit, scene, square};

@@ -3,6 +3,7 @@
 //! [`App::perform`] alone makes of an action a command or another view, and [`App::change`] alone
 //! writes the scene.
 
+use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 use egui::{CentralPanel, Context, Frame, Key, ThemePreference, ViewportCommand};
@@ -38,6 +39,8 @@ pub struct App {
     leaving: bool,
     /// When the last frame was shown in which something moved by itself.
     moved_at: Option<f64>,
+    /// When the pictures of the last second were shown.
+    shown_at: VecDeque<f64>,
     title: String,
     /// How many frames failed one after the other.
     faults: u32,
@@ -56,6 +59,7 @@ impl App {
             worker: None,
             leaving: false,
             moved_at: None,
+            shown_at: VecDeque::new(),
             title: String::new(),
             faults: 0,
         }
@@ -137,6 +141,10 @@ impl App {
                 let [width, height] = drawn.image.size;
                 statistics.size = crate::base::image::Size::new(width, height);
                 statistics.pictures += 1;
+                let now = ctx.input(|input| input.time);
+                self.shown_at.push_back(now);
+                self.shown_at.retain(|then| now - then < 1.0);
+                statistics.rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
             }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, asks);

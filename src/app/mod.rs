@@ -21,12 +21,14 @@ mod keyboard;
 mod material_dialog;
 mod mouse;
 mod notices;
+mod overlay;
 pub mod panels;
 mod scene_files;
 mod start;
 pub mod state;
 mod tasks;
 pub mod theme;
+mod trace;
 mod viewport;
 mod worker;
 

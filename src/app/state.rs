@@ -73,13 +73,15 @@ pub struct Statistics {
     pub size: Size,
     /// How many pictures have been drawn.
     pub pictures: u64,
+    /// How many of them were shown in the last second.
+    pub rate: u32,
     /// How many triangles of the picture faced the observer inside the view.
     pub triangles: usize,
 }
 
 impl Default for Statistics {
     fn default() -> Self {
-        Self { time: Duration::ZERO, size: Size::new(0, 0), pictures: 0, triangles: 0 }
+        Self { time: Duration::ZERO, size: Size::new(0, 0), pictures: 0, rate: 0, triangles: 0 }
     }
 }
 

@@ -9,16 +9,18 @@ use egui::{
     ColorImage, Context, Id, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, pos2,
     vec2,
 };
+use glam::DMat4;
 
 use super::action::Action;
 use super::ask::Ask;
 use super::keyboard::Keyboard;
 use super::mouse::{Mouse, Under};
 use super::state::State;
-use super::worker::{Drawn, News, Pick, Worker};
+use super::worker::{Border, Drawn, News, Pick, Worker};
+use super::{overlay, trace};
 use crate::base::image::Size;
 use crate::render::Hit;
-use crate::scene::{ItemId, PolygonMode};
+use crate::scene::ItemId;
 
 /// What a question to the picture is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +46,14 @@ pub(super) struct Viewport {
     /// The pixel that the pointer is over, and what is seen there where that is known.
     hovered: Option<([usize; 2], Option<Hit>)>,
     menu: Option<Menu>,
+    /// Where the visible part of what the pointer is over ends.
+    border: Option<Border>,
+    /// Whether the picture has changed since the pointer was asked about.
+    stale: bool,
+    /// Whose border was asked for in this picture.
+    asked: Option<ItemId>,
+    /// The pixel of the last click, and from where it was seen: a click on it again goes deeper.
+    clicked: Option<([usize; 2], DMat4)>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -82,6 +92,9 @@ impl Viewport {
         news: News<Purpose>,
         asks: &mut Vec<Ask>,
     ) {
+        if news.border.is_some() {
+            self.border = news.border;
+        }
         for (pick, hit) in news.picked {
             self.answer(ctx, state, pick, hit, asks);
         }
@@ -116,7 +129,11 @@ impl Viewport {
             worker.pick(Pick { at: self.pixel(at), purpose });
         }
         self.hover(&response, worker);
+        self.border_ui(ui, worker);
         self.overlay(ui, state);
+        if state.shown.statistics {
+            overlay::statistics_ui(ui, state, rect);
+        }
         self.menu_ui(ui, state, asks);
     }
 
@@ -127,7 +144,7 @@ impl Viewport {
             return;
         };
         let at = self.pixel(pointer);
-        if self.hovered.is_none_or(|(last, _)| last != at) {
+        if std::mem::take(&mut self.stale) || self.hovered.is_none_or(|(last, _)| last != at) {
             // What was seen one pixel aside is the best guess until the answer comes.
             self.hovered = Some((at, self.hovered.and_then(|(_, hit)| hit)));
             worker.pick(Pick { at, purpose: Purpose::Hover });
@@ -151,7 +168,7 @@ impl Viewport {
                     *seen = hit;
                 }
             }
-            Purpose::Select => asks.extend(hit.map(|hit| selecting(state, hit))),
+            Purpose::Select => asks.extend(hit.map(|hit| self.selecting(state, pick.at, hit))),
             Purpose::Frame => match item {
                 Some(item) => {
                     asks.extend([Ask::Select(item), Ask::Do(Action::FrameSelection)]);
@@ -163,6 +180,43 @@ impl Viewport {
                 self.menu = Some(Menu { at, item });
                 egui::Popup::open_id(ctx, menu_id());
             }
+        }
+    }
+
+    /// What a click on `hit` asks for: the polygon while polygons of that object are shown one at
+    /// a time, else the item; on the pixel of the last click, the object behind the selected one.
+    fn selecting(&mut self, state: &State, at: [usize; 2], hit: Hit) -> Ask {
+        let click = (at, state.scene.observer_frame(&state.view));
+        let again = self.clicked.replace(click) == Some(click);
+        let selected = state.selected();
+        match hit.item {
+            ItemId::Object(id)
+                if state.view.polygons.is_some() && state.view.object == Some(id) =>
+            {
+                Ask::SelectPolygon(hit.polygon)
+            }
+            ItemId::Object(_) if again && state.view.polygons.is_none() => {
+                let all = self.size().map(|size| trace::objects_at(state, at, size));
+                let all = all.unwrap_or_default();
+                let here = all.iter().position(|id| selected == Some(ItemId::Object(*id)));
+                let next = here.and_then(|here| all.get((here + 1) % all.len()));
+                Ask::Select(next.map_or(hit.item, |id| ItemId::Object(*id)))
+            }
+            item => Ask::Select(item),
+        }
+    }
+
+    /// The outline of what the pointer is over.
+    fn border_ui(&mut self, ui: &Ui, worker: &Worker<Purpose>) {
+        let over = self.hovered.and_then(|(_, hit)| hit).map(|hit| hit.item);
+        if let Some(item) = over.filter(|_| over != self.asked) {
+            worker.border(item);
+            self.asked = over;
+        }
+        if let (Some(border), Some((rect, _))) = (&self.border, self.place)
+            && Some(border.item) == over
+        {
+            overlay::border_ui(ui, rect, border);
         }
     }
 
@@ -179,8 +233,10 @@ impl Viewport {
             }
         }
         self.image = Some(image);
-        // Another picture may show something else there.
-        self.hovered = None;
+        // Another picture may show something else there. What was seen before is the best guess until
+        // that is known.
+        self.stale = true;
+        self.asked = None;
     }
 
     /// The pixel of the picture under a point of the window.
@@ -210,17 +266,7 @@ impl Viewport {
             (None, None) => return,
         };
         let Some((rect, _)) = self.place else { return };
-        let at = rect.left_bottom() + vec2(8.0, -6.0);
-        let font = egui::TextStyle::Body.resolve(ui.style());
-        let painter = ui.painter();
-        let galley = painter.layout_no_wrap(text, font, egui::Color32::WHITE);
-        let plate = egui::Align2::LEFT_BOTTOM.anchor_size(at, galley.size());
-        painter.rect_filled(
-            plate.expand2(vec2(5.0, 2.0)),
-            3.0,
-            egui::Color32::from_black_alpha(150),
-        );
-        painter.galley(plate.min, galley, egui::Color32::WHITE);
+        overlay::plate_ui(ui, rect, egui::Align2::LEFT_BOTTOM, text);
     }
 
     fn menu_ui(&self, ui: &Ui, state: &State, asks: &mut Vec<Ask>) {
@@ -287,18 +333,6 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
             Action::TakeBack,
             Action::Delete,
         ],
-    }
-}
-
-/// What a click on `hit` asks for: the polygon while polygons of that object are shown one at a
-/// time, else the item.
-fn selecting(state: &State, hit: Hit) -> Ask {
-    let shown: Option<&PolygonMode> = state.view.polygons.as_ref();
-    match hit.item {
-        ItemId::Object(id) if shown.is_some() && state.view.object == Some(id) => {
-            Ask::SelectPolygon(hit.polygon)
-        }
-        item => Ask::Select(item),
     }
 }
 

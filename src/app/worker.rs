@@ -13,7 +13,7 @@ use egui::ColorImage;
 
 use crate::base::image::{Picture, Size};
 use crate::render::{FramePlan, Hit, Renderer};
-use crate::scene::{Scene, Settings, View};
+use crate::scene::{ItemId, Scene, Settings, View};
 
 /// Everything that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,9 +39,28 @@ pub(super) struct Pick<P> {
     pub(super) purpose: P,
 }
 
+/// Where an item's visible part ends in a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Border {
+    pub(super) item: ItemId,
+    /// Its own pixels along the border, in runs from left to right.
+    pub(super) inner: Vec<Run>,
+    /// The pixels beside them that are not its own.
+    pub(super) outer: Vec<Run>,
+}
+
+/// Pixels beside one another in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Run {
+    pub(super) x: usize,
+    pub(super) y: usize,
+    pub(super) length: usize,
+}
+
 /// What the worker has to tell.
 #[derive(Debug)]
 pub(super) struct News<P> {
+    pub(super) border: Option<Border>,
     pub(super) drawn: Option<Drawn>,
     pub(super) picked: Vec<(Pick<P>, Option<Hit>)>,
     pub(super) failed: bool,
@@ -65,6 +84,8 @@ struct Shared<P> {
 struct Desk<P> {
     wanted: Option<Snapshot>,
     picks: VecDeque<Pick<P>>,
+    /// The item whose border is wanted.
+    border: Option<ItemId>,
     news: News<P>,
     busy: bool,
     closed: bool,
@@ -73,8 +94,9 @@ struct Desk<P> {
 impl<P: Copy + Send + 'static> Worker<P> {
     /// Starts the thread; `wake` is called whenever there is news.
     pub(super) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let news = News { drawn: None, picked: Vec::new(), failed: false };
-        let desk = Desk { wanted: None, picks: VecDeque::new(), news, busy: false, closed: false };
+        let news = News::none();
+        let (wanted, picks, border) = (None, VecDeque::new(), None);
+        let desk = Desk { wanted, picks, border, news, busy: false, closed: false };
         let shared = Arc::new(Shared { desk: Mutex::new(desk), changed: Condvar::new() });
         let theirs = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
@@ -99,17 +121,22 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.changed.notify_all();
     }
 
+    /// Asks where the visible part of an item ends in the picture that was drawn last.
+    pub(super) fn border(&self, item: ItemId) {
+        self.shared.lock().border = Some(item);
+        self.shared.changed.notify_all();
+    }
+
     /// What there is to tell since it was last asked.
     pub(super) fn news(&self) -> News<P> {
         let mut desk = self.shared.lock();
-        let empty = News { drawn: None, picked: Vec::new(), failed: false };
-        std::mem::replace(&mut desk.news, empty)
+        std::mem::replace(&mut desk.news, News::none())
     }
 
     /// Waits until everything that was asked is done.
     pub(super) fn wait(&self) {
         let mut desk = self.shared.lock();
-        while desk.busy || desk.wanted.is_some() || !desk.picks.is_empty() {
+        while desk.busy || desk.has_work() {
             desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
         }
     }
@@ -126,6 +153,18 @@ impl<P> Drop for Worker<P> {
     }
 }
 
+impl<P> News<P> {
+    const fn none() -> Self {
+        Self { border: None, drawn: None, picked: Vec::new(), failed: false }
+    }
+}
+
+impl<P> Desk<P> {
+    fn has_work(&self) -> bool {
+        self.wanted.is_some() || !self.picks.is_empty() || self.border.is_some()
+    }
+}
+
 impl<P> Shared<P> {
     fn lock(&self) -> MutexGuard<'_, Desk<P>> {
         self.desk.lock().unwrap_or_else(PoisonError::into_inner)
@@ -136,22 +175,26 @@ impl<P> Shared<P> {
 fn work<P: Copy>(shared: &Shared<P>, wake: &impl Fn()) {
     let mut painter = Painter::default();
     loop {
-        let (picks, wanted) = {
+        let (picks, border, wanted) = {
             let mut desk = shared.lock();
             desk.busy = false;
             shared.changed.notify_all();
-            while desk.wanted.is_none() && desk.picks.is_empty() && !desk.closed {
+            while !desk.has_work() && !desk.closed {
                 desk = shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
             }
             if desk.closed {
                 return;
             }
             desk.busy = true;
-            (std::mem::take(&mut desk.picks), desk.wanted.take())
+            (std::mem::take(&mut desk.picks), desk.border.take(), desk.wanted.take())
         };
         let picked: Vec<_> = picks.into_iter().map(|pick| (pick, painter.hit(pick.at))).collect();
-        if !picked.is_empty() {
-            shared.lock().news.picked.extend(picked);
+        let border = border.and_then(|item| painter.border(item));
+        if !picked.is_empty() || border.is_some() {
+            let mut desk = shared.lock();
+            desk.news.picked.extend(picked);
+            desk.news.border = border.or(desk.news.border.take());
+            drop(desk);
             wake();
         }
         let Some(wanted) = wanted else { continue };
@@ -200,6 +243,45 @@ impl Painter {
     fn hit(&self, [x, y]: [usize; 2]) -> Option<Hit> {
         self.plan.as_ref().and_then(|_| self.renderer.hit(x, y))
     }
+}
+
+impl Painter {
+    /// Where the visible part of an item ends.
+    fn border(&self, item: ItemId) -> Option<Border> {
+        let size = self.plan.as_ref()?.size();
+        let own: Vec<bool> = (0..size.area())
+            .map(|at| {
+                let hit = self.renderer.hit(at % size.width, at / size.width);
+                hit.is_some_and(|hit| hit.item == item)
+            })
+            .collect();
+        let is_own =
+            |x: usize, y: usize| x < size.width && y < size.height && own[y * size.width + x];
+        // Beyond the left and upper sides x - 1 and y - 1 wrap to what is beyond the others.
+        let beside = |x: usize, y: usize, own: bool| {
+            is_own(x.wrapping_sub(1), y) == own
+                || is_own(x + 1, y) == own
+                || is_own(x, y.wrapping_sub(1)) == own
+                || is_own(x, y + 1) == own
+        };
+        let inner = runs(size, |x, y| is_own(x, y) && beside(x, y, false));
+        let outer = runs(size, |x, y| !is_own(x, y) && beside(x, y, true));
+        Some(Border { item, inner, outer })
+    }
+}
+
+/// The pixels that are `chosen`, in runs.
+fn runs(size: Size, chosen: impl Fn(usize, usize) -> bool) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for y in 0..size.height {
+        for x in (0..size.width).filter(|x| chosen(*x, y)) {
+            match runs.last_mut() {
+                Some(run) if run.y == y && run.x + run.length == x => run.length += 1,
+                _ => runs.push(Run { x, y, length: 1 }),
+            }
+        }
+    }
+    runs
 }
 
 /// Copies opaque pixels; those are the same with and without multiplication by alpha.

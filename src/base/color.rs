@@ -41,8 +41,9 @@ impl Color {
 #[must_use]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped just before")]
 pub fn byte(factor: f64) -> u8 {
-    // `max` takes the number where the other is NaN.
-    (factor.max(0.0).min(1.0) * 255.0 + 0.5) as u8
+    // Unlike `clamp`, `max` takes the number where the other is NaN.
+    let factor = factor.max(0.0);
+    (factor.min(1.0) * 255.0 + 0.5) as u8
 }
 
 #[cfg(test)]

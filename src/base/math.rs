@@ -74,7 +74,7 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
 
 /// The turn about `axis` (of length 1) by the right-hand rule.
 ///
-/// Rodrigues' formula: R = cos a I + sin a [k]x + (1 - cos a) k k'.
+/// Rodrigues' formula: `R = cos a I + sin a [k]x + (1 - cos a) k k'`.
 #[must_use]
 pub fn rotation(axis: DVec3, radians: f64) -> DMat3 {
     DMat3::from_axis_angle(axis, radians)

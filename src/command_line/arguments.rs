@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+
+use super::job::Job;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::scene::{
@@ -49,6 +51,8 @@ pub(crate) enum Headless {
     Render(Box<Render>),
     /// Says what files hold: shape, parts, materials, and what is wrong with them
     Info(Info),
+    /// Measures one drawing job in a form that other renderers share
+    Job(Job),
 }
 
 /// A picture, and the file that it goes to.
@@ -255,7 +259,7 @@ fn picture(path: PathBuf) -> Result<PathBuf, String> {
     }
 }
 
-fn size(text: &str) -> Result<Size, String> {
+pub(crate) fn size(text: &str) -> Result<Size, String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=LONGEST_SIDE).contains(side));
     let sides = text.split_once(['x', 'X']).map(|(width, height)| (side(width), side(height)));
     match sides {

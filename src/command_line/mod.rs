@@ -7,6 +7,7 @@ mod arguments;
 mod bar;
 mod failure;
 mod info;
+mod job;
 mod render;
 mod stage;
 
@@ -27,6 +28,10 @@ pub(crate) fn run() -> ExitCode {
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
         Some(Headless::Info(arguments)) => info::info(&arguments),
+        Some(Headless::Job(arguments)) => match job::job(&arguments) {
+            Ok(status) => return ExitCode::from(status),
+            Err(failure) => Err(failure),
+        },
         None => marraztu::app::run(arguments.files).map_err(Failure::from),
     };
     match done {

@@ -6,6 +6,7 @@
 
 use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use glam::{DMat4, DVec3};
 
 use crate::base::image::{Picture, Size};
@@ -73,12 +74,28 @@ pub struct Job {
 pub struct Measured {
     /// The time of each frame in milliseconds, shortest first.
     pub frames: Vec<f64>,
+    /// Milliseconds of processors that a frame took on average, of all threads.
+    pub processor: f64,
     /// How many triangles the mesh has.
     pub triangles: usize,
     /// How many pixels of the first picture are not background.
     pub covered: usize,
     /// The first picture.
     pub picture: Picture,
+}
+
+impl Measured {
+    /// The median time of a frame in milliseconds.
+    #[must_use]
+    pub fn median(&self) -> f64 {
+        self.frames.get(self.frames.len() / 2).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The time of the shortest frame in milliseconds.
+    #[must_use]
+    pub fn shortest(&self) -> f64 {
+        self.frames.first().copied().unwrap_or(f64::NAN)
+    }
 }
 
 /// What no pixel of a mesh shows.
@@ -91,7 +108,6 @@ const BACKGROUND: Color = Color([26, 26, 31]);
 pub fn run(job: &Job, model: &Model) -> Result<Measured, CommandError> {
     let mesh = prepared(model, job.raw);
     let triangles = mesh.mesh.triangles().len();
-    mesh.mesh.draw_order();
     let (scene, view, settings) = scene(job, Shared::new(mesh))?;
     let mut renderer = Renderer::default();
     let mut frame = |i: usize| -> Result<f64, CommandError> {
@@ -105,16 +121,18 @@ pub fn run(job: &Job, model: &Model) -> Result<Measured, CommandError> {
     for i in 0..job.warm_up {
         frame(i + 1)?;
     }
-    let begin = Instant::now();
+    let (begin, processor) = (Instant::now(), ProcessTime::now());
     let mut frames = Vec::new();
     while frames.len() < job.frames && (begin.elapsed().as_secs_f64() * 1e3 < job.budget) {
         frames.push(frame(job.warm_up + 1 + frames.len())?);
     }
+    #[expect(clippy::cast_precision_loss, reason = "few frames")]
+    let processor = processor.elapsed().as_secs_f64() * 1e3 / frames.len() as f64;
     frame(0)?;
     frames.sort_by(f64::total_cmp);
     let picture = renderer.picture().clone();
     let covered = picture.pixels().iter().filter(|pixel| **pixel != BACKGROUND.opaque()).count();
-    Ok(Measured { frames, triangles, covered, picture })
+    Ok(Measured { frames, processor, triangles, covered, picture })
 }
 
 /// The job's mesh: in the middle, its farthest vertex 100 from the origin, with normals that are the

@@ -19,7 +19,7 @@ const CHUNK: usize = 2048;
 /// Fewer triangles than this are set up by one thread: waking the others would take longer.
 const FEW: usize = 4096;
 
-/// See the [module](self).
+/// Everything of a frame that is on the screen.
 #[derive(Debug, Default)]
 pub(super) struct Frame {
     /// The vertices of all draws, in the order in which their meshes are drawn.

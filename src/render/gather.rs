@@ -222,10 +222,10 @@ impl<T: Light> Gathered<T> {
         number: u32,
     ) {
         assert!(i < BATCH, "a group has no more pixels than a block");
-        for axis in 0..2 {
-            self.middle[axis][i] = at[axis] * SUBPIXELS + SUBPIXELS / 2;
-            self.pixel[axis][i] = T::from_f64(f64::from(at[axis]) + 0.5);
-        }
+        self.middle[0][i] = at[0] * SUBPIXELS + SUBPIXELS / 2;
+        self.middle[1][i] = at[1] * SUBPIXELS + SUBPIXELS / 2;
+        self.pixel[0][i] = T::from_f64(f64::from(at[0]) + 0.5);
+        self.pixel[1][i] = T::from_f64(f64::from(at[1]) + 0.5);
         for corner in 0..3 {
             self.x[corner][i] = corners.at[corner].x;
             self.y[corner][i] = corners.at[corner].y;

@@ -171,6 +171,11 @@ pub(super) fn bounds(line: &ScreenLine, width: i32) -> PixelBox {
 }
 
 /// Calls `take` with every pixel of a line inside `clip`, and with the depth there.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "the nearest number is meant"
+)]
 pub(super) fn pixels(
     line: &ScreenLine,
     width: i32,
@@ -236,6 +241,7 @@ fn nearer(depth: f32, steps: u32) -> f32 {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
     use super::*;
 

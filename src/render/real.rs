@@ -103,9 +103,9 @@ const SMALLEST: f64 = 1.2e-38;
 #[inline(always)]
 fn single_power<R: Single>(x: R, exponent: f64, floor: f64) -> R {
     const LOGARITHM: [f64; 9] = [
-        7.037_683_629_2e-2,
-        -1.151_461_031_0e-1,
-        1.167_699_874_0e-1,
+        7.037_683_629e-2,
+        -1.151_461_031e-1,
+        1.167_699_874e-1,
         -1.242_014_084_6e-1,
         1.424_932_278_7e-1,
         -1.666_805_766_5e-1,
@@ -119,7 +119,7 @@ fn single_power<R: Single>(x: R, exponent: f64, floor: f64) -> R {
         9.618_437_357_674_64e-3,
         5.550_332_471_162_809e-2,
         2.402_264_791_363_012e-1,
-        6.931_472_028_550_421e-1,
+        6.931_472_028_550_42e-1,
         1.0,
     ];
     let (m, e) = Real::max(x, x.lift(SMALLEST)).split();
@@ -431,6 +431,7 @@ impl<R: Real> Triple<R> {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
     use super::*;
 

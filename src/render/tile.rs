@@ -63,7 +63,6 @@ pub(super) const fn seen(word: u64) -> Seen {
 }
 
 /// The depth that a word says.
-#[expect(clippy::cast_possible_truncation, reason = "the upper half is meant")]
 pub(super) const fn depth(word: u64) -> f32 {
     f32::from_bits((word >> 32) as u32)
 }
@@ -435,6 +434,75 @@ fn draw_block(
             let new = word(plane.at(at), number);
             let new = if whole | inside { new } else { 0 };
             *slot = if new > *slot { new } else { *slot };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::image::Size;
+    use crate::render::bins::Bins;
+    use crate::render::clip::ScreenVertex;
+    use crate::render::coverage::Snapped;
+
+    const BOUNDS: PixelBox = PixelBox { left: 0, top: 0, right: 50, bottom: 60 };
+
+    /// Numbers that look random.
+    fn numbers(mut state: u64) -> impl FnMut(i32) -> i32 {
+        move |below| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            ((state >> 33) % below.cast_unsigned() as u64) as i32
+        }
+    }
+
+    fn covered_by(bins: &Bins, level: Level) -> Vec<(i32, i32)> {
+        let mut visibility = Visibility { bounds: BOUNDS, ..Visibility::default() };
+        dispatch!(level, simd => visibility.draw_small(simd, &bins.tiles[0]));
+        for large in &bins.large {
+            dispatch!(level, simd => visibility.draw_large(simd, large));
+        }
+        let all = (0..60).flat_map(|y| (0..50).map(move |x| (x, y)));
+        all.filter(|(x, y)| visibility.word(*x, *y) != 0).collect()
+    }
+
+    #[test]
+    fn both_ways_cover_the_pixels_that_the_rule_says() {
+        let mut random = numbers(7);
+        for extent in [1, 2, 4, 8, 30] {
+            for _ in 0..4000 {
+                // Every second coordinate on a pixel's centre or border.
+                let (left, top) = (random(56) - 4, random(66) - 4);
+                let mut coordinate = |from: i32| {
+                    let place = from * 256 + random(extent * 256);
+                    if random(2) == 0 { place } else { place / 128 * 128 }
+                };
+                let corners =
+                    [0, 1, 2].map(|_| Snapped { x: coordinate(left), y: coordinate(top) });
+                let mut want = Vec::new();
+                if let Some(triangle) = Triangle::new(corners) {
+                    triangle.covered(BOUNDS, |pixel| want.push((pixel.x, pixel.y)));
+                }
+                let vertices = corners.map(|corner| ScreenVertex::new(corner, 0.5));
+                let bounds = PixelBox::of(corners);
+                let side = (bounds.right - bounds.left).max(bounds.bottom - bounds.top);
+                for queue in 0..4 {
+                    let mut bins = Bins::default();
+                    bins.clear(Size::new(50, 60));
+                    match SMALL.get(queue) {
+                        Some(small) if side <= *small && !bounds.is_empty() => {
+                            bins.add_small(queue, vertices.each_ref(), bounds, 5);
+                        }
+                        Some(_) => continue,
+                        None => bins.add_large(
+                            LargeTriangle { corners: vertices, number: 5, cutout: false },
+                            bounds,
+                        ),
+                    }
+                    let got = covered_by(&bins, Level::new());
+                    assert_eq!(got, want, "{corners:?} in queue {queue}");
+                }
+            }
         }
     }
 }

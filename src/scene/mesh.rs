@@ -116,7 +116,7 @@ pub struct Bounds {
     pub max: DVec3,
 }
 
-/// The shape of a model. See the [module](self).
+/// The shape of a model: polygons over shared vertices, and what follows from them.
 #[derive(Debug)]
 pub struct Mesh {
     positions: Vec<[f32; 3]>,

@@ -16,7 +16,7 @@ pub struct DrawTriangle {
     pub number: u32,
 }
 
-/// See the [module](self).
+/// The triangles and vertices of a mesh in the order in which they are drawn fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawOrder {
     /// Where the vertices are, coordinate by coordinate; only those that a triangle uses.

@@ -1,6 +1,7 @@
 //! Small scenes for tests, made without any file.
 
 #![allow(dead_code, reason = "each test uses its own part of it")]
+#![allow(clippy::cast_possible_truncation, reason = "small numbers")]
 
 use glam::{DMat4, DVec3};
 use marraztu::base::Shared;

@@ -316,3 +316,33 @@ fn a_click_that_begins_and_ends_in_one_frame_is_a_click() {
         assert_eq!(editor.shows("Split into parts"), button == RIGHT);
     }
 }
+
+#[test]
+fn clicking_again_goes_to_the_object_behind_and_round() {
+    let mut editor = Editor::new();
+    // From the right, one ship stands before the other.
+    editor.perform(Action::FrameAll);
+    editor.perform(Action::LookRight);
+    let mut view = editor.view();
+    view.subject = Subject::Camera;
+    view.steps.translation = 400.0;
+    editor.ask(Ask::Look(Box::new(view)));
+    editor.perform(Action::StepZUp);
+    let rect = editor.picture();
+    let half = rect.size().min_elem() / 2.0;
+    let mut names = Vec::new();
+    for step in -30..30_i8 {
+        let at = rect.center() + vec2(0.03 * f32::from(step) * half, 0.0);
+        names.clear();
+        for _ in 0..3 {
+            editor.harness.run_steps(30);
+            editor.click(at, LEFT);
+            names.push(name_of_selected(&editor));
+        }
+        if names[0] != names[1] {
+            break;
+        }
+    }
+    assert_eq!(names, ["x_wing", "r_falke", "x_wing"], "the nearer one first");
+    assert_eq!(editor.steps(), 3, "to frame, to look from the right and to step back");
+}

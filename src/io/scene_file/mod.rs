@@ -88,7 +88,7 @@ pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Res
     replace(path, text.as_bytes(), Before::Kept)
 }
 
-/// The text that [`save`] would write to `path`.
+/// The text that [`save()`] would write to `path`.
 ///
 /// # Errors
 /// Where something in the scene cannot be written.
@@ -121,7 +121,7 @@ pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> 
 /// of [`SceneFileError::Missing`] where they are.
 ///
 /// # Errors
-/// As [`open`].
+/// As [`open()`].
 pub fn open_with(
     path: &Path,
     relocated: &BTreeMap<PathBuf, PathBuf>,

@@ -1,5 +1,8 @@
 //! What both arithmetics share they cannot check in each other: numbers from outside.
 
+#![expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+#![expect(clippy::needless_range_loop, reason = "three rows go side by side")]
+
 use fearless_simd::Level;
 
 use super::*;

@@ -1,0 +1,105 @@
+//! `marraztu job`: one drawing job, measured, in a form that other renderers print too.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use marraztu::base::image::Size;
+use marraztu::io;
+use marraztu::lab::job::{self, Mode};
+use marraztu::scene::LoadOptions;
+
+use super::arguments::size;
+use super::failure::Failure;
+use super::stage::load;
+
+/// What is drawn, how, and for how long.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Draws a mesh from an orbit, lit by five lights, and prints one line of comma-separated figures:
+R, label, mesh, triangles, mode, size, samples, frames, median and shortest milliseconds a frame,
+processor milliseconds a frame, the same three again, and how many pixels are covered.
+
+Exit status 3 says that this mode or number of samples is not drawn.")]
+pub(crate) struct Job {
+    /// The model (.obj)
+    #[arg(long)]
+    pub(crate) mesh: PathBuf,
+    /// How it is drawn: flat, gouraud, phong, depth, wire
+    #[arg(long)]
+    pub(crate) mode: String,
+    /// The picture's size
+    #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
+    pub(crate) size: Size,
+    /// Samples a pixel
+    #[arg(long, default_value_t = 1)]
+    pub(crate) msaa: u32,
+    /// Frames to measure at the most
+    #[arg(long, default_value_t = 200)]
+    pub(crate) frames: usize,
+    /// Frames to draw before
+    #[arg(long, default_value_t = 3)]
+    pub(crate) warm: usize,
+    /// Milliseconds after which measuring stops
+    #[arg(long, default_value_t = 1000.0)]
+    pub(crate) budget: f64,
+    /// From where the camera looks at the origin
+    #[arg(long, default_value_t = 290.0)]
+    pub(crate) dist: f64,
+    /// The camera looks straight at the mesh and hardly turns
+    #[arg(long)]
+    pub(crate) face: bool,
+    /// The mesh is left where its file has it
+    #[arg(long)]
+    pub(crate) raw: bool,
+    /// The first frame's picture (.ppm, .png)
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// What the line calls this program
+    #[arg(long, default_value = "marraztu")]
+    pub(crate) label: String,
+    /// Threads that draw; all cores where it is not said
+    #[arg(long)]
+    pub(crate) threads: Option<usize>,
+}
+
+/// Measures a job and prints its line. Gives the exit status.
+pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
+    let (Some(mode), 1) = (Mode::named(&arguments.mode), arguments.msaa) else { return Ok(3) };
+    if let Some(threads) = arguments.threads {
+        // Fails only where the threads are there already, and this comes first.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    }
+    let loaded = load(&arguments.mesh, &LoadOptions::default())?;
+    let measured = job::run(
+        &job::Job {
+            mode,
+            size: arguments.size,
+            frames: arguments.frames.max(1),
+            warm_up: arguments.warm,
+            budget: arguments.budget,
+            distance: arguments.dist,
+            face: arguments.face,
+            raw: arguments.raw,
+        },
+        &loaded.model,
+    )?;
+    if let Some(out) = &arguments.out {
+        io::save_picture(out, &measured.picture)?;
+    }
+    let Size { width, height } = arguments.size;
+    let times =
+        format!("{:.4},{:.4},{:.4}", measured.median(), measured.shortest(), measured.processor);
+    writeln!(
+        std::io::stdout().lock(),
+        "R,{},{},{},{},{width}x{height},1,{},{times},{times},{}",
+        arguments.label,
+        arguments.mesh.display(),
+        measured.triangles,
+        arguments.mode,
+        measured.frames.len(),
+        measured.covered,
+    )
+    .map_err(Failure::Output)?;
+    Ok(0)
+}
