@@ -23,12 +23,12 @@ const NARROW: i32 = 1 << 14;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Corners<T> {
     at: [Snapped; 3],
-    inverse_w: [T; 3],
+    /// Of each corner: its normal in object space, where light is evaluated per pixel, and one by w.
+    corners: [[T; 4]; 3],
     /// z in view space; in parallel projection only.
     z: [T; 3],
-    normals: [[T; 3]; 3],
     /// Diffuse and specular light; where it is not evaluated per pixel.
-    light: [[T; 6]; 3],
+    light: [[[T; 4]; 2]; 3],
     /// Whether it reaches beyond the planes that triangles are cut by.
     cut: bool,
     /// Its edges, where their functions do not fit 31 bits inside.
@@ -67,9 +67,13 @@ impl<T: Light> Corners<T> {
         if T::EXACT {
             let screen = Screen::new(draw.clip_from_object, plan.size);
             let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
-            corners.inverse_w = w.map(|w| T::from_f64(1.0 / w));
+            for (corner, w) in corners.corners.iter_mut().zip(w) {
+                corner[3] = T::from_f64(1.0 / w);
+            }
         } else {
-            corners.inverse_w = each(own, |vertex| T::from_f64(f64::from(vertex.inverse_w)));
+            for (corner, vertex) in corners.corners.iter_mut().zip(own) {
+                corner[3] = T::from_f64(f64::from(vertex.inverse_w));
+            }
         }
         if plan.eye == Eye::Parallel {
             corners.z = ids.map(|vertex| {
@@ -93,7 +97,7 @@ impl<T: Light> Corners<T> {
         }
         let [second, third] = self.wide.map_or([0.0; 2], |wide| wide.barycentric(pixel));
         let linear = DVec3::new(1.0 - second - third, second, third);
-        let by_w = linear * DVec3::from_array(self.inverse_w.map(Into::into));
+        let by_w = linear * DVec3::from_array(self.corners.map(|corner| corner[3].into()));
         by_w / by_w.element_sum()
     }
 }
@@ -123,19 +127,23 @@ fn is_narrow([a, b, c]: [Snapped; 3]) -> bool {
 /// Takes the normals at the corners, in object space.
 #[inline(always)]
 pub(super) fn gather_places<T: Light>(draw: &Draw, number: u32, corners: &mut Corners<T>) {
-    let wide = |normal: [f32; 3]| each(normal, |x| T::from_f64(f64::from(x)));
-    corners.normals = match draw.normals {
+    let normals = match draw.normals {
         Normals::Face => {
             let mesh = &draw.model.mesh;
             let own = mesh.triangles()[number as usize];
-            [wide(mesh.polygon_normals()[own.polygon as usize]); 3]
+            [mesh.polygon_normals()[own.polygon as usize]; 3]
         }
         Normals::Vertex => {
             let order = draw.model.mesh.draw_order();
             let points = order.points(draw.normal_source);
-            each(points.of[order.place(number)], |point| wide(points.normals[point as usize]))
+            each(points.of[order.place(number)], |point| points.normals[point as usize])
         }
     };
+    for (corner, [x, y, z]) in corners.corners.iter_mut().zip(normals) {
+        corner[0] = T::from_f64(f64::from(x));
+        corner[1] = T::from_f64(f64::from(y));
+        corner[2] = T::from_f64(f64::from(z));
+    }
 }
 
 /// Takes light that was evaluated at the triangle's polygon or vertices.
@@ -149,7 +157,7 @@ pub(super) fn gather_light<T: Light>(
 ) {
     let mesh = &draw.model.mesh;
     let table = lit.table(index, pipeline, corners.back);
-    corners.light = if table.is_empty() {
+    let light = if table.is_empty() {
         [[T::default(); 6]; 3]
     } else if plan.light_at == LightAt::Face {
         [table[mesh.triangles()[number as usize].polygon as usize]; 3]
@@ -160,22 +168,25 @@ pub(super) fn gather_light<T: Light>(
         let points = order.points(draw.normal_source);
         each(points.of[order.place(number)], |point| table[point as usize])
     };
+    let zero = T::default();
+    corners.light = each(light, |[a, b, c, d, e, f]| [[a, b, c, zero], [d, e, f, zero]]);
 }
 
 /// What is known at the pixels of a block. See the [module](self).
 #[derive(Debug)]
 pub struct Gathered<T> {
     pub(super) len: usize,
-    /// The corners in parts of a pixel, and the middle of the pixel.
-    x: [[i32; BATCH]; 3],
-    y: [[i32; BATCH]; 3],
-    middle: [[i32; BATCH]; 2],
+    /// x and y of the first two corners, in parts of a pixel.
+    first_two: [[i32; 4]; BATCH],
+    /// x and y of the third corner and of the pixel's middle.
+    third: [[i32; 4]; BATCH],
     /// Column and row of the pixel's middle.
     pixel: [[T; BATCH]; 2],
-    inverse_w: Rows<T>,
+    /// Normal and one by w of each corner.
+    corners: [[[T; 4]; BATCH]; 3],
     z: Rows<T>,
-    normals: [Rows<T>; 3],
-    light: [[[T; BATCH]; 6]; 3],
+    /// Diffuse and specular light of each corner.
+    light: [[[[T; 4]; BATCH]; 2]; 3],
     pub(super) back: [bool; BATCH],
     /// Bit i: the barycentric coordinates of pixel i are already there.
     pub(super) exact: u64,
@@ -192,14 +203,12 @@ impl<T: Light> Default for Gathered<T> {
         let row = [T::default(); BATCH];
         Self {
             len: 0,
-            x: [[0; BATCH]; 3],
-            y: [[0; BATCH]; 3],
-            middle: [[0; BATCH]; 2],
+            first_two: [[0; 4]; BATCH],
+            third: [[0; 4]; BATCH],
             pixel: [row; 2],
-            inverse_w: [row; 3],
+            corners: [[[T::default(); 4]; BATCH]; 3],
             z: [row; 3],
-            normals: [[row; 3]; 3],
-            light: [[row; 6]; 3],
+            light: [[[[T::default(); 4]; BATCH]; 2]; 3],
             back: [false; BATCH],
             exact: 0,
             linear: [row; 2],
@@ -222,26 +231,19 @@ impl<T: Light> Gathered<T> {
         number: u32,
     ) {
         assert!(i < BATCH, "a group has no more pixels than a block");
-        self.middle[0][i] = at[0] * SUBPIXELS + SUBPIXELS / 2;
-        self.middle[1][i] = at[1] * SUBPIXELS + SUBPIXELS / 2;
         self.pixel[0][i] = T::from_f64(f64::from(at[0]) + 0.5);
         self.pixel[1][i] = T::from_f64(f64::from(at[1]) + 0.5);
-        for corner in 0..3 {
-            self.x[corner][i] = corners.at[corner].x;
-            self.y[corner][i] = corners.at[corner].y;
-            self.inverse_w[corner][i] = corners.inverse_w[corner];
-        }
-        if plan.light_at == LightAt::Pixel {
-            for corner in 0..3 {
-                for axis in 0..3 {
-                    self.normals[corner][axis][i] = corners.normals[corner][axis];
-                }
-            }
-        } else {
-            for corner in 0..3 {
-                for part in 0..6 {
-                    self.light[corner][part][i] = corners.light[corner][part];
-                }
+        let [a, b, c] = corners.at;
+        let middle = |i: i32| i * SUBPIXELS + SUBPIXELS / 2;
+        self.first_two[i] = [a.x, a.y, b.x, b.y];
+        self.third[i] = [c.x, c.y, middle(at[0]), middle(at[1])];
+        self.corners[0][i] = corners.corners[0];
+        self.corners[1][i] = corners.corners[1];
+        self.corners[2][i] = corners.corners[2];
+        if plan.light_at != LightAt::Pixel {
+            for (rows, light) in self.light.iter_mut().zip(corners.light) {
+                rows[0][i] = light[0];
+                rows[1][i] = light[1];
             }
         }
         if plan.eye == Eye::Parallel {
@@ -260,6 +262,33 @@ impl<T: Light> Gathered<T> {
         }
     }
 
+    /// Writes what a whole block shows of one triangle, where that has to be neither cut nor looked at
+    /// by its small edges; says whether it did.
+    pub(super) fn put_whole(
+        &mut self,
+        level: Level,
+        [left, top]: [i32; 2],
+        corners: &Corners<T>,
+        plan: &FramePlan,
+    ) -> bool {
+        let Some(wide) = corners.wide else { return false };
+        T::run(level, Whole { rows: self, corners, at: [left, top], wide });
+        if plan.light_at != LightAt::Pixel {
+            for (rows, light) in self.light.iter_mut().zip(corners.light) {
+                rows[0].fill(light[0]);
+                rows[1].fill(light[1]);
+            }
+        }
+        if plan.eye == Eye::Parallel {
+            for (row, z) in self.z.iter_mut().zip(corners.z) {
+                row.fill(z);
+            }
+        }
+        self.back.fill(corners.back);
+        self.exact = u64::MAX;
+        true
+    }
+
     /// Writes the place in the triangle of a pixel of a triangle that was cut.
     #[cold]
     fn put_cut(&mut self, i: usize, at: [i32; 2], plan: &FramePlan, draw: &Draw, number: u32) {
@@ -269,8 +298,8 @@ impl<T: Light> Gathered<T> {
         let order = draw.model.mesh.draw_order();
         let w = order.vertices_of(number).map(|vertex| screen.clip(order.position(vertex))[3]);
         let w = weights.dot(DVec3::from_array(w));
-        for row in &mut self.inverse_w {
-            row[i] = T::from_f64(1.0 / w);
+        for corner in &mut self.corners {
+            corner[i][3] = T::from_f64(1.0 / w);
         }
         self.exact |= 1 << i;
         self.linear[0][i] = T::from_f64(weights.y);
@@ -287,6 +316,41 @@ impl<T: Light> Gathered<T> {
     pub(super) fn locate(&mut self, level: Level) {
         T::barycentric(level, self);
         T::run(level, Perspective(self));
+    }
+}
+
+/// One triangle over a whole block.
+struct Whole<'a, T> {
+    rows: &'a mut Gathered<T>,
+    corners: &'a Corners<T>,
+    at: [i32; 2],
+    wide: Wide,
+}
+
+impl<T: Light> Kernel<T> for Whole<'_, T> {
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+    fn run<M: Machine<Number = T>>(self, _: M) {
+        let Self { rows, corners, at: [left, top], wide } = self;
+        let [_, second, third] = wide.triangle.edges_at(left, top);
+        let [[_, second_right, third_right], [_, second_down, third_down]] = wide.triangle.steps();
+        for y in 0..8_i32 {
+            let (second, third) =
+                (second + i64::from(y) * second_down, third + i64::from(y) * third_down);
+            for x in 0..8_i32 {
+                let i = (y * 8 + x) as usize;
+                let across = i64::from(x);
+                let second = (second + across * second_right) as f64 * wide.per_area;
+                let third = (third + across * third_right) as f64 * wide.per_area;
+                rows.linear[0][i] = T::from_f64(second);
+                rows.linear[1][i] = T::from_f64(third);
+                rows.pixel[0][i] = T::from_f64(f64::from(left + x) + 0.5);
+                rows.pixel[1][i] = T::from_f64(f64::from(top + y) + 0.5);
+            }
+        }
+        for (rows, corner) in rows.corners.iter_mut().zip(corners.corners) {
+            rows.fill(corner);
+        }
     }
 }
 
@@ -308,6 +372,9 @@ impl Locate for f32 {
     const EXACT: bool = false;
 
     fn barycentric(level: Level, gathered: &mut Gathered<Self>) {
+        if gathered.exact == u64::MAX {
+            return;
+        }
         if gathered.exact == 0 {
             dispatch!(level, simd => barycentric(simd, gathered));
             return;
@@ -330,10 +397,8 @@ impl Locate for f32 {
 #[inline(always)]
 fn barycentric<S: Simd>(simd: S, gathered: &mut Gathered<f32>) {
     for at in (0..gathered.len).step_by(16) {
-        let load = |row: &[i32; BATCH]| i32x16::from_slice(simd, &row[at..at + 16]);
-        let (x0, x1, x2) = (load(&gathered.x[0]), load(&gathered.x[1]), load(&gathered.x[2]));
-        let (y0, y1, y2) = (load(&gathered.y[0]), load(&gathered.y[1]), load(&gathered.y[2]));
-        let (cx, cy) = (load(&gathered.middle[0]), load(&gathered.middle[1]));
+        let [x0, y0, x1, y1] = load_four(simd, &gathered.first_two, at);
+        let [x2, y2, cx, cy] = load_four(simd, &gathered.third, at);
         let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
         let second = (y2 - y0) * (cx - x2) + (x0 - x2) * (cy - y2);
         let third = (y0 - y1) * (cx - x0) + (x1 - x0) * (cy - y0);
@@ -343,6 +408,21 @@ fn barycentric<S: Simd>(simd: S, gathered: &mut Gathered<f32>) {
         second.store_slice(&mut gathered.linear[0][at..at + 16]);
         third.store_slice(&mut gathered.linear[1][at..at + 16]);
     }
+}
+
+/// Four rows of whole numbers that lie side by side, from `at` on.
+#[inline(always)]
+fn load_four<S: Simd>(simd: S, rows: &[[i32; 4]; BATCH], at: usize) -> [i32x16<S>; 4] {
+    let flat = rows[at..at + 16].as_flattened();
+    let first = i32x16::from_slice(simd, &flat[..16]);
+    let second = i32x16::from_slice(simd, &flat[16..32]);
+    let third = i32x16::from_slice(simd, &flat[32..48]);
+    let fourth = i32x16::from_slice(simd, &flat[48..]);
+    let (even_low, odd_low) = first.deinterleave(second);
+    let (even_high, odd_high) = third.deinterleave(fourth);
+    let (a, c) = even_low.deinterleave(even_high);
+    let (b, d) = odd_low.deinterleave(odd_high);
+    [a, b, c, d]
 }
 
 /// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; the sum is one by the pixel's own w.
@@ -355,7 +435,9 @@ impl<T: Light> Kernel<T> for Perspective<'_, T> {
         for at in (0..rows.len).step_by(M::LANES) {
             let second = machine.load(&rows.linear[0], at);
             let third = machine.load(&rows.linear[1], at);
-            let Triple([w0, w1, w2]) = load(machine, &rows.inverse_w, at);
+            let [_, _, _, w0] = machine.load_four(&rows.corners[0], at);
+            let [_, _, _, w1] = machine.load_four(&rows.corners[1], at);
+            let [_, _, _, w2] = machine.load_four(&rows.corners[2], at);
             let w = machine.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
             machine.store(w, &mut rows.w, at);
             machine.store(second * w1 * w, &mut rows.weights[0], at);
@@ -417,9 +499,10 @@ impl<T: Light> Kernel<T> for Attributes<'_, T> {
         for at in (0..rows.len).step_by(M::LANES) {
             let second = machine.load(&rows.weights[0], at);
             let third = machine.load(&rows.weights[1], at);
-            let n0 = load(machine, &rows.normals[0], at);
-            let n1 = load(machine, &rows.normals[1], at);
-            let n2 = load(machine, &rows.normals[2], at);
+            let [x0, y0, z0, _] = machine.load_four(&rows.corners[0], at);
+            let [x1, y1, z1, _] = machine.load_four(&rows.corners[1], at);
+            let [x2, y2, z2, _] = machine.load_four(&rows.corners[2], at);
+            let (n0, n1, n2) = (Triple([x0, y0, z0]), Triple([x1, y1, z1]), Triple([x2, y2, z2]));
             let n = n0.plus(n1.minus(n0).times(second)).plus(n2.minus(n0).times(third));
             let n = nx.times(n.0[0]).plus(ny.times(n.0[1])).plus(nz.times(n.0[2])).unit();
             store(machine, n, &mut batch.normal, at);
@@ -474,11 +557,13 @@ impl<T: Light> Kernel<T> for Mix<'_, T> {
         for at in (0..rows.len).step_by(M::LANES) {
             let second = machine.load(&rows.weights[0], at);
             let third = machine.load(&rows.weights[1], at);
-            for part in 0..6 {
-                let [a, b, c] = each([0, 1, 2], |i: usize| machine.load(&rows.light[i][part], at));
-                let value = a + (b - a) * second + (c - a) * third;
-                let to = if part < 3 { &mut batch.diffuse } else { &mut batch.specular };
-                machine.store(value, &mut to[part % 3], at);
+            for (kind, to) in [&mut batch.diffuse, &mut batch.specular].into_iter().enumerate() {
+                let [r0, g0, b0, _] = machine.load_four(&rows.light[0][kind], at);
+                let [r1, g1, b1, _] = machine.load_four(&rows.light[1][kind], at);
+                let [r2, g2, b2, _] = machine.load_four(&rows.light[2][kind], at);
+                let (a, b, c) = (Triple([r0, g0, b0]), Triple([r1, g1, b1]), Triple([r2, g2, b2]));
+                let mixed = a.plus(b.minus(a).times(second)).plus(c.minus(a).times(third));
+                store(machine, mixed, to, at);
             }
         }
     }

@@ -256,8 +256,12 @@ pub trait Machine: Copy {
     const LANES: usize;
     /// The numbers of a row that begin at `at`.
     fn load(self, row: &[Self::Number], at: usize) -> Self::R;
+    /// The numbers of four rows that lie side by side, from `at` on.
+    fn load_four(self, rows: &[[Self::Number; 4]], at: usize) -> [Self::R; 4];
     /// Puts numbers into a row from `at` on.
     fn store(self, value: Self::R, row: &mut [Self::Number], at: usize);
+    /// Puts the bytes nearest to 255 times the numbers into a row, as [`Number::byte`] has it.
+    fn store_bytes(self, value: Self::R, row: &mut [i32], at: usize);
     /// A constant.
     fn lift(self, constant: f64) -> Self::R;
     /// Whether any of some numbers is more than its counterpart.
@@ -286,8 +290,18 @@ impl Machine for Exact {
     }
 
     #[inline(always)]
+    fn load_four(self, rows: &[[f64; 4]], at: usize) -> [f64; 4] {
+        rows[at]
+    }
+
+    #[inline(always)]
     fn store(self, value: f64, row: &mut [f64], at: usize) {
         row[at] = value;
+    }
+
+    #[inline(always)]
+    fn store_bytes(self, value: f64, row: &mut [i32], at: usize) {
+        row[at] = i32::from(value.byte());
     }
 
     #[inline(always)]
@@ -316,8 +330,29 @@ impl<S: Simd> Machine for Sixteen<S> {
     }
 
     #[inline(always)]
+    fn load_four(self, rows: &[[f32; 4]], at: usize) -> [f32x16<S>; 4] {
+        let flat = rows[at..at + 16].as_flattened();
+        let first = f32x16::from_slice(self.0, &flat[..16]);
+        let second = f32x16::from_slice(self.0, &flat[16..32]);
+        let third = f32x16::from_slice(self.0, &flat[32..48]);
+        let fourth = f32x16::from_slice(self.0, &flat[48..]);
+        let (even_low, odd_low) = first.deinterleave(second);
+        let (even_high, odd_high) = third.deinterleave(fourth);
+        let (a, c) = even_low.deinterleave(even_high);
+        let (b, d) = odd_low.deinterleave(odd_high);
+        [a, b, c, d]
+    }
+
+    #[inline(always)]
     fn store(self, value: f32x16<S>, row: &mut [f32], at: usize) {
         value.store_slice(&mut row[at..at + 16]);
+    }
+
+    #[inline(always)]
+    fn store_bytes(self, value: f32x16<S>, row: &mut [i32], at: usize) {
+        let (zero, one) = (self.lift(0.0), self.lift(1.0));
+        let held = Real::min(Real::max(value, zero), one) * 255.0 + 0.5;
+        held.to_int::<i32x16<S>>().store_slice(&mut row[at..at + 16]);
     }
 
     #[inline(always)]

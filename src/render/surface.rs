@@ -15,12 +15,12 @@ use glam::DVec3;
 
 use super::clip::{Screen, faces_observer, homogeneous_weights};
 use super::coverage::{Snapped, doubled_area};
-use super::effects::{BATCH, Batch, Light, Rows};
+use super::effects::{BATCH, Batch, Light, Rows, load};
 use super::frame::Frame;
 use super::gather::{Corners, Gathered, attributes, gather_light, gather_places, mix};
 use super::light::Lit;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded};
-use super::real::{Kernel, Machine};
+use super::real::{Kernel, Machine, Triple};
 use super::texture;
 use super::tile::{BLOCK, BLOCK_PIXELS, Seen, TILE_SIDE, seen};
 use crate::base::color::Color;
@@ -54,6 +54,15 @@ struct Group<'a> {
     pixels: &'a [u8],
     numbers: &'a [u32; BLOCK_PIXELS],
     corner: [i32; 2],
+}
+
+impl Group<'_> {
+    /// Whether all pixels of the block show one triangle.
+    fn is_whole(&self) -> bool {
+        let first = self.numbers[0];
+        let other = self.numbers.iter().fold(0, |other, number| other | (number ^ first));
+        self.pixels.len() == BLOCK_PIXELS && other == 0
+    }
 }
 
 impl<'a, T: Light> Shader<'a, T> {
@@ -178,24 +187,31 @@ impl<'a, T: Light> Shader<'a, T> {
         let rows = &mut self.rows.gathered;
         rows.len = group.pixels.len();
         rows.exact = 0;
+        let take = |number: u32| {
+            let mut corners = Corners::new(plan, group.draw, vertices, number);
+            match plan.light_at {
+                LightAt::Pixel => gather_places(group.draw, number, &mut corners),
+                _ => {
+                    let draw = (group.draw_index, group.draw);
+                    gather_light(plan, lit, draw, number, pipeline, &mut corners);
+                }
+            }
+            corners
+        };
+        if group.is_whole() {
+            let number = group.numbers[0] - group.base;
+            let corners = take(number);
+            if rows.put_whole(self.level, group.corner, &corners, plan) {
+                return;
+            }
+        }
         let mut last = NONE;
         let mut corners = Corners::default();
         for (i, pixel) in group.pixels.iter().enumerate() {
             let number = group.numbers[usize::from(*pixel)] - group.base;
             if number != last {
                 last = number;
-                corners = Corners::new(plan, group.draw, vertices, number);
-                match plan.light_at {
-                    LightAt::Pixel => gather_places(group.draw, number, &mut corners),
-                    _ => gather_light(
-                        plan,
-                        lit,
-                        (group.draw_index, group.draw),
-                        number,
-                        pipeline,
-                        &mut corners,
-                    ),
-                }
+                corners = take(number);
             }
             let [left, top] = group.corner;
             let (x, y) = (left + i32::from(pixel % 8), top + i32::from(pixel / 8));
@@ -242,15 +258,24 @@ struct Finish<'a, T> {
 
 impl<T: Light> Kernel<T> for Finish<'_, T> {
     #[inline(always)]
-    fn run<M: Machine<Number = T>>(self, _: M) {
+    fn run<M: Machine<Number = T>>(self, machine: M) {
         let Self { batch, texels, lit, colors } = self;
-        for axis in 0..3 {
-            for i in 0..BATCH {
-                let t = texels[axis][i];
-                let light =
-                    if lit { t * batch.diffuse[axis][i] + batch.specular[axis][i] } else { t };
-                colors[i][axis] = light.byte();
+        let mut bytes = [[0; BATCH]; 3];
+        for at in (0..batch.len).step_by(M::LANES) {
+            let mut light = load(machine, texels, at);
+            if lit {
+                let (Triple([r, g, b]), Triple([tr, tg, tb])) =
+                    (load(machine, &batch.diffuse, at), light);
+                let specular = load(machine, &batch.specular, at);
+                light = Triple([tr * r, tg * g, tb * b]).plus(specular);
             }
+            machine.store_bytes(light.0[0], &mut bytes[0], at);
+            machine.store_bytes(light.0[1], &mut bytes[1], at);
+            machine.store_bytes(light.0[2], &mut bytes[2], at);
+        }
+        let [r, g, b] = &bytes;
+        for (((color, r), g), b) in colors.iter_mut().zip(r).zip(g).zip(b) {
+            *color = (r | g << 8 | b << 16 | 255 << 24_i32).to_le_bytes();
         }
     }
 }
