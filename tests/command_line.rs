@@ -80,6 +80,7 @@ fn help_says_what_there_is_and_version_which() {
         "flip-winding",
         "texture",
         "camera",
+        "from",
         "time",
         "helpers",
         "arithmetic",
@@ -345,4 +346,39 @@ fn without_a_display_the_editor_says_so_and_what_to_do_instead() {
         assert!(err.contains("marraztu render"), "{err}");
         assert!(err.lines().count() <= 2, "{err}");
     }
+}
+
+#[test]
+fn models_alone_are_seen_from_the_side_that_is_asked_for() {
+    let folder = folder();
+    // A square that faces +Z, in a box so long that the camera is far from its plane.
+    let seen = |from: &str| {
+        let picture = drawn(folder.path(), &["square.obj", "--lights", "0", "--from", from]);
+        let ground = picture.pixel(0, 0);
+        picture.pixels().iter().filter(|pixel| **pixel != ground).count()
+    };
+    let front = seen("0,0");
+    assert!(front > 1000, "{front}");
+    for side in ["60,0", "-60,0", "0,60", "0,-60"] {
+        let part = seen(side);
+        assert!(part > front / 3 && part < front * 2 / 3, "{side}: {part} of {front}");
+    }
+    for behind in ["120,0", "180,0", "180,45"] {
+        assert_eq!(seen(behind), 0, "{behind}: the square faces away");
+    }
+    let above = ["render", "--out", "x.png", "--from", "0,91", "square.obj"];
+    ends_with(2, folder.path(), &above);
+    let (_, err) = ends_with(2, folder.path(), &["render", "--out", "x.png", "--from", "0,9"]);
+    assert!(err.contains("models alone"), "{err}");
+}
+
+#[test]
+fn the_readme_has_the_table_of_keys_that_the_program_prints() {
+    let folder = folder();
+    let (table, _) = ends_with(0, folder.path(), &["keys", "--markdown"]);
+    let table = table.replace("Cmd+", "Ctrl+");
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let readme = std::fs::read_to_string(readme).unwrap().replace("\r\n", "\n");
+    let found = readme.contains(&table);
+    assert!(found, "README.md lacks the output of `marraztu keys --markdown`:\n{table}");
 }

@@ -8,9 +8,18 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
-use marraztu::io::{Finding, FindingKind, LoadError, Progress, load};
-use marraztu::scene::{Corner, LoadOptions, Mesh, dvec3, newell};
+use glam::{DMat3, DVec3};
+use marraztu::base::Shared;
+use marraztu::base::image::{Picture, Size};
+use marraztu::base::math;
+use marraztu::edit::{frame, items, selection};
+use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{
+    Arithmetic, Camera, Command, Corner, ItemId, Light, LightAt, LightKind, LoadOptions,
+    MaterialChoice, Mesh, Model, Object, Placed, Pose, Scene, Settings, SpotOwner, View, dvec3,
+    newell,
+};
 
 /// The folder of the models, where it is there.
 #[expect(clippy::print_stderr, reason = "who runs the tests has to see what is left out")]
@@ -183,5 +192,79 @@ fn textures_that_lie_beside_a_model_are_found() {
         assert_eq!(textured > 0, here > 0, "{}: {:?}", row.file, loaded.findings);
         let unreadable = count(&loaded.findings, FindingKind::TextureUnreadable);
         assert_eq!(unreadable, 0, "{}: {:?}", row.file, loaded.findings);
+    }
+}
+
+/// A model alone among lamps, seen whole from `side`.
+///
+/// A highlight begins where N.L comes above 0. Where a lamp lies in the plane of a face, rounding
+/// alone decides whether the face has one, so these lamps stand askew.
+fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
+    let (mut scene, mut view) = default_scene();
+    let objects: Vec<_> = scene.objects.ids().map(ItemId::Object).map(Command::Remove).collect();
+    Command::Batch(objects).apply(&mut scene).unwrap();
+    let lights: Vec<_> = scene.lights.ids().collect();
+    for id in lights {
+        let askew = |light: &mut Light| match &mut light.kind {
+            LightKind::Sun { direction } => {
+                *direction = Placed::new(DVec3::new(0.31, -0.83, -0.47).normalize_or_zero());
+            }
+            LightKind::Bulb { position, .. } => {
+                *position = Placed::new(DVec3::new(37.1, 53.3, 211.7));
+            }
+            LightKind::Spot { owner: SpotOwner::SelectedObject, .. } => light.on = false,
+            LightKind::Spot { .. } | LightKind::Ambient => {}
+        };
+        items::change_light(&scene, id, askew).unwrap().apply(&mut scene).unwrap();
+    }
+    let object = Object::new(model.clone(), MaterialChoice::File);
+    items::insert_object(&scene, object).apply(&mut scene).unwrap();
+    selection::settle(&scene, &mut view);
+    view.marks = false;
+    let turned = |camera: &mut Camera| {
+        let axes = math::frame(side, DVec3::Y, DMat3::IDENTITY);
+        camera.pose = Placed::new(Pose { axes, ..*camera.pose.now() });
+    };
+    items::change_camera(&scene, view.camera, turned).unwrap().apply(&mut scene).unwrap();
+    // A file without vertices has nothing to be framed.
+    if let Ok(framed) = frame::all(&scene, &view) {
+        framed.apply(&mut scene).unwrap();
+    }
+    (scene, view)
+}
+
+/// By how many steps the bytes of two pictures differ at most, and where.
+fn farthest_bytes(a: &Picture, b: &Picture) -> (u8, usize) {
+    let pairs = a.pixels().as_flattened().iter().zip(b.pixels().as_flattened());
+    pairs.map(|(a, b)| a.abs_diff(*b)).zip(0..).max().unwrap()
+}
+
+#[test]
+fn every_model_is_seen_and_drawn_alike_to_a_step_in_both_arithmetics() {
+    let Some(sweep) = sweep() else { return };
+    let side = 128;
+    let draw = |scene: &Scene, view: &View, settings: Settings| {
+        let plan = FramePlan::new(scene, view, &settings, Size::new(side, side));
+        Renderer::default().render(&plan).clone()
+    };
+    for (row, loaded) in sweep {
+        let Ok(loaded) = loaded else { continue };
+        let shown = loaded.model.materials.iter().all(|material| material.opacity >= 0.5);
+        let model = Shared::new(loaded.model);
+        let mut seen = false;
+        // A flat model is seen from one of two opposite sides.
+        for from in [DVec3::new(-0.5, 0.4, 1.0), DVec3::new(0.5, -0.4, -1.0)] {
+            let (scene, view) = staged(&model, from);
+            for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
+                let settings = |arithmetic| Settings { arithmetic, light, ..Settings::default() };
+                let fast = draw(&scene, &view, settings(Arithmetic::F32));
+                let exact = draw(&scene, &view, settings(Arithmetic::F64));
+                let (steps, byte) = farthest_bytes(&fast, &exact);
+                let at = (byte / 4 % side, byte / 4 / side);
+                assert!(steps <= 1, "{}, {light:?}: {steps} steps at {at:?}", row.file);
+                seen |= fast.pixels().iter().any(|pixel| *pixel != scene.background.opaque());
+            }
+        }
+        assert_eq!(seen, shown && row.triangles > 0, "{} is seen", row.file);
     }
 }

@@ -7,6 +7,7 @@ use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
 use super::job::Job;
+use super::keys::Keys;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::scene::{
@@ -51,6 +52,8 @@ pub(crate) enum Headless {
     Render(Box<Render>),
     /// Says what files hold: shape, parts, materials, and what is wrong with them
     Info(Info),
+    /// Lists every key of the editor
+    Keys(Keys),
     /// Measures one drawing job in a form that other renderers share
     Job(Job),
 }
@@ -66,6 +69,7 @@ Examples:
   marraztu render --out first.png
   marraztu render bunny.obj --out bunny.png --size 1920x1080 --material gold
   marraztu render room.obj --out room.png --up z --surface texture --filter nearest
+  marraztu render spot.obj --out spot.png --from 145,20
   marraztu render shelf.marraztu --out shelf.ppm --camera 2 --time 1.5
   marraztu render ship.obj --out lines.png --edges --projection orthographic --background 0,0,0")]
 pub(crate) struct Render {
@@ -133,6 +137,9 @@ pub(crate) struct Seeing {
     /// The camera to look through, by its place in the scene's list, from 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) camera: Option<u32>,
+    /// From where models alone are seen: degrees to the right, and up; "0,0" is the front
+    #[arg(long, value_name = "RIGHT,UP", allow_hyphen_values = true, conflicts_with = "camera", value_parser = side)]
+    pub(crate) from: Option<[f64; 2]>,
     /// How space is brought onto the picture: perspective*, orthographic
     #[arg(long, hide_possible_values = true, value_name = "HOW", value_parser = choice(&[
         ("perspective", Projection::Perspective),
@@ -278,6 +285,14 @@ fn finite(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "this is not a finite number".to_owned())
 }
 
+fn side(text: &str) -> Result<[f64; 2], String> {
+    let sides = text.split_once(',').unwrap_or((text, "0"));
+    match (finite(sides.0.trim()), finite(sides.1.trim())) {
+        (Ok(right), Ok(up)) if up.abs() <= 90.0 => Ok([right, up]),
+        _ => Err("write degrees to the right and degrees up, -90 to 90, as 30,15".to_owned()),
+    }
+}
+
 fn color(text: &str) -> Result<Color, String> {
     let channels: Option<Vec<u8>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     let channels = channels.and_then(|channels| <[u8; 3]>::try_from(channels).ok());
@@ -318,6 +333,11 @@ mod tests {
         assert_eq!(size("640x480"), Ok(Size::new(640, 480)));
         for wrong in ["640", "0x10", "10x0", "16385x1", "-1x5", "axb", "1x2x3", ""] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(side("145, -20"), Ok([145.0, -20.0]));
+        assert_eq!(side("-30"), Ok([-30.0, 0.0]));
+        for wrong in ["", "a,b", "1,2,3", "0,91", "0,NaN", "inf,0"] {
+            assert!(side(wrong).is_err(), "{wrong}");
         }
         assert_eq!(color("1, 2,255"), Ok(Color([1, 2, 255])));
         for wrong in ["1,2", "1,2,3,4", "1,2,256", "red", ""] {

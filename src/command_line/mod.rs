@@ -8,6 +8,7 @@ mod bar;
 mod failure;
 mod info;
 mod job;
+mod keys;
 mod render;
 mod stage;
 
@@ -28,6 +29,7 @@ pub(crate) fn run() -> ExitCode {
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
         Some(Headless::Info(arguments)) => info::info(&arguments),
+        Some(Headless::Keys(arguments)) => keys::keys(&arguments),
         Some(Headless::Job(arguments)) => match job::job(&arguments) {
             Ok(status) => return ExitCode::from(status),
             Err(failure) => Err(failure),

@@ -1,15 +1,17 @@
 //! `marraztu render`: a picture into a file.
 
+use glam::{DMat3, DVec3};
+use marraztu::base::math;
 use marraztu::edit::{frame, items};
 use marraztu::io;
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
+use marraztu::scene::{Camera, CameraId, Command, Fill, ItemId, Object, Placed, Pose};
 
 use super::arguments::{Accuracy, Render, Seeing, Slots, Surfaces};
 use super::bar::Bar;
 use super::failure::Failure;
 use super::say;
-use super::stage::Stage;
+use super::stage::{Stage, usage};
 
 /// Draws the picture that the arguments describe.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
@@ -69,6 +71,9 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     view.face_normals |= seeing.face_normals;
     view.vertex_normals |= seeing.vertex_normals;
     view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
+    if let Some(side) = seeing.from {
+        turn(stage, side)?;
+    }
     match seeing.camera {
         Some(number) => stage.view.camera = camera(stage, number)?,
         None if stage.models_alone => match frame::all(&stage.scene, &stage.view) {
@@ -78,6 +83,19 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
         None => {}
     }
     Ok(())
+}
+
+/// Turns the camera, so that what it frames is seen from this side: degrees to the right, and up.
+fn turn(stage: &mut Stage, [right, up]: [f64; 2]) -> Result<(), Failure> {
+    if !stage.models_alone {
+        return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
+    }
+    let axes: DMat3 =
+        math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
+    let aim = |camera: &mut Camera| {
+        camera.pose = Placed::new(Pose { axes, ..*camera.pose.now() });
+    };
+    stage.change(items::change_camera(&stage.scene, stage.view.camera, aim)?)
 }
 
 /// Puts the lights in these slots on, and all others out.

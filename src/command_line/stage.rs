@@ -109,6 +109,6 @@ pub(crate) fn is_scene(file: &Path) -> bool {
 }
 
 /// Arguments that cannot be meant together.
-fn usage(reason: &str) -> Failure {
+pub(crate) fn usage(reason: &str) -> Failure {
     Failure::Usage(Box::new(Arguments::command().error(ErrorKind::ArgumentConflict, reason)))
 }

@@ -1,0 +1,66 @@
+//! `marraztu keys`: every key of the editor, from the table that the editor itself reads.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use clap::Args;
+use marraztu::app::action::{Group, Look};
+
+use super::failure::Failure;
+
+/// Lists every key of the editor.
+#[derive(Debug, Args)]
+pub(crate) struct Keys {
+    /// As Markdown, a table for each group
+    #[arg(long)]
+    markdown: bool,
+}
+
+/// Prints the keys.
+pub(crate) fn keys(arguments: &Keys) -> Result<(), Failure> {
+    let text = if arguments.markdown { markdown() } else { plain() };
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        // Whoever read it has had enough, as `head` does.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(Failure::Output),
+    }
+}
+
+/// The groups, each with those of its actions that have a key.
+fn groups() -> impl Iterator<Item = (Group, Vec<Look>)> {
+    Group::ALL.into_iter().filter_map(|group| {
+        let looks = group.actions().map(|action| action.look());
+        let looks: Vec<Look> = looks.filter(|look| !look.keys.is_empty()).collect();
+        (!looks.is_empty()).then_some((group, looks))
+    })
+}
+
+fn names(look: &Look) -> Vec<String> {
+    look.keys.iter().flat_map(|key| key.names()).collect()
+}
+
+fn plain() -> String {
+    let mut text = String::new();
+    for (group, looks) in groups() {
+        let blank = if text.is_empty() { "" } else { "\n" };
+        // Writing to a text cannot fail.
+        let _ = writeln!(text, "{blank}{}", group.label());
+        for look in looks {
+            let _ = writeln!(text, "  {:22}{:26}{}", names(&look).join(" "), look.label, look.hint);
+        }
+    }
+    text
+}
+
+fn markdown() -> String {
+    let mut text = String::new();
+    for (group, looks) in groups() {
+        let blank = if text.is_empty() { "" } else { "\n" };
+        let _ = writeln!(text, "{blank}| {} | | |\n|---|---|---|", group.label());
+        for look in looks {
+            let keys: Vec<String> = names(&look).iter().map(|key| format!("`{key}`")).collect();
+            let _ = writeln!(text, "| {} | {} | {} |", keys.join(" "), look.label, look.hint);
+        }
+    }
+    text
+}
