@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::Ui;
 
 use super::dialogs::take_focus;
+use super::panels::color_picker::swatch;
 use super::panels::spheres::{self, Sphere};
 use crate::base::color::Color;
 use crate::io::Loaded;
@@ -214,10 +215,9 @@ fn own_ui(ui: &mut Ui, material: &mut Material) {
             ("Specular", &mut material.specular),
         ];
         for (name, factors) in parts {
-            let label = ui.label(name);
-            let mut bytes = Color::from_factors(*factors).0;
-            if ui.color_edit_button_srgb(&mut bytes).labelled_by(label.id).changed() {
-                *factors = Color(bytes).factors();
+            ui.label(name);
+            if let Some((color, _)) = swatch(ui, name, name, Color::from_factors(*factors)) {
+                *factors = color.factors();
             }
         }
         let label = ui.label("Exponent");

@@ -16,6 +16,8 @@ pub const ROW: f32 = 22.0;
 pub const GAP: f32 = 4.0;
 /// From the border of a panel to what stands in it.
 pub const MARGIN: i8 = 10;
+/// To the right of what can be scrolled: the bar stands in it.
+pub const SCROLL_MARGIN: Margin = Margin { left: 0, right: MARGIN, top: 0, bottom: 0 };
 /// Where the labels of a panel's rows end and its controls begin.
 pub const LABEL: f32 = 62.0;
 /// Small text: keys, units, what can be missed.

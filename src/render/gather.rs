@@ -4,173 +4,15 @@
 //! pixels are computed at once whichever triangles they show.
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
-use super::clip::{Screen, ScreenVertex};
-use super::coverage::{SUBPIXELS, Snapped, Triangle};
-use super::effects::{BATCH, Batch, Light, Rows, load, store};
-use super::light::Lit;
-use super::plan::{Back, Draw, Eye, FramePlan};
-use super::real::{Kernel, Machine, Triple};
-use super::surface::{cut_weights, shows_back};
-use crate::base::math::each;
-use crate::scene::{LightAt, Normals};
-
-/// The largest box, in parts of a pixel, whose edge functions fit 31 bits inside.
-const NARROW: i32 = 1 << 14;
-
-/// What is known of one triangle.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Corners<T> {
-    at: [Snapped; 3],
-    /// Of each corner: its normal in object space, where light is evaluated per pixel, and one by w.
-    corners: [[T; 4]; 3],
-    /// z in view space; in parallel projection only.
-    z: [T; 3],
-    /// Diffuse and specular light; where it is not evaluated per pixel.
-    light: [[[T; 4]; 2]; 3],
-    /// Whether it reaches beyond the planes that triangles are cut by.
-    cut: bool,
-    /// Its edges, where their functions do not fit 31 bits inside.
-    wide: Option<Wide>,
-    back: bool,
-}
-
-/// A triangle whose edge functions need 64 bits.
-#[derive(Clone, Copy, Debug)]
-struct Wide {
-    triangle: Triangle,
-    per_area: f64,
-}
-
-impl<T: Light> Corners<T> {
-    #[inline(always)]
-    pub(super) fn new(
-        plan: &FramePlan,
-        draw: &Draw,
-        vertices: &[ScreenVertex],
-        number: u32,
-    ) -> Self {
-        let order = draw.model.mesh.draw_order();
-        let ids = order.vertices_of(number);
-        let own = each(ids, |vertex| vertices[vertex as usize]);
-        let at = each(own, |vertex| vertex.at());
-        let cut = !(own[0].is_inside() & own[1].is_inside() & own[2].is_inside());
-        let mut corners = Self { at, cut, ..Self::default() };
-        if !cut && (T::EXACT || !is_narrow(at)) {
-            corners.wide = Wide::new(at);
-        }
-        if draw.back != Back::Left {
-            let screen = Screen::new(draw.clip_from_object, plan.size);
-            corners.back = shows_back(draw, &screen, number, (!cut).then_some(at));
-        }
-        if T::EXACT {
-            let screen = Screen::new(draw.clip_from_object, plan.size);
-            let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
-            for (corner, w) in corners.corners.iter_mut().zip(w) {
-                corner[3] = T::from_f64(1.0 / w);
-            }
-        } else {
-            for (corner, vertex) in corners.corners.iter_mut().zip(own) {
-                corner[3] = T::from_f64(f64::from(vertex.inverse_w));
-            }
-        }
-        if plan.eye == Eye::Parallel {
-            corners.z = ids.map(|vertex| {
-                let place = DVec3::from_array(order.position(vertex));
-                T::from_f64(draw.view_from_object.transform_point3(place).z)
-            });
-        }
-        corners
-    }
-
-    /// The parts that the corners have in a pixel, with perspective, in f64.
-    pub(super) fn weights(
-        &self,
-        plan: &FramePlan,
-        draw: &Draw,
-        number: u32,
-        pixel: [i32; 2],
-    ) -> DVec3 {
-        if self.cut {
-            return cut_weights(plan, draw, number, pixel);
-        }
-        let [second, third] = self.wide.map_or([0.0; 2], |wide| wide.barycentric(pixel));
-        let linear = DVec3::new(1.0 - second - third, second, third);
-        let by_w = linear * DVec3::from_array(self.corners.map(|corner| corner[3].into()));
-        by_w / by_w.element_sum()
-    }
-}
-
-impl Wide {
-    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
-    fn new(at: [Snapped; 3]) -> Option<Self> {
-        let triangle = Triangle::new(at)?;
-        Some(Self { triangle, per_area: 1.0 / triangle.doubled_area() as f64 })
-    }
-
-    /// The second and third barycentric coordinate of a pixel, linear on the screen.
-    #[inline(always)]
-    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
-    fn barycentric(&self, [x, y]: [i32; 2]) -> [f64; 2] {
-        let [_, second, third] = self.triangle.edges_at(x, y);
-        [second as f64 * self.per_area, third as f64 * self.per_area]
-    }
-}
-
-#[inline(always)]
-fn is_narrow([a, b, c]: [Snapped; 3]) -> bool {
-    let extent = |a: i32, b: i32, c: i32| a.max(b).max(c) - a.min(b).min(c);
-    extent(a.x, b.x, c.x) <= NARROW && extent(a.y, b.y, c.y) <= NARROW
-}
-
-/// Takes the normals at the corners, in object space.
-#[inline(always)]
-pub(super) fn gather_places<T: Light>(draw: &Draw, number: u32, corners: &mut Corners<T>) {
-    let normals = match draw.normals {
-        Normals::Face => {
-            let mesh = &draw.model.mesh;
-            let own = mesh.triangles()[number as usize];
-            [mesh.polygon_normals()[own.polygon as usize]; 3]
-        }
-        Normals::Vertex => {
-            let order = draw.model.mesh.draw_order();
-            let points = order.points(draw.normal_source);
-            each(points.of[order.place(number)], |point| points.normals[point as usize])
-        }
-    };
-    for (corner, [x, y, z]) in corners.corners.iter_mut().zip(normals) {
-        corner[0] = T::from_f64(f64::from(x));
-        corner[1] = T::from_f64(f64::from(y));
-        corner[2] = T::from_f64(f64::from(z));
-    }
-}
-
-/// Takes light that was evaluated at the triangle's polygon or vertices.
-pub(super) fn gather_light<T: Light>(
-    plan: &FramePlan,
-    lit: &Lit<T>,
-    (index, draw): (u32, &Draw),
-    number: u32,
-    pipeline: u32,
-    corners: &mut Corners<T>,
-) {
-    let mesh = &draw.model.mesh;
-    let table = lit.table(index, pipeline, corners.back);
-    let light = if table.is_empty() {
-        [[T::default(); 6]; 3]
-    } else if plan.light_at == LightAt::Face {
-        [table[mesh.triangles()[number as usize].polygon as usize]; 3]
-    } else if draw.normals == Normals::Face {
-        each(mesh.triangles()[number as usize].corners, |corner| table[corner as usize])
-    } else {
-        let order = mesh.draw_order();
-        let points = order.points(draw.normal_source);
-        each(points.of[order.place(number)], |point| table[point as usize])
-    };
-    let zero = T::default();
-    corners.light = each(light, |[a, b, c, d, e, f]| [[a, b, c, zero], [d, e, f, zero]]);
-}
+use super::clip::Screen;
+use super::corners::{Corners, Wide, cut_weights};
+use super::coverage::SUBPIXELS;
+use super::effects::{BATCH, Light, Rows};
+use super::plan::{Draw, Eye, FramePlan};
+use super::real::{Kernel, Machine};
+use crate::scene::LightAt;
 
 /// What is known at the pixels of a block. See the [module](self).
 #[derive(Debug)]
@@ -181,21 +23,21 @@ pub struct Gathered<T> {
     /// x and y of the third corner and of the pixel's middle.
     third: [[i32; 4]; BATCH],
     /// Column and row of the pixel's middle.
-    pixel: [[T; BATCH]; 2],
+    pub(super) pixel: [[T; BATCH]; 2],
     /// Normal and one by w of each corner.
-    corners: [[[T; 4]; BATCH]; 3],
-    z: Rows<T>,
+    pub(super) corners: [[[T; 4]; BATCH]; 3],
+    pub(super) z: Rows<T>,
     /// Diffuse and specular light of each corner.
-    light: [[[[T; 4]; BATCH]; 2]; 3],
+    pub(super) light: [[[[T; 4]; BATCH]; 2]; 3],
     pub(super) back: [bool; BATCH],
     /// Bit i: the barycentric coordinates of pixel i are already there.
     pub(super) exact: u64,
     /// The second and third barycentric coordinate, linear on the screen.
     linear: [[T; BATCH]; 2],
     /// The same with perspective.
-    weights: [[T; BATCH]; 2],
+    pub(super) weights: [[T; BATCH]; 2],
     /// The distance along the observer's axis.
-    w: [T; BATCH],
+    pub(super) w: [T; BATCH],
 }
 
 impl<T: Light> Default for Gathered<T> {
@@ -442,129 +284,6 @@ impl<T: Light> Kernel<T> for Perspective<'_, T> {
             machine.store(w, &mut rows.w, at);
             machine.store(second * w1 * w, &mut rows.weights[0], at);
             machine.store(third * w2 * w, &mut rows.weights[1], at);
-        }
-    }
-}
-
-/// Place, normal and direction to the observer of every pixel.
-pub(super) fn attributes<T: Light>(
-    level: Level,
-    plan: &FramePlan,
-    draw: &Draw,
-    rows: &Gathered<T>,
-    batch: &mut Batch<T>,
-) {
-    let back = draw.back == Back::Lit;
-    let rays = Rays::new(plan);
-    T::run(level, Attributes { rows, batch, normals: draw.view_from_normal, rays, back });
-}
-
-/// From a pixel to the way on which its surface lies: x = (column a + b), y = (row c + d), each times
-/// w in perspective, where -w is z.
-#[derive(Clone, Copy, Debug)]
-struct Rays {
-    parallel: bool,
-    x: [f64; 2],
-    y: [f64; 2],
-}
-
-impl Rays {
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-    fn new(plan: &FramePlan) -> Self {
-        let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
-        let (width, height) = (plan.size.width as f64, plan.size.height as f64);
-        Self {
-            parallel: plan.eye == Eye::Parallel,
-            x: [2.0 / width / px, -1.0 / px],
-            y: [-2.0 / height / py, 1.0 / py],
-        }
-    }
-}
-
-struct Attributes<'a, T> {
-    rows: &'a Gathered<T>,
-    batch: &'a mut Batch<T>,
-    normals: DMat3,
-    rays: Rays,
-    back: bool,
-}
-
-impl<T: Light> Kernel<T> for Attributes<'_, T> {
-    #[inline(always)]
-    fn run<M: Machine<Number = T>>(self, machine: M) {
-        let Self { rows, batch, normals, rays, back } = self;
-        let zero = machine.lift(0.0);
-        let lift = |v: DVec3| Triple::lift(zero, [v.x, v.y, v.z]);
-        let (nx, ny, nz) = (lift(normals.x_axis), lift(normals.y_axis), lift(normals.z_axis));
-        for at in (0..rows.len).step_by(M::LANES) {
-            let second = machine.load(&rows.weights[0], at);
-            let third = machine.load(&rows.weights[1], at);
-            let [x0, y0, z0, _] = machine.load_four(&rows.corners[0], at);
-            let [x1, y1, z1, _] = machine.load_four(&rows.corners[1], at);
-            let [x2, y2, z2, _] = machine.load_four(&rows.corners[2], at);
-            let (n0, n1, n2) = (Triple([x0, y0, z0]), Triple([x1, y1, z1]), Triple([x2, y2, z2]));
-            let n = n0.plus(n1.minus(n0).times(second)).plus(n2.minus(n0).times(third));
-            let n = nx.times(n.0[0]).plus(ny.times(n.0[1])).plus(nz.times(n.0[2])).unit();
-            store(machine, n, &mut batch.normal, at);
-
-            let x = machine.load(&rows.pixel[0], at) * machine.lift(rays.x[0])
-                + machine.lift(rays.x[1]);
-            let y = machine.load(&rows.pixel[1], at) * machine.lift(rays.y[0])
-                + machine.lift(rays.y[1]);
-            if rays.parallel {
-                let Triple([z0, z1, z2]) = load(machine, &rows.z, at);
-                let z = z0 + (z1 - z0) * second + (z2 - z0) * third;
-                store(machine, Triple([x, y, z]), &mut batch.position, at);
-                let to_eye = Triple::lift(z, [0.0, 0.0, 1.0]);
-                store(machine, to_eye, &mut batch.to_eye, at);
-            } else {
-                let w = machine.load(&rows.w, at);
-                let one = machine.lift(1.0);
-                store(machine, Triple([x * w, y * w, -w]), &mut batch.position, at);
-                store(machine, Triple([-x, -y, one]).unit(), &mut batch.to_eye, at);
-            }
-        }
-        if back {
-            turn_backs(rows, batch);
-        }
-    }
-}
-
-/// A back that is lit has its normal turned.
-#[inline(always)]
-fn turn_backs<T: Light>(rows: &Gathered<T>, batch: &mut Batch<T>) {
-    for i in (0..rows.len).filter(|i| rows.back[*i]) {
-        for row in &mut batch.normal {
-            row[i] = -row[i];
-        }
-    }
-}
-
-/// Light of the corners mixed at every pixel.
-pub(super) fn mix<T: Light>(level: Level, rows: &Gathered<T>, batch: &mut Batch<T>) {
-    T::run(level, Mix { rows, batch });
-}
-
-struct Mix<'a, T> {
-    rows: &'a Gathered<T>,
-    batch: &'a mut Batch<T>,
-}
-
-impl<T: Light> Kernel<T> for Mix<'_, T> {
-    #[inline(always)]
-    fn run<M: Machine<Number = T>>(self, machine: M) {
-        let Self { rows, batch } = self;
-        for at in (0..rows.len).step_by(M::LANES) {
-            let second = machine.load(&rows.weights[0], at);
-            let third = machine.load(&rows.weights[1], at);
-            for (kind, to) in [&mut batch.diffuse, &mut batch.specular].into_iter().enumerate() {
-                let [r0, g0, b0, _] = machine.load_four(&rows.light[0][kind], at);
-                let [r1, g1, b1, _] = machine.load_four(&rows.light[1][kind], at);
-                let [r2, g2, b2, _] = machine.load_four(&rows.light[2][kind], at);
-                let (a, b, c) = (Triple([r0, g0, b0]), Triple([r1, g1, b1]), Triple([r2, g2, b2]));
-                let mixed = a.plus(b.minus(a).times(second)).plus(c.minus(a).times(third));
-                store(machine, mixed, to, at);
-            }
         }
     }
 }

@@ -4,8 +4,10 @@
 //! Scene, View, Settings, Size  ->  FramePlan  ->  Renderer  ->  Picture
 //! ```
 
+mod attributes;
 mod bins;
 mod clip;
+mod corners;
 pub mod coverage;
 pub mod effects;
 mod frame;

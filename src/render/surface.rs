@@ -13,11 +13,11 @@
 use fearless_simd::Level;
 use glam::DVec3;
 
-use super::clip::{Screen, faces_observer, homogeneous_weights};
-use super::coverage::{Snapped, doubled_area};
+use super::attributes::{attributes, mix};
+use super::corners::{Corners, gather_light, gather_places};
 use super::effects::{BATCH, Batch, Light, Rows, load};
 use super::frame::Frame;
-use super::gather::{Corners, Gathered, attributes, gather_light, gather_places, mix};
+use super::gather::Gathered;
 use super::light::Lit;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded};
 use super::real::{Kernel, Machine, Triple};
@@ -335,34 +335,4 @@ pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i3
     let weights = corners.weights(plan, draw, number, pixel);
     let Some(uv) = uv(draw, number, weights) else { return true };
     texture::sample::<f64>(texture, uv, plan.filter)[3] * opacity >= 0.5
-}
-
-/// Whether the observer sees the back of a triangle.
-pub(super) fn shows_back(
-    draw: &Draw,
-    screen: &Screen,
-    number: u32,
-    at: Option<[Snapped; 3]>,
-) -> bool {
-    let front = match at {
-        Some(at) => doubled_area(at) < 0,
-        None => {
-            let order = draw.model.mesh.draw_order();
-            let vertices = order.vertices_of(number);
-            faces_observer(vertices.map(|vertex| screen.clip(order.position(vertex))))
-        }
-    };
-    front == draw.mirrored
-}
-
-/// The parts of a cut triangle's corners in a pixel, with perspective.
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-pub(super) fn cut_weights(plan: &FramePlan, draw: &Draw, number: u32, pixel: [i32; 2]) -> DVec3 {
-    let screen = Screen::new(draw.clip_from_object, plan.size);
-    let order = draw.model.mesh.draw_order();
-    let vertices = order.vertices_of(number);
-    let clip = vertices.map(|vertex| screen.clip(order.position(vertex)));
-    let x = (f64::from(pixel[0]) + 0.5) / plan.size.width as f64 * 2.0 - 1.0;
-    let y = 1.0 - (f64::from(pixel[1]) + 0.5) / plan.size.height as f64 * 2.0;
-    homogeneous_weights(clip, [x, y])
 }

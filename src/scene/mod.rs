@@ -8,6 +8,7 @@ mod light;
 mod list;
 mod material;
 mod mesh;
+mod mesh_points;
 mod model;
 mod object;
 mod order;

@@ -9,6 +9,7 @@ use egui_kittest::Node;
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::app::action::{Action, Group};
 use marraztu::app::chord::Chord::{Command, Either, Named};
+use marraztu::base::color::Color;
 use marraztu::scene::{
     Arithmetic, Filter, ItemId, LightAt, LightKind, Settings, SpecularForm, Subject,
 };
@@ -418,16 +419,20 @@ fn the_picture_is_the_largest_thing_in_the_window() {
 }
 
 #[test]
-fn statistics_count_what_is_in_the_scene_and_what_is_drawn() {
-    let mut editor = Editor::new();
-    assert!(!editor.shows("Polygons"));
-    editor.perform(Action::ToggleStatistics);
-    let meshes = editor.scene();
-    let meshes = meshes.objects.iter().map(|(_, object)| &object.model.mesh);
-    let polygons: usize = meshes.map(|mesh| mesh.polygon_count()).sum();
-    let text = polygons.to_string();
-    let (thousands, rest) = text.split_at(text.len() - 3);
-    let value = format!("{thousands},{rest}");
-    assert!(editor.harness.query_all_by_value(&value).next().is_some(), "{value} polygons");
-    assert!(editor.state().statistics.triangles > 0);
+fn a_drag_in_the_colour_picker_is_one_step() {
+    let mut editor = Editor::tall();
+    let before = editor.scene().background;
+    click(&mut editor, Role::ColorWell, "Background");
+    let shades = control(&editor, Role::ColorWell, "Background: shade").rect();
+    let at = |x: f32, y: f32| shades.lerp_inside(egui::vec2(x, y));
+    editor.drag(PointerButton::Primary, &[at(0.5, 0.5), at(0.4, 0.3), at(0.0, 0.0), at(0.0, 0.5)]);
+    let Color([r, g, b]) = editor.scene().background;
+    assert!(r == g && g == b && r.abs_diff(128) <= 2, "grey, half way up: {r} {g} {b}");
+    assert_eq!(editor.steps(), 1);
+    // Grey has kept the blue that it came from.
+    editor.drag(PointerButton::Primary, &[at(0.0, 0.5), at(0.5, 0.2), at(1.0, 0.0)]);
+    assert_eq!(editor.scene().background, Color([0, 0, 255]));
+    editor.press(Command(Key::Z));
+    editor.press(Command(Key::Z));
+    assert_eq!(editor.scene().background, before);
 }

@@ -15,8 +15,7 @@ use super::icons::Icon;
 use crate::app::action::Action;
 use crate::app::ask::Ask;
 use crate::app::state::State;
-use crate::app::{gestures, theme};
-use crate::base::color::Color;
+use crate::app::theme;
 use crate::edit::{Gesture, Refusal};
 use crate::scene::{Command, View};
 
@@ -343,25 +342,6 @@ pub(super) fn action_icon(
     if action.explain(response, state).clicked() {
         asks.push(action.into());
     }
-}
-
-/// A colour that opens a picker. Gives the colour that it should become.
-pub(super) fn swatch(
-    ui: &mut Ui,
-    name: &str,
-    hint: &str,
-    color: Color,
-) -> Option<(Color, Gesture)> {
-    let mut bytes = color.0;
-    let button = ui.scope(|ui| {
-        ui.spacing_mut().interact_size.x = 34.0;
-        // Its border: a white one must be seen on a white ground.
-        let border = ui.visuals().weak_text_color();
-        ui.visuals_mut().widgets.inactive.bg_fill = border;
-        ui.color_edit_button_srgb(&mut bytes)
-    });
-    let response = button.inner.accessible_name(name).on_hover_text(hint);
-    (response.changed() && bytes != color.0).then(|| (Color(bytes), gestures::of(&response)))
 }
 
 /// The ring about what has the keyboard.

@@ -2,6 +2,7 @@
 //! nothing.
 
 mod cheat_sheet;
+pub(super) mod color_picker;
 mod controls;
 mod expression;
 pub(super) mod icons;
@@ -11,7 +12,6 @@ mod outline;
 mod outline_row;
 mod properties;
 pub(super) mod spheres;
-mod statistics;
 mod status_line;
 mod view_switches;
 
@@ -33,7 +33,9 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let (most_left, most_right) = (most(0.25, 200.0), most(0.3, 250.0));
     let fill = ui.visuals().panel_fill;
     let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
-    let side = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 4));
+    // What is in them leaves room for a bar to scroll with.
+    let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
+    let side = Frame::new().fill(fill).inner_margin(margin);
     Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, asks));
     Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, asks));
     // A new name is typed in the outline.
@@ -52,9 +54,6 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             .default_size(right)
             .size_range(220.0..=most_right)
             .show(ui, |ui| properties::show(ui, state, asks));
-    }
-    if state.shown.statistics {
-        statistics::show(ui, state, ui.available_rect_before_wrap());
     }
     if state.shown.cheat_sheet {
         cheat_sheet::show(ui, state, asks);

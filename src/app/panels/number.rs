@@ -31,6 +31,7 @@ const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 pub(super) struct Number<'a> {
     name: String,
     hint: &'a str,
+    letter: &'static str,
     axis: Option<Axis>,
     suffix: &'static str,
     speed: f64,
@@ -44,6 +45,7 @@ impl<'a> Number<'a> {
         Self {
             name: name.into(),
             hint,
+            letter: "",
             axis: None,
             suffix: "",
             speed: 1.0,
@@ -55,7 +57,12 @@ impl<'a> Number<'a> {
     /// The letter of an axis stands before the number, and behind its name.
     fn axis(self, axis: Axis) -> Self {
         let name = format!("{} {}", self.name, LETTERS[axis.index()]);
-        Self { axis: Some(axis), name, ..self }
+        Self { axis: Some(axis), name, letter: LETTERS[axis.index()], ..self }
+    }
+
+    /// A letter stands before the number.
+    pub(super) fn letter(self, letter: &'static str) -> Self {
+        Self { letter, ..self }
     }
 
     /// A unit stands behind the number.
@@ -82,7 +89,7 @@ impl<'a> Number<'a> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 3 and 8")]
     fn room(&self, width: f32) -> usize {
         let signs =
-            if self.axis.is_some() { 1.8 } else { 0.0 } + self.suffix.chars().count() as f32;
+            if self.letter.is_empty() { 0.0 } else { 1.8 } + self.suffix.chars().count() as f32;
         let room = (width - 2.0 * PADDING) / (DIGIT * theme::BODY) - signs;
         room.clamp(3.0, ROOM as f32) as usize
     }
@@ -108,9 +115,10 @@ impl<'a> Number<'a> {
         if self.whole {
             field = field.max_decimals(0);
         }
-        if let Some(axis) = self.axis {
-            let letter = LETTERS[axis.index()];
-            let color = theme::axis(ui.visuals(), axis);
+        if !self.letter.is_empty() {
+            let letter = self.letter;
+            let weak = ui.visuals().weak_text_color();
+            let color = self.axis.map_or(weak, |axis| theme::axis(ui.visuals(), axis));
             field = field.prefix(
                 RichText::new(format!("{letter} ")).text_style(TextStyle::Small).color(color),
             );

@@ -32,7 +32,7 @@ enum Line {
 pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     egui::Panel::bottom("outline tools")
         .show_separator_line(false)
-        .frame(egui::Frame::NONE)
+        .frame(egui::Frame::NONE.inner_margin(theme::SCROLL_MARGIN))
         .show(ui, |ui| tools_ui(ui, state, asks));
     if state.renaming.is_none() {
         outline_row::forget_new_name(ui);
@@ -41,7 +41,8 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let mut unfolded: BTreeSet<ObjectId> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let lines = lines(state, &unfolded);
     ui.spacing_mut().item_spacing.y = 0.0;
-    ScrollArea::vertical().auto_shrink(false).show_viewport(ui, |ui, seen| {
+    let area = ScrollArea::vertical().auto_shrink(false).content_margin(theme::SCROLL_MARGIN);
+    area.show_viewport(ui, |ui, seen| {
         let count = u16::try_from(lines.len()).unwrap_or(u16::MAX);
         let size = vec2(ui.available_width(), f32::from(count) * theme::ROW);
         let (all, _) = ui.allocate_exact_size(size, Sense::hover());

@@ -2,7 +2,8 @@
 
 use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
-use super::controls::{self, Choice, action_switch, change, choices, row, section, swatch};
+use super::color_picker::swatch;
+use super::controls::{self, Choice, action_switch, change, choices, row, section};
 use crate::app::action::Action;
 use crate::app::ask::Ask;
 use crate::app::state::State;
@@ -14,7 +15,8 @@ use crate::scene::{
 
 /// Shows it; what is asked for is added to `asks`.
 pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
-    ScrollArea::vertical().id_salt("view switches").auto_shrink(false).show(ui, |ui| {
+    let area = ScrollArea::vertical().id_salt("view switches").auto_shrink(false);
+    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         section(ui, "Keys act on", true, |ui| {
             subject_ui(ui, state, asks);
             transformation_ui(ui, state, asks);

@@ -3,7 +3,8 @@
 use egui::{ComboBox, Slider, Ui};
 use glam::{DMat4, DVec3};
 
-use super::super::controls::{Switch, change, row, section, swatch};
+use super::super::color_picker::swatch;
+use super::super::controls::{Switch, change, row, section};
 use super::super::number::{Number, vector};
 use super::{number_row, steps_ui};
 use crate::app::ask::Ask;

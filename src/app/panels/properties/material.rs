@@ -2,7 +2,8 @@
 
 use egui::{Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use super::super::controls::{self, row, swatch};
+use super::super::color_picker::swatch;
+use super::super::controls::{self, row};
 use super::super::number::Number;
 use super::super::spheres::{self, Sphere};
 use super::number_row;

@@ -17,8 +17,6 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::scene::{ItemId, Transformation};
 
-pub(super) use object::counted;
-
 /// Shows it; what is asked for is added to `asks`.
 pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let Some(item) = state.selected().filter(|item| state.scene.contains(*item)) else {
@@ -29,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     title(ui, state, item);
     // Ids of fields go with the item, so that a number typed for one never lands in another.
     let area = ScrollArea::vertical().id_salt("properties").auto_shrink(false);
-    area.show(ui, |ui| {
+    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.push_id(item, |ui| match item {
             ItemId::Object(id) => object::show(ui, state, asks, id),
             ItemId::Camera(id) => camera::show(ui, state, asks, id),
@@ -44,7 +42,8 @@ fn title(ui: &mut Ui, state: &State, item: ItemId) {
         ItemId::Camera(_) => "Camera",
         ItemId::Light(_) => "Light",
     };
-    let size = vec2(ui.available_width(), theme::ROW + 6.0);
+    let width = ui.available_width() - f32::from(theme::MARGIN);
+    let size = vec2(width, theme::ROW + 6.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let color = ui.visuals().strong_text_color();
     let icon = rect.with_max_x(rect.left() + 18.0);

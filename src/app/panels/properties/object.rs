@@ -3,10 +3,12 @@
 use egui::{Button, Ui};
 use glam::{DMat3, DVec3};
 
-use super::super::controls::{Switch, change, fact, row, section, swatch};
+use super::super::color_picker::swatch;
+use super::super::controls::{Switch, change, fact, row, section};
 use super::super::number::{Number, keep_angles, kept_angles, short, vector};
 use super::{material, number_row, steps_ui, surface};
 use crate::app::ask::Ask;
+use crate::app::material_dialog::grouped;
 use crate::app::state::State;
 use crate::base::math::{self, Axis};
 use crate::edit::{Gesture, items, motion, place, transform};
@@ -176,38 +178,19 @@ fn model_ui(ui: &mut Ui, object: &Object) {
         |name| name.to_string_lossy().into_owned(),
     );
     fact(ui, "File", &source);
-    fact(ui, "Vertices", &counted(mesh.positions().len()));
-    fact(ui, "Polygons", &counted(mesh.polygon_count()));
-    fact(ui, "Triangles", &counted(mesh.triangles().len()));
-    fact(ui, "Parts", &counted(mesh.parts().len()));
+    fact(ui, "Vertices", &grouped(mesh.positions().len()));
+    fact(ui, "Polygons", &grouped(mesh.polygon_count()));
+    fact(ui, "Triangles", &grouped(mesh.triangles().len()));
+    fact(ui, "Parts", &grouped(mesh.parts().len()));
     if let Some(bounds) = mesh.bounds() {
         let [x, y, z] = bounds.extent().to_array().map(short);
         fact(ui, "Extent", &format!("{x} x {y} x {z}"));
     }
 }
 
-/// A number with its thousands apart.
-pub(in crate::app::panels) fn counted(count: usize) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn thousands_stand_apart() {
-        let all = [0, 999, 1000, 12_480, 1_234_567].map(counted);
-        assert_eq!(all, ["0", "999", "1,000", "12,480", "1,234,567"]);
-    }
 
     #[test]
     fn angles_that_a_user_gave_say_the_same_as_those_that_are_computed() {

@@ -2,7 +2,8 @@
 
 use egui::Ui;
 
-use super::super::controls::{Choice, change, choices, row, swatch};
+use super::super::color_picker::swatch;
+use super::super::controls::{Choice, change, choices, row};
 use crate::app::ask::Ask;
 use crate::app::state::State;
 use crate::edit::{Gesture, items};

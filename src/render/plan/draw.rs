@@ -1,0 +1,143 @@
+//! What is drawn, and by which stages.
+
+use std::collections::BTreeSet;
+
+use glam::{DMat3, DMat4};
+
+use crate::base::{Shared, color::Color};
+use crate::render::effects::{self, Entry, Matter};
+use crate::scene::{ItemId, Model, NormalSource, Normals, Texture};
+
+/// One mesh of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::render) struct Draw {
+    /// Whose it is.
+    pub(in crate::render) item: ItemId,
+    /// Its shape.
+    pub(in crate::render) model: Shared<Model>,
+    pub(in crate::render) clip_from_object: DMat4,
+    pub(in crate::render) view_from_object: DMat4,
+    /// What normals are multiplied by: sign(det) cof.
+    pub(in crate::render) view_from_normal: DMat3,
+    /// Whether the placement mirrors: then fronts run clockwise.
+    pub(in crate::render) mirrored: bool,
+    pub(in crate::render) back: Back,
+    pub(in crate::render) normals: Normals,
+    pub(in crate::render) normal_source: NormalSource,
+    /// The pipeline of each part; `None` for parts that are not drawn.
+    pub(in crate::render) part_pipelines: Vec<Option<u32>>,
+    /// The pipeline of all parts, where they share one.
+    pub(in crate::render) uniform: Option<u32>,
+    /// The polygons that are drawn, where not all are.
+    pub(in crate::render) polygons: Option<BTreeSet<u32>>,
+    pub(in crate::render) filled: bool,
+    pub(in crate::render) lines: Lines,
+}
+
+impl Draw {
+    /// The pipeline of a triangle that is drawn.
+    #[inline(always)]
+    pub(in crate::render) fn pipeline_of(&self, triangle: u32) -> u32 {
+        self.uniform.unwrap_or_else(|| {
+            let mesh = &self.model.mesh;
+            let polygon = mesh.triangles()[triangle as usize].polygon;
+            let part = mesh.polygon_parts()[polygon as usize];
+            self.part_pipelines[part as usize].unwrap_or(0)
+        })
+    }
+}
+
+/// What becomes of faces that are turned away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::render) enum Back {
+    /// They are not drawn.
+    Left,
+    /// They are red, and not lit.
+    Red,
+    /// They are lit with their normals turned.
+    Lit,
+}
+
+/// The lines that a draw has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::render) struct Lines {
+    /// Whether the outlines of polygons are drawn.
+    pub(in crate::render) edges: bool,
+    /// How long the normals of faces are drawn, in object space.
+    pub(in crate::render) face_normals: Option<f64>,
+    /// How long the normals of vertices are drawn, in object space.
+    pub(in crate::render) vertex_normals: Option<f64>,
+    /// Their colour.
+    pub(in crate::render) color: Color,
+}
+
+/// The stages of one way of drawing a surface, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::render) enum Pipeline {
+    /// One colour, whatever the light.
+    Flat(Color),
+    /// Texture, tint and vertex colours, and light where it is lit.
+    Shaded(Shaded),
+}
+
+impl Pipeline {
+    /// Whether a texture decides where it is drawn.
+    pub(in crate::render) const fn is_cutout(&self) -> bool {
+        matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
+    }
+}
+
+/// See [`Pipeline::Shaded`].
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::render) struct Shaded {
+    /// What reflects.
+    pub(in crate::render) matter: Matter,
+    /// The lights that are evaluated; `None` where the surface is not lit.
+    pub(in crate::render) light: Option<Vec<Stage>>,
+    /// Whether vertex colours are multiplied in.
+    pub(in crate::render) vertex_colors: bool,
+    /// The tint as factors.
+    pub(in crate::render) tint: [f64; 3],
+    /// The texture.
+    pub(in crate::render) texture: Option<Shared<Texture>>,
+    /// The material's opacity where the texture's alpha may bring it below one half.
+    pub(in crate::render) cutout: Option<f64>,
+}
+
+/// One light on one surface.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::render) struct Stage {
+    pub(in crate::render) effect: &'static Entry,
+    /// Its place in [`FramePlan::lamps`].
+    pub(in crate::render) lamp: u32,
+    pub(in crate::render) highlight: Form,
+}
+
+impl Stage {
+    /// The effect compiled for the stage's highlight.
+    pub(in crate::render) const fn variant(&self) -> &'static effects::Variant {
+        match self.highlight {
+            Form::Plain => &self.effect.plain,
+            Form::Reflection => &self.effect.reflection,
+            Form::HalfVector => &self.effect.half_vector,
+        }
+    }
+}
+
+impl PartialEq for Stage {
+    fn eq(&self, other: &Self) -> bool {
+        let key = |stage: &Self| (stage.effect.name, stage.lamp, stage.highlight);
+        key(self) == key(other)
+    }
+}
+
+/// The highlight of a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::render) enum Form {
+    /// None: Ks is 0.
+    Plain,
+    /// (R.V)^Ns
+    Reflection,
+    /// (N.H)^Ns
+    HalfVector,
+}

@@ -1,0 +1,100 @@
+//! The lights of a frame, in the observer's terms.
+
+use glam::{DMat4, DVec3};
+
+use super::{FramePlan, ObserverSpace};
+use crate::base::math;
+use crate::render::effects::{self, Entry, Lamp};
+use crate::scene::{LightId, LightKind, Scene, SpotOwner, View};
+
+/// The lights that shine, in the observer's space.
+pub(super) fn lamps(
+    plan: &mut FramePlan,
+    scene: &Scene,
+    view: &View,
+    observer: &ObserverSpace,
+) -> Vec<Shining> {
+    let mut shining = Vec::new();
+    for (id, light) in scene.lights.iter() {
+        if !light.on {
+            plan.skip(&light.name, "switched off");
+            continue;
+        }
+        let Some(source) = source(scene, view, &light.kind) else {
+            plan.skip(&light.name, "what it is fixed to is not there");
+            continue;
+        };
+        let lamp = u32::try_from(plan.lamps.len()).expect("fewer than 2^32 lights");
+        let attenuation = light.attenuation;
+        let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
+        plan.lamps.push(Lamp {
+            color: light.color.factors(),
+            position: observer.view_from_world.transform_point3(source.position).to_array(),
+            direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
+            attenuation: [attenuation.constant, attenuation.linear, attenuation.quadratic],
+            cos_half_aperture: source.cos_half_aperture,
+            exponent: source.exponent,
+        });
+        shining.push(Shining { id, name: light.name.clone(), effect: source.effect, lamp });
+    }
+    shining
+}
+
+/// A light that shines in this frame.
+#[derive(Clone, Debug)]
+pub(super) struct Shining {
+    pub(super) id: LightId,
+    pub(super) name: String,
+    pub(super) effect: &'static Entry,
+    /// Its place in [`FramePlan::lamps`].
+    pub(super) lamp: u32,
+}
+
+/// Where light comes from, in world space.
+struct Source {
+    effect: &'static Entry,
+    position: DVec3,
+    direction: DVec3,
+    cos_half_aperture: f64,
+    exponent: f64,
+}
+
+/// Where a light is now; `None` for a spot whose owner is not there.
+fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
+    let source = |effect, position, direction| Source {
+        effect,
+        position,
+        direction,
+        cos_half_aperture: -1.0,
+        exponent: 0.0,
+    };
+    Some(match kind {
+        LightKind::Ambient => source(&effects::AMBIENT, DVec3::ZERO, DVec3::NEG_Z),
+        LightKind::Sun { direction } => source(&effects::SUN, DVec3::ZERO, *direction.now()),
+        LightKind::Bulb { position, orbit } => {
+            source(&effects::BULB, orbit.at(*position.now(), view.time), DVec3::NEG_Z)
+        }
+        LightKind::Spot { owner, half_aperture, exponent } => {
+            let (position, direction) = owner_aim(scene, view, owner)?;
+            Source {
+                cos_half_aperture: libm::cos(half_aperture.to_radians()),
+                exponent: *exponent,
+                ..source(&effects::SPOT, position, direction)
+            }
+        }
+    })
+}
+
+/// From where and which way a spot shines.
+fn owner_aim(scene: &Scene, view: &View, owner: &SpotOwner) -> Option<(DVec3, DVec3)> {
+    let along = |frame: DMat4| (frame.w_axis.truncate(), -frame.z_axis.truncate());
+    let object = |id| scene.objects.get(id).map(|o| along(Scene::frame_of_object(o, view.time)));
+    let camera = |id| scene.cameras.get(id).map(|c| along(c.pose.now().world_from_camera()));
+    match owner {
+        SpotOwner::SelectedObject => object(view.object?),
+        SpotOwner::SelectedCamera => camera(view.camera),
+        SpotOwner::Object(id) => object(*id),
+        SpotOwner::Camera(id) => camera(*id),
+        SpotOwner::Fixed(aim) => Some((aim.now().position, aim.now().direction)),
+    }
+}
