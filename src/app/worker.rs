@@ -249,12 +249,7 @@ impl Painter {
     /// Where the visible part of an item ends.
     fn border(&self, item: ItemId) -> Option<Border> {
         let size = self.plan.as_ref()?.size();
-        let own: Vec<bool> = (0..size.area())
-            .map(|at| {
-                let hit = self.renderer.hit(at % size.width, at / size.width);
-                hit.is_some_and(|hit| hit.item == item)
-            })
-            .collect();
+        let own = self.renderer.pixels_of(item);
         let is_own =
             |x: usize, y: usize| x < size.width && y < size.height && own[y * size.width + x];
         // Beyond the left and upper sides x - 1 and y - 1 wrap to what is beyond the others.
@@ -299,4 +294,52 @@ pub(super) fn picture(image: &ColorImage) -> Option<Picture> {
     let [width, height] = image.size;
     let pixels: &[[u8; 4]] = bytemuck::cast_slice(&image.pixels);
     Picture::from_pixels(Size::new(width, height), pixels.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io;
+
+    #[test]
+    fn a_border_runs_round_all_pixels_of_an_item_and_no_others() {
+        let (scene, view) = io::default_scene();
+        let item = ItemId::Object(view.object.unwrap());
+        let (settings, size) = (Settings::default(), Size::new(160, 120));
+        let mut painter = Painter::default();
+        painter.draw(&Snapshot { scene, view, settings, size }).unwrap();
+        let places = || (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
+        let own: Vec<bool> = places()
+            .map(|(x, y)| painter.hit([x, y]).is_some_and(|hit| hit.item == item))
+            .collect();
+        assert_eq!(own, painter.renderer.pixels_of(item));
+        let is_own = |x: usize, y: usize| own[y * size.width + x];
+        let border = painter.border(item).unwrap();
+        let pixels = |runs: &[Run]| -> Vec<(usize, usize)> {
+            runs.iter().flat_map(|run| (0..run.length).map(|i| (run.x + i, run.y))).collect()
+        };
+        let (inner, outer) = (pixels(&border.inner), pixels(&border.outer));
+        assert!(!inner.is_empty());
+        assert!(outer.iter().all(|(x, y)| !is_own(*x, *y)));
+        // Nothing of the item lies at the picture's edge.
+        for (x, y) in (1..159).flat_map(|x| (1..119).map(move |y| (x, y))) {
+            let others = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
+            let beside = others.iter().any(|(x, y)| !is_own(*x, *y));
+            assert_eq!(inner.contains(&(x, y)), is_own(x, y) && beside, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn a_snapshot_whose_picture_is_the_same_is_not_drawn_again() {
+        let (scene, mut view) = io::default_scene();
+        let (settings, size) = (Settings::default(), Size::new(16, 12));
+        let mut painter = Painter::default();
+        let snapshot =
+            |view: &View| Snapshot { scene: scene.clone(), view: view.clone(), settings, size };
+        assert!(painter.draw(&snapshot(&view)).is_some());
+        view.subject = crate::scene::Subject::Light;
+        assert!(painter.draw(&snapshot(&view)).is_none());
+        view.back_faces = true;
+        assert!(painter.draw(&snapshot(&view)).is_some());
+    }
 }

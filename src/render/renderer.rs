@@ -88,20 +88,47 @@ impl Renderer {
         let mut visibility = Visibility::default();
         visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
         let word = visibility.word(x, y);
-        let depth = tile::depth(word);
-        let (draw, polygon) = match tile::seen(word) {
-            Seen::Background => return None,
+        let (draw, polygon) = self.seen(plan, word)?;
+        Some(Hit { item: plan.draws[draw as usize].item, polygon, depth: tile::depth(word) })
+    }
+
+    /// Where the last picture shows an item: a flag for each pixel, row by row from the top.
+    #[must_use]
+    pub fn pixels_of(&self, item: ItemId) -> Vec<bool> {
+        let size = self.picture.size();
+        let mut pixels = vec![false; size.area()];
+        let Some(plan) = &self.plan else { return pixels };
+        let [columns, rows] = tiles_of(plan.size);
+        let mut visibility = Visibility::default();
+        for tile in 0..usize::try_from(columns * rows).expect("not negative") {
+            let bounds = bounds_of(tile, plan.size);
+            visibility.draw(self.level, plan, &self.frame, (tile, bounds));
+            for (y, x) in (bounds.top..bounds.bottom)
+                .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
+            {
+                let seen = self.seen(plan, visibility.word(x, y));
+                let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
+                pixels[y * size.width + x] =
+                    seen.is_some_and(|(draw, _)| plan.draws[draw as usize].item == item);
+            }
+        }
+        pixels
+    }
+
+    /// The draw and the polygon that a word of the visibility stands for.
+    fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
+        match tile::seen(word) {
+            Seen::Background => None,
             Seen::Triangle(number) => {
                 let (draw, start) = self.frame.draw_of(number);
                 let mesh = &plan.draws[draw as usize].model.mesh;
-                (draw, mesh.triangles()[(number - start.number) as usize].polygon)
+                Some((draw, mesh.triangles()[(number - start.number) as usize].polygon))
             }
             Seen::Line(number) => {
                 let line = &self.frame.lines[number as usize];
-                (line.draw, line.polygon)
+                Some((line.draw, line.polygon))
             }
-        };
-        Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
+        }
     }
 
     /// Draws the tiles, each thread its own; a band of rows is locked only while a tile is copied.
