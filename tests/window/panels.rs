@@ -8,6 +8,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Node;
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::app::action::{Action, Group};
+use marraztu::app::ask::Ask;
 use marraztu::app::chord::Chord::{Command, Either, Named};
 use marraztu::base::color::Color;
 use marraztu::scene::{
@@ -29,8 +30,12 @@ pub(crate) fn click(editor: &mut Editor, role: Role, label: &str) {
     editor.settle();
 }
 
+/// Types letter by letter.
 pub(crate) fn type_text(editor: &mut Editor, text: &str) {
-    editor.harness.event(Event::Text(text.to_owned()));
+    for letter in text.chars() {
+        editor.harness.event(Event::Text(letter.to_string()));
+        editor.harness.step();
+    }
     editor.settle();
 }
 
@@ -251,6 +256,18 @@ fn a_double_click_renames_and_esc_leaves_the_name() {
         assert_eq!(editor.state().renaming, None);
     }
     assert_eq!(editor.steps(), 1);
+}
+
+#[test]
+fn a_name_that_was_given_up_elsewhere_is_not_taken_up_again() {
+    let mut editor = Editor::new();
+    editor.press(Named(Key::F2));
+    type_text(&mut editor, "half a na");
+    editor.ask(Ask::EndRename(None));
+    editor.press(Named(Key::F2));
+    let field = control(&editor, Role::TextInput, "New name");
+    assert_eq!((field.value().as_deref(), field.is_focused()), (Some("camera 1"), true));
+    assert_eq!(editor.steps(), 0);
 }
 
 #[test]

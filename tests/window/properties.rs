@@ -13,8 +13,8 @@ use marraztu::app::chord::Chord::{Command, Either, Lower, Named, Upper};
 use marraztu::base::color::Color;
 use marraztu::edit::{Gesture, place};
 use marraztu::scene::{
-    Camera, CameraMode, Light, LightKind, MaterialChoice, Object, PresetId, SpotOwner, Surface,
-    View,
+    Camera, CameraMode, ItemId, Light, LightKind, MaterialChoice, Object, PresetId, SpotOwner,
+    Surface, View,
 };
 
 use crate::editor::Editor;
@@ -227,6 +227,12 @@ fn a_number_typed_for_one_item_never_lands_in_another() {
     let second = editor.view().object.unwrap();
     assert_ne!(first, second);
     assert_eq!((height(first), height(second)), (33.0, 0.0));
+    assert_eq!(editor.steps(), 1);
+    // The selection goes on by itself while a number is typed: it is then for none.
+    click(&mut editor, Role::SpinButton, "Position Z");
+    type_text(&mut editor, "44");
+    editor.ask(Ask::Select(ItemId::Object(first)));
+    editor.press(Named(Key::Enter));
     assert_eq!(editor.steps(), 1);
 }
 
