@@ -16,9 +16,8 @@ use marraztu::edit::{frame, items, selection};
 use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Arithmetic, Camera, Command, Corner, ItemId, Light, LightAt, LightKind, LoadOptions,
-    MaterialChoice, Mesh, Model, Object, Placed, Pose, Scene, Settings, SpotOwner, View, dvec3,
-    newell,
+    Arithmetic, Camera, Command, Corner, ItemId, LightAt, LoadOptions, MaterialChoice, Mesh, Model,
+    Object, Placed, Pose, Scene, Settings, View, dvec3, newell,
 };
 
 /// The folder of the models, where it is there.
@@ -195,28 +194,11 @@ fn textures_that_lie_beside_a_model_are_found() {
     }
 }
 
-/// A model alone among lamps, seen whole from `side`.
-///
-/// A highlight begins where N.L comes above 0. Where a lamp lies in the plane of a face, rounding
-/// alone decides whether the face has one, so these lamps stand askew.
+/// A model alone among the first scene's lights, seen whole from `side`.
 fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
     let (mut scene, mut view) = default_scene();
     let objects: Vec<_> = scene.objects.ids().map(ItemId::Object).map(Command::Remove).collect();
     Command::Batch(objects).apply(&mut scene).unwrap();
-    let lights: Vec<_> = scene.lights.ids().collect();
-    for id in lights {
-        let askew = |light: &mut Light| match &mut light.kind {
-            LightKind::Sun { direction } => {
-                *direction = Placed::new(DVec3::new(0.31, -0.83, -0.47).normalize_or_zero());
-            }
-            LightKind::Bulb { position, .. } => {
-                *position = Placed::new(DVec3::new(37.1, 53.3, 211.7));
-            }
-            LightKind::Spot { owner: SpotOwner::SelectedObject, .. } => light.on = false,
-            LightKind::Spot { .. } | LightKind::Ambient => {}
-        };
-        items::change_light(&scene, id, askew).unwrap().apply(&mut scene).unwrap();
-    }
     let object = Object::new(model.clone(), MaterialChoice::File);
     items::insert_object(&scene, object).apply(&mut scene).unwrap();
     selection::settle(&scene, &mut view);

@@ -321,3 +321,14 @@ fn what_is_left_out_is_named_with_its_reason() {
     assert_eq!(reason("camera spot").as_deref(), Some("switched off"));
     assert_eq!(reason("ambient on cube").as_deref(), Some("Ka of the material is 0"));
 }
+
+#[test]
+fn triangles_that_face_away_or_lie_outside_are_not_counted_as_drawn() {
+    let (scene, view) =
+        scene(&[(cube(), at(40.0, 0.0, 0.0, 0.0)), (cube(), at(9.0, 9e3, 0.0, 0.0))]);
+    let plan =
+        FramePlan::new(&scene, &without_marks(view), &Settings::default(), Size::new(64, 64));
+    let mut renderer = Renderer::default();
+    renderer.render(&plan);
+    assert_eq!(renderer.triangles_drawn(), 2, "the front square of the near cube");
+}

@@ -69,6 +69,8 @@ pub(super) struct Bins {
     rows: i32,
     pub(super) tiles: Vec<Bin>,
     pub(super) large: Vec<LargeTriangle>,
+    /// How many triangles, or pieces of such, are in the bins.
+    pub(super) drawn: usize,
 }
 
 /// How many tiles there are in a row, and how many rows of them.
@@ -90,6 +92,7 @@ impl Bins {
             bin.lines.clear();
         }
         self.large.clear();
+        self.drawn = 0;
     }
 
     /// Adds a triangle whose box of pixels (not empty, and in the picture at least in part) is small
@@ -102,6 +105,7 @@ impl Bins {
         bounds: PixelBox,
         number: u32,
     ) {
+        self.drawn += 1;
         let columns = tiles(bounds.left, bounds.right, self.columns);
         for row in tiles(bounds.top, bounds.bottom, self.rows) {
             for column in columns.clone() {
@@ -130,6 +134,7 @@ impl Bins {
     /// Adds a triangle of any size, whose box of pixels is this.
     pub(super) fn add_large(&mut self, triangle: LargeTriangle, bounds: PixelBox) {
         let number = u32::try_from(self.large.len()).expect("fewer than 2^32 triangles");
+        self.drawn += 1;
         self.large.push(triangle);
         self.each(bounds, |bin| bin.large.push(number));
     }

@@ -140,9 +140,9 @@ impl Frame {
         &self.vertices[self.starts[draw as usize].vertex..][..count]
     }
 
-    /// How many triangles of the frame were not dropped.
+    /// How many triangles of the frame face the observer and may cover a pixel.
     pub(super) fn triangles(&self) -> usize {
-        self.starts.last().map_or(0, |start| start.end as usize)
+        self.bins.iter().map(|bins| bins.drawn).sum()
     }
 }
 

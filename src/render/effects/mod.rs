@@ -160,6 +160,13 @@ impl Highlight for HalfVector {
     }
 }
 
+/// Light that comes in along a surface, to this cosine of its angle to the normal, has no highlight.
+///
+/// A highlight begins at once where N.L comes above 0. A lamp in the very plane of a face, which is
+/// nothing rare, leaves N.L to rounding; without this, rounding would decide whether all of the face
+/// has a highlight. It is a hundred times the rounding error, and 0.0006 degrees.
+const GRAZING: f64 = 1e-5;
+
 /// Light that arrives from a direction, reflected:
 ///
 ///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
@@ -185,7 +192,7 @@ fn phong<M: Machine, H: Highlight>(
     let diffuse = times(matter.diffuse).times(Real::max(n_l, zero) * strength);
     let mut specular = None;
     if let Some(cosine) = H::cosine(sample, to_light, n_l) {
-        let lit = n_l.if_more(zero, cosine, zero);
+        let lit = n_l.if_more(machine.lift(GRAZING), cosine, zero);
         if machine.any_more(lit, machine.lift(matter.least_cosine)) {
             // Rounding can bring a cosine above 1.
             let power = Real::min(lit, machine.lift(1.0)).power(matter.exponent, matter.floor);

@@ -74,6 +74,23 @@ fn a_surface_turned_away_gets_nothing() {
 }
 
 #[test]
+fn a_lamp_in_the_plane_of_a_face_gives_it_no_highlight_whichever_way_rounding_goes() {
+    // N.L is a rounding error above 0 or below; looked at along the mirrored ray.
+    for error in [-1e-7, 1e-7] {
+        let mut batch = one([0.0; 3], [error, 1.0, 0.0]);
+        batch.to_eye = batch.to_eye.map(|mut row| {
+            row[0] = 0.0;
+            row
+        });
+        batch.to_eye[0][0] = -1.0;
+        let along = Lamp { position: [50.0, 0.0, 0.0], ..lamp() };
+        let [diffuse, specular] = run(&BULB, &mut batch, &along);
+        assert_eq!(specular, [0.0; 3]);
+        assert!(diffuse[0] < 1e-6);
+    }
+}
+
+#[test]
 fn a_bulb_fades_by_its_coefficients_and_adds_nothing_at_its_own_place() {
     let bulb = Lamp { position: [0.0, 0.0, 3.0], attenuation: [1.0, 2.0, 3.0], ..lamp() };
     // d = 3: 1 / (1 + 6 + 27).
