@@ -259,6 +259,8 @@ impl App {
     /// Does what stands in the table of actions. Every key, menu entry and button ends here.
     pub fn perform(&mut self, ctx: &Context, action: Action, gesture: Gesture) {
         let label = action.step_label(&self.state);
+        // What a notice offers is done by any key or button, and then there is no more to offer.
+        self.state.notices.retain(|notice| notice.offer != Some(action));
         match decide(action, &self.state, self.state.stroke(gesture)) {
             Err(refusal) => self.refuse(refusal.to_string()),
             Ok(Meaning::Change(command)) => self.change(command, gesture, &label),

@@ -280,13 +280,15 @@ impl App {
         let command = items::insert_object(&self.state.scene, object);
         self.change(command, Gesture::Whole, &format!("Load {name}"));
         self.state.tell(Some(format!("Loaded {name}: {found}")));
-        if unseen || !details.is_empty() {
-            let offer = unseen.then_some(Action::FrameSelection);
-            let text = match unseen {
-                true => format!("{name} can hardly be seen from here: {found}"),
-                false => format!("{name}: {found}"),
-            };
-            self.state.notices.push(Notice { text, details, offer });
+        // Two notices, for one is done with when the object is framed and the other is not.
+        if !details.is_empty() {
+            let text = format!("{name}: {found}");
+            self.state.notices.push(Notice { text, details, offer: None });
+        }
+        if unseen {
+            let text = format!("{name} can hardly be seen from here");
+            let offer = Some(Action::FrameSelection);
+            self.state.notices.push(Notice { text, details: Vec::new(), offer });
         }
     }
 

@@ -45,7 +45,7 @@ fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, asks: &mut 
         if let Some(action) = notice.offer
             && let Some(action) = action.button(ui, state)
         {
-            asks.extend([Ask::Do(action), Ask::PutAway(at)]);
+            asks.push(Ask::Do(action));
         }
         if !notice.details.is_empty() && ui.button("Details").clicked() {
             asks.push(Ask::Details(at));

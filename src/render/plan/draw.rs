@@ -108,7 +108,7 @@ pub(in crate::render) struct Shaded {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::render) struct Stage {
     pub(in crate::render) effect: &'static Entry,
-    /// Its place in [`FramePlan::lamps`].
+    /// The place of its light among the lamps of the plan.
     pub(in crate::render) lamp: u32,
     pub(in crate::render) highlight: Form,
 }

@@ -46,7 +46,7 @@ pub(super) struct Shining {
     pub(super) id: LightId,
     pub(super) name: String,
     pub(super) effect: &'static Entry,
-    /// Its place in [`FramePlan::lamps`].
+    /// The place of its light among the lamps of the plan.
     pub(super) lamp: u32,
 }
 
