@@ -45,37 +45,51 @@ impl<T: Light> Corners<T> {
         vertices: &[ScreenVertex],
         number: u32,
     ) -> Self {
+        let mut corners = Self::default();
+        corners.take(plan, draw, vertices, number);
+        corners
+    }
+
+    /// Takes what is known of another triangle, but for its normals and its light. In place, since
+    /// this is done for every triangle that is seen.
+    #[inline(always)]
+    pub(super) fn take(
+        &mut self,
+        plan: &FramePlan,
+        draw: &Draw,
+        vertices: &[ScreenVertex],
+        number: u32,
+    ) {
         let order = draw.model.mesh.draw_order();
         let ids = order.vertices_of(number);
         let own = each(ids, |vertex| vertices[vertex as usize]);
         let at = each(own, |vertex| vertex.at());
         let cut = !(own[0].is_inside() & own[1].is_inside() & own[2].is_inside());
-        let mut corners = Self { at, cut, ..Self::default() };
+        (self.at, self.cut, self.wide) = (at, cut, None);
         if !cut && (T::EXACT || !is_narrow(at)) {
-            corners.wide = Wide::new(at);
+            self.wide = Wide::new(at);
         }
         if draw.back != Back::Left {
             let screen = Screen::new(draw.clip_from_object, plan.size);
-            corners.back = shows_back(draw, &screen, number, (!cut).then_some(at));
+            self.back = shows_back(draw, &screen, number, (!cut).then_some(at));
         }
         if T::EXACT {
             let screen = Screen::new(draw.clip_from_object, plan.size);
             let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
-            for (corner, w) in corners.corners.iter_mut().zip(w) {
+            for (corner, w) in self.corners.iter_mut().zip(w) {
                 corner[3] = T::from_f64(1.0 / w);
             }
         } else {
-            for (corner, vertex) in corners.corners.iter_mut().zip(own) {
+            for (corner, vertex) in self.corners.iter_mut().zip(own) {
                 corner[3] = T::from_f64(f64::from(vertex.inverse_w));
             }
         }
         if plan.eye == Eye::Parallel {
-            corners.z = ids.map(|vertex| {
+            self.z = ids.map(|vertex| {
                 let place = DVec3::from_array(order.position(vertex));
                 T::from_f64(draw.view_from_object.transform_point3(place).z)
             });
         }
-        corners
     }
 
     /// The parts that the corners have in a pixel, with perspective, in f64.

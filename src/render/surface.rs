@@ -187,31 +187,30 @@ impl<'a, T: Light> Shader<'a, T> {
         let rows = &mut self.rows.gathered;
         rows.len = group.pixels.len();
         rows.exact = 0;
-        let take = |number: u32| {
-            let mut corners = Corners::new(plan, group.draw, vertices, number);
+        let take = |number: u32, corners: &mut Corners<T>| {
+            corners.take(plan, group.draw, vertices, number);
             match plan.light_at {
-                LightAt::Pixel => gather_places(group.draw, number, &mut corners),
+                LightAt::Pixel => gather_places(group.draw, number, corners),
                 _ => {
                     let draw = (group.draw_index, group.draw);
-                    gather_light(plan, lit, draw, number, pipeline, &mut corners);
+                    gather_light(plan, lit, draw, number, pipeline, corners);
                 }
             }
-            corners
         };
+        let mut corners = Corners::default();
         if group.is_whole() {
             let number = group.numbers[0] - group.base;
-            let corners = take(number);
+            take(number, &mut corners);
             if rows.put_whole(self.level, group.corner, &corners, plan) {
                 return;
             }
         }
         let mut last = NONE;
-        let mut corners = Corners::default();
         for (i, pixel) in group.pixels.iter().enumerate() {
             let number = group.numbers[usize::from(*pixel)] - group.base;
             if number != last {
                 last = number;
-                corners = take(number);
+                take(number, &mut corners);
             }
             let [left, top] = group.corner;
             let (x, y) = (left + i32::from(pixel % 8), top + i32::from(pixel / 8));
