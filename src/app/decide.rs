@@ -78,7 +78,7 @@ pub(super) fn decide(action: Action, state: &State, stroke: Stroke) -> Decided {
             return add_light(state, lights::spot(SpotOwner::Camera(view.camera)));
         }
         Action::NextItem => {
-            let next = selection::next(scene, view)?;
+            let next = selection::next(scene, view, stroke)?;
             return Ok(Meaning::Select(Box::new(next)));
         }
         _ => return look(action, state),

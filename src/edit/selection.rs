@@ -4,11 +4,11 @@
 //! selecting another object aims the camera at that one. So a selection is a view and, sometimes, a
 //! command.
 
-use super::Refusal;
 use super::put;
+use super::{Refusal, Stroke};
 use crate::scene::{
-    CameraMode, Command, Item, ItemId, List, Observer, PolygonMode, Scene, Subject, Transformation,
-    View,
+    Camera, CameraId, CameraMode, Command, Item, ItemId, List, ObjectId, Observer, PolygonMode,
+    Pose, Scene, Subject, Transformation, View,
 };
 
 /// A view after a selection, with the command that goes with it.
@@ -25,11 +25,16 @@ pub struct Selection {
 /// # Errors
 /// Where the item is gone.
 pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
+    select_in(scene, view, id, Stroke::First)
+}
+
+/// The same as part of a gesture: a held key pushes on the camera's stack once.
+fn select_in(scene: &Scene, view: &View, id: ItemId, stroke: Stroke) -> Result<Selection, Refusal> {
     if !scene.contains(id) {
         return Err(Refusal::Gone);
     }
     let mut next = view.clone();
-    let mut command = None;
+    let mut commands = Vec::new();
     match id {
         ItemId::Camera(id) => next.camera = id,
         ItemId::Light(id) => next.light = Some(id),
@@ -42,13 +47,36 @@ pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refus
             if let (CameraMode::Analysis { .. }, Some(object)) = (mode, scene.objects.get(id)) {
                 let aimed = put::aimed(camera.pose.now(), id, object.centre(view.time));
                 let mut camera = camera.clone();
-                camera.pose = camera.pose.moved(aimed);
-                command = Some(Command::Replace(Item::Camera(view.camera, Box::new(camera))));
+                camera.pose = stroke.put(&camera.pose, aimed);
+                commands.push(Command::Replace(Item::Camera(view.camera, Box::new(camera))));
+            } else {
+                commands.extend(left_in_fly(scene, id));
             }
         }
     }
     keep_polygons(scene, &mut next);
+    let command = match commands.len() {
+        0 => None,
+        1 => commands.pop(),
+        _ => Some(Command::Batch(commands)),
+    };
     Ok(Selection { view: next, command })
+}
+
+/// Cameras that once were in analysis of an object and fell back to fly, because another was selected
+/// then, stay in fly when it is selected again: nothing has aimed them at it.
+fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
+    let fallen = scene
+        .cameras
+        .iter()
+        .filter(|(_, camera)| camera.pose.now().mode == CameraMode::Analysis { target: id });
+    let fly = |(camera_id, camera): (CameraId, &Camera)| {
+        let mut camera = camera.clone();
+        let pose = Pose { mode: CameraMode::Fly, ..*camera.pose.now() };
+        camera.pose = camera.pose.replaced(pose);
+        Command::Replace(Item::Camera(camera_id, Box::new(camera)))
+    };
+    fallen.map(fly).collect()
 }
 
 /// Selects an item and makes its kind the subject, as a click in the outline does.
@@ -65,7 +93,7 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
 ///
 /// # Errors
 /// Where there is no other to go on to.
-pub fn next(scene: &Scene, view: &View) -> Result<Selection, Refusal> {
+pub fn next(scene: &Scene, view: &View, stroke: Stroke) -> Result<Selection, Refusal> {
     fn after<K: Copy + PartialEq, T>(list: &List<K, T>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
     }
@@ -76,7 +104,7 @@ pub fn next(scene: &Scene, view: &View) -> Result<Selection, Refusal> {
         Subject::Light if scene.lights.is_empty() => return Err(Refusal::NoLight),
         Subject::Light => after(&scene.lights, view.light).map(ItemId::Light),
     };
-    select(scene, view, id.ok_or(Refusal::OnlyOne)?)
+    select_in(scene, view, id.ok_or(Refusal::OnlyOne)?, stroke)
 }
 
 /// The item that the subject's keys act on.

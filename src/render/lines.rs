@@ -46,7 +46,7 @@ pub(super) fn collect(
     let mesh = &draw.model.mesh;
     let all = 0..u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers");
     let outlines: Vec<Option<Color>> =
-        all.map(|polygon| outline(draw, &screen, vertices, polygon)).collect();
+        all.clone().map(|polygon| outline(draw, &screen, vertices, polygon)).collect();
     let mut add = |ends: [DVec3; 2], polygon: u32, color: Color, nearer: u32| {
         let clip = ends.map(|end| screen.clip(end.to_array()));
         if let Some(ends) = screen.segment(clip) {
@@ -69,7 +69,7 @@ pub(super) fn collect(
         }
     }
     if face_normals.is_some() || vertex_normals.is_some() {
-        for (ends, polygon) in normals(draw, &outlines) {
+        for (ends, polygon) in normals(draw, all) {
             add(ends, polygon, draw.lines.color, NEARER);
         }
     }
@@ -78,8 +78,7 @@ pub(super) fn collect(
 /// The colour of a polygon's outline; `None` where it is not drawn.
 fn outline(draw: &Draw, screen: &Screen, vertices: &[ScreenVertex], polygon: u32) -> Option<Color> {
     let mesh = &draw.model.mesh;
-    draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize]?;
-    if draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {
+    if !draw.shows(polygon) {
         return None;
     }
     let area: i64 = mesh
@@ -110,13 +109,13 @@ fn area_on_screen(mesh: &Mesh, screen: &Screen, vertices: &[ScreenVertex], trian
     (2..pieces.len()).map(piece).sum()
 }
 
-/// The normals that are drawn of polygons that are, in object space.
-fn normals(draw: &Draw, outlines: &[Option<Color>]) -> Vec<([DVec3; 2], u32)> {
+/// The normals of polygons that are shown, whichever way they face, in object space.
+fn normals(draw: &Draw, polygons: std::ops::Range<u32>) -> Vec<([DVec3; 2], u32)> {
     let mesh = &draw.model.mesh;
     let mut normals = Vec::new();
     let mut drawn = vec![false; mesh.points().len()];
-    for (polygon, outline) in (0..).zip(outlines) {
-        if outline.is_none() {
+    for polygon in polygons {
+        if !draw.shows(polygon) {
             continue;
         }
         let mut add = |from: DVec3, normal: [f32; 3], length: f64| {
@@ -184,10 +183,12 @@ pub(super) fn pixels(
 ) {
     let [a, b] = line.ends;
     let steep = (b.at().y - a.at().y).abs() > (b.at().x - a.at().x).abs();
-    // Along the major axis u, and across it v.
+    // Along the major axis u, and across it v. A wide line has its middle on the segment: the
+    // segment is moved back by half of what it gains, and each of its pixels is repeated.
+    let shift = (width - 1) * SUBPIXELS / 2;
     let turn = |p: ScreenVertex| {
         let Snapped { x, y } = p.at();
-        if steep { (y, x) } else { (x, y) }
+        if steep { (y, x - shift) } else { (x, y - shift) }
     };
     let ((ua, va), (ub, vb)) = (turn(a), turn(b));
     let (du, dv) = (i64::from(ub) - i64::from(ua), i64::from(vb) - i64::from(va));
@@ -211,7 +212,7 @@ pub(super) fn pixels(
         let depth = f64::from(a.depth) + t * (f64::from(b.depth) - f64::from(a.depth));
         let depth = nearer(depth as f32, line.nearer);
         for side in 0..width {
-            let v = v + side - (width - 1) / 2;
+            let v = v + side;
             let (x, y) = if steep { (v, u) } else { (u, v) };
             let inside = x >= clip.left && x < clip.right && y >= clip.top && y < clip.bottom;
             if inside {

@@ -14,12 +14,13 @@ pub(super) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter)
     }
     let u = wrapped(uv[0] * texture.scale[0] + texture.offset[0], texture.wrap);
     let v = wrapped(uv[1] * texture.scale[1] + texture.offset[1], texture.wrap);
-    // In texels, from the upper left corner of the picture.
+    // In texels, from the lower left corner of the picture.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-    let (x, y) = (u * size.width as f64, (1.0 - v) * size.height as f64);
+    let (x, y) = (u * size.width as f64, v * size.height as f64);
     let texel = |column: i64, row: i64| {
         let column = bring(column, size.width, texture.wrap);
-        let row = bring(row, size.height, texture.wrap);
+        // The picture's own rows run down.
+        let row = size.height - 1 - bring(row, size.height, texture.wrap);
         texture.picture.pixel(column, row).map(|byte| T::from_f64(f64::from(byte) / 255.0))
     };
     match filter {
@@ -31,9 +32,9 @@ pub(super) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter)
             let between = |a: [T; 4], b: [T; 4], part: T| -> [T; 4] {
                 std::array::from_fn(|i| a[i] + (b[i] - a[i]) * part)
             };
-            let upper = between(texel(column, row), texel(column + 1, row), s);
-            let lower = between(texel(column, row + 1), texel(column + 1, row + 1), s);
-            between(upper, lower, t)
+            let lower = between(texel(column, row), texel(column + 1, row), s);
+            let upper = between(texel(column, row + 1), texel(column + 1, row + 1), s);
+            between(lower, upper, t)
         }
     }
 }
@@ -88,6 +89,15 @@ mod tests {
         assert_eq!(at([0.1, 0.1], Filter::Nearest, Wrap::Repeat), [0.0, 0.0, 1.0, 1.0]);
         assert_eq!(at([0.9, 0.9], Filter::Nearest, Wrap::Repeat), [0.0, 1.0, 0.0, 1.0]);
         assert_eq!(at([0.9, 0.1], Filter::Nearest, Wrap::Repeat), [1.0, 1.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn a_place_on_a_border_belongs_to_the_texel_after_it() {
+        let lower_left = [0.0, 0.0, 1.0, 1.0];
+        assert_eq!(at([0.0, 0.0], Filter::Nearest, Wrap::Repeat), lower_left);
+        assert_eq!(at([0.0, 0.0], Filter::Nearest, Wrap::Clamp), lower_left);
+        assert_eq!(at([0.0, 0.5], Filter::Nearest, Wrap::Repeat), [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(at([1.0, 1.0], Filter::Nearest, Wrap::Clamp), [0.0, 1.0, 0.0, 1.0]);
     }
 
     #[test]

@@ -160,6 +160,20 @@ fn a_camera_that_was_left_in_analysis_at_another_object_is_in_fly() {
 }
 
 #[test]
+fn a_camera_that_fell_back_to_fly_stays_there_when_its_target_is_selected_again() {
+    let mut desk = Desk::new(Subject::Camera, Transformation::Translation);
+    desk.analyse();
+    let target = desk.view.object.map(ItemId::Object).unwrap();
+    desk.choose(selection::select(&desk.scene, &desk.view, ItemId::Object(ObjectId(2))));
+    // The key u: the camera is as it was while it looked at the first, which is not selected now.
+    let back = transform::take_back(&desk.scene, &desk.view);
+    desk.perform(back);
+    assert_eq!(desk.mode(), CameraMode::Fly);
+    desk.choose(selection::select(&desk.scene, &desk.view, target));
+    assert_eq!(desk.mode(), CameraMode::Fly, "nothing has aimed it");
+}
+
+#[test]
 fn walking_back_past_the_look_at_returns_to_fly() {
     let mut desk = Desk::new(Subject::Camera, Transformation::Translation);
     desk.press(Axis::X, Sign::Positive);

@@ -20,8 +20,9 @@ impl Statements {
         let ambient = self.mended_ambient(diffuse, &mut note);
         let specular = self.mended_specular(&mut note);
         let exponent = self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0);
-        // Without a highlight nobody sees its size.
-        if self.exponent != Some(exponent) && specular != [0.0; 3] {
+        // Without a highlight nobody misses its size.
+        let nonsense = self.exponent.is_some_and(|exponent| exponent < 1.0);
+        if nonsense || (self.exponent.is_none() && specular != [0.0; 3]) {
             note(FindingKind::MendedExponent);
         }
         let opacity = self.mended_opacity(&mut note);

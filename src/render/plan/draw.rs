@@ -35,6 +35,13 @@ pub(in crate::render) struct Draw {
 }
 
 impl Draw {
+    /// Whether a polygon is shown at all: its part is, and it is among those chosen.
+    pub(in crate::render) fn shows(&self, polygon: u32) -> bool {
+        let part = self.model.mesh.polygon_parts()[polygon as usize];
+        self.part_pipelines[part as usize].is_some()
+            && self.polygons.as_ref().is_none_or(|some| some.contains(&polygon))
+    }
+
     /// The pipeline of a triangle that is drawn.
     #[inline(always)]
     pub(in crate::render) fn pipeline_of(&self, triangle: u32) -> u32 {

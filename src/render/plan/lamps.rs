@@ -21,7 +21,11 @@ pub(super) fn lamps(
             continue;
         }
         let Some(source) = source(scene, view, &light.kind) else {
-            plan.skip(&light.name, "what it is fixed to is not there");
+            let reason = match &light.kind {
+                LightKind::Spot { owner: SpotOwner::SelectedObject, .. } => "no object",
+                _ => "what it is fixed to is not there",
+            };
+            plan.skip(&light.name, reason);
             continue;
         };
         let lamp = u32::try_from(plan.lamps.len()).expect("fewer than 2^32 lights");
