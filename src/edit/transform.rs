@@ -13,8 +13,8 @@ use super::put::{self, LightPlace};
 use super::{Refusal, Stroke};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Aim, CameraMode, Command, Frame, Item, LightKind, Object, Pose, Scene, SpotOwner, Subject,
-    Transformation, View,
+    Aim, CameraMode, Command, Frame, Item, LightKind, Object, Orbit, Pose, Scene, SpotOwner,
+    Subject, Transformation, View,
 };
 
 /// Which way along or about an axis.
@@ -119,6 +119,13 @@ pub fn translate(
         }
         Subject::Light => {
             let (id, light) = put::selected_light(scene, view)?;
+            // A bulb that circles is moved as it is seen: its place is turned before it is shown.
+            let delta = match &light.kind {
+                LightKind::Bulb { orbit, .. } => {
+                    Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
+                }
+                _ => delta,
+            };
             let place = match put::place_of(light)? {
                 LightPlace::Direction(_) => return Err(Refusal::SunMoved),
                 LightPlace::Position(position) => LightPlace::Position(position + delta),

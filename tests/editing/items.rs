@@ -3,6 +3,7 @@
 use glam::DVec3;
 use marraztu::base::math::Axis;
 use marraztu::edit::lights::{self, Channel};
+use marraztu::edit::transform::Sign;
 use marraztu::edit::{Refusal, items, motion};
 use marraztu::scene::{
     CameraId, CommandError, ItemId, Lens, LightId, LightKind, MaterialChoice, Object, ObjectId,
@@ -82,7 +83,7 @@ fn the_last_camera_stays() {
 #[test]
 fn a_copy_has_the_place_and_not_the_past() {
     let mut desk = desk(Subject::Object);
-    desk.press(Axis::X, marraztu::edit::transform::Sign::Positive);
+    desk.press(Axis::X, Sign::Positive);
     let placement = desk.placement();
     desk.perform(items::duplicate(&desk.scene, ItemId::Object(ObjectId(3))));
     assert_eq!((desk.placement(), desk.object().placement.depth()), (placement, 0));
@@ -191,6 +192,18 @@ fn switching_a_spin_off_leaves_the_object_as_it_was_seen() {
     close_matrix(desk.placement(), seen);
     let refusal = motion::apply_spin(&desk.scene, ObjectId(3), 8.0);
     assert_eq!(refusal, Err(Refusal::NotSpinning));
+}
+
+#[test]
+fn a_bulb_that_circles_is_moved_along_the_worlds_axes_as_it_is_seen() {
+    let mut desk = desk(Subject::Light);
+    desk.perform(motion::toggle_orbit(&desk.scene, LightId(6), 1.0));
+    desk.view.light = Some(LightId(6));
+    // A quarter turn later it is seen at (-200, 0, 0); it goes 10 on along X, and stops there.
+    desk.view.time = 4.0;
+    desk.press(Axis::X, Sign::Positive);
+    desk.perform(motion::toggle_orbit(&desk.scene, LightId(6), 4.0));
+    close(desk.light().0, DVec3::X * -190.0);
 }
 
 #[test]
