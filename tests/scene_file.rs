@@ -17,9 +17,9 @@ use marraztu::io::{
 use marraztu::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Fill, Filter, Frame, Item,
     Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength,
-    Normals, Object, ObjectId, Observer, Orbit, Placed, PolygonMode, Pose, PresetId, Projection,
-    Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject, Surface, Texture,
-    Transformation, UpAxis, View, Winding, Wrap,
+    Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId,
+    Projection, Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject, Surface,
+    Texture, Transformation, UpAxis, View, Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -138,6 +138,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         wide_lines: true,
         marks: false,
         time: a,
+        panels: Panels { outline: false, statistics: true, ..Panels::DEFAULT },
     };
     let settings = Settings {
         arithmetic: Arithmetic::F64,

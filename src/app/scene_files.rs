@@ -12,9 +12,10 @@ use super::dialogs::{After, Wanted};
 use super::editor::App;
 use super::files::Fetched;
 use super::material_dialog::file_name;
-use super::state::{Notice, State};
+use super::state::{Notice, Shown, State};
 use crate::edit::selection;
 use crate::io::{self, LoadError, Opened, SCENE_ENDING, SceneFileError};
+use crate::scene::View;
 
 /// A scene that was read, or could not be.
 #[derive(Debug)]
@@ -57,8 +58,9 @@ impl App {
     /// Saves the scene to `path`.
     pub(super) fn save_to(&mut self, ctx: &Context, path: PathBuf, after: Option<After>) {
         let path = if is_scene(&path) { path } else { with_ending(path) };
-        let State { scene, view, settings, .. } = &self.state;
-        if let Err(error) = io::save(&path, scene, view, settings) {
+        let State { scene, view, settings, shown, .. } = &self.state;
+        let view = View { panels: shown.panels(), ..view.clone() };
+        if let Err(error) = io::save(&path, scene, &view, settings) {
             self.dialogs.tell_fault(format!("{error}."));
             return;
         }
@@ -140,6 +142,7 @@ impl App {
 
     fn show_scene(&mut self, path: PathBuf, opened: Opened) {
         let Opened { scene, view, settings, findings } = opened;
+        let shown = Shown::of(view.panels, self.state.shown.theme);
         let mut state = State { settings, ..State::new(scene, view) };
         selection::settle(&state.scene, &mut state.view);
         state.tell(Some(format!("Opened {}", path.display())));
@@ -150,6 +153,7 @@ impl App {
         }
         state.path = Some(path);
         self.replace(state);
+        self.state.shown = shown;
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::action::Action;
 use crate::base::image::Size;
 use crate::edit::{Gesture, History, Stroke, selection};
-use crate::scene::{ItemId, Light, LightKind, Scene, Settings, View};
+use crate::scene::{ItemId, Light, LightKind, Panels, Scene, Settings, View};
 
 /// What is edited and shown.
 #[derive(Debug)]
@@ -104,14 +104,23 @@ pub struct Shown {
 
 impl Default for Shown {
     fn default() -> Self {
-        Self {
-            outline: true,
-            properties: true,
-            view: true,
-            statistics: false,
-            cheat_sheet: false,
-            theme: egui::ThemePreference::System,
-        }
+        Self::of(Panels::DEFAULT, egui::ThemePreference::System)
+    }
+}
+
+impl Shown {
+    /// The panels that a scene was saved with, in a theme.
+    #[must_use]
+    pub const fn of(panels: Panels, theme: egui::ThemePreference) -> Self {
+        let Panels { outline, properties, view, statistics, cheat_sheet } = panels;
+        Self { outline, properties, view, statistics, cheat_sheet, theme }
+    }
+
+    /// The panels, as a scene is saved with them.
+    #[must_use]
+    pub const fn panels(&self) -> Panels {
+        let Self { outline, properties, view, statistics, cheat_sheet, .. } = *self;
+        Panels { outline, properties, view, statistics, cheat_sheet }
     }
 }
 

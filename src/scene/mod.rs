@@ -32,7 +32,7 @@ pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;
 pub use settings::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
 pub use view::{
-    Fill, Frame, NormalLength, Normals, Observer, PolygonMode, Projection, Steps, Subject,
+    Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,
     Transformation, View,
 };
 

@@ -53,6 +53,36 @@ pub struct View {
     pub marks: bool,
     /// Seconds of the scene's clock.
     pub time: f64,
+    /// Which panels stand beside the picture.
+    pub panels: Panels,
+}
+
+/// Which panels stand beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Panels {
+    /// The list of objects, cameras and lights.
+    pub outline: bool,
+    /// The properties of what is selected.
+    pub properties: bool,
+    /// The switches of the view.
+    pub view: bool,
+    /// What a picture takes.
+    pub statistics: bool,
+    /// The list of keys.
+    pub cheat_sheet: bool,
+}
+
+impl Panels {
+    /// Those that a first look needs.
+    pub const DEFAULT: Self =
+        Self { outline: true, properties: true, view: true, statistics: false, cheat_sheet: false };
+}
+
+impl Default for Panels {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 impl View {
@@ -82,6 +112,7 @@ impl View {
             wide_lines: false,
             marks: true,
             time: 0.0,
+            panels: Panels::DEFAULT,
         }
     }
 }

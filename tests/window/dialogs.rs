@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
+use marraztu::app::action::Action;
 use marraztu::app::ask::Ask;
 use marraztu::app::chord::Chord::{Command, Lower, Named, Upper};
 use marraztu::scene::{MaterialChoice, PresetId};
@@ -285,6 +286,26 @@ fn save_in_the_question_saves_and_then_leaves() {
     editor.type_path(&file);
     assert!(file.is_file());
     assert!(editor.leaves_by(Named(Key::Escape)));
+}
+
+#[test]
+fn a_scene_opens_with_the_panels_that_it_was_saved_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("my.marraztu");
+    let mut editor = Editor::new();
+    let usual = editor.state().shown;
+    editor.perform_all(&[Action::ToggleStatistics, Action::ToggleOutline]);
+    let shown = editor.state().shown;
+    assert_ne!(shown, usual);
+    editor.press(Command(Key::S));
+    editor.type_path(&file);
+    editor.wait_until(|_| file.is_file());
+
+    let mut other = Editor::new();
+    let path = file.clone();
+    other.ask(Ask::LoadFiles(vec![file]));
+    other.wait_until(|editor| editor.state().path.as_deref() == Some(&*path));
+    assert_eq!(other.state().shown, shown);
 }
 
 #[test]

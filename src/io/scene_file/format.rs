@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use crate::scene::{
-    Attenuation, Fill, Frame, Lens, MaterialChoice, NormalLength, Normals, Observer, Projection,
-    Settings, Steps, Subject, Surface, Transformation, UpAxis, Winding, Wrap,
+    Attenuation, Fill, Frame, Lens, MaterialChoice, NormalLength, Normals, Observer, Panels,
+    Projection, Settings, Steps, Subject, Surface, Transformation, UpAxis, Winding, Wrap,
 };
 
 /// The version that is written, and the latest that is read.
@@ -228,6 +228,7 @@ pub(super) struct FileView {
     pub(super) wide_lines: bool,
     pub(super) marks: bool,
     pub(super) time: f64,
+    pub(super) panels: Panels,
 }
 
 #[derive(Debug, Serialize, Deserialize)]

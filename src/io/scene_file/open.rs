@@ -244,5 +244,6 @@ fn read_view(file: &FileView, scene: &Scene) -> Result<View, String> {
         wide_lines: file.wide_lines,
         marks: file.marks,
         time: file.time,
+        panels: file.panels,
     })
 }

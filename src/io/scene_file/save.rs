@@ -184,6 +184,7 @@ impl FileView {
             wide_lines,
             marks,
             time,
+            panels,
         } = view;
         let polygons = polygons
             .as_ref()
@@ -211,6 +212,7 @@ impl FileView {
             wide_lines: *wide_lines,
             marks: *marks,
             time: *time,
+            panels: *panels,
         }
     }
 }
