@@ -268,4 +268,36 @@ mod tests {
         hits.sort_unstable();
         assert_eq!(hits, [(0, 0), (0, 1), (1, 0), (1, 1)]);
     }
+
+    /// Half of the points lie on centres or borders of pixels, where only the rule decides.
+    #[test]
+    fn a_closed_fan_covers_every_pixel_of_its_square_once() {
+        const SIDE: i32 = 12;
+        let mut state = 1_u64;
+        let mut random = move |below: i32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            i32::try_from((state >> 33) % u64::from(below.unsigned_abs())).expect("is below")
+        };
+        let square = PixelBox { left: 0, top: 0, right: SIDE, bottom: SIDE };
+        let mut place = move || {
+            let at = random(SIDE * SUBPIXELS + 1);
+            if random(2) == 0 { at } else { at / 128 * 128 }
+        };
+        for _ in 0..5000 {
+            let centre = Snapped { x: place(), y: place() };
+            let far = SIDE * SUBPIXELS;
+            // The corners of the square, and a place on each of its sides.
+            let (a, b, c, d) = (place(), place(), place(), place());
+            let outline =
+                [(0, 0), (a, 0), (far, 0), (far, b), (far, far), (c, far), (0, far), (0, d)]
+                    .map(|(x, y)| Snapped { x, y });
+            let mut counts = [0; (SIDE * SIDE) as usize];
+            for i in 0..outline.len() {
+                let corners = [centre, outline[i], outline[(i + 1) % outline.len()]];
+                let Some(triangle) = Triangle::new(corners) else { continue };
+                triangle.covered(square, |pixel| counts[(pixel.y * SIDE + pixel.x) as usize] += 1);
+            }
+            assert!(counts.iter().all(|count| *count == 1), "{centre:?} {outline:?}");
+        }
+    }
 }
