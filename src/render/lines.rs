@@ -249,13 +249,17 @@ mod tests {
     const EVERYWHERE: PixelBox = PixelBox { left: -99, top: -99, right: 99, bottom: 99 };
 
     fn drawn(ends: [(f64, f64); 2]) -> Vec<(i32, i32)> {
+        drawn_wide(ends, 1)
+    }
+
+    fn drawn_wide(ends: [(f64, f64); 2], width: i32) -> Vec<(i32, i32)> {
         let vertex = |(x, y): (f64, f64)| {
             ScreenVertex::new(Snapped { x: (x * 256.0) as i32, y: (y * 256.0) as i32 }, 0.5)
         };
         let line =
             ScreenLine { ends: ends.map(vertex), draw: 0, polygon: 0, color: [0; 4], nearer: 0 };
         let mut pixels = Vec::new();
-        super::pixels(&line, 1, EVERYWHERE, |x, y, _| pixels.push((x, y)));
+        super::pixels(&line, width, EVERYWHERE, |x, y, _| pixels.push((x, y)));
         pixels.sort_unstable();
         pixels
     }
@@ -301,6 +305,15 @@ mod tests {
             });
             assert_eq!(drawn(ends), by_the_rule(snapped), "{ends:?}");
         }
+    }
+
+    #[test]
+    fn a_line_two_pixels_wide_has_its_middle_on_the_segment() {
+        // Along the border of rows 4 and 5, and of columns 4 and 5.
+        let level = drawn_wide([(0.5, 5.0), (3.5, 5.0)], 2);
+        assert_eq!(level, [(0, 4), (0, 5), (1, 4), (1, 5), (2, 4), (2, 5)]);
+        let upright = drawn_wide([(5.0, 0.5), (5.0, 3.5)], 2);
+        assert_eq!(upright, [(4, 0), (4, 1), (4, 2), (5, 0), (5, 1), (5, 2)]);
     }
 
     #[test]
