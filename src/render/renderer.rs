@@ -11,6 +11,7 @@ use super::effects::Light;
 use super::frame::Frame;
 use super::light::Lit;
 use super::plan::FramePlan;
+use super::stages::{Stages, Watch};
 use super::surface::Shader;
 use super::tile::{self, BLOCK_PIXELS, Seen, TILE, TILE_SIDE, Visibility};
 use crate::base::image::{Picture, Size};
@@ -24,6 +25,7 @@ pub struct Renderer {
     frame: Frame,
     /// The plan of the picture, for picking.
     plan: Option<FramePlan>,
+    stages: Stages,
 }
 
 /// What is seen at a pixel.
@@ -47,13 +49,19 @@ impl Renderer {
     /// A renderer that uses instructions of this level. The pictures are the same on every level.
     #[must_use]
     pub fn new(level: Level) -> Self {
-        Self { level, picture: Picture::default(), frame: Frame::default(), plan: None }
+        Self {
+            level,
+            picture: Picture::default(),
+            frame: Frame::default(),
+            plan: None,
+            stages: Stages::default(),
+        }
     }
 
     /// Draws what is planned.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
         self.picture.resize(plan.size);
-        self.frame.build(self.level, plan);
+        self.frame.build(self.level, plan, &mut self.stages);
         match plan.arithmetic {
             Arithmetic::F32 => self.draw::<f32>(plan),
             Arithmetic::F64 => self.draw::<f64>(plan),
@@ -66,6 +74,12 @@ impl Renderer {
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.picture
+    }
+
+    /// Where the time of the last picture went.
+    #[must_use]
+    pub const fn stages(&self) -> Stages {
+        self.stages
     }
 
     /// How many triangles the last picture was made of.
@@ -87,7 +101,7 @@ impl Renderer {
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
         let mut visibility = Visibility::default();
         visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
-        let word = visibility.word(x, y);
+        let word = visibility.word(self.level, x, y);
         let (draw, polygon) = self.seen(plan, word)?;
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth: tile::depth(word) })
     }
@@ -106,7 +120,7 @@ impl Renderer {
             for (y, x) in (bounds.top..bounds.bottom)
                 .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
             {
-                let seen = self.seen(plan, visibility.word(x, y));
+                let seen = self.seen(plan, visibility.word(self.level, x, y));
                 let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
                 pixels[y * size.width + x] =
                     seen.is_some_and(|(draw, _)| plan.draws[draw as usize].item == item);
@@ -124,16 +138,15 @@ impl Renderer {
                 let mesh = &plan.draws[draw as usize].model.mesh;
                 Some((draw, mesh.triangles()[(number - start.number) as usize].polygon))
             }
-            Seen::Line(number) => {
-                let line = &self.frame.lines[number as usize];
-                Some((line.draw, line.polygon))
-            }
+            Seen::Line(line) => self.frame.line_seen(plan, line),
         }
     }
 
     /// Draws the tiles, each thread its own; a band of rows is locked only while a tile is copied.
     fn draw<T: Light>(&mut self, plan: &FramePlan) {
+        let mut watch = Watch::start();
         let lit = Lit::<T>::new(plan, self.level);
+        self.stages.light = watch.lap();
         let [columns, rows] = tiles_of(plan.size);
         let (level, frame) = (self.level, &self.frame);
         let bands = self.picture.pixels_mut().chunks_mut(plan.size.width * TILE_SIDE);
@@ -149,6 +162,7 @@ impl Renderer {
                 painter.copy(&mut band, bounds, plan.size.width);
             },
         );
+        self.stages.tiles = watch.lap();
     }
 }
 
@@ -193,10 +207,10 @@ impl<'a, T: Light> Painter<'a, T> {
         }
         self.visibility.draw(self.level, self.plan, self.frame, (tile, bounds));
         for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {
-            let (words, corner) = self.visibility.block(block);
-            if words.iter().fold(0, |all, word| all | word) == 0 {
+            if !self.visibility.shows(block) {
                 continue;
             }
+            let (words, corner) = self.visibility.block(block);
             let [x, y] = [corner[0] - bounds.left, corner[1] - bounds.top]
                 .map(|i| usize::try_from(i).expect("not negative"));
             self.shader.block(words, corner, &mut self.pixels[..], y * TILE_SIDE + x);

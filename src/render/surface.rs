@@ -96,9 +96,7 @@ impl<'a, T: Light> Shader<'a, T> {
         for (i, word) in words.iter().enumerate() {
             match seen(*word) {
                 Seen::Background => {}
-                Seen::Line(number) => {
-                    tile[place(i)] = self.frame.lines[number as usize].color;
-                }
+                Seen::Line(line) => tile[place(i)] = self.frame.line_color(self.plan, line),
                 Seen::Triangle(number) => {
                     numbers[i] = number;
                     waiting |= 1 << i;

@@ -4,6 +4,7 @@
 
 mod camera;
 mod command;
+mod edge_order;
 mod light;
 mod list;
 mod material;
@@ -19,6 +20,7 @@ mod view;
 
 pub use camera::{Camera, CameraMode, Lens, Pose};
 pub use command::{Command, CommandError, Item};
+pub use edge_order::{DrawEdge, EdgeOrder};
 pub use light::{Aim, Attenuation, Light, LightKind, Orbit, SpotOwner};
 pub use list::List;
 pub use material::{Material, MaterialChoice, PRESETS, Preset, PresetId};
