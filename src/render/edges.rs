@@ -6,8 +6,7 @@
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use fearless_simd::{
-    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, i32x16,
-    mask32x16,
+    Bytes as _, Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16,
 };
 use glam::{DMat3, DVec3};
 

@@ -5,9 +5,7 @@
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use fearless_simd::{
-    Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, i32x16,
-};
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
 
 use super::clip::{Screen, ScreenVertex};
 use super::coverage::doubled_area;
@@ -94,11 +92,13 @@ impl<'a> Facing<'a> {
         let [negative, positive] = self.outlines.map(|outline| i32x16::splat(simd, outline as i32));
         let outlines = area.simd_lt(0).select(negative, positive);
         let outlines = area.simd_eq(0).select(i32x16::splat(simd, Outline::Not as i32), outlines);
+        let outlines: [i32; PACK] = *outlines;
         let mut odd = (beyond | wide).to_bitmask();
         let choosy = self.draw.polygons.is_some() || self.draw.uniform.is_none();
         for (lane, triangle) in triangles.iter().enumerate() {
             let shown = !choosy || self.draw.shows(triangle.number);
-            let outline = if shown { outlines[lane] as u8 } else { Outline::Not as u8 };
+            let [outline, ..] = outlines[lane].to_le_bytes();
+            let outline = if shown { outline } else { Outline::Not as u8 };
             all[triangle.number as usize].store(outline, Ordering::Relaxed);
         }
         while odd != 0 {

@@ -4,9 +4,7 @@
 //! in each lane. What they cover are hits. They are kept in pages, which are handed out to tiles as
 //! they are needed and used again in the next frame.
 
-use fearless_simd::{
-    Bytes as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, i32x16, mask32x16, u32x16,
-};
+use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
 
 use super::coverage::PixelBox;
 use super::tile::{TILE, lanes_place};

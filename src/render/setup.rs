@@ -27,7 +27,6 @@ pub(super) struct Setup<'a> {
     pub(super) order: &'a DrawOrder,
     pub(super) vertices: &'a [ScreenVertex],
     pub(super) screen: Screen,
-    pub(super) size: Size,
     /// The number of the draw's first triangle in the frame.
     pub(super) base: u32,
     /// Whether some triangles are not drawn or have holes: then each is asked.
@@ -55,7 +54,7 @@ impl<'a> Setup<'a> {
                 pipeline.is_none_or(|pipeline| pipelines[pipeline as usize].is_cutout())
             });
         let screen = Screen::new(draw.clip_from_object, size);
-        Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, size, base, choosy }
+        Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
     }
 
     /// Puts some of the draw's triangles into bins.

@@ -13,7 +13,7 @@
 //! A block that nothing reaches is never touched, and one that a single large triangle covers is not
 //! asked for its depths: that it is covered is all that is noted, until something else comes near.
 
-use fearless_simd::{Level, Simd, SimdInt as _, dispatch, i32x16};
+use fearless_simd::{Level, Simd, dispatch, i32x16};
 
 use super::bins::{Bins, LargeTriangle};
 use super::coverage::{PixelBox, Triangle};
@@ -360,12 +360,12 @@ mod tests {
     /// The bins with some small triangles, sixteen at the most.
     fn small(triangles: &[[Snapped; 3]]) -> Bins {
         let mut rows = [[0; 16]; ROWS];
-        for (lane, corners) in triangles.iter().enumerate() {
+        for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
             for (i, corner) in corners.iter().enumerate() {
                 (rows[2 * i][lane], rows[2 * i + 1][lane]) = (corner.x, corner.y);
                 rows[6 + i][lane] = 0.5_f32.to_bits().cast_signed();
             }
-            rows[9][lane] = lane as i32;
+            rows[9][lane] = number;
         }
         let mut bins = bins();
         dispatch!(Level::new(), simd => {
