@@ -5,13 +5,19 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use fearless_simd::Level;
 use rayon::prelude::*;
 
+use glam::DMat4;
+
 use super::bins::Bins;
+use super::changes::alike_matrices;
 use super::clip::{Screen, ScreenVertex};
 use super::lines::{self, ScreenLine};
-use super::plan::FramePlan;
+use super::plan::{Draw, FramePlan};
 use super::setup::Setup;
 use super::vertices;
-use crate::scene::DrawTriangle;
+use super::watch::Watch;
+use crate::base::Shared;
+use crate::base::image::Size;
+use crate::scene::{DrawTriangle, Model};
 
 /// Triangles that a thread takes at a time.
 const CHUNK: usize = 2048;
@@ -24,6 +30,8 @@ const FEW: usize = 4096;
 pub(super) struct Frame {
     /// The vertices of all draws, in the order in which their meshes are drawn.
     vertices: Vec<ScreenVertex>,
+    /// What the vertices of each draw are of; nothing where they have yet to be brought there.
+    held: Vec<Option<Held>>,
     starts: Vec<Start>,
     bins: Vec<Bins>,
     /// Edges and normals.
@@ -42,11 +50,42 @@ pub(super) struct Start {
     pub(super) end: u32,
 }
 
+/// What the screen vertices of a draw were made of.
+#[derive(Debug)]
+struct Held {
+    model: Shared<Model>,
+    clip_from_object: DMat4,
+    size: Size,
+    vertex: usize,
+}
+
+impl Held {
+    fn new(draw: &Draw, size: Size, vertex: usize) -> Self {
+        let clip_from_object = draw.clip_from_object;
+        Self { model: draw.model.clone(), clip_from_object, size, vertex }
+    }
+
+    fn is_of(&self, draw: &Draw, size: Size, vertex: usize) -> bool {
+        Shared::same(&self.model, &draw.model)
+            && alike_matrices(&self.clip_from_object, &draw.clip_from_object)
+            && (self.size, self.vertex) == (size, vertex)
+    }
+}
+
 impl Frame {
-    /// Brings everything that the plan draws onto the screen.
-    pub(super) fn build(&mut self, level: Level, plan: &FramePlan) {
-        self.place(level, plan);
-        self.set_up(level, plan);
+    /// Forgets what it holds.
+    pub(super) fn forget(&mut self) {
+        self.held.clear();
+    }
+
+    /// Brings everything that the plan draws onto the screen, as long as that is wanted. Vertices
+    /// that are there already stay.
+    pub(super) fn build(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
+        self.place(level, plan, watch);
+        self.set_up(level, plan, watch);
+        if watch.is_given_up() {
+            return;
+        }
         let mut all = std::mem::take(&mut self.lines);
         all.clear();
         self.line_bins.clear(plan.size);
@@ -62,7 +101,7 @@ impl Frame {
     }
 
     /// Vertices to the screen.
-    fn place(&mut self, level: Level, plan: &FramePlan) {
+    fn place(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
         self.starts.clear();
         let mut start = Start::default();
         let mut vertex = 0;
@@ -74,17 +113,29 @@ impl Frame {
             vertex += order.x.len();
             self.starts.push(start);
         }
+        // What is not kept is overwritten from here on, whoever it belonged to.
+        self.held.resize_with(plan.draws.len(), || None);
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            *held = held.take().filter(|held| held.is_of(draw, plan.size, start.vertex));
+        }
         self.vertices.resize(vertex, ScreenVertex::default());
-        for (draw, start) in plan.draws.iter().zip(&self.starts) {
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            if held.is_some() {
+                continue;
+            }
+            if !watch.goes_on() {
+                return;
+            }
             let order = draw.model.mesh.draw_order();
             let screen = Screen::new(draw.clip_from_object, plan.size);
             let out = &mut self.vertices[start.vertex..][..order.x.len()];
             vertices::transform(level, &screen, order, out);
+            *held = Some(Held::new(draw, plan.size, start.vertex));
         }
     }
 
     /// Triangles into bins: one set of bins for each thread that takes part.
-    fn set_up(&mut self, level: Level, plan: &FramePlan) {
+    fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
         let total = self.starts.last().map_or(0, |start| start.end as usize);
         let threads = if total < FEW { 1 } else { rayon::current_num_threads() };
         self.bins.resize_with(threads, Bins::default);
@@ -107,6 +158,9 @@ impl Frame {
         let fill = |bins: &mut Bins| {
             bins.clear(plan.size);
             while let Some((setup, some)) = work.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if !watch.goes_on() {
+                    return;
+                }
                 setup.run(level, some, &plan.pipelines, bins);
             }
         };
