@@ -208,7 +208,8 @@ impl Desk {
             9 => view.marks ^= true,
             10 => view.wide_lines ^= true,
             _ => {
-                view.observer = dice.one_of(&[Observer::Camera, Observer::Camera, Observer::Object])
+                view.observer =
+                    dice.one_of(&[Observer::Camera, Observer::Camera, Observer::Object]);
             }
         }
         if self.view.face_normals || self.view.vertex_normals || self.view.polygons.is_some() {
@@ -380,7 +381,7 @@ fn what_changed_is_drawn_again_to_the_same_bytes_after_any_sequence_of_commands(
         }
     }
     // Otherwise nothing would have been tried.
-    assert!(given_up > 50 && partial * 2 > frames, "{given_up}, {partial} of {frames}");
+    assert!(given_up > 50 && partial > 400, "{given_up}, {partial} of {frames} {kinds:?}");
     for kind in ["Came", "Went", "Moved", "Shape", "Look", "First", "Size", "Camera", "Settings"] {
         assert!(kinds.get(kind).is_some_and(|count| *count > 3), "{kind}: {kinds:?}");
     }
@@ -404,10 +405,10 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
     let mut renderer = Renderer::default();
     renderer.render(&plan(&scene));
     edit(&mut scene, ObjectId(10), |object| {
-        object.placement = object.placement.replaced(at(20.0, -120.0, -120.0, 0.0));
+        object.placement = object.placement.replaced(at(20.0, -125.0, -125.0, 0.0));
     });
     let changes = renderer.redraw(&plan(&scene), &|| true).unwrap();
-    // 640 pixels show 331 units: the square is 77 pixels wide and its middle at (88, 88): columns 0
+    // 640 pixels show 331 units: the square is 77 pixels wide and its middle at (79, 79): columns 0
     // and 1, rows 0 and 1, and as many at the bottom.
     assert_eq!((changes.tiles(), changes.tiles_in_all()), (8, 100));
     let moved = vec![(ItemId::Object(ObjectId(10)), Change::Moved)];
