@@ -17,7 +17,7 @@ use super::dialogs::{After, Dialogs, Wanted};
 use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
 use super::material_dialog::MaterialDialog;
-use super::pace::Motion;
+use super::pace::{Happening, Motion};
 use super::painter::Snapshot;
 use super::scene_files::Waiting;
 use super::state::{Message, Shown, State, Tone};
@@ -141,18 +141,11 @@ impl App {
         if let Some(worker) = &self.worker {
             let news = worker.news();
             if let Some(drawn) = &news.drawn {
-                let statistics = &mut self.state.statistics;
-                statistics.time = drawn.time;
-                statistics.triangles = drawn.triangles;
-                statistics.economy = drawn.economy;
-                statistics.changes = Some(drawn.changes.clone());
-                let [width, height] = drawn.image.size;
-                statistics.size = crate::base::image::Size::new(width, height);
-                statistics.pictures += 1;
                 let now = ctx.input(|input| input.time);
                 self.shown_at.push_back(now);
                 self.shown_at.retain(|then| now - then < 1.0);
-                statistics.rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
+                let rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
+                self.state.statistics.note(drawn, rate);
             }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, asks);
@@ -186,7 +179,10 @@ impl App {
         let mut wanted = Snapshot { scene, view, settings, size, moving: false };
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
-        let moving = self.motion.notice(now, changed, held);
+        // What moves by itself is always being drawn.
+        let drawing = worker.is_drawing() && !self.state.is_animated();
+        let happening = Happening { changed, held, drawing };
+        let moving = self.motion.notice(now, happening);
         wanted.moving = moving && wanted.view.coarse_while_moving;
         if let Some(rest) = self.motion.rest(now) {
             ctx.request_repaint_after(Duration::from_secs_f64(rest));

@@ -16,7 +16,7 @@ use crate::scene::{Filter, LightAt, Settings};
 /// What a frame may take before the picture lags behind the hand: thirty in a second.
 const BUDGET: Duration = Duration::from_millis(33);
 
-/// So many seconds after its last change the picture is still.
+/// So many seconds after its last change, and after the picture that shows it, what moved is still.
 const STILL: f64 = 0.15;
 
 /// A full frame that takes so many times longer or shorter than before is of another scene.
@@ -189,10 +189,21 @@ impl Attempt {
     }
 }
 
+/// What is noticed of what is shown.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Happening {
+    /// It is another than the time before.
+    pub(super) changed: bool,
+    /// A button of the mouse is held.
+    pub(super) held: bool,
+    /// A picture is being drawn.
+    pub(super) drawing: bool,
+}
+
 /// Whether what is shown is on the move.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Motion {
-    /// When it changed last, in seconds.
+    /// When it changed last, or was still being drawn, in seconds.
     changed: Option<f64>,
     held: bool,
     moving: bool,
@@ -201,11 +212,13 @@ pub(super) struct Motion {
 impl Motion {
     /// Whether it moves: it changes while a button of the mouse is held, or changes again and again
     /// without one, as by the wheel or a held key. It is still again when the button is let go, or soon
-    /// after the last change.
-    pub(super) fn notice(&mut self, now: f64, changed: bool, held: bool) -> bool {
+    /// after the last change, but not before the picture that shows it is drawn.
+    pub(super) fn notice(&mut self, now: f64, happening: Happening) -> bool {
+        let Happening { changed, held, drawing } = happening;
         let let_go = std::mem::replace(&mut self.held, held) && !held;
-        let lately = self.changed.is_some_and(|then| now - then < STILL) && !let_go;
-        if changed {
+        let lately = self.changed.is_some_and(|then| now - then < STILL);
+        let lately = (lately || (self.moving && drawing)) && !let_go;
+        if changed || (self.moving && drawing) {
             self.changed = Some(now);
         }
         self.moving = if changed { held || lately } else { self.moving && lately };
@@ -324,36 +337,53 @@ mod tests {
         assert_eq!(pace.expected(Economy::NONE, 1.0), Some(ms(40)));
     }
 
+    const DRAG: Happening = Happening { changed: true, held: true, drawing: false };
+    const HELD: Happening = Happening { changed: false, ..DRAG };
+    const KEY: Happening = Happening { held: false, ..DRAG };
+    const NONE: Happening = Happening { changed: false, held: false, drawing: false };
+
     #[test]
     fn a_drag_moves_until_it_rests_or_is_let_go() {
         let mut motion = Motion::default();
-        assert!(!motion.notice(1.0, false, true), "pressed");
-        assert!(motion.notice(1.1, true, true));
-        assert!(motion.notice(1.2, false, true));
+        assert!(!motion.notice(1.0, HELD), "pressed");
+        assert!(motion.notice(1.1, DRAG));
+        assert!(motion.notice(1.2, HELD));
         let rest = motion.rest(1.2).unwrap();
         assert!((rest - 0.05).abs() < 1e-9);
-        assert!(!motion.notice(1.26, false, true), "held, and still");
+        assert!(!motion.notice(1.26, HELD), "held, and still");
         assert_eq!(motion.rest(1.26), None);
-        assert!(motion.notice(5.0, true, true), "dragged on");
-        assert!(!motion.notice(5.01, true, false), "let go");
+        assert!(motion.notice(5.0, DRAG), "dragged on");
+        assert!(!motion.notice(5.01, KEY), "let go");
+    }
+
+    #[test]
+    fn what_moves_is_not_still_before_its_picture_is_drawn() {
+        let mut motion = Motion::default();
+        let drawing = Happening { drawing: true, ..HELD };
+        assert!(!motion.notice(0.5, drawing), "it does not begin to move by being drawn");
+        assert!(motion.notice(1.0, DRAG));
+        assert!(motion.notice(1.4, drawing));
+        assert!(motion.notice(1.5, HELD), "drawn");
+        assert!(!motion.notice(1.56, HELD));
+        assert!(!motion.notice(1.57, drawing), "that is the picture with all");
     }
 
     #[test]
     fn one_key_is_no_motion_and_a_held_one_is() {
         let mut motion = Motion::default();
-        assert!(!motion.notice(1.0, true, false));
-        assert!(!motion.notice(1.01, false, false));
-        assert!(!motion.notice(2.0, true, false), "another key, later");
-        assert!(motion.notice(2.03, true, false), "it repeats");
-        assert!(motion.notice(2.1, false, false));
-        assert!(!motion.notice(2.2, false, false), "still");
+        assert!(!motion.notice(1.0, KEY));
+        assert!(!motion.notice(1.01, NONE));
+        assert!(!motion.notice(2.0, KEY), "another key, later");
+        assert!(motion.notice(2.03, KEY), "it repeats");
+        assert!(motion.notice(2.1, NONE));
+        assert!(!motion.notice(2.2, NONE), "still");
     }
 
     #[test]
     fn a_click_that_changes_something_is_no_motion() {
         let mut motion = Motion::default();
-        assert!(!motion.notice(1.0, false, true));
-        assert!(!motion.notice(1.05, true, false));
-        assert!(!motion.notice(1.06, false, false));
+        assert!(!motion.notice(1.0, HELD));
+        assert!(!motion.notice(1.05, KEY));
+        assert!(!motion.notice(1.06, NONE));
     }
 }

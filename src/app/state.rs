@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::action::Action;
 pub use super::pace::Economy;
+use super::painter::Drawn;
 use crate::base::image::Size;
 use crate::edit::{Gesture, History, Stroke, selection};
 use crate::render::Changes;
@@ -96,6 +97,22 @@ impl Default for Statistics {
             economy: Economy::NONE,
             changes: None,
         }
+    }
+}
+
+impl Statistics {
+    /// Notes a picture, the `rate`th in the last second.
+    pub(super) fn note(&mut self, drawn: &Drawn, rate: u32) {
+        let [width, height] = drawn.image.size;
+        *self = Self {
+            time: drawn.time,
+            size: Size::new(width, height),
+            pictures: self.pictures + 1,
+            rate,
+            triangles: drawn.triangles,
+            economy: drawn.economy,
+            changes: Some(drawn.changes.clone()),
+        };
     }
 }
 

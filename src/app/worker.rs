@@ -89,6 +89,12 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.changed.notify_all();
     }
 
+    /// Whether something is being drawn or answered.
+    pub(super) fn is_drawing(&self) -> bool {
+        let desk = self.shared.lock();
+        desk.busy || desk.has_work()
+    }
+
     /// What was wanted last.
     pub(super) const fn last(&self) -> Option<&Snapshot> {
         self.last.as_ref()
