@@ -90,6 +90,9 @@ impl Frame {
         all.clear();
         self.line_bins.clear(plan.size);
         for (i, draw) in plan.draws.iter().enumerate() {
+            if !watch.goes_on() {
+                break;
+            }
             let i = number(i);
             let vertices = self.vertices_of(plan, i);
             lines::collect(draw, i, plan.size, vertices, &mut all);
