@@ -66,6 +66,10 @@ impl Bins {
         self.hits.clear(extent, [self.columns, self.rows]);
         self.large.clear();
         self.lines.clear();
+        // A frame that was given up leaves some behind.
+        for queue in self.queues.iter_mut() {
+            queue.clear();
+        }
         self.drawn = 0;
     }
 

@@ -3,18 +3,24 @@
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
 use fearless_simd::Level;
+use glam::DMat4;
 use rayon::prelude::*;
 
 use super::bins::Bins;
+use super::changes::alike_matrices;
 use super::clip::{Screen, ScreenVertex};
 use super::edges::{self, EdgeSetup};
 use super::facing::Facing;
 use super::lines::LineNumber;
 use super::plan::{Draw, FramePlan};
 use super::setup::{self, Setup};
-use super::stages::{Stages, Watch};
+use super::stages::{Laps, Stages};
 use super::vertices;
+use super::watch::Watch;
+use crate::base::Shared;
 use crate::base::color::Color;
+use crate::base::image::Size;
+use crate::scene::Model;
 
 /// Triangles, polygons or edges that a thread takes at a time.
 const CHUNK: usize = 2048;
@@ -27,6 +33,8 @@ const FEW: usize = 4096;
 pub(super) struct Frame {
     /// The vertices of all draws, in the order in which their meshes are drawn.
     vertices: Vec<ScreenVertex>,
+    /// What the vertices of each draw are of; nothing where they have yet to be brought there.
+    held: Vec<Option<Held>>,
     starts: Vec<Start>,
     /// For each polygon of the draws whose edges are drawn the number of an
     /// [`Outline`](super::facing::Outline).
@@ -76,20 +84,51 @@ enum What {
     Edges,
 }
 
-impl Frame {
-    /// Brings everything that the plan draws onto the screen.
-    pub(super) fn build(&mut self, level: Level, plan: &FramePlan, stages: &mut Stages) {
-        let mut watch = Watch::start();
-        self.place(level, plan);
-        stages.vertices = watch.lap();
-        self.set_up(level, plan);
-        stages.set_up = watch.lap();
-        self.add_lines(level, plan);
-        stages.lines = watch.lap();
+/// What the screen vertices of a draw were made of.
+#[derive(Debug)]
+struct Held {
+    model: Shared<Model>,
+    clip_from_object: DMat4,
+    size: Size,
+    vertex: usize,
+}
+
+impl Held {
+    fn new(draw: &Draw, size: Size, vertex: usize) -> Self {
+        let clip_from_object = draw.clip_from_object;
+        Self { model: draw.model.clone(), clip_from_object, size, vertex }
     }
 
-    /// Vertices to the screen.
-    fn place(&mut self, level: Level, plan: &FramePlan) {
+    fn is_of(&self, draw: &Draw, size: Size, vertex: usize) -> bool {
+        Shared::same(&self.model, &draw.model)
+            && alike_matrices(&self.clip_from_object, &draw.clip_from_object)
+            && (self.size, self.vertex) == (size, vertex)
+    }
+}
+
+impl Frame {
+    /// Forgets what it holds.
+    pub(super) fn forget(&mut self) {
+        self.held.clear();
+    }
+
+    /// Brings everything that the plan draws onto the screen, as long as that is wanted. Vertices
+    /// that are there already stay. Says how long it took.
+    pub(super) fn build(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) -> Stages {
+        let mut laps = Laps::start();
+        self.number(plan);
+        self.place(level, plan, watch);
+        let vertices = laps.lap();
+        self.set_up(level, plan, watch);
+        let set_up = laps.lap();
+        if !watch.is_given_up() {
+            self.add_lines(level, plan, watch);
+        }
+        Stages { vertices, set_up, lines: laps.lap(), ..Stages::default() }
+    }
+
+    /// Where the numbers of each draw begin.
+    fn number(&mut self, plan: &FramePlan) {
         self.starts.clear();
         let mut start = Start::default();
         let (mut vertex, mut outline) = (0, 0);
@@ -102,19 +141,35 @@ impl Frame {
             outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
             self.starts.push(start);
         }
+        // What is not kept is overwritten from here on, whoever it belonged to.
+        self.held.resize_with(plan.draws.len(), || None);
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            *held = held.take().filter(|held| held.is_of(draw, plan.size, start.vertex));
+        }
         self.vertices.resize(vertex, ScreenVertex::default());
         self.outlines.resize_with(outline, AtomicU8::default);
-        for (draw, start) in plan.draws.iter().zip(&self.starts) {
+    }
+
+    /// Vertices to the screen.
+    fn place(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            if held.is_some() {
+                continue;
+            }
+            if !watch.goes_on() {
+                return;
+            }
             let order = draw.model.mesh.draw_order();
             let screen = Screen::new(draw.clip_from_object, plan.size);
             let out = &mut self.vertices[start.vertex..][..order.x.len()];
             vertices::transform(level, &screen, order, out);
+            *held = Some(Held::new(draw, plan.size, start.vertex));
         }
     }
 
     /// Triangles into bins: one set of bins for each thread that takes part. And which polygons face
     /// the observer, for their outlines.
-    fn set_up(&mut self, level: Level, plan: &FramePlan) {
+    fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
         self.work.clear();
         let mut count = 0;
         for (i, draw) in plan.draws.iter().enumerate() {
@@ -134,15 +189,18 @@ impl Frame {
         for bins in &mut self.bins {
             bins.clear(plan.size);
         }
-        self.share_out(level, plan);
+        self.share_out(level, plan, watch);
     }
 
     /// Lines into bins.
-    fn add_lines(&mut self, level: Level, plan: &FramePlan) {
+    fn add_lines(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
         self.work.clear();
         self.normals.clear();
         let mut next = 0;
         for (i, draw) in plan.draws.iter().enumerate() {
+            if !watch.goes_on() {
+                return;
+            }
             let edges = if draw.lines.edges { draw.model.mesh.edge_order().edges.len() } else { 0 };
             let start = &mut self.starts[i];
             (start.line, start.normal) = (next, next + number(edges));
@@ -156,7 +214,7 @@ impl Frame {
             self.add_work(i, What::Edges, edges);
         }
         if !self.work.is_empty() {
-            self.share_out(level, plan);
+            self.share_out(level, plan, watch);
         }
     }
 
@@ -166,12 +224,15 @@ impl Frame {
         count
     }
 
-    /// Has all threads do the work, each into its own bins.
-    fn share_out(&mut self, level: Level, plan: &FramePlan) {
+    /// Has all threads do the work, each into its own bins, as long as that is wanted.
+    fn share_out(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
         let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
         let (work, next) = (&self.work, AtomicUsize::new(0));
         let run = |bins: &mut Bins| {
             while let Some(work) = work.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if !watch.goes_on() {
+                    return;
+                }
                 parts.run(level, work, bins);
             }
             setup::finish(level, bins);

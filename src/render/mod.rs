@@ -6,6 +6,7 @@
 
 mod attributes;
 mod bins;
+mod changes;
 mod clip;
 mod corners;
 pub mod coverage;
@@ -29,7 +30,9 @@ mod surface;
 mod texture;
 mod tile;
 mod vertices;
+mod watch;
 
+pub use changes::{Cause, Change, Changes};
 pub use plan::{FramePlan, Skipped};
-pub use renderer::{Hit, Renderer};
+pub use renderer::{GivenUp, Hit, Renderer};
 pub use stages::Stages;

@@ -1,4 +1,8 @@
 //! Runs plans: does, and asks no setting.
+//!
+//! A picture is drawn as a whole, or what has changed of the last one is drawn again, to the same
+//! bytes. What is picked is asked of the last picture that was finished, also after a frame that was
+//! given up.
 
 use std::sync::Mutex;
 
@@ -6,14 +10,16 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::bins::tiles_of;
+use super::changes::{Cause, Changes};
 use super::coverage::PixelBox;
 use super::effects::Light;
 use super::frame::Frame;
 use super::light::Lit;
 use super::plan::FramePlan;
-use super::stages::{Stages, Watch};
+use super::stages::{Laps, Stages};
 use super::surface::Shader;
 use super::tile::{self, BLOCK_PIXELS, Seen, TILE, TILE_SIDE, Visibility};
+use super::watch::Watch;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Arithmetic, ItemId};
 
@@ -23,10 +29,18 @@ pub struct Renderer {
     level: Level,
     picture: Picture,
     frame: Frame,
-    /// The plan of the picture, for picking.
+    /// The plan of the last picture that was finished.
     plan: Option<FramePlan>,
+    /// Whether the picture is that one still: nothing has been painted over it.
+    finished: bool,
+    /// Whether the frame holds what is on that picture.
+    built: bool,
     stages: Stages,
 }
+
+/// A frame was given up before it was finished: something else was wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GivenUp;
 
 /// What is seen at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,25 +63,70 @@ impl Renderer {
     /// A renderer that uses instructions of this level. The pictures are the same on every level.
     #[must_use]
     pub fn new(level: Level) -> Self {
-        Self {
-            level,
-            picture: Picture::default(),
-            frame: Frame::default(),
-            plan: None,
-            stages: Stages::default(),
+        let (picture, frame) = (Picture::default(), Frame::default());
+        let stages = Stages::default();
+        Self { level, picture, frame, plan: None, finished: false, built: false, stages }
+    }
+
+    /// Draws all that is planned, whatever was drawn before.
+    pub fn render(&mut self, plan: &FramePlan) -> &Picture {
+        self.finished = false;
+        self.frame.forget();
+        self.redraw(plan, &|| true).expect("it is always wanted");
+        &self.picture
+    }
+
+    /// Draws again what another plan changes of the last picture, and says what that was. The picture
+    /// is the one that [`Self::render`] draws.
+    ///
+    /// # Errors
+    /// Where `wanted`, which every thread asks between tiles, says no: then the picture is of no
+    /// meaning until the next one is finished.
+    pub fn redraw(
+        &mut self,
+        plan: &FramePlan,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Changes, GivenUp> {
+        let watch = Watch::new(wanted);
+        let changes = self.changes(plan);
+        self.built &= !changes.geometry;
+        if !changes.is_nothing() {
+            self.picture.resize(plan.size);
+            self.finished = false;
+            if !self.built {
+                self.stages = self.frame.build(self.level, plan, &watch);
+            }
+            if !watch.is_given_up() {
+                match plan.arithmetic {
+                    Arithmetic::F32 => self.draw::<f32>(plan, &changes, &watch),
+                    Arithmetic::F64 => self.draw::<f64>(plan, &changes, &watch),
+                }
+            }
+            if watch.is_given_up() {
+                return Err(GivenUp);
+            }
+            (self.finished, self.built) = (true, true);
+        }
+        self.plan = Some(plan.clone());
+        Ok(changes)
+    }
+
+    /// What [`Self::redraw`] would draw again.
+    #[must_use]
+    pub fn changes(&self, plan: &FramePlan) -> Changes {
+        match &self.plan {
+            Some(before) if self.finished => Changes::between(before, plan),
+            _ => Changes::all(Cause::First, plan.size),
         }
     }
 
-    /// Draws what is planned.
-    pub fn render(&mut self, plan: &FramePlan) -> &Picture {
-        self.picture.resize(plan.size);
-        self.frame.build(self.level, plan, &mut self.stages);
-        match plan.arithmetic {
-            Arithmetic::F32 => self.draw::<f32>(plan),
-            Arithmetic::F64 => self.draw::<f64>(plan),
+    /// Brings what the last finished picture shows onto the screen again, where something else was
+    /// begun since.
+    fn build_again(&mut self) {
+        if let (false, Some(plan)) = (self.built, &self.plan) {
+            self.frame.build(self.level, plan, &Watch::new(&|| true));
+            self.built = true;
         }
-        self.plan = Some(plan.clone());
-        &self.picture
     }
 
     /// The picture that was drawn last.
@@ -90,9 +149,10 @@ impl Renderer {
 
     /// What the last picture shows in column `x` of row `y`; `None` for the background.
     #[must_use]
-    pub fn hit(&self, x: usize, y: usize) -> Option<Hit> {
+    pub fn hit(&mut self, x: usize, y: usize) -> Option<Hit> {
+        self.build_again();
         let plan = self.plan.as_ref()?;
-        let Size { width, height } = self.picture.size();
+        let Size { width, height } = plan.size;
         if x >= width || y >= height {
             return None;
         }
@@ -108,10 +168,11 @@ impl Renderer {
 
     /// Where the last picture shows an item: a flag for each pixel, row by row from the top.
     #[must_use]
-    pub fn pixels_of(&self, item: ItemId) -> Vec<bool> {
-        let size = self.picture.size();
+    pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
+        self.build_again();
+        let Some(plan) = &self.plan else { return Vec::new() };
+        let size = plan.size;
         let mut pixels = vec![false; size.area()];
-        let Some(plan) = &self.plan else { return pixels };
         let [columns, rows] = tiles_of(plan.size);
         let mut visibility = Visibility::default();
         for tile in 0..usize::try_from(columns * rows).expect("not negative") {
@@ -142,19 +203,21 @@ impl Renderer {
         }
     }
 
-    /// Draws the tiles, each thread its own; a band of rows is locked only while a tile is copied.
-    fn draw<T: Light>(&mut self, plan: &FramePlan) {
-        let mut watch = Watch::start();
+    /// Draws tiles, each thread its own; a band of rows is locked only while a tile is copied.
+    fn draw<T: Light>(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+        let mut laps = Laps::start();
         let lit = Lit::<T>::new(plan, self.level);
-        self.stages.light = watch.lap();
-        let [columns, rows] = tiles_of(plan.size);
+        self.stages.light = laps.lap();
         let (level, frame) = (self.level, &self.frame);
         let bands = self.picture.pixels_mut().chunks_mut(plan.size.width * TILE_SIDE);
         let bands: Vec<Mutex<&mut [[u8; 4]]>> = bands.map(Mutex::new).collect();
-        let tiles = usize::try_from(columns * rows).expect("not negative");
-        (0..tiles).into_par_iter().with_max_len(1).for_each_init(
+        let tiles: Vec<usize> = changes.tiles.numbers().collect();
+        tiles.into_par_iter().with_max_len(1).for_each_init(
             || Painter::<T>::new(plan, frame, &lit, level),
             |painter, tile| {
+                if !watch.goes_on() {
+                    return;
+                }
                 let bounds = bounds_of(tile, plan.size);
                 painter.paint(tile, bounds);
                 let band = &bands[usize::try_from(bounds.top / TILE).expect("not negative")];
@@ -162,7 +225,7 @@ impl Renderer {
                 painter.copy(&mut band, bounds, plan.size.width);
             },
         );
-        self.stages.tiles = watch.lap();
+        self.stages.tiles = laps.lap();
     }
 }
 

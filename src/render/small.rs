@@ -58,6 +58,11 @@ impl Queue {
         self.count >= WAITING
     }
 
+    /// Forgets all.
+    pub(super) const fn clear(&mut self) {
+        self.count = 0;
+    }
+
     /// Sixteen of them, from `at` on.
     #[inline(always)]
     fn pack<S: Simd>(&self, simd: S, at: usize) -> Pack<S> {

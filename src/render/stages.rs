@@ -19,9 +19,9 @@ pub struct Stages {
 
 /// Measures one stage after the other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Watch(Instant);
+pub(super) struct Laps(Instant);
 
-impl Watch {
+impl Laps {
     pub(super) fn start() -> Self {
         Self(Instant::now())
     }

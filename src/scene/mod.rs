@@ -10,6 +10,7 @@ mod list;
 mod material;
 mod mesh;
 mod mesh_points;
+mod mesh_splits;
 mod model;
 mod object;
 mod order;
