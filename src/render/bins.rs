@@ -54,6 +54,18 @@ impl Bin {
         self.counts == [0; 3] && self.large.is_empty() && self.lines.is_empty()
     }
 
+    /// The only large triangle, where there is nothing else.
+    pub(super) fn alone(&self) -> Option<u32> {
+        let nothing_else = self.counts == [0; 3] && self.lines.is_empty();
+        if let [large] = self.large[..]
+            && nothing_else
+        {
+            Some(large)
+        } else {
+            None
+        }
+    }
+
     /// The packs of a queue, each with the number of triangles in it.
     pub(super) fn packs(&self, queue: usize) -> impl Iterator<Item = (&Pack, usize)> {
         let count = self.counts[queue];

@@ -20,10 +20,11 @@ const GUARD: f64 = 1_048_576.0;
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// In place of x: the vertex is beyond the near plane, the far plane or the guard band.
-const BEYOND: i32 = i32::MIN;
+pub(super) const BEYOND: i32 = i32::MIN;
 
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub(super) struct ScreenVertex {
     x: i32,
     y: i32,
@@ -39,6 +40,13 @@ impl ScreenVertex {
     #[inline(always)]
     pub(super) const fn is_inside(&self) -> bool {
         self.x != BEYOND
+    }
+
+    /// Its numbers side by side: x, y, and the bits of the depth and of one by w.
+    #[inline(always)]
+    pub(super) const fn row(&self) -> [i32; 4] {
+        let [depth, inverse_w] = [self.depth.to_bits(), self.inverse_w.to_bits()];
+        [self.x, self.y, depth.cast_signed(), inverse_w.cast_signed()]
     }
 
     /// A vertex at a place, for tests.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use fearless_simd::Level;
 use rayon::prelude::*;
 
-use super::bins::Bins;
+use super::bins::{Bins, LargeTriangle};
 use super::clip::{Screen, ScreenVertex};
 use super::lines::{self, ScreenLine};
 use super::plan::FramePlan;
@@ -124,6 +124,22 @@ impl Frame {
     /// Whether nothing reaches into a tile.
     pub(super) fn is_empty(&self, tile: usize) -> bool {
         self.bins.iter().chain([&self.line_bins]).all(|bins| bins.tiles[tile].is_empty())
+    }
+
+    /// The triangle that alone reaches into a tile, where there is one and no texture leaves some of
+    /// it out.
+    pub(super) fn alone(&self, tile: usize) -> Option<&LargeTriangle> {
+        let mut alone = None;
+        if !self.line_bins.tiles[tile].is_empty() {
+            return None;
+        }
+        for bins in self.bins.iter().filter(|bins| !bins.tiles[tile].is_empty()) {
+            let large = bins.tiles[tile].alone().map(|number| &bins.large[number as usize])?;
+            if large.cutout || alone.replace(large).is_some() {
+                return None;
+            }
+        }
+        alone
     }
 
     /// The draw that a triangle belongs to, and where its numbers begin.

@@ -1,18 +1,21 @@
 //! Runs plans: does, and asks no setting.
 
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 
 use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::bins::tiles_of;
-use super::coverage::PixelBox;
 use super::effects::Light;
 use super::frame::Frame;
 use super::light::Lit;
+use super::painter::{Band, Painter, bounds_of};
 use super::plan::FramePlan;
-use super::surface::Shader;
-use super::tile::{self, BLOCK_PIXELS, Seen, TILE, TILE_SIDE, Visibility};
+use super::surface::{Scenery, Shines};
+use super::tile::{self, Seen, TILE, TILE_SIDE, Visibility};
+use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Arithmetic, ItemId};
 
@@ -22,8 +25,23 @@ pub struct Renderer {
     level: Level,
     picture: Picture,
     frame: Frame,
+    /// For each tile of the picture the colour that fills it as a whole, where one is known to.
+    filled: Vec<Option<Color>>,
+    rooms: Rooms,
+    stages: Stages,
     /// The plan of the picture, for picking.
     plan: Option<FramePlan>,
+}
+
+/// Where the time of a frame went.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stages {
+    /// Vertices to the screen, triangles and lines into bins.
+    pub geometry: Duration,
+    /// Light that is evaluated before any pixel.
+    pub light: Duration,
+    /// What is seen, its colours, and the copy into the picture.
+    pub tiles: Duration,
 }
 
 /// What is seen at a pixel.
@@ -47,13 +65,29 @@ impl Renderer {
     /// A renderer that uses instructions of this level. The pictures are the same on every level.
     #[must_use]
     pub fn new(level: Level) -> Self {
-        Self { level, picture: Picture::default(), frame: Frame::default(), plan: None }
+        Self {
+            level,
+            picture: Picture::default(),
+            frame: Frame::default(),
+            filled: Vec::new(),
+            rooms: Rooms::default(),
+            stages: Stages::default(),
+            plan: None,
+        }
     }
 
     /// Draws what is planned.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
-        self.picture.resize(plan.size);
+        let begin = Instant::now();
+        if self.picture.size() != plan.size {
+            self.picture.resize(plan.size);
+            let [columns, rows] =
+                [plan.size.width, plan.size.height].map(|n| n.div_ceil(TILE_SIDE));
+            self.filled.clear();
+            self.filled.resize(columns * rows, None);
+        }
         self.frame.build(self.level, plan);
+        self.stages.geometry = begin.elapsed();
         match plan.arithmetic {
             Arithmetic::F32 => self.draw::<f32>(plan),
             Arithmetic::F64 => self.draw::<f64>(plan),
@@ -66,6 +100,12 @@ impl Renderer {
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.picture
+    }
+
+    /// Where the time of the last picture went.
+    #[must_use]
+    pub const fn stages(&self) -> Stages {
+        self.stages
     }
 
     /// How many triangles the last picture was made of.
@@ -132,83 +172,79 @@ impl Renderer {
     }
 
     /// Draws the tiles, each thread its own; a band of rows is locked only while a tile is copied.
-    fn draw<T: Light>(&mut self, plan: &FramePlan) {
-        let lit = Lit::<T>::new(plan, self.level);
-        let [columns, rows] = tiles_of(plan.size);
+    fn draw<T: Painted>(&mut self, plan: &FramePlan) {
+        let begin = Instant::now();
+        let room = T::room(&mut self.rooms);
+        room.shines.prepare(plan);
+        room.lit.prepare(plan, &room.shines, self.level);
+        self.stages.light = begin.elapsed();
+
+        let begin = Instant::now();
+        let Room { shines, lit, painters } = room;
         let (level, frame) = (self.level, &self.frame);
-        let bands = self.picture.pixels_mut().chunks_mut(plan.size.width * TILE_SIDE);
-        let bands: Vec<Mutex<&mut [[u8; 4]]>> = bands.map(Mutex::new).collect();
-        let tiles = usize::try_from(columns * rows).expect("not negative");
-        (0..tiles).into_par_iter().with_max_len(1).for_each_init(
-            || Painter::<T>::new(plan, frame, &lit, level),
-            |painter, tile| {
-                let bounds = bounds_of(tile, plan.size);
-                painter.paint(tile, bounds);
-                let band = &bands[usize::try_from(bounds.top / TILE).expect("not negative")];
-                let mut band = band.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                painter.copy(&mut band, bounds, plan.size.width);
-            },
-        );
-    }
-}
-
-/// The pixels of a tile; tiles are counted along rows.
-fn bounds_of(tile: usize, size: Size) -> PixelBox {
-    let [columns, _] = tiles_of(size);
-    let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
-    let (left, top) = (tile % columns * TILE, tile / columns * TILE);
-    let [right, bottom] = [size.width, size.height]
-        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
-    let picture = PixelBox { left: 0, top: 0, right, bottom };
-    PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
-}
-
-/// Draws one tile after another.
-#[derive(Debug)]
-struct Painter<'a, T> {
-    plan: &'a FramePlan,
-    frame: &'a Frame,
-    level: Level,
-    shader: Shader<'a, T>,
-    visibility: Visibility,
-    pixels: Box<[[u8; 4]; TILE_SIDE * TILE_SIDE]>,
-}
-
-impl<'a, T: Light> Painter<'a, T> {
-    fn new(plan: &'a FramePlan, frame: &'a Frame, lit: &'a Lit<T>, level: Level) -> Self {
-        Self {
-            plan,
-            frame,
-            level,
-            shader: Shader::new(plan, frame, lit, level),
-            visibility: Visibility::default(),
-            pixels: Box::new([[0; 4]; TILE_SIDE * TILE_SIDE]),
-        }
-    }
-
-    fn paint(&mut self, tile: usize, bounds: PixelBox) {
-        self.pixels.fill(self.plan.background.opaque());
-        if self.frame.is_empty(tile) {
-            return;
-        }
-        self.visibility.draw(self.level, self.plan, self.frame, (tile, bounds));
-        for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {
-            let (words, corner) = self.visibility.block(block);
-            if words.iter().fold(0, |all, word| all | word) == 0 {
-                continue;
+        let scenery = Scenery { level, plan, frame, lit, shines };
+        let Size { width, .. } = plan.size;
+        let columns = width.div_ceil(TILE_SIDE);
+        let bands: Vec<Mutex<Band<'_>>> = self
+            .picture
+            .pixels_mut()
+            .chunks_mut(width * TILE_SIDE)
+            .zip(self.filled.chunks_mut(columns))
+            .map(|(pixels, filled)| Mutex::new(Band { pixels, filled }))
+            .collect();
+        let tiles = bands.len() * columns;
+        let next = AtomicUsize::new(0);
+        let work = |painter: &mut Painter<T>| {
+            painter.begin();
+            loop {
+                let tile = next.fetch_add(1, Ordering::Relaxed);
+                if tile >= tiles {
+                    return;
+                }
+                let shows = painter.paint(&scenery, tile);
+                let band = bands[tile / columns].lock();
+                let mut band = band.unwrap_or_else(std::sync::PoisonError::into_inner);
+                if shows {
+                    painter.copy(tile, plan.size, &mut band);
+                } else {
+                    Painter::<T>::fill(tile, plan.size, plan.background, &mut band);
+                }
             }
-            let [x, y] = [corner[0] - bounds.left, corner[1] - bounds.top]
-                .map(|i| usize::try_from(i).expect("not negative"));
-            self.shader.block(words, corner, &mut self.pixels[..], y * TILE_SIDE + x);
-        }
+        };
+        painters.resize_with(rayon::current_num_threads(), Painter::default);
+        painters.par_iter_mut().with_max_len(1).for_each(work);
+        self.stages.tiles = begin.elapsed();
     }
+}
 
-    /// Copies the tile into its band of the picture.
-    fn copy(&self, band: &mut [[u8; 4]], bounds: PixelBox, width: usize) {
-        let [left, columns] = [bounds.left, bounds.right - bounds.left]
-            .map(|i| usize::try_from(i).expect("not negative"));
-        for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.chunks_mut(width)) {
-            to[left..left + columns].copy_from_slice(&from[..columns]);
-        }
+/// What is kept from frame to frame for one kind of numbers.
+#[derive(Debug, Default)]
+struct Room<T> {
+    shines: Shines<T>,
+    lit: Lit<T>,
+    /// One for each thread.
+    painters: Vec<Painter<T>>,
+}
+
+#[derive(Debug, Default)]
+struct Rooms {
+    fast: Room<f32>,
+    exact: Room<f64>,
+}
+
+/// Numbers that pictures are painted in.
+trait Painted: Light {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self>;
+}
+
+impl Painted for f32 {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self> {
+        &mut rooms.fast
+    }
+}
+
+impl Painted for f64 {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self> {
+        &mut rooms.exact
     }
 }

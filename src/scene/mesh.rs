@@ -135,6 +135,7 @@ pub struct Mesh {
     mean: DVec3,
     edges: OnceLock<Edges>,
     order: OnceLock<DrawOrder>,
+    centres: OnceLock<Vec<[f32; 3]>>,
 }
 
 /// Why a mesh cannot be made.
@@ -219,6 +220,7 @@ impl Mesh {
             has_file_normals,
             edges: OnceLock::new(),
             order: OnceLock::new(),
+            centres: OnceLock::new(),
         })
     }
 
@@ -288,6 +290,15 @@ impl Mesh {
     pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
         let corners = self.polygon(polygon).iter();
         mean(corners.map(|corner| dvec3(self.positions[corner.position as usize])))
+    }
+
+    /// The means of the corners of all polygons. Found when first asked for.
+    #[must_use]
+    pub fn polygon_centres(&self) -> &[[f32; 3]] {
+        self.centres.get_or_init(|| {
+            let polygons = 0..index(self.polygon_count());
+            polygons.map(|polygon| self.polygon_centre(polygon).as_vec3().to_array()).collect()
+        })
     }
 
     /// The triangles of all polygons, in the order of the polygons.
