@@ -390,8 +390,8 @@ impl Tiles {
         self.painted.iter().filter(|painted| **painted).count()
     }
 
-    /// Their numbers.
-    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> {
-        (0..self.painted.len()).filter(|tile| self.painted[*tile])
+    /// Whether a tile is among them.
+    pub(super) fn contains(&self, tile: usize) -> bool {
+        self.painted[tile]
     }
 }

@@ -4,26 +4,29 @@
 //! Scene, View, Settings, Size  ->  FramePlan  ->  Renderer  ->  Picture
 //! ```
 
-mod attributes;
 mod bins;
 mod changes;
 mod clip;
-mod corners;
 pub mod coverage;
 mod edges;
 pub mod effects;
+mod faces;
 mod facing;
 mod frame;
-mod gather;
 mod hits;
+mod interpolate;
+mod items;
 mod large;
 mod light;
 mod lines;
 mod marks;
+mod painter;
+mod pick;
 mod plan;
 pub mod real;
 mod renderer;
 mod setup;
+mod single;
 mod small;
 mod stages;
 mod surface;

@@ -5,21 +5,23 @@
 //! given up.
 
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::bins::tiles_of;
 use super::changes::{Cause, Changes};
-use super::coverage::PixelBox;
 use super::effects::Light;
 use super::frame::Frame;
 use super::light::Lit;
+use super::painter::{Band, Painter, bounds_of};
 use super::plan::FramePlan;
 use super::stages::{Laps, Stages};
-use super::surface::Shader;
-use super::tile::{self, BLOCK_PIXELS, Seen, TILE, TILE_SIDE, Visibility};
+use super::surface::{Scenery, Shines};
+use super::tile::{self, Seen, TILE, TILE_SIDE, Visibility};
 use super::watch::Watch;
+use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Arithmetic, ItemId};
 
@@ -29,6 +31,9 @@ pub struct Renderer {
     level: Level,
     picture: Picture,
     frame: Frame,
+    /// For each tile of the picture the colour that fills it as a whole, where one is known to.
+    filled: Vec<Option<Color>>,
+    rooms: Rooms,
     /// The plan of the last picture that was finished.
     plan: Option<FramePlan>,
     /// Whether the picture is that one still: nothing has been painted over it.
@@ -63,9 +68,17 @@ impl Renderer {
     /// A renderer that uses instructions of this level. The pictures are the same on every level.
     #[must_use]
     pub fn new(level: Level) -> Self {
-        let (picture, frame) = (Picture::default(), Frame::default());
-        let stages = Stages::default();
-        Self { level, picture, frame, plan: None, finished: false, built: false, stages }
+        Self {
+            level,
+            picture: Picture::default(),
+            frame: Frame::default(),
+            filled: Vec::new(),
+            rooms: Rooms::default(),
+            plan: None,
+            finished: false,
+            built: false,
+            stages: Stages::default(),
+        }
     }
 
     /// Draws all that is planned, whatever was drawn before.
@@ -91,11 +104,13 @@ impl Renderer {
         let changes = self.changes(plan);
         self.built &= !changes.geometry;
         if !changes.is_nothing() {
-            self.picture.resize(plan.size);
+            self.resize(plan.size);
             self.finished = false;
-            if !self.built {
-                self.stages = self.frame.build(self.level, plan, &watch);
-            }
+            self.stages = if self.built {
+                Stages::default()
+            } else {
+                self.frame.build(self.level, plan, &watch)
+            };
             if !watch.is_given_up() {
                 match plan.arithmetic {
                     Arithmetic::F32 => self.draw::<f32>(plan, &changes, &watch),
@@ -109,6 +124,16 @@ impl Renderer {
         }
         self.plan = Some(plan.clone());
         Ok(changes)
+    }
+
+    /// Makes the picture as large as it has to be.
+    fn resize(&mut self, size: Size) {
+        if self.picture.size() != size {
+            self.picture.resize(size);
+            let [columns, rows] = [size.width, size.height].map(|n| n.div_ceil(TILE_SIDE));
+            self.filled.clear();
+            self.filled.resize(columns * rows, None);
+        }
     }
 
     /// What [`Self::redraw`] would draw again.
@@ -204,88 +229,79 @@ impl Renderer {
     }
 
     /// Draws tiles, each thread its own; a band of rows is locked only while a tile is copied.
-    fn draw<T: Light>(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+    fn draw<T: Painted>(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
         let mut laps = Laps::start();
-        let lit = Lit::<T>::new(plan, self.level);
+        let Room { shines, lit, painters } = T::room(&mut self.rooms);
+        shines.prepare(plan);
+        lit.prepare(plan, shines, self.level);
         self.stages.light = laps.lap();
         let (level, frame) = (self.level, &self.frame);
-        let bands = self.picture.pixels_mut().chunks_mut(plan.size.width * TILE_SIDE);
-        let bands: Vec<Mutex<&mut [[u8; 4]]>> = bands.map(Mutex::new).collect();
-        let tiles: Vec<usize> = changes.tiles.numbers().collect();
-        tiles.into_par_iter().with_max_len(1).for_each_init(
-            || Painter::<T>::new(plan, frame, &lit, level),
-            |painter, tile| {
-                if !watch.goes_on() {
+        let scenery = Scenery { level, plan, frame, lit, shines };
+        let Size { width, .. } = plan.size;
+        let columns = width.div_ceil(TILE_SIDE);
+        let bands: Vec<Mutex<Band<'_>>> = self
+            .picture
+            .pixels_mut()
+            .chunks_mut(width * TILE_SIDE)
+            .zip(self.filled.chunks_mut(columns))
+            .map(|(pixels, filled)| Mutex::new(Band { pixels, filled }))
+            .collect();
+        let tiles = bands.len() * columns;
+        let next = AtomicUsize::new(0);
+        let work = |painter: &mut Painter<T>| {
+            painter.begin();
+            loop {
+                let tile = next.fetch_add(1, Ordering::Relaxed);
+                if tile >= tiles || !watch.goes_on() {
                     return;
                 }
-                let bounds = bounds_of(tile, plan.size);
-                painter.paint(tile, bounds);
-                let band = &bands[usize::try_from(bounds.top / TILE).expect("not negative")];
-                let mut band = band.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                painter.copy(&mut band, bounds, plan.size.width);
-            },
-        );
+                if !changes.tiles.contains(tile) {
+                    continue;
+                }
+                let shows = painter.paint(&scenery, tile);
+                let band = bands[tile / columns].lock();
+                let mut band = band.unwrap_or_else(std::sync::PoisonError::into_inner);
+                if shows {
+                    painter.copy(tile, plan.size, &mut band);
+                } else {
+                    Painter::<T>::fill(tile, plan.size, plan.background, &mut band);
+                }
+            }
+        };
+        painters.resize_with(rayon::current_num_threads(), Painter::default);
+        painters.par_iter_mut().with_max_len(1).for_each(work);
         self.stages.tiles = laps.lap();
     }
 }
 
-/// The pixels of a tile; tiles are counted along rows.
-fn bounds_of(tile: usize, size: Size) -> PixelBox {
-    let [columns, _] = tiles_of(size);
-    let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
-    let (left, top) = (tile % columns * TILE, tile / columns * TILE);
-    let [right, bottom] = [size.width, size.height]
-        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
-    let picture = PixelBox { left: 0, top: 0, right, bottom };
-    PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
+/// What is kept from frame to frame for one kind of numbers.
+#[derive(Debug, Default)]
+struct Room<T> {
+    shines: Shines<T>,
+    lit: Lit<T>,
+    /// One for each thread.
+    painters: Vec<Painter<T>>,
 }
 
-/// Draws one tile after another.
-#[derive(Debug)]
-struct Painter<'a, T> {
-    plan: &'a FramePlan,
-    frame: &'a Frame,
-    level: Level,
-    shader: Shader<'a, T>,
-    visibility: Visibility,
-    pixels: Box<[[u8; 4]; TILE_SIDE * TILE_SIDE]>,
+#[derive(Debug, Default)]
+struct Rooms {
+    fast: Room<f32>,
+    exact: Room<f64>,
 }
 
-impl<'a, T: Light> Painter<'a, T> {
-    fn new(plan: &'a FramePlan, frame: &'a Frame, lit: &'a Lit<T>, level: Level) -> Self {
-        Self {
-            plan,
-            frame,
-            level,
-            shader: Shader::new(plan, frame, lit, level),
-            visibility: Visibility::default(),
-            pixels: Box::new([[0; 4]; TILE_SIDE * TILE_SIDE]),
-        }
-    }
+/// Numbers that pictures are painted in.
+trait Painted: Light {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self>;
+}
 
-    fn paint(&mut self, tile: usize, bounds: PixelBox) {
-        self.pixels.fill(self.plan.background.opaque());
-        if self.frame.is_empty(tile) {
-            return;
-        }
-        self.visibility.draw(self.level, self.plan, self.frame, (tile, bounds));
-        for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {
-            if !self.visibility.shows(block) {
-                continue;
-            }
-            let (words, corner) = self.visibility.block(block);
-            let [x, y] = [corner[0] - bounds.left, corner[1] - bounds.top]
-                .map(|i| usize::try_from(i).expect("not negative"));
-            self.shader.block(words, corner, &mut self.pixels[..], y * TILE_SIDE + x);
-        }
+impl Painted for f32 {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self> {
+        &mut rooms.fast
     }
+}
 
-    /// Copies the tile into its band of the picture.
-    fn copy(&self, band: &mut [[u8; 4]], bounds: PixelBox, width: usize) {
-        let [left, columns] = [bounds.left, bounds.right - bounds.left]
-            .map(|i| usize::try_from(i).expect("not negative"));
-        for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.chunks_mut(width)) {
-            to[left..left + columns].copy_from_slice(&from[..columns]);
-        }
+impl Painted for f64 {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self> {
+        &mut rooms.exact
     }
 }

@@ -141,17 +141,21 @@ impl Visibility {
         (self.written | self.whole) >> block & 1 != 0
     }
 
-    /// The words of a block that shows something, row by row, and its upper left pixel. Where a
-    /// triangle covers it as a whole, the words say which, but not the depth.
-    pub(super) fn block(&mut self, block: usize) -> (&[u64; BLOCK_PIXELS], [i32; 2]) {
-        let words = block_of(&mut self.words, block);
-        if self.whole >> block & 1 != 0 {
-            words.fill(word(0.0, self.large[self.shown[block] as usize].number));
-        }
+    /// The triangle that a block shows, where one is known to cover it as a whole; its words are of
+    /// no meaning then.
+    pub(super) fn whole(&self, block: usize) -> Option<u32> {
+        (self.whole >> block & 1 != 0).then(|| self.large[self.shown[block] as usize].number)
+    }
+
+    /// The words of a block that shows something, row by row.
+    pub(super) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
+        &self.words.as_chunks().0[block]
+    }
+
+    /// The upper left pixel of a block.
+    pub(super) fn corner(&self, block: usize) -> [i32; 2] {
         let at = i32::try_from(block).expect("a tile has few blocks");
-        let corner =
-            [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK];
-        (words, corner)
+        [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
     }
 
     /// The word of a pixel of the tile.

@@ -136,6 +136,7 @@ pub struct Mesh {
     edges: OnceLock<Edges>,
     order: OnceLock<DrawOrder>,
     edge_order: OnceLock<EdgeOrder>,
+    centres: OnceLock<Vec<[f32; 3]>>,
 }
 
 /// Why a mesh cannot be made.
@@ -221,6 +222,7 @@ impl Mesh {
             edges: OnceLock::new(),
             order: OnceLock::new(),
             edge_order: OnceLock::new(),
+            centres: OnceLock::new(),
         })
     }
 
@@ -290,6 +292,15 @@ impl Mesh {
     pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
         let corners = self.polygon(polygon).iter();
         mean(corners.map(|corner| dvec3(self.positions[corner.position as usize])))
+    }
+
+    /// The means of the corners of all polygons. Found when first asked for.
+    #[must_use]
+    pub fn polygon_centres(&self) -> &[[f32; 3]] {
+        self.centres.get_or_init(|| {
+            let polygons = 0..index(self.polygon_count());
+            polygons.map(|polygon| self.polygon_centre(polygon).as_vec3().to_array()).collect()
+        })
     }
 
     /// The triangles of all polygons, in the order of the polygons.
