@@ -5,7 +5,7 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::edit::{Stroke, place};
 use marraztu::lab::prove::dice::Dice;
 use marraztu::lab::prove::pictures::levels;
-use marraztu::render::real::Real as _;
+use marraztu::render::real::{Power, Real as _};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Aim, Arithmetic, Command, ItemId, Light, LightAt, LightId, LightKind, List, Material,
@@ -277,9 +277,9 @@ fn case_45_powers_of_what_has_none_are_nothing() {
     let mut wrong = 0;
     for exponent in [0.0, 0.5, 5.0, 76.8, 1000.0] {
         for x in [0.0_f32, -0.0, -1e-45, -0.5, -1.0, f32::NAN, f32::NEG_INFINITY] {
-            wrong += usize::from(x.power(exponent, -24.0) != 0.0);
+            wrong += usize::from(x.power(&Power::new(exponent, -24.0)) != 0.0);
             // The reference is clamped after it: NaN is no light.
-            wrong += usize::from(f64::from(x).power(exponent, -24.0).max(0.0) != 0.0);
+            wrong += usize::from(f64::from(x).power(&Power::new(exponent, -24.0)).max(0.0) != 0.0);
         }
     }
     // In a picture: Ns of 0 is a highlight of one strength wherever R.V is above 0, and none where a
@@ -315,7 +315,7 @@ fn case_46_no_power_is_subnormal() {
     for exponent in [5.0, 76.8, 128.0, 1000.0] {
         for i in 0..=20_000_u16 {
             let x = f32::from(i) / 20_000.0;
-            let power = x.power(exponent, -10.0);
+            let power = x.power(&Power::new(exponent, -10.0));
             // 0, or above the floor but for rounding.
             small += usize::from(power != 0.0 && power < 0.999 * 2.0_f32.powi(-10));
             naive += usize::from(x.powf(exponent as f32).is_subnormal());
