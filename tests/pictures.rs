@@ -198,7 +198,7 @@ fn what_is_nearer_hides_what_is_farther_whatever_the_order() {
 fn a_wall_looks_the_same_whether_or_not_there_is_something_behind_it() {
     // Where a triangle is alone in a tile, nobody asks what is seen at its pixels.
     let wall = (square(), at(400.0, 3.0, -7.0, 0.0));
-    let (alone, view) = scene(&[wall.clone()]);
+    let (alone, view) = scene(std::slice::from_ref(&wall));
     let (both, _) = scene(&[wall, (ball(6), at(100.0, 0.0, 0.0, -300.0))]);
     let without_lamps_of_objects = |mut scene: Scene| {
         switch(&mut scene, 3, false);
