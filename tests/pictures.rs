@@ -310,7 +310,7 @@ fn a_pixel_knows_whose_it_is() {
     let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(200, 200));
     let mut renderer = Renderer::default();
     renderer.render(&plan);
-    let item = |x: usize, y: usize| renderer.hit(x, y).map(|hit| (hit.item, hit.polygon));
+    let mut item = |x: usize, y: usize| renderer.hit(x, y).map(|hit| (hit.item, hit.polygon));
     assert_eq!(item(52, 100), Some((ItemId::Object(FIRST), 1)));
     assert_eq!(item(148, 100), Some((ItemId::Object(SECOND), 1)));
     assert_eq!(item(100, 20), None);

@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::job::Job;
 use super::keys::Keys;
+use super::prove::Prove;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::scene::{
@@ -56,6 +57,8 @@ pub(crate) enum Headless {
     Keys(Keys),
     /// Measures one drawing job in a form that other renderers share
     Job(Job),
+    /// Puts what is claimed of the program to the proof, in any number of cases
+    Prove(Prove),
 }
 
 /// A picture, and the file that it goes to.

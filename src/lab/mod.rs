@@ -1,3 +1,4 @@
-//! What drawing costs in time: measured, never guessed.
+//! What drawing costs in time, and what it is proved to do: measured, never guessed.
 
 pub mod job;
+pub mod prove;

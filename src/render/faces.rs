@@ -9,7 +9,7 @@ use fearless_simd::{
 };
 use glam::DVec3;
 
-use super::clip::{BEYOND, Screen, ScreenVertex, faces_observer, homogeneous_weights};
+use super::clip::{Screen, ScreenVertex, faces_observer, homogeneous_weights};
 use super::coverage::{SUBPIXELS, Snapped, Triangle, doubled_area};
 use super::items::Items;
 use super::pick::SLOTS;
@@ -256,7 +256,7 @@ impl Faced for f64 {
     fn prepare(_: Level, faces: &mut Faces<Self>) {
         faces.cut = 0;
         for slot in 0..faces.count {
-            let beyond = faces.corners(slot).iter().any(|corner| corner.x == BEYOND);
+            let beyond = faces.corners(slot).iter().any(|corner| corner.x == ScreenVertex::BEYOND);
             faces.cut |= u64::from(beyond) << slot;
         }
         faces.wide = !faces.cut;
@@ -282,7 +282,9 @@ fn prepare<S: Simd>(simd: S, faces: &mut Faces<f32>) {
         for (row, w) in faces.by_w.iter_mut().zip([w0, w1, w2]) {
             w.bitcast::<f32x16<S>>().store_slice(&mut row[at..at + 16]);
         }
-        let beyond = x0.simd_eq(BEYOND) | x1.simd_eq(BEYOND) | x2.simd_eq(BEYOND);
+        let beyond = x0.simd_eq(ScreenVertex::BEYOND)
+            | x1.simd_eq(ScreenVertex::BEYOND)
+            | x2.simd_eq(ScreenVertex::BEYOND);
         let (ux, uy, vx, vy) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
         let rough = ux.to_float::<f32x16<S>>() * vy.to_float::<f32x16<S>>()
             - uy.to_float::<f32x16<S>>() * vx.to_float::<f32x16<S>>();

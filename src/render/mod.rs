@@ -5,13 +5,18 @@
 //! ```
 
 mod bins;
+mod changes;
 mod clip;
 pub mod coverage;
+mod edges;
 pub mod effects;
 mod faces;
+mod facing;
 mod frame;
+mod hits;
 mod interpolate;
 mod items;
+mod large;
 mod light;
 mod lines;
 mod marks;
@@ -22,10 +27,15 @@ pub mod real;
 mod renderer;
 mod setup;
 mod single;
+mod small;
+mod stages;
 mod surface;
 mod texture;
 mod tile;
 mod vertices;
+mod watch;
 
+pub use changes::{Cause, Change, Changes};
 pub use plan::{FramePlan, Skipped};
-pub use renderer::{Hit, Renderer, Stages};
+pub use renderer::{GivenUp, Hit, Renderer};
+pub use stages::Stages;

@@ -4,11 +4,10 @@
 //! for its tiles. A tile that showed nothing but the background and still does is not touched.
 
 use super::bins::tiles_of;
-use super::coverage::{PixelBox, Triangle};
+use super::coverage::PixelBox;
 use super::effects::Light;
-use super::frame::Frame;
 use super::surface::{Scenery, Shader};
-use super::tile::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
+use super::tile::{BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
 use crate::base::color::Color;
 use crate::base::image::Size;
 
@@ -36,20 +35,6 @@ fn place_of([x, y]: [i32; 2], bounds: PixelBox) -> usize {
     let [x, y] =
         [x - bounds.left, y - bounds.top].map(|i| usize::try_from(i).expect("in the tile"));
     y * TILE_SIDE + x
-}
-
-/// The number of the only triangle of a tile, where there is only one and it covers all of it: then
-/// it needs not be asked pixel by pixel what is seen.
-fn alone_in(frame: &Frame, tile: usize, bounds: PixelBox) -> Option<u32> {
-    let large = frame.alone(tile)?;
-    let triangle = Triangle::new(large.corners.map(|corner| corner.at()))?;
-    let least = triangle.least();
-    let (right, bottom) = (bounds.right - 1, bounds.bottom - 1);
-    let corners = [[bounds.left, bounds.top], [right, bounds.top], [bounds.left, bottom]];
-    let covers = |[x, y]: [i32; 2]| {
-        triangle.edges_at(x, y).iter().zip(least).all(|(edge, least)| *edge >= least)
-    };
-    (corners.into_iter().chain([[right, bottom]]).all(covers)).then_some(large.number)
 }
 
 /// Draws one tile after another.
@@ -83,30 +68,24 @@ impl<T: Light> Painter<T> {
             return false;
         }
         let bounds = bounds_of(tile, plan.size);
-        if let Some(number) = alone_in(frame, tile, bounds) {
-            self.paint_whole(scenery, number, bounds);
-            return true;
-        }
         self.visibility.draw(level, plan, frame, (tile, bounds));
         self.pixels.fill(plan.background.opaque());
         let mut shows = false;
         for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {
-            let (words, corner) = self.visibility.block(block);
-            let at = place_of(corner, bounds);
-            shows |= self.shader.block(scenery, words, corner, &mut self.pixels[..], at);
-        }
-        shows
-    }
-
-    /// Paints a tile that one triangle covers as a whole.
-    fn paint_whole(&mut self, scenery: &Scenery<'_, T>, number: u32, bounds: PixelBox) {
-        for top in (bounds.top..bounds.bottom).step_by(BLOCK as usize) {
-            for left in (bounds.left..bounds.right).step_by(BLOCK as usize) {
-                let at = place_of([left, top], bounds);
-                let pixels = &mut self.pixels[..];
-                self.shader.whole_block(scenery, number, [left, top], pixels, at);
+            if !self.visibility.shows(block) {
+                continue;
+            }
+            let corner = self.visibility.corner(block);
+            let (tile, at) = (&mut self.pixels[..], place_of(corner, bounds));
+            if let Some(number) = self.visibility.whole(block) {
+                self.shader.whole_block(scenery, number, corner, tile, at);
+                shows = true;
+            } else {
+                let words = self.visibility.block(block);
+                shows |= self.shader.block(scenery, words, corner, tile, at);
             }
         }
+        shows
     }
 
     /// Copies what was painted into its band of the picture.

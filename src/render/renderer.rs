@@ -1,20 +1,26 @@
 //! Runs plans: does, and asks no setting.
+//!
+//! A picture is drawn as a whole, or what has changed of the last one is drawn again, to the same
+//! bytes. What is picked is asked of the last picture that was finished, also after a frame that was
+//! given up.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
 
 use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::bins::tiles_of;
+use super::changes::{Cause, Changes};
 use super::effects::Light;
 use super::frame::Frame;
 use super::light::Lit;
 use super::painter::{Band, Painter, bounds_of};
 use super::plan::FramePlan;
+use super::stages::{Laps, Stages};
 use super::surface::{Scenery, Shines};
 use super::tile::{self, Seen, TILE, TILE_SIDE, Visibility};
+use super::watch::Watch;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Arithmetic, ItemId};
@@ -28,21 +34,18 @@ pub struct Renderer {
     /// For each tile of the picture the colour that fills it as a whole, where one is known to.
     filled: Vec<Option<Color>>,
     rooms: Rooms,
-    stages: Stages,
-    /// The plan of the picture, for picking.
+    /// The plan of the last picture that was finished.
     plan: Option<FramePlan>,
+    /// Whether the picture is that one still: nothing has been painted over it.
+    finished: bool,
+    /// Whether the frame holds what is on that picture.
+    built: bool,
+    stages: Stages,
 }
 
-/// Where the time of a frame went.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stages {
-    /// Vertices to the screen, triangles and lines into bins.
-    pub geometry: Duration,
-    /// Light that is evaluated before any pixel.
-    pub light: Duration,
-    /// What is seen, its colours, and the copy into the picture.
-    pub tiles: Duration,
-}
+/// A frame was given up before it was finished: something else was wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GivenUp;
 
 /// What is seen at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,29 +74,84 @@ impl Renderer {
             frame: Frame::default(),
             filled: Vec::new(),
             rooms: Rooms::default(),
-            stages: Stages::default(),
             plan: None,
+            finished: false,
+            built: false,
+            stages: Stages::default(),
         }
     }
 
-    /// Draws what is planned.
+    /// Draws all that is planned, whatever was drawn before.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
-        let begin = Instant::now();
-        if self.picture.size() != plan.size {
-            self.picture.resize(plan.size);
-            let [columns, rows] =
-                [plan.size.width, plan.size.height].map(|n| n.div_ceil(TILE_SIDE));
+        self.finished = false;
+        self.frame.forget();
+        self.redraw(plan, &|| true).expect("it is always wanted");
+        &self.picture
+    }
+
+    /// Draws again what another plan changes of the last picture, and says what that was. The picture
+    /// is the one that [`Self::render`] draws.
+    ///
+    /// # Errors
+    /// Where `wanted`, which every thread asks between tiles, says no: then the picture is of no
+    /// meaning until the next one is finished.
+    pub fn redraw(
+        &mut self,
+        plan: &FramePlan,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Changes, GivenUp> {
+        let watch = Watch::new(wanted);
+        let changes = self.changes(plan);
+        self.built &= !changes.geometry;
+        if !changes.is_nothing() {
+            self.resize(plan.size);
+            self.finished = false;
+            self.stages = if self.built {
+                Stages::default()
+            } else {
+                self.frame.build(self.level, plan, &watch)
+            };
+            if !watch.is_given_up() {
+                match plan.arithmetic {
+                    Arithmetic::F32 => self.draw::<f32>(plan, &changes, &watch),
+                    Arithmetic::F64 => self.draw::<f64>(plan, &changes, &watch),
+                }
+            }
+            if watch.is_given_up() {
+                return Err(GivenUp);
+            }
+            (self.finished, self.built) = (true, true);
+        }
+        self.plan = Some(plan.clone());
+        Ok(changes)
+    }
+
+    /// Makes the picture as large as it has to be.
+    fn resize(&mut self, size: Size) {
+        if self.picture.size() != size {
+            self.picture.resize(size);
+            let [columns, rows] = [size.width, size.height].map(|n| n.div_ceil(TILE_SIDE));
             self.filled.clear();
             self.filled.resize(columns * rows, None);
         }
-        self.frame.build(self.level, plan);
-        self.stages.geometry = begin.elapsed();
-        match plan.arithmetic {
-            Arithmetic::F32 => self.draw::<f32>(plan),
-            Arithmetic::F64 => self.draw::<f64>(plan),
+    }
+
+    /// What [`Self::redraw`] would draw again.
+    #[must_use]
+    pub fn changes(&self, plan: &FramePlan) -> Changes {
+        match &self.plan {
+            Some(before) if self.finished => Changes::between(before, plan),
+            _ => Changes::all(Cause::First, plan.size),
         }
-        self.plan = Some(plan.clone());
-        &self.picture
+    }
+
+    /// Brings what the last finished picture shows onto the screen again, where something else was
+    /// begun since.
+    fn build_again(&mut self) {
+        if let (false, Some(plan)) = (self.built, &self.plan) {
+            self.frame.build(self.level, plan, &Watch::new(&|| true));
+            self.built = true;
+        }
     }
 
     /// The picture that was drawn last.
@@ -116,9 +174,10 @@ impl Renderer {
 
     /// What the last picture shows in column `x` of row `y`; `None` for the background.
     #[must_use]
-    pub fn hit(&self, x: usize, y: usize) -> Option<Hit> {
+    pub fn hit(&mut self, x: usize, y: usize) -> Option<Hit> {
+        self.build_again();
         let plan = self.plan.as_ref()?;
-        let Size { width, height } = self.picture.size();
+        let Size { width, height } = plan.size;
         if x >= width || y >= height {
             return None;
         }
@@ -127,17 +186,18 @@ impl Renderer {
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
         let mut visibility = Visibility::default();
         visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
-        let word = visibility.word(x, y);
+        let word = visibility.word(self.level, x, y);
         let (draw, polygon) = self.seen(plan, word)?;
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth: tile::depth(word) })
     }
 
     /// Where the last picture shows an item: a flag for each pixel, row by row from the top.
     #[must_use]
-    pub fn pixels_of(&self, item: ItemId) -> Vec<bool> {
-        let size = self.picture.size();
+    pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
+        self.build_again();
+        let Some(plan) = &self.plan else { return Vec::new() };
+        let size = plan.size;
         let mut pixels = vec![false; size.area()];
-        let Some(plan) = &self.plan else { return pixels };
         let [columns, rows] = tiles_of(plan.size);
         let mut visibility = Visibility::default();
         for tile in 0..usize::try_from(columns * rows).expect("not negative") {
@@ -146,7 +206,7 @@ impl Renderer {
             for (y, x) in (bounds.top..bounds.bottom)
                 .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
             {
-                let seen = self.seen(plan, visibility.word(x, y));
+                let seen = self.seen(plan, visibility.word(self.level, x, y));
                 let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
                 pixels[y * size.width + x] =
                     seen.is_some_and(|(draw, _)| plan.draws[draw as usize].item == item);
@@ -164,23 +224,17 @@ impl Renderer {
                 let mesh = &plan.draws[draw as usize].model.mesh;
                 Some((draw, mesh.triangles()[(number - start.number) as usize].polygon))
             }
-            Seen::Line(number) => {
-                let line = &self.frame.lines[number as usize];
-                Some((line.draw, line.polygon))
-            }
+            Seen::Line(line) => self.frame.line_seen(plan, line),
         }
     }
 
-    /// Draws the tiles, each thread its own; a band of rows is locked only while a tile is copied.
-    fn draw<T: Painted>(&mut self, plan: &FramePlan) {
-        let begin = Instant::now();
-        let room = T::room(&mut self.rooms);
-        room.shines.prepare(plan);
-        room.lit.prepare(plan, &room.shines, self.level);
-        self.stages.light = begin.elapsed();
-
-        let begin = Instant::now();
-        let Room { shines, lit, painters } = room;
+    /// Draws tiles, each thread its own; a band of rows is locked only while a tile is copied.
+    fn draw<T: Painted>(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+        let mut laps = Laps::start();
+        let Room { shines, lit, painters } = T::room(&mut self.rooms);
+        shines.prepare(plan);
+        lit.prepare(plan, shines, self.level);
+        self.stages.light = laps.lap();
         let (level, frame) = (self.level, &self.frame);
         let scenery = Scenery { level, plan, frame, lit, shines };
         let Size { width, .. } = plan.size;
@@ -198,8 +252,11 @@ impl Renderer {
             painter.begin();
             loop {
                 let tile = next.fetch_add(1, Ordering::Relaxed);
-                if tile >= tiles {
+                if tile >= tiles || !watch.goes_on() {
                     return;
+                }
+                if !changes.tiles.contains(tile) {
+                    continue;
                 }
                 let shows = painter.paint(&scenery, tile);
                 let band = bands[tile / columns].lock();
@@ -213,7 +270,7 @@ impl Renderer {
         };
         painters.resize_with(rayon::current_num_threads(), Painter::default);
         painters.par_iter_mut().with_max_len(1).for_each(work);
-        self.stages.tiles = begin.elapsed();
+        self.stages.tiles = laps.lap();
     }
 }
 

@@ -110,9 +110,8 @@ impl<T: Light> Shader<T> {
         while lines != 0 {
             let i = lines.trailing_zeros() as usize;
             lines &= lines - 1;
-            if let Seen::Line(number) = seen(words[i]) {
-                let color = scenery.frame.lines[number as usize].color;
-                tile[at + place(i)] = color;
+            if let Seen::Line(line) = seen(words[i]) {
+                tile[at + place(i)] = scenery.frame.line_color(scenery.plan, line);
             }
         }
         if shown.triangles == 0 {

@@ -10,9 +10,9 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::DrawOrder;
 use super::mesh_points::{check, points_and_corners};
 use super::triangulate::triangulate;
+use super::{DrawOrder, EdgeOrder};
 use crate::base::math;
 
 /// In place of an index: there is none.
@@ -135,6 +135,7 @@ pub struct Mesh {
     mean: DVec3,
     edges: OnceLock<Edges>,
     order: OnceLock<DrawOrder>,
+    edge_order: OnceLock<EdgeOrder>,
     centres: OnceLock<Vec<[f32; 3]>>,
 }
 
@@ -220,6 +221,7 @@ impl Mesh {
             has_file_normals,
             edges: OnceLock::new(),
             order: OnceLock::new(),
+            edge_order: OnceLock::new(),
             centres: OnceLock::new(),
         })
     }
@@ -343,6 +345,12 @@ impl Mesh {
     #[must_use]
     pub fn draw_order(&self) -> &DrawOrder {
         self.order.get_or_init(|| DrawOrder::new(self))
+    }
+
+    /// The edges in the order in which they are drawn fastest. Found when first asked for.
+    #[must_use]
+    pub fn edge_order(&self) -> &EdgeOrder {
+        self.edge_order.get_or_init(|| EdgeOrder::new(self))
     }
 
     /// The sides of all polygons, each once. Found when first asked for.

@@ -16,6 +16,16 @@ pub struct DrawTriangle {
     pub number: u32,
 }
 
+impl DrawTriangle {
+    /// Its numbers side by side.
+    #[inline(always)]
+    #[must_use]
+    pub const fn row(&self) -> [i32; 4] {
+        let [a, b, c] = self.vertices;
+        [a.cast_signed(), b.cast_signed(), c.cast_signed(), self.number.cast_signed()]
+    }
+}
+
 /// The triangles and vertices of a mesh in the order in which they are drawn fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawOrder {
