@@ -178,7 +178,7 @@ impl Single for f32 {
 
     #[inline(always)]
     fn halved_from(self, from: i32) -> Self {
-        Self::from_bits((from - (self.to_bits().cast_signed() >> 1)).cast_unsigned())
+        Self::from_bits(from.wrapping_sub(self.to_bits().cast_signed() >> 1).cast_unsigned())
     }
 
     #[inline(always)]
