@@ -93,15 +93,8 @@ impl Renderer {
         if !changes.is_nothing() {
             self.picture.resize(plan.size);
             self.finished = false;
-            if !self.built {
-                self.stages = self.frame.build(self.level, plan, &watch);
-            }
-            if !watch.is_given_up() {
-                match plan.arithmetic {
-                    Arithmetic::F32 => self.draw::<f32>(plan, &changes, &watch),
-                    Arithmetic::F64 => self.draw::<f64>(plan, &changes, &watch),
-                }
-            }
+            // From one of the threads that draw, so that the caller sleeps and wakes once a frame.
+            rayon::scope(|_| self.draw_changes(plan, &changes, &watch));
             if watch.is_given_up() {
                 return Err(GivenUp);
             }
@@ -109,6 +102,18 @@ impl Renderer {
         }
         self.plan = Some(plan.clone());
         Ok(changes)
+    }
+
+    fn draw_changes(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+        if !self.built {
+            self.stages = self.frame.build(self.level, plan, watch);
+        }
+        if !watch.is_given_up() {
+            match plan.arithmetic {
+                Arithmetic::F32 => self.draw::<f32>(plan, changes, watch),
+                Arithmetic::F64 => self.draw::<f64>(plan, changes, watch),
+            }
+        }
     }
 
     /// What [`Self::redraw`] would draw again.
