@@ -49,6 +49,7 @@ pub(super) struct Frame {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Start {
     vertex: usize,
+    vertex_end: usize,
     /// The number of its first triangle.
     pub(super) number: u32,
     /// The number after that of its last.
@@ -138,6 +139,7 @@ impl Frame {
             start.number = start.end;
             start.end += number(mesh.draw_order().triangles.len());
             vertex += mesh.draw_order().x.len();
+            start.vertex_end = vertex;
             outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
             self.starts.push(start);
         }
@@ -150,20 +152,34 @@ impl Frame {
         self.outlines.resize_with(outline, AtomicU8::default);
     }
 
-    /// Vertices to the screen.
+    /// Vertices to the screen, all draws' together.
     fn place(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
+        let (starts, held) = (&self.starts, &self.held);
+        let work = |(i, mut out): (usize, &mut [ScreenVertex])| {
+            let mut at = i * CHUNK;
+            let mut next = starts.partition_point(|start| start.vertex_end <= at);
+            while !out.is_empty() && watch.goes_on() {
+                let (draw, start) = (&plan.draws[next], starts[next]);
+                let (own, others) = out.split_at_mut(out.len().min(start.vertex_end - at));
+                if held[next].is_none() {
+                    let screen = Screen::new(draw.clip_from_object, plan.size);
+                    let order = draw.model.mesh.draw_order();
+                    vertices::transform(level, &screen, order, at - start.vertex, own);
+                }
+                at += own.len();
+                (out, next) = (others, next + 1);
+            }
+        };
+        if self.vertices.len() <= FEW {
+            self.vertices.chunks_mut(CHUNK).enumerate().for_each(work);
+        } else {
+            self.vertices.par_chunks_mut(CHUNK).enumerate().for_each(work);
+        }
+        if watch.is_given_up() {
+            return;
+        }
         for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
-            if held.is_some() {
-                continue;
-            }
-            if !watch.goes_on() {
-                return;
-            }
-            let order = draw.model.mesh.draw_order();
-            let screen = Screen::new(draw.clip_from_object, plan.size);
-            let out = &mut self.vertices[start.vertex..][..order.x.len()];
-            vertices::transform(level, &screen, order, out);
-            *held = Some(Held::new(draw, plan.size, start.vertex));
+            held.get_or_insert_with(|| Held::new(draw, plan.size, start.vertex));
         }
     }
 

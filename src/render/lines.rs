@@ -442,4 +442,26 @@ mod tests {
         let first = drawn([a, b]);
         assert!(drawn([b, c]).iter().all(|pixel| !first.contains(pixel)));
     }
+
+    #[test]
+    fn every_pixel_of_a_long_line_lies_in_one_of_its_stretches() {
+        let mut state = 9_u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            ((state >> 33) % (500 * 256)) as i32 - 100 * 256
+        };
+        let picture = PixelBox { left: 0, top: 0, right: 320, bottom: 256 };
+        for i in 0..2000 {
+            let ends = [0, 0].map(|_| ScreenVertex::new(Snapped { x: random(), y: random() }, 0.5));
+            let line = ScreenLine { ends, number: 0, nearer: 0 };
+            let width = 1 + i % 2;
+            let boxes: Vec<PixelBox> = stretches(&line, width, picture).collect();
+            pixels(&line, width, picture, |x, y, _| {
+                let holds = |own: &&PixelBox| {
+                    (own.left..own.right).contains(&x) && (own.top..own.bottom).contains(&y)
+                };
+                assert_eq!(boxes.iter().filter(holds).count(), 1, "{x}, {y}: {ends:?}");
+            });
+        }
+    }
 }

@@ -106,17 +106,8 @@ impl Renderer {
         if !changes.is_nothing() {
             self.resize(plan.size);
             self.finished = false;
-            self.stages = if self.built {
-                Stages::default()
-            } else {
-                self.frame.build(self.level, plan, &watch)
-            };
-            if !watch.is_given_up() {
-                match plan.arithmetic {
-                    Arithmetic::F32 => self.draw::<f32>(plan, &changes, &watch),
-                    Arithmetic::F64 => self.draw::<f64>(plan, &changes, &watch),
-                }
-            }
+            // From one of the threads that draw, so that the caller sleeps and wakes once a frame.
+            rayon::scope(|_| self.draw_changes(plan, &changes, &watch));
             if watch.is_given_up() {
                 return Err(GivenUp);
             }
@@ -133,6 +124,17 @@ impl Renderer {
             let [columns, rows] = [size.width, size.height].map(|n| n.div_ceil(TILE_SIDE));
             self.filled.clear();
             self.filled.resize(columns * rows, None);
+        }
+    }
+
+    fn draw_changes(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+        self.stages =
+            if self.built { Stages::default() } else { self.frame.build(self.level, plan, watch) };
+        if !watch.is_given_up() {
+            match plan.arithmetic {
+                Arithmetic::F32 => self.draw::<f32>(plan, changes, watch),
+                Arithmetic::F64 => self.draw::<f64>(plan, changes, watch),
+            }
         }
     }
 

@@ -444,4 +444,49 @@ mod tests {
             }
         }
     }
+
+    /// Squares that cover blocks as a whole, in few depths, some of them tilted.
+    #[test]
+    fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
+        let mut random = numbers(5);
+        for _ in 0..300 {
+            let triangles: Vec<LargeTriangle> = (0..6)
+                .map(|number| {
+                    let depth = random(4) as f32 / 4.0;
+                    let tilt = random(2) as f32 / 8.0;
+                    let mut corner = |depth: f32| {
+                        let [x, y] = [0, 0].map(|_| random(120) * 256 - 20 * 256);
+                        ScreenVertex::new(Snapped { x, y }, depth)
+                    };
+                    let corners = [corner(depth), corner(depth), corner(depth + tilt)];
+                    LargeTriangle { corners, number, cutout: false }
+                })
+                .collect();
+            let mut want = vec![0; PIXELS];
+            let tile = PixelBox { left: 0, top: 0, right: TILE, bottom: TILE };
+            let mut visibility = Visibility::default();
+            visibility.clear(tile);
+            for large in &triangles {
+                dispatch!(Level::new(), simd => visibility.draw_large(simd, large));
+                let corners = large.corners.map(|corner| corner.at());
+                let Some(triangle) = Triangle::new(corners) else { continue };
+                let seen = Large::new(large, &triangle, [0, 0]);
+                triangle.covered(tile, |pixel| {
+                    let word = word(seen.depth(pixel.edges), large.number);
+                    let old = &mut want[place(pixel.x, pixel.y)];
+                    *old = word.max(*old);
+                });
+            }
+            for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
+                let (block, pixel) = (place(x, y) / BLOCK_PIXELS, place(x, y) % BLOCK_PIXELS);
+                let shows = visibility.shows(block);
+                let got = if shows { visibility.block(block).0[pixel] } else { 0 };
+                assert_eq!(seen(got), seen(want[place(x, y)]), "{x}, {y}: {triangles:?}");
+            }
+            for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
+                let got = visibility.word(Level::new(), x, y);
+                assert_eq!(got, want[place(x, y)], "{x}, {y}: {triangles:?}");
+            }
+        }
+    }
 }

@@ -1,34 +1,24 @@
-//! All vertices of a mesh to the screen.
+//! Vertices of a mesh to the screen, and back in sixteens.
 //!
 //! The loop is plain arithmetic over rows of coordinates, compiled for each set of instructions: it
 //! does to eight vertices at once what [`Screen::vertex`] does to one, with the same bits.
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, dispatch, i32x4, i32x16};
-use rayon::prelude::*;
 
 use super::clip::{Screen, ScreenVertex};
 use crate::scene::DrawOrder;
 
-/// Vertices that one thread takes at a time.
-const CHUNK: usize = 2048;
-
-/// Brings the vertices of a mesh onto the screen.
+/// Brings vertices of a mesh onto the screen, from number `first` on.
 pub(super) fn transform(
     level: Level,
     screen: &Screen,
     order: &DrawOrder,
+    first: usize,
     out: &mut [ScreenVertex],
 ) {
-    let work = |(i, out): (usize, &mut [ScreenVertex])| {
-        let rows = i * CHUNK..i * CHUNK + out.len();
-        let [x, y, z] = [&order.x, &order.y, &order.z].map(|row| &row[rows.clone()]);
-        dispatch!(level, simd => chunk(simd, screen, [x, y, z], out));
-    };
-    if out.len() <= CHUNK {
-        work((0, out));
-    } else {
-        out.par_chunks_mut(CHUNK).enumerate().for_each(work);
-    }
+    let rows = first..first + out.len();
+    let [x, y, z] = [&order.x, &order.y, &order.z].map(|row| &row[rows.clone()]);
+    dispatch!(level, simd => chunk(simd, screen, [x, y, z], out));
 }
 
 #[inline(always)]

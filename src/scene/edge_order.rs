@@ -57,3 +57,47 @@ impl EdgeOrder {
         Self { edges, triangles: (0..mesh.polygon_count()).all(one) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{MeshSource, Part, SourceCorner};
+
+    /// A roof of two triangles over a square.
+    #[test]
+    fn an_edge_keeps_its_number_its_ends_and_its_polygons() {
+        let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
+        let mesh = Mesh::new(MeshSource {
+            positions: vec![
+                [0.0, 0.0, 0.0],
+                [2.0, 0.0, 0.0],
+                [2.0, 2.0, 0.0],
+                [0.0, 2.0, 0.0],
+                [1.0, 1.0, 1.0],
+            ],
+            corners: [0, 1, 2, 3, 1, 0, 4, 2, 1, 4].map(corner).to_vec(),
+            arities: vec![4, 3, 3],
+            polygon_parts: vec![0; 3],
+            parts: vec![Part { name: "roof".to_owned(), material: None }],
+            ..MeshSource::default()
+        })
+        .unwrap();
+        let order = mesh.edge_order();
+        assert!(!order.triangles, "one is a square");
+        assert_eq!(order.edges.len(), mesh.edges().len());
+        let mut numbers = Vec::new();
+        for edge in &order.edges {
+            let own = &mesh.edges()[edge.number as usize];
+            numbers.push(edge.number);
+            for (vertex, end) in edge.vertices.into_iter().zip(own.ends) {
+                let place = mesh.positions()[end as usize].map(f64::from);
+                assert_eq!(mesh.draw_order().position(vertex), place);
+            }
+            let mut polygons = edge.polygons.to_vec();
+            polygons.dedup();
+            assert_eq!(polygons, mesh.edge_polygons(own));
+        }
+        numbers.sort_unstable();
+        assert!(numbers.into_iter().eq(0..7));
+    }
+}
