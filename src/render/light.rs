@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::effects::{BATCH, Batch, Light, Rows, load, store};
 use super::plan::{Back, Draw, Eye, FramePlan, Pipeline};
-use super::real::{Kernel, Machine, Triple};
+use super::real::{Kernel, Machine, Real, Triple};
 use super::surface::run;
 use crate::scene::{LightAt, Normals, dvec3};
 
@@ -139,6 +139,9 @@ fn polygons_of_corners(draw: &Draw) -> Vec<u32> {
     polygons
 }
 
+/// How far off a vertex is lit, in units of view space.
+const FARTHEST: f64 = 1e15;
+
 /// From object space to view space. What is far from the origin is first brought near it, so that
 /// f32 keeps its digits.
 #[derive(Clone, Copy, Debug)]
@@ -186,7 +189,12 @@ impl<T: Light> Kernel<T> for Place<'_, T> {
                 a.times(x).plus(b.times(y)).plus(c.times(z))
             };
             let near = load(machine, &batch.position, at).minus(middle);
-            let position = turn(to_view.linear, near).plus(origin);
+            // What lies beyond everything that can be seen is brought near enough for its distance to
+            // a lamp to have a square.
+            let (low, high) = (machine.lift(-FARTHEST), machine.lift(FARTHEST));
+            let held = |x: M::R| Real::min(Real::max(x, low), high);
+            let [x, y, z] = turn(to_view.linear, near).plus(origin).0;
+            let position = Triple([held(x), held(y), held(z)]);
             let normal = turn(to_view.normals, load(machine, &batch.normal, at)).unit();
             let to_eye = match to_view.eye {
                 Eye::Point => Triple([zero, zero, zero]).minus(position).unit(),

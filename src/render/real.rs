@@ -73,7 +73,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn power(self, exponent: f64, floor: f64) -> Self {
-        if self <= 0.0 {
+        if self.is_nan() || self <= 0.0 {
             return 0.0;
         }
         let power = libm::pow(self, exponent);
