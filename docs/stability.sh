@@ -17,9 +17,9 @@ cat "$work"/figures/[0-9]*.tsv >"$work/figures.tsv"
 
 # Our figure of a case, by what is measured, with its unit.
 ours() {
-  awk -F'\t' -v case="$1" -v what="$2" '
-    $1 == case && index($5, what) { print $8 " " $10; found = 1; exit }
-    END { if (!found) { print "no figure of case " case ": " what > "/dev/stderr"; exit 1 } }
+  awk -F'\t' -v number="$1" -v what="$2" '
+    $1 == number && index($5, what) { print $8 " " $10; found = 1; exit }
+    END { if (!found) { print "no figure of case " number ": " what > "/dev/stderr"; exit 1 } }
   ' "$work/figures.tsv"
 }
 # What a proof has counted.
@@ -33,10 +33,10 @@ group() {
   awk -F'\t' -v group="$1" '
     $2 == group {
       naive = $6 == "" ? "" : $6 ": **" $7 "**"
-      case = $1 + 0
+      again = $1 == last
       printf "| %s | %s | %s | %s | **%s** | %s | %s |\n", \
-        case == last ? "" : case, case == last ? "" : $4, $5, naive, $8, $9, $10
-      last = case
+        again ? "" : $1 + 0, again ? "" : $4 " (" $3 ")", $5, naive, $8, $9, $10
+      last = $1
     }
   ' "$work/figures.tsv"
 }
@@ -61,6 +61,9 @@ functions; light and texture against rays and the equation written down once mor
 (\`src/lab/prove/double_double.rs\`). Pictures are looked at from outside, byte by byte; where that is
 too coarse, a picture is made a vernier: strips that begin a ten-thousandth of a pixel apart, rulers
 whose texels are a last place wide, a series of pictures each 1/64 of a byte step brighter.
+
+A letter after each case says what judges it: Z whole numbers or fractions; D twice the digits, or f64
+along another way; I something that always holds; R two runs that have to agree.
 
 **What is not claimed.** The oracles share with the program the scene (places of corners as f32) and
 glam's vectors. Where a way of drawing is not in the program (16 and 24 bits of depth, f32 coverage,

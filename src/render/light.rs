@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::effects::{BATCH, Batch, Light, Rows, load, set, store};
 use super::faces::Faces;
 use super::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded};
-use super::real::{Kernel, Machine, Number, Triple};
+use super::real::{Kernel, Machine, Number, Real, Triple};
 use super::surface::{Shines, run};
 use crate::scene::{LightAt, Normals, dvec3};
 
@@ -213,6 +213,9 @@ fn polygons_of_corners(draw: &Draw) -> Vec<u32> {
     polygons
 }
 
+/// How far off a vertex is lit, in units of view space.
+const FARTHEST: f64 = 1e15;
+
 /// From object space to view space. What is far from the origin is first brought near it, so that
 /// f32 keeps its digits.
 #[derive(Clone, Copy, Debug)]
@@ -273,7 +276,12 @@ impl<T: Number> Kernel<T> for Place<'_, T> {
         let (middle, origin) = (set(machine, to_view.middle), set(machine, to_view.middle_in_view));
         for at in (0..batch.len).step_by(M::LANES) {
             let near = load(machine, &batch.position, at).minus(middle);
-            let position = turned(machine, to_view.linear, near).plus(origin);
+            // What lies beyond everything that can be seen is brought near enough for its distance to
+            // a lamp to have a square.
+            let (low, high) = (machine.lift(-FARTHEST), machine.lift(FARTHEST));
+            let held = |x: M::R| Real::min(Real::max(x, low), high);
+            let [x, y, z] = turned(machine, to_view.linear, near).plus(origin).0;
+            let position = Triple([held(x), held(y), held(z)]);
             let normal = turned(machine, to_view.normals, load(machine, &batch.normal, at)).unit();
             let zero = machine.lift(0.0);
             let to_eye = match to_view.eye {

@@ -74,7 +74,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
-        if self <= 0.0 {
+        if self.is_nan() || self <= 0.0 {
             return 0.0;
         }
         let result = libm::pow(self, power.exponent);

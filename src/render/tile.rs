@@ -479,9 +479,12 @@ mod tests {
             }
             for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
                 let (block, pixel) = (place(x, y) / BLOCK_PIXELS, place(x, y) % BLOCK_PIXELS);
-                let shows = visibility.shows(block);
-                let got = if shows { visibility.block(block).0[pixel] } else { 0 };
-                assert_eq!(seen(got), seen(want[place(x, y)]), "{x}, {y}: {triangles:?}");
+                let got = match visibility.whole(block) {
+                    Some(number) => Seen::Triangle(number),
+                    None if visibility.shows(block) => seen(visibility.block(block)[pixel]),
+                    None => Seen::Background,
+                };
+                assert_eq!(got, seen(want[place(x, y)]), "{x}, {y}: {triangles:?}");
             }
             for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
                 let got = visibility.word(Level::new(), x, y);

@@ -13,6 +13,7 @@ use marraztu::scene::{
     Surface, View,
 };
 
+use super::cases::look;
 use super::common::{covered, draw, edit, model, model_of, scene};
 use super::figures::Figure;
 use super::oracle::{Eye, inside_by, meet};
@@ -84,6 +85,12 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
         unit: "pixels",
     }
     .hold();
+}
+
+#[test]
+fn case_11_scenes_of_numbers_that_nobody_means_are_refused_or_drawn() {
+    let tally = look("scenes");
+    assert!(tally.counts["refusals"] > 1000 && tally.counts["pictures"] > 10_000, "{tally}");
 }
 
 #[test]

@@ -119,15 +119,16 @@ fn case_54_what_is_no_number_is_black_and_what_is_infinite_is_full() {
         }
     }
     assert_eq!([byte(none), byte(all), byte(-all)], [0, 255, 0]);
-    // What a C compiler makes of it: the low byte of the smallest i32, or of whatever the sum was.
-    let wrapped = (300.7_f64 as i32) & 255;
+    // What C's cast by way of int makes of it: the low byte, or that of the smallest int.
+    let cast = |x: f64| (x * 255.0 + 0.5) as i64 as i32 & 255;
+    let naive = [(all, 255), (1e39, 255), (1.2, 255), (-0.01, 0), (f64::MAX, 255)]
+        .into_iter()
+        .filter(|(x, want)| cast(*x) != *want)
+        .count();
     Figure {
         case: 54,
         what: "wrong bytes of numbers that are none, infinite or huge",
-        naive: Some((
-            "300.7 cast to a byte that wraps, in steps from 255",
-            f64::from(255 - wrapped),
-        )),
+        naive: Some(("cast by way of i32, of 5", naive as f64)),
         ours: wrong as f64,
         bound: 0.0,
         unit: "bytes",

@@ -3,13 +3,13 @@
 use glam::{DMat4, DVec3};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::{FindingKind, LoadError, Loaded, Progress, parse};
-use marraztu::lab::prove::Proof;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource, ObjectId, Orbit,
     Placed, Pose, Projection, Scene, Settings, View, newell,
 };
 
+use super::cases::look;
 use super::common::{ball, covered, cube, draw, edit, model_of, scene};
 use super::figures::Figure;
 
@@ -38,7 +38,7 @@ fn case_64_numbers_are_read_to_the_nearest_f32_or_refused() {
         ("16777217", 0x4b80_0000),
         ("16777219", 0x4b80_0002),
         ("3.4028235e38", 0x7f7f_ffff),
-        ("123456789012345678901234567890", 0x6fc7_1a92),
+        ("123456789012345678901234567890", 0x6fc7_7488),
     ] {
         let loaded = with_first_number(text).unwrap();
         let got = loaded.model.mesh.positions()[0][0].to_bits();
@@ -182,7 +182,7 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
                 draw(&scene, &view, &settings, 128)
             };
             let first = picture(1.0);
-            for exponent in [-40, -20, -10, -1, 1, 10, 20, 40] {
+            for exponent in [-90, -40, -20, -10, -1, 1, 10, 20, 40, 90] {
                 let other = picture(2.0_f64.powi(exponent));
                 let wrong =
                     first.pixels().iter().zip(other.pixels()).filter(|(a, b)| a != b).count();
@@ -197,7 +197,7 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
     let tiny = 2.0_f32.powi(-80);
     Figure {
         case: 66,
-        what: "pixels that differ in scenes of 2^-40 to 2^40 times the size",
+        what: "pixels that differ in scenes of 2^-90 to 2^90 times the size",
         naive: Some((
             "a normal of length 2^-80 by its length in f32",
             f64::from(tiny / (tiny * tiny).sqrt()),
@@ -226,10 +226,7 @@ fn case_67_nothing_and_very_much_are_drawn() {
         assert_eq!(Renderer::default().render(&plan).size(), size);
     }
     // The sizes up to a picture of 2048 pixels a side and 50,000 faces; the rest by `marraztu prove`.
-    let proof = Proof::named("sizes").unwrap();
-    if let Err(counterexample) = proof.run(0..6, &|_| {}) {
-        panic!("{}: {counterexample}", proof.claim);
-    }
+    assert_eq!(look("sizes").counts["sizes"], 6);
     Figure {
         case: 67,
         what: "pixels of a mesh without faces, and wrong ones of 0 to 50,000 faces",

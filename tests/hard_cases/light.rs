@@ -347,7 +347,7 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
     let eye = Eye::first(65);
     let ray = eye.ray(32, 32);
     let touching = eye.at + ray * 400.0;
-    let (mut differ, mut black, mut naive) = (0, 0, 0.0_f64);
+    let (mut differ, mut black) = (0, 0);
     for above in [0.0, 1e-300, 1e-30, 1e-12, -1e-12, 1e-5, -1e-5] {
         let at = touching + DVec3::Z * above;
         for lamp in [Lamp::Bulb(at), Lamp::Spot(at, DVec3::NEG_Z, 90.0, 5.0)] {
@@ -365,16 +365,11 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
                 black += pictures[0].pixels().iter().filter(dark).count();
             }
         }
-        let way = (at - touching).as_vec3();
-        naive = (way / way.length()).x.into();
     }
     Figure {
         case: 47,
         what: "pictures that differ and pixels that are dark with a lamp on a surface",
-        naive: Some((
-            "the way to the lamp by its length",
-            if naive.is_nan() { naive } else { f64::NAN },
-        )),
+        naive: Some(("the way to the lamp by its length", (DVec3::ZERO / DVec3::ZERO.length()).x)),
         ours: (differ + black) as f64,
         bound: 0.0,
         unit: "times",
@@ -382,10 +377,17 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
     .hold();
 }
 
+/// A wide highlight, which reaches where a narrow one does not.
+fn soften(scene: &mut Scene) {
+    let matter = Matter { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 2.0 };
+    edit(scene, ObjectId(10), |object| object.material = stuff(&matter));
+}
+
 #[test]
 fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
     let dark = {
-        let (scene, view) = lit_square(&[Lamp::Ambient]);
+        let (mut scene, view) = lit_square(&[Lamp::Ambient]);
+        soften(&mut scene);
         draw(&scene, &view, &Settings::default(), SIDE)
     };
     let mut dice = Dice::new(48);
@@ -401,7 +403,8 @@ fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
             Lamp::Sun(direction),
             Lamp::Spot(behind, DVec3::Z, 80.0, 1.0),
         ];
-        let (scene, view) = lit_square(&lamps);
+        let (mut scene, view) = lit_square(&lamps);
+        soften(&mut scene);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
         differ += picture.pixels().iter().zip(dark.pixels()).filter(|(a, b)| a != b).count();
         // Without the condition on N.L: R.V of a lamp behind may well be positive.
@@ -411,7 +414,7 @@ fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
             let to_light = -direction;
             let mirrored = DVec3::Z * (2.0 * to_light.z) - to_light;
             naive += usize::from(
-                to_light.z < 0.0 && 0.5 * mirrored.dot(v).max(0.0).powi(20) > 1.0 / 255.0,
+                to_light.z < 0.0 && 0.5 * mirrored.dot(v).max(0.0).powi(2) > 1.0 / 255.0,
             );
         }
     }
@@ -458,13 +461,11 @@ fn case_49_a_wider_cone_lights_no_pixel_less() {
         }
         before = Some(picture);
     }
-    // acos in f32 against the aperture: how far from the axis light still counts as on it.
-    let naive = f64::from((1.0_f32 - f32::EPSILON / 2.0).acos()).to_degrees();
     assert_eq!((less, lit_by_none), (0, 0), "a wider cone darkens, or one of 0 degrees lights");
     Figure {
         case: 49,
         what: "pixels on the wrong side of a cone's border, for 0 to 90 degrees",
-        naive: Some(("acos in f32: the least angle that it can tell, in degrees", naive)),
+        naive: None,
         ours: wrong as f64,
         bound: 0.0,
         unit: "pixels",

@@ -4,21 +4,17 @@ use marraztu::base::math::{self, Axis};
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{Gesture, History, Stroke, items, selection};
 use marraztu::io::{self, Progress};
-use marraztu::lab::prove::Proof;
 use marraztu::scene::{ItemId, ObjectId, Scene, Settings, Subject, Transformation, View};
 
 use glam::{DMat3, DVec3};
 
 use super::camera::desk;
+use super::cases::look;
 use super::figures::Figure;
 
 #[test]
 fn case_62_a_hundred_thousand_commands_are_undone_and_redone_bit_for_bit() {
-    let proof = Proof::named("undo").unwrap();
-    let tally = match proof.run(0..1, &|_| {}) {
-        Ok(tally) => tally,
-        Err(counterexample) => panic!("{}: {counterexample}", proof.claim),
-    };
+    let tally = look("undo");
     assert!(tally.counts["steps"] > 80_000 && tally.counts["files"] >= 40, "{tally}");
     // The naive way: as many turns, and the inverse of each.
     let turn = math::rotation(DVec3::new(0.6, 0.0, 0.8), 0.1);

@@ -18,6 +18,7 @@ pub(super) const PROOF: Proof = Proof {
             and the picture shows the right triangle everywhere",
     unit: "fans",
     lot: FANS,
+    tested: 100_000,
     whole: 1_000_000,
     check,
 };

@@ -12,6 +12,7 @@ pub(super) const PROOF: Proof = Proof {
             pixels that whole-number crossings say",
     unit: "samples",
     lot: (SIDE * SIDE) as u64,
+    tested: 10_000_000,
     whole: 100_000_000,
     check,
 };

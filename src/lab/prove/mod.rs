@@ -33,6 +33,8 @@ pub struct Proof {
     pub unit: &'static str,
     /// How many cases a lot has.
     pub lot: u64,
+    /// How many cases the tests look at in every run.
+    pub tested: u64,
     /// How many cases are looked at unless it is said otherwise.
     pub whole: u64,
     /// Looks at the cases of a lot.
@@ -137,6 +139,7 @@ mod tests {
         claim: "no lot is the seventh",
         unit: "numbers",
         lot: 10,
+        tested: 10,
         whole: 100,
         check: |lot| {
             assert_ne!(lot, 9, "this is seen as a counterexample");

@@ -23,6 +23,7 @@ pub(super) const PROOF: Proof = Proof {
             of the way that they went",
     unit: "presses",
     lot: PRESSES,
+    tested: PRESSES,
     whole: PRESSES,
     check,
 };

@@ -30,6 +30,7 @@ pub(super) const PROOF: Proof = Proof {
             same bytes on all instructions, depths from 0 to 1, no light lost to infinity",
     unit: "scenes",
     lot: SCENES,
+    tested: 30_000,
     whole: 1_000_000,
     check,
 };

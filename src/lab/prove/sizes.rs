@@ -16,6 +16,7 @@ pub(super) const PROOF: Proof = Proof {
             each pixel as whole-number crossings say",
     unit: "sizes",
     lot: 1,
+    tested: 6,
     whole: SIZES.len() as u64,
     check,
 };

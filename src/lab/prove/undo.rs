@@ -23,6 +23,7 @@ pub(super) const PROOF: Proof = Proof {
             is, opened again, the one that undo and redo come back to",
     unit: "commands",
     lot: COMMANDS,
+    tested: COMMANDS,
     whole: COMMANDS,
     check,
 };

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3};
 use super::{FramePlan, ObserverSpace};
 use crate::base::math;
 use crate::render::effects::{self, Entry, Lamp};
-use crate::scene::{LightId, LightKind, Scene, SpotOwner, View};
+use crate::scene::{Attenuation, LightId, LightKind, Scene, SpotOwner, View};
 
 /// The lights that shine, in the observer's space.
 pub(super) fn lamps(
@@ -15,7 +15,10 @@ pub(super) fn lamps(
     observer: &ObserverSpace,
 ) -> Vec<Shining> {
     let mut shining = Vec::new();
-    for (id, light) in scene.lights.iter() {
+    // The oldest first, as with objects: the order of the list cannot show in the last bit of a sum.
+    let mut lights: Vec<_> = scene.lights.iter().collect();
+    lights.sort_by_key(|(id, _)| *id);
+    for (id, light) in lights {
         if !light.on {
             plan.skip(&light.name, "switched off");
             continue;
@@ -29,19 +32,42 @@ pub(super) fn lamps(
             continue;
         };
         let lamp = u32::try_from(plan.lamps.len()).expect("fewer than 2^32 lights");
-        let attenuation = light.attenuation;
+        let place = observer.view_from_world.transform_point3(source.position);
+        if !place.is_finite() {
+            plan.skip(&light.name, "its place is no number");
+            continue;
+        }
+        let (position, attenuation) = within_reach(place, &light.attenuation, observer.unit);
         let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
         plan.lamps.push(Lamp {
             color: light.color.factors(),
-            position: observer.view_from_world.transform_point3(source.position).to_array(),
+            position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
-            attenuation: [attenuation.constant, attenuation.linear, attenuation.quadratic],
+            attenuation,
             cos_half_aperture: source.cos_half_aperture,
             exponent: source.exponent,
         });
         shining.push(Shining { id, name: light.name.clone(), effect: source.effect, lamp });
     }
     shining
+}
+
+/// How far off a lamp may be, in units of view space, so that in f32 its distance has a square.
+const REACH: f64 = 1e15;
+
+/// A lamp's place in view space and the coefficients by which it fades there. One that is farther than
+/// [`REACH`] is brought that near, and fades in proportion: seen from a view of some thousand units,
+/// neither its direction nor its light changes by a part in 10^11.
+fn within_reach(place: DVec3, fades: &Attenuation, unit: f64) -> (DVec3, [f64; 3]) {
+    let largest = place.abs().max_element();
+    let nearer = if largest > REACH { largest / REACH } else { 1.0 };
+    // Held to what has a square.
+    let step = (nearer / unit).min(1e150);
+    // What fades to nothing at once fades so at any distance.
+    let held = |coefficient: f64| coefficient.min(f64::MAX);
+    let coefficients =
+        [fades.constant, held(fades.linear * step), held(fades.quadratic * step * step)];
+    (place / nearer, coefficients)
 }
 
 /// A light that shines in this frame.

@@ -40,7 +40,7 @@ pub struct FramePlan {
     pub(in crate::render) clip_from_view: DMat4,
     /// Width of lines in pixels: 1 or 2.
     pub(in crate::render) line_width: i32,
-    /// The lights that shine, in the order of the scene.
+    /// The lights that shine, the oldest first.
     pub(in crate::render) lamps: Vec<Lamp>,
     /// What is drawn, in the order that decides between equal depths.
     pub(in crate::render) draws: Vec<Draw>,

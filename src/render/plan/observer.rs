@@ -4,10 +4,30 @@ use glam::{DMat3, DMat4, DVec3};
 
 use crate::base::image::Size;
 use crate::base::math;
-use crate::scene::{Scene, View};
+use crate::scene::{Lens, Projection, Scene, View};
+
+/// How far is seen in the unit of view space: at least so far, and less than twice as far.
+const FAR: f64 = 1024.0;
+
+/// The unit of view space that a lens calls for. Held to where its square has room in f64.
+fn unit(lens: &Lens, projection: Projection) -> f64 {
+    let far = match projection {
+        Projection::Perspective => lens.far,
+        Projection::Orthographic => {
+            lens.parallel_near.abs().max(lens.parallel_far.abs()).max(lens.half_size)
+        }
+    };
+    FAR / math::power_of_two_near(far.clamp(1e-120, 1e120))
+}
 
 /// The observer's spaces.
+///
+/// View space has a unit of its own, a power of two, in which the observer sees about a thousand
+/// units far: so light of 32 bits is the same for scenes of atoms and of stars, and for scenes of
+/// ordinary size the unit is the world's.
 pub(in crate::render) struct ObserverSpace {
+    /// How many units of view space a unit of the world is.
+    pub(in crate::render) unit: f64,
     pub(in crate::render) world_from_view: DMat4,
     pub(in crate::render) view_from_world: DMat4,
     pub(in crate::render) clip_from_view: DMat4,
@@ -21,9 +41,20 @@ impl ObserverSpace {
         let turn = DMat3::from_mat4(world_from_view).transpose();
         let eye = world_from_view.w_axis.truncate();
         let lens = scene.selected_camera(view).lens;
+        let unit = unit(&lens, view.projection);
+        let turned = math::placed(turn, DVec3::ZERO) * DMat4::from_translation(-eye);
+        let lens = Lens {
+            near: lens.near * unit,
+            far: lens.far * unit,
+            half_size: lens.half_size * unit,
+            parallel_near: lens.parallel_near * unit,
+            parallel_far: lens.parallel_far * unit,
+            ..lens
+        };
         Self {
+            unit,
             world_from_view,
-            view_from_world: math::placed(turn, DVec3::ZERO) * DMat4::from_translation(-eye),
+            view_from_world: DMat4::from_scale(DVec3::splat(unit)) * turned,
             clip_from_view: lens.clip_from_view(view.projection, size),
             size,
         }

@@ -198,7 +198,7 @@ impl Planner<'_> {
         Shaded { matter, light, vertex_colors, tint, texture: None, cutout: None }
     }
 
-    /// The lights that a material needs, in the order of the scene.
+    /// The lights that a material needs, the oldest first.
     fn stages(&self, plan: &mut FramePlan, name: &str, matter: &Matter) -> Vec<Stage> {
         let mut stages = Vec::new();
         for Shining { name: light, effect, lamp, .. } in &self.shining {
