@@ -16,10 +16,10 @@ use marraztu::io::{
 };
 use marraztu::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Fill, Filter, Frame, Item,
-    Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength,
-    Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId,
-    Projection, Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject, Surface,
-    Texture, Transformation, UpAxis, View, Winding, Wrap,
+    LeaveOut, Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice,
+    NormalLength, Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose,
+    PresetId, Projection, Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject,
+    Surface, Texture, Transformation, UpAxis, View, Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -145,6 +145,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         light: LightAt::Vertex,
         filter: Filter::Nearest,
         specular: SpecularForm::HalfVector,
+        leave_out: LeaveOut::HalfStep,
     };
     (scene, view, settings)
 }

@@ -15,8 +15,9 @@ mod gather;
 mod light;
 mod lines;
 mod marks;
-mod plan;
+pub mod plan;
 pub mod real;
+pub mod region;
 mod renderer;
 mod setup;
 mod surface;
@@ -24,5 +25,5 @@ mod texture;
 mod tile;
 mod vertices;
 
-pub use plan::{FramePlan, Skipped};
+pub use plan::{Class, Effect, EffectUse, FramePlan, State};
 pub use renderer::{Hit, Renderer};

@@ -19,7 +19,7 @@ use super::effects::{BATCH, Batch, Light, Rows, load};
 use super::frame::Frame;
 use super::gather::Gathered;
 use super::light::Lit;
-use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded};
+use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, TileLight, TilePlan};
 use super::real::{Kernel, Machine, Triple};
 use super::texture;
 use super::tile::{BLOCK, BLOCK_PIXELS, Seen, TILE_SIDE, seen};
@@ -33,6 +33,8 @@ pub(super) struct Shader<'a, T> {
     frame: &'a Frame,
     lit: &'a Lit<T>,
     level: Level,
+    /// The lights of the tile that is coloured.
+    pub(super) tile: TilePlan,
     rows: Box<RowsOfBlock<T>>,
 }
 
@@ -78,7 +80,7 @@ impl<'a, T: Light> Shader<'a, T> {
             texels: [[T::default(); BATCH]; 3],
             colors: [[255; 4]; BATCH],
         };
-        Self { plan, frame, lit, level, rows: Box::new(rows) }
+        Self { plan, frame, lit, level, tile: TilePlan::default(), rows: Box::new(rows) }
     }
 
     /// Colours the pixels of a block whose upper left pixel is `corner` into the rows of a tile, from
@@ -144,8 +146,8 @@ impl<'a, T: Light> Shader<'a, T> {
                 let rows = &mut *self.rows;
                 rows.batch.len = group.pixels.len();
                 rows.gathered.locate(self.level);
-                if let Some(stages) = &shaded.light {
-                    self.light(group, stages, shaded);
+                if shaded.light.is_some() {
+                    self.light(group, pipeline, shaded);
                 }
                 self.texels(group, shaded);
                 let rows = &mut *self.rows;
@@ -164,11 +166,14 @@ impl<'a, T: Light> Shader<'a, T> {
     }
 
     /// Light at the pixels of the group.
-    fn light(&mut self, group: &Group<'_>, stages: &[super::plan::Stage], shaded: &Shaded) {
+    fn light(&mut self, group: &Group<'_>, pipeline: u32, shaded: &Shaded) {
         let rows = &mut *self.rows;
         match self.plan.light_at {
             LightAt::Pixel => {
-                attributes(self.level, self.plan, group.draw, &rows.gathered, &mut rows.batch);
+                let TileLight { stages, places, .. } = self.tile.light(self.plan, pipeline, shaded);
+                if places {
+                    attributes(self.level, self.plan, group.draw, &rows.gathered, &mut rows.batch);
+                }
                 for row in rows.batch.diffuse.iter_mut().chain(&mut rows.batch.specular) {
                     row.fill(T::default());
                 }

@@ -1,7 +1,11 @@
 //! Light from a point, in all directions.
 
-use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, phong};
+use super::{
+    Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, most_left, phong,
+};
+use crate::render::plan::Facing;
 use crate::render::real::{Machine, Real, Triple};
+use crate::render::region::Region;
 
 /// A point that shines alike in all directions and fades with distance.
 pub(super) struct Bulb;
@@ -11,6 +15,14 @@ impl Effect for Bulb {
 
     fn needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str> {
         lamp_needless(lamp, matter)
+    }
+
+    fn is_behind(lamp: &Lamp, region: &Region, facing: &Facing) -> bool {
+        facing.all(|normal| region.faces_away(normal, lamp.position.into()))
+    }
+
+    fn arrives(lamp: &Lamp, region: Option<&Region>) -> f64 {
+        most_left(lamp, region)
     }
 
     #[inline(always)]
