@@ -138,7 +138,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         wide_lines: true,
         marks: false,
         time: a,
-        panels: Panels { outline: false, statistics: true, ..Panels::DEFAULT },
+        panels: Panels { outline: false, statistics: true, plan: true, ..Panels::DEFAULT },
     };
     let settings = Settings {
         arithmetic: Arithmetic::F64,

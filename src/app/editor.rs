@@ -5,6 +5,7 @@
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
 
 use egui::{CentralPanel, Context, Frame, Key, ThemePreference, ViewportCommand};
 
@@ -16,6 +17,7 @@ use super::dialogs::{After, Dialogs, Wanted};
 use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
 use super::material_dialog::MaterialDialog;
+use super::measuring::Measuring;
 use super::scene_files::Waiting;
 use super::state::{Message, Shown, State, Tone};
 use super::viewport::{Purpose, Viewport};
@@ -23,7 +25,7 @@ use super::worker::{Snapshot, Worker};
 use super::{notices, panels};
 use crate::edit::selection::{self, Selection};
 use crate::edit::{Gesture, items};
-use crate::scene::{Command, Scene, Subject, View};
+use crate::scene::{Command, LeaveOut, Scene, Subject, View};
 
 /// The editor.
 #[derive(Debug)]
@@ -35,6 +37,8 @@ pub struct App {
     pub(super) waiting: Option<Waiting>,
     pub(super) viewport: Viewport,
     worker: Option<Worker<Purpose>>,
+    /// The measuring of effects that goes on.
+    pub(super) measuring: Option<Measuring>,
     /// It was decided to leave: nothing more is asked.
     leaving: bool,
     /// When the last frame was shown in which something moved by itself.
@@ -57,6 +61,7 @@ impl App {
             waiting: None,
             viewport: Viewport::default(),
             worker: None,
+            measuring: None,
             leaving: false,
             moved_at: None,
             shown_at: VecDeque::new(),
@@ -106,6 +111,7 @@ impl App {
             self.take_answer(&ctx, answer);
         }
         self.hear_loading(&ctx);
+        self.hear_measuring();
         self.take_dropped(&ctx);
         self.close_requested(&ctx);
         self.draw();
@@ -146,6 +152,9 @@ impl App {
                 self.shown_at.retain(|then| now - then < 1.0);
                 statistics.rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
             }
+            if let Some(explained) = &news.explained {
+                self.state.plan.explained = Some(Arc::clone(explained));
+            }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, asks);
             if failed {
@@ -178,6 +187,7 @@ impl App {
             view: view.clone(),
             settings: *settings,
             size,
+            explain: self.state.shown.plan,
         });
     }
 
@@ -305,6 +315,14 @@ impl App {
             Action::ToggleProperties => shown.properties ^= true,
             Action::ToggleViewPanel => shown.view ^= true,
             Action::ToggleStatistics => shown.statistics ^= true,
+            Action::TogglePlan => shown.plan ^= true,
+            Action::MeasurePlan => self.measure(ctx),
+            Action::ToggleLeaveOut => {
+                state.settings.leave_out = match state.settings.leave_out {
+                    LeaveOut::Unseen => LeaveOut::HalfStep,
+                    LeaveOut::HalfStep => LeaveOut::Unseen,
+                };
+            }
             Action::ThemeSystem => set_theme(ctx, shown, ThemePreference::System),
             Action::ThemeLight => set_theme(ctx, shown, ThemePreference::Light),
             Action::ThemeDark => set_theme(ctx, shown, ThemePreference::Dark),

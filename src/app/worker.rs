@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use egui::ColorImage;
 
 use crate::base::image::{Picture, Size};
+use crate::lab::cost::{self, Explained};
 use crate::render::{FramePlan, Hit, Renderer};
 use crate::scene::{ItemId, Scene, Settings, View};
 
@@ -22,6 +23,8 @@ pub(super) struct Snapshot {
     pub(super) view: View,
     pub(super) settings: Settings,
     pub(super) size: Size,
+    /// Whether it shall be said what the picture is made of.
+    pub(super) explain: bool,
 }
 
 /// A drawn picture.
@@ -62,6 +65,7 @@ pub(super) struct Run {
 pub(super) struct News<P> {
     pub(super) border: Option<Border>,
     pub(super) drawn: Option<Drawn>,
+    pub(super) explained: Option<Arc<Explained>>,
     pub(super) picked: Vec<(Pick<P>, Option<Hit>)>,
     pub(super) failed: bool,
 }
@@ -155,7 +159,7 @@ impl<P> Drop for Worker<P> {
 
 impl<P> News<P> {
     const fn none() -> Self {
-        Self { border: None, drawn: None, picked: Vec::new(), failed: false }
+        Self { border: None, drawn: None, explained: None, picked: Vec::new(), failed: false }
     }
 }
 
@@ -199,9 +203,13 @@ fn work<P: Copy>(shared: &Shared<P>, wake: &impl Fn()) {
         }
         let Some(wanted) = wanted else { continue };
         // A fault of the renderer costs a picture, not the user's work.
-        match catch_unwind(AssertUnwindSafe(|| painter.draw(&wanted))) {
-            Ok(None) => continue,
-            Ok(Some(drawn)) => shared.lock().news.drawn = Some(drawn),
+        match catch_unwind(AssertUnwindSafe(|| (painter.draw(&wanted), painter.explain(&wanted)))) {
+            Ok((None, None)) => continue,
+            Ok((drawn, explained)) => {
+                let news = &mut shared.lock().news;
+                news.drawn = drawn.or(news.drawn.take());
+                news.explained = explained.or(news.explained.take());
+            }
             Err(_) => {
                 painter = Painter::default();
                 shared.lock().news.failed = true;
@@ -216,6 +224,8 @@ fn work<P: Copy>(shared: &Shared<P>, wake: &impl Fn()) {
 struct Painter {
     renderer: Renderer,
     plan: Option<FramePlan>,
+    /// What was said last of what the picture is made of.
+    explained: Option<Arc<Explained>>,
     /// One is shown while the other is drawn.
     images: [Arc<ColorImage>; 2],
 }
@@ -225,7 +235,7 @@ impl Painter {
     fn draw(&mut self, wanted: &Snapshot) -> Option<Drawn> {
         let begun = Instant::now();
         let plan = FramePlan::new(&wanted.scene, &wanted.view, &wanted.settings, wanted.size);
-        if self.plan.as_ref() == Some(&plan) {
+        if self.plan.as_ref().is_some_and(|before| plan.left_out_after(before).is_some()) {
             return None;
         }
         let picture = self.renderer.render(&plan);
@@ -238,6 +248,21 @@ impl Painter {
             time: begun.elapsed(),
             triangles: self.renderer.triangles_drawn(),
         })
+    }
+
+    /// What the picture that was drawn last is made of; `None` where that is not wanted, or was said.
+    fn explain(&mut self, wanted: &Snapshot) -> Option<Arc<Explained>> {
+        if !wanted.explain {
+            self.explained = None;
+            return None;
+        }
+        let Snapshot { scene, view, settings, size, .. } = wanted;
+        let explained = cost::explain_with(&self.renderer, (scene, view, settings, *size));
+        if self.explained.as_deref() == Some(&explained) {
+            return None;
+        }
+        self.explained = Some(Arc::new(explained));
+        self.explained.clone()
     }
 
     fn hit(&self, [x, y]: [usize; 2]) -> Option<Hit> {
@@ -307,7 +332,7 @@ mod tests {
         let item = ItemId::Object(view.object.unwrap());
         let (settings, size) = (Settings::default(), Size::new(160, 120));
         let mut painter = Painter::default();
-        painter.draw(&Snapshot { scene, view, settings, size }).unwrap();
+        painter.draw(&Snapshot { scene, view, settings, size, explain: false }).unwrap();
         let places = || (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
         let own: Vec<bool> = places()
             .map(|(x, y)| painter.hit([x, y]).is_some_and(|hit| hit.item == item))
@@ -334,8 +359,13 @@ mod tests {
         let (scene, mut view) = io::default_scene();
         let (settings, size) = (Settings::default(), Size::new(16, 12));
         let mut painter = Painter::default();
-        let snapshot =
-            |view: &View| Snapshot { scene: scene.clone(), view: view.clone(), settings, size };
+        let snapshot = |view: &View| Snapshot {
+            scene: scene.clone(),
+            view: view.clone(),
+            settings,
+            size,
+            explain: false,
+        };
         assert!(painter.draw(&snapshot(&view)).is_some());
         view.subject = crate::scene::Subject::Light;
         assert!(painter.draw(&snapshot(&view)).is_none());
