@@ -203,19 +203,24 @@ fn work<P: Copy>(shared: &Shared<P>, wake: &impl Fn()) {
         }
         let Some(wanted) = wanted else { continue };
         // A fault of the renderer costs a picture, not the user's work.
-        match catch_unwind(AssertUnwindSafe(|| (painter.draw(&wanted), painter.explain(&wanted)))) {
-            Ok((None, None)) => continue,
-            Ok((drawn, explained)) => {
-                let news = &mut shared.lock().news;
-                news.drawn = drawn.or(news.drawn.take());
-                news.explained = explained.or(news.explained.take());
+        match catch_unwind(AssertUnwindSafe(|| painter.draw(&wanted))) {
+            Ok(None) => {}
+            Ok(Some(drawn)) => {
+                shared.lock().news.drawn = Some(drawn);
+                wake();
             }
             Err(_) => {
                 painter = Painter::default();
                 shared.lock().news.failed = true;
+                wake();
+                continue;
             }
         }
-        wake();
+        // After the picture, which nobody should wait for because of it.
+        if let Ok(Some(explained)) = catch_unwind(AssertUnwindSafe(|| painter.explain(&wanted))) {
+            shared.lock().news.explained = Some(explained);
+            wake();
+        }
     }
 }
 
