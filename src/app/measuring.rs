@@ -6,9 +6,9 @@ use std::time::Duration;
 use egui::Context;
 
 use super::editor::App;
+use super::painter::Snapshot;
 use super::state::Measured;
 use super::tasks::{Outcome, Task};
-use super::worker::Snapshot;
 use crate::lab::cost::{self, Costs};
 
 /// About how long measuring takes.
@@ -36,7 +36,8 @@ impl App {
         }
         let Some(size) = self.viewport.size() else { return };
         let (scene, view) = (self.state.scene.clone(), self.state.view.clone());
-        let of = Snapshot { scene, view, settings: self.state.settings, size, explain: true };
+        let settings = self.state.settings;
+        let of = Snapshot { scene, view, settings, size, moving: false, explain: true };
         let theirs = of.clone();
         let task = Task::start(ctx, "measure effects".to_owned(), move |progress| {
             let of = (&theirs.scene, &theirs.view, &theirs.settings, theirs.size);

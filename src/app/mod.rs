@@ -23,6 +23,8 @@ mod measuring;
 mod mouse;
 mod notices;
 mod overlay;
+mod pace;
+mod painter;
 pub mod panels;
 mod scene_files;
 mod start;

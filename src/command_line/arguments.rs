@@ -62,6 +62,8 @@ pub(crate) enum Headless {
     Prove(Prove),
     /// Measures one drawing job in a form that other renderers share
     Job(Job),
+    /// Puts what is claimed of the program to the proof, in any number of cases
+    Prove(Prove),
 }
 
 /// A picture, and the file that it goes to.

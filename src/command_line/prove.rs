@@ -1,203 +1,171 @@
-//! `marraztu prove`: claims that are proved by trying, on as many scenes as one has time for.
+//! `marraztu prove`: what is claimed of the program, put to the proof.
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
-use marraztu::lab::proof::instructions::{self, Frame};
-use marraztu::lab::proof::{absent, plan};
-use marraztu::render::plan::rules::Rules;
+use clap::Args;
+use marraztu::lab::prove::pictures::{levels, samples};
+use marraztu::lab::prove::plan::instructions::{self, Frame};
+use marraztu::lab::prove::{PROOFS, Proof, Tally};
 
 use super::failure::Failure;
+use super::say;
 
-/// Which claims are tried, and for how long.
+/// Which claims, and in how many cases.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Examples:
-  marraztu prove                          list the proofs
-  marraztu prove all
-  marraztu prove plan --scenes 100000
+Cases come in lots, and the number of a lot alone says what is in it. A counterexample is named by
+its lot; --from LOT --count 1 looks at it again.
 
-Exit status: 0 where every claim held, 1 where one did not.")]
+Examples:
+  marraztu prove                          every claim, in the numbers that the project promises
+  marraztu prove fans --count 1000000     one claim, in a million cases
+  marraztu prove instructions             a frame's instructions, with lights that are off and without
+  marraztu prove pictures                 the sums of a dozen pictures, to compare processors by")]
 pub(crate) struct Prove {
-    /// The proofs, by name, or \"all\"; without a name they are listed
-    names: Vec<String>,
-    /// How many scenes are tried
-    #[arg(long, default_value_t = 10_000, value_name = "N")]
-    scenes: u64,
-    /// The first scene
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    from: u64,
-    /// Threads; all cores where it is not said
-    #[arg(long)]
-    threads: Option<usize>,
-    /// Draw one of the frames whose instructions are counted, and nothing else
+    /// The claim: its name, as the list of `marraztu prove --list` has it; all where none is named
+    pub(crate) name: Option<String>,
+    /// How many cases to look at; the promised number where it is not said
+    #[arg(long, value_name = "N")]
+    pub(crate) count: Option<u64>,
+    /// The first lot
+    #[arg(long, value_name = "LOT", default_value_t = 0)]
+    pub(crate) from: u64,
+    /// Draws one of the frames whose instructions are counted, and nothing else
     #[arg(long, hide = true, value_enum)]
-    draw_counted: Option<Counted>,
+    pub(crate) draw_counted: Option<Counted>,
+    /// Lists the claims
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Writes what was seen of each claim into a file in this folder too, for docs/stability.sh
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) figures: Option<PathBuf>,
 }
 
 /// See [`instructions`].
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Counted {
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum Counted {
     Plain,
     LightsOff,
 }
 
-/// A claim.
-struct Proof {
-    name: &'static str,
-    /// The claim, as a sentence.
-    claim: &'static str,
-    /// Tries it: what was seen, or what speaks against it.
-    run: fn(&Prove) -> Result<String, String>,
-}
-
-/// The proofs. A new one is a row here.
-const PROOFS: &[Proof] = &[
-    Proof {
-        name: "plan",
-        claim: "What a plan leaves out changes no bit of the picture.",
-        run: plan_is_full,
-    },
-    Proof {
-        name: "rules",
-        claim: "Each rule by which something is left out, made wrong, changes pictures.",
-        run: rules_matter,
-    },
-    Proof {
-        name: "faint",
-        claim: "Light that is left out as too faint changes a byte by one step at most.",
-        run: faint,
-    },
-    Proof {
-        name: "absent",
-        claim: "Lights that are off, hidden objects and unused materials change no byte.",
-        run: unseen,
-    },
-    Proof {
-        name: "instructions",
-        claim: "A frame takes as many instructions with 100 lights that are off as with none.",
-        run: same_instructions,
-    },
-];
-
-/// Tries the claims that are asked for, or lists them.
+/// Looks at the cases of one claim, or of all.
 pub(crate) fn prove(arguments: &Prove) -> Result<(), Failure> {
+    if arguments.list {
+        let rows = PROOFS.iter().map(|proof| {
+            format!("{:<9} {} {}: {}", proof.name, proof.whole, proof.unit, proof.claim)
+        });
+        let others = [
+            "instructions  two frames: 100 lights that are off cost no instruction of drawing",
+            "pictures  the sums of a dozen pictures",
+        ];
+        let rows = rows.chain(others.map(str::to_owned));
+        return tell(&rows.collect::<Vec<_>>().join("\n"));
+    }
     if let Some(counted) = arguments.draw_counted {
-        let frame = match counted {
-            Counted::Plain => Frame::Plain,
-            Counted::LightsOff => Frame::WithLightsOff,
-        };
-        return instructions::draw(frame).map_err(|error| Failure::Absent(error.to_string()));
+        return draw_counted(counted);
     }
-    let all = arguments.names.iter().any(|name| name == "all");
-    if let Some(unknown) = arguments
-        .names
-        .iter()
-        .find(|name| *name != "all" && !PROOFS.iter().any(|proof| proof.name == **name))
-    {
-        let names: Vec<&str> = PROOFS.iter().map(|proof| proof.name).collect();
-        let names = names.join(", ");
-        return Err(Failure::Absent(format!("there is no proof \"{unknown}\": there are {names}")));
-    }
-    if let Some(threads) = arguments.threads {
-        // Fails only where the threads are there already, and this comes first.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    }
-    let mut out = std::io::stdout().lock();
-    let mut failed = false;
-    for proof in PROOFS {
-        if arguments.names.is_empty() {
-            writeln!(out, "{:14}{}", proof.name, proof.claim).map_err(Failure::Output)?;
+    match arguments.name.as_deref() {
+        Some("pictures") => pictures(),
+        Some("instructions") => same_instructions(),
+        Some(name) => {
+            let Some(proof) = Proof::named(name) else {
+                say("error", &format_args!("there is no claim \"{name}\"; --list lists them"));
+                return Err(Failure::Told);
+            };
+            look(proof, arguments)
         }
-        if !all && !arguments.names.iter().any(|name| name == proof.name) {
-            continue;
+        None => PROOFS.iter().try_for_each(|proof| look(proof, arguments)),
+    }
+}
+
+/// Looks at the cases of one claim, and says what was seen.
+fn look(proof: &Proof, arguments: &Prove) -> Result<(), Failure> {
+    let lots = proof.lots(arguments.count.unwrap_or(proof.whole));
+    let bar = indicatif::ProgressBar::new(lots);
+    bar.set_message(proof.name);
+    let begin = Instant::now();
+    let seen = proof.run(arguments.from..arguments.from.saturating_add(lots), &|_| bar.inc(1));
+    bar.finish_and_clear();
+    match seen {
+        Ok(tally) => {
+            let seconds = begin.elapsed().as_secs_f64();
+            tell(&format!("{}: {tally}; holds ({seconds:.0} s)", proof.name))?;
+            arguments.figures.as_ref().map_or(Ok(()), |folder| write(folder, proof, &tally))
         }
-        writeln!(out, "{}: {}", proof.name, proof.claim).map_err(Failure::Output)?;
-        let begun = Instant::now();
-        let result = (proof.run)(arguments);
-        let seconds = begun.elapsed().as_secs_f64();
-        let (word, text) = match &result {
-            Ok(text) => ("held", text),
-            Err(text) => ("DOES NOT HOLD", text),
-        };
-        failed |= result.is_err();
-        writeln!(out, "  {word} ({seconds:.1} s): {text}").map_err(Failure::Output)?;
-    }
-    if failed { Err(Failure::Told) } else { Ok(()) }
-}
-
-impl Prove {
-    fn seeds(&self) -> std::ops::Range<u64> {
-        self.from..self.from.saturating_add(self.scenes)
-    }
-}
-
-fn plan_is_full(arguments: &Prove) -> Result<String, String> {
-    let tally = plan::plan_is_full(&Rules::sound(), arguments.seeds());
-    tally
-        .map(|tally| format!("{} scenes, {} pixels, no bit differs", tally.scenes, tally.pixels))
-        .map_err(|difference| difference.to_string())
-}
-
-fn rules_matter(arguments: &Prove) -> Result<String, String> {
-    let mut lines = Vec::new();
-    let mut passed = Vec::new();
-    for breakage in plan::breakages() {
-        let what = format!("{}, which {}", breakage.rule, breakage.fault);
-        match plan::caught_by(&breakage, arguments.seeds()) {
-            Some(difference) => {
-                lines.push(format!("{what}: seen in scene {}", difference.seed));
-            }
-            None => passed.push(what),
+        Err(counterexample) => {
+            tell(&format!("{}: {counterexample}", proof.name))?;
+            let again =
+                format!("marraztu prove {} --from {} --count 1", proof.name, counterexample.lot);
+            say("error", &format_args!("the claim does not hold: {}; {again}", proof.claim));
+            Err(Failure::Told)
         }
     }
-    if passed.is_empty() {
-        Ok(format!("{} breakages\n    {}", lines.len(), lines.join("\n    ")))
-    } else {
-        Err(format!("not seen: {}", passed.join("; ")))
+}
+
+/// What was seen of a claim, as a line of a table.
+fn write(folder: &std::path::Path, proof: &Proof, tally: &Tally) -> Result<(), Failure> {
+    let row = format!("{}\t{}\t{tally}\n", proof.name, proof.claim);
+    std::fs::write(folder.join(format!("proof-{}.tsv", proof.name)), row).map_err(Failure::Output)
+}
+
+/// The list that `tests/pictures.sums` is on this machine.
+fn pictures() -> Result<(), Failure> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut rows = vec!["# What `marraztu prove pictures` prints, on every processor.".to_owned()];
+    for sample in samples() {
+        let sums: Vec<u64> = levels().into_iter().map(|level| sample.sum(level, threads)).collect();
+        if sums.windows(2).any(|pair| pair[0] != pair[1]) {
+            say("error", &format_args!("instructions show in \"{}\": {sums:x?}", sample.name));
+            return Err(Failure::Told);
+        }
+        rows.push(format!("{:016x}  {}", sums[0], sample.name));
     }
+    tell(&rows.join("\n"))
 }
 
-fn faint(arguments: &Prove) -> Result<String, String> {
-    plan::faint_is_within_a_step(arguments.seeds())
-        .map(|tally| {
-            let bytes = 3 * tally.pixels;
-            format!("{} scenes, {} of {bytes} bytes one step off", tally.scenes, tally.steps)
-        })
-        .map_err(|difference| difference.to_string())
+fn tell(text: &str) -> Result<(), Failure> {
+    writeln!(std::io::stdout().lock(), "{text}").map_err(Failure::Output)
 }
 
-fn unseen(arguments: &Prove) -> Result<String, String> {
-    match absent::seen_after_all(arguments.seeds()) {
-        None => Ok(format!("{} scenes, no byte differs", arguments.scenes)),
-        Some(seed) => Err(format!("the picture of scene {seed} changes")),
-    }
+fn draw_counted(counted: Counted) -> Result<(), Failure> {
+    let frame = match counted {
+        Counted::Plain => Frame::Plain,
+        Counted::LightsOff => Frame::WithLightsOff,
+    };
+    instructions::draw(frame).map_err(|error| Failure::Absent(error.to_string()))
 }
 
-fn same_instructions(_: &Prove) -> Result<String, String> {
+/// Counts the instructions of two frames that should have as many.
+fn same_instructions() -> Result<(), Failure> {
     let (plain, off) = (counted("plain")?, counted("lights-off")?);
+    tell(&format!(
+        "instructions: {plain} for a frame, {off} with {} lights that are off",
+        instructions::LIGHTS_OFF
+    ))?;
     if plain == off {
-        Ok(format!("{plain} instructions for each of the two frames"))
-    } else {
-        Err(format!("{plain} instructions with none, {off} with {}", instructions::LIGHTS_OFF))
+        return Ok(());
     }
+    say("error", &"lights that are off cost instructions");
+    Err(Failure::Told)
 }
 
 /// How many instructions a frame takes, by callgrind.
-fn counted(frame: &str) -> Result<u64, String> {
-    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+fn counted(frame: &str) -> Result<u64, Failure> {
+    let program = std::env::current_exe().map_err(Failure::Output)?;
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
         .arg(format!("--toggle-collect={}", instructions::COUNTED))
         .arg(program)
         .args(["prove", "--draw-counted", frame])
         .output()
-        .map_err(|error| format!("valgrind, which counts, cannot be run: {error}"))?;
+        .map_err(|error| {
+            Failure::Absent(format!("valgrind, which counts, does not run: {error}"))
+        })?;
     let said = String::from_utf8_lossy(&output.stderr);
     let collected = said.lines().find_map(|line| line.split_once("Collected : "));
-    let count =
-        collected.and_then(|(_, count)| count.trim().parse().ok()).filter(|count| *count > 0);
-    count.ok_or_else(|| format!("callgrind counted nothing; it said:\n{said}"))
+    let count = collected.and_then(|(_, count)| count.trim().parse().ok()).filter(|n| *n > 0);
+    count.ok_or_else(|| Failure::Absent(format!("callgrind counted nothing; it said:\n{said}")))
 }

@@ -123,12 +123,12 @@ pub type Of<'a> = (&'a Scene, &'a View, &'a Settings, Size);
 pub fn explain((scene, view, settings, size): Of<'_>) -> Explained {
     let mut renderer = Renderer::default();
     renderer.render(&FramePlan::new(scene, view, settings, size));
-    explain_with(&renderer, (scene, view, settings, size))
+    explain_with(&mut renderer, (scene, view, settings, size))
 }
 
 /// The same of the picture that `renderer` drew last.
 #[must_use]
-pub fn explain_with(renderer: &Renderer, (scene, view, settings, size): Of<'_>) -> Explained {
+pub fn explain_with(renderer: &mut Renderer, (scene, view, settings, size): Of<'_>) -> Explained {
     let (_, mut uses) = FramePlan::explained(scene, view, settings, size);
     let off_by = renderer.count(&mut uses);
     Explained { uses, off_by, size }

@@ -1,5 +1,5 @@
-//! What drawing costs in time, measured and never guessed; and what is claimed of it, proved.
+//! What drawing costs in time, and what it is proved to do: measured, never guessed.
 
 pub mod cost;
 pub mod job;
-pub mod proof;
+pub mod prove;

@@ -4,11 +4,13 @@
 
 mod camera;
 mod command;
+mod edge_order;
 mod light;
 mod list;
 mod material;
 mod mesh;
 mod mesh_points;
+mod mesh_splits;
 mod model;
 mod object;
 mod order;
@@ -19,6 +21,7 @@ mod view;
 
 pub use camera::{Camera, CameraMode, Lens, Pose};
 pub use command::{Command, CommandError, Item};
+pub use edge_order::{DrawEdge, EdgeOrder};
 pub use light::{Aim, Attenuation, Light, LightKind, Orbit, SpotOwner};
 pub use list::List;
 pub use material::{Material, MaterialChoice, PRESETS, Preset, PresetId};

@@ -3,7 +3,7 @@
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::cost;
-use marraztu::lab::proof::scenes;
+use marraztu::lab::prove::plan::samples;
 use marraztu::render::{Class, Effect, FramePlan, Renderer, State};
 use marraztu::scene::{Fill, ItemId, LeaveOut, LightKind, Scene, Settings, View};
 
@@ -17,7 +17,7 @@ fn first() -> (Scene, View) {
 #[test]
 fn every_pixel_that_shows_something_is_counted_once_under_surfaces() {
     for seed in 0..300 {
-        let it = scenes::sample(seed);
+        let it = samples::sample(seed);
         // Lines are counted elsewhere, and on black ground nothing black would be seen.
         let view = View { marks: true, fill: Fill::Filled, ..it.view.clone() };
         let explained = cost::explain((&it.scene, &view, &it.settings, it.size));

@@ -40,6 +40,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
                 Action::ToggleNormalLength,
                 Action::ToggleMarks,
                 Action::ToggleLeaveOut,
+                Action::ToggleCoarse,
             ] {
                 action_switch(ui, state, asks, action);
             }

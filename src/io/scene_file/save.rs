@@ -183,6 +183,7 @@ impl FileView {
             normal_length,
             wide_lines,
             marks,
+            coarse_while_moving,
             time,
             panels,
         } = view;
@@ -211,6 +212,7 @@ impl FileView {
             normal_length: *normal_length,
             wide_lines: *wide_lines,
             marks: *marks,
+            coarse_while_moving: *coarse_while_moving,
             time: *time,
             panels: *panels,
         }

@@ -23,29 +23,26 @@ const HIGHLIGHTS: f64 = 0.249;
 const ROUNDING: f64 = 1.0 + 1e-4;
 
 /// What a light adds to a channel at most, in steps of a byte.
-fn most(stage: &Stage, lamp: &Lamp, matter: &Matter, region: Option<&Region>) -> f64 {
+pub(super) fn most(stage: &Stage, lamp: &Lamp, matter: &Matter, region: Option<&Region>) -> f64 {
     let highlight = stage.highlight != Form::Plain;
     STEPS * ROUNDING * (stage.effect.most)(lamp, matter, highlight, region)
 }
 
-/// Takes out of `stages` what adds least, as long as all of it stays below `budget` steps of a byte.
+/// Takes out of some lights what adds least, as long as all of it stays below `budget` steps of a byte.
 /// Gives what it adds together; each light that goes is told of with what it adds.
-pub(super) fn thin(
-    stages: &mut Vec<Stage>,
-    (lamps, matter): (&[Lamp], &Matter),
-    region: Option<&Region>,
+pub(super) fn thin<T>(
+    lights: &mut Vec<T>,
+    most: impl Fn(&T) -> f64,
     budget: f64,
-    mut tell: impl FnMut(&Stage, f64),
+    mut tell: impl FnMut(&T, f64),
 ) -> f64 {
     let mut sum = 0.0;
     loop {
-        let bounds =
-            stages.iter().map(|stage| most(stage, &lamps[stage.lamp as usize], matter, region));
-        let least = bounds.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-        match least {
+        let bounds = lights.iter().map(&most).enumerate();
+        match bounds.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((at, bound)) if sum + bound < budget => {
                 sum += bound;
-                tell(&stages.remove(at), bound);
+                tell(&lights.remove(at), bound);
             }
             _ => return sum,
         }

@@ -10,13 +10,14 @@ use rayon::prelude::*;
 use super::draw::Form;
 use super::tile::TilePlan;
 use super::uses::{Effect, EffectUse};
-use super::{FramePlan, Pipeline, Shaded};
+use super::{FramePlan, Pipeline, Shaded, Stage};
 use crate::render::bins::tiles_of;
-use crate::render::clip::Screen;
-use crate::render::corners::shows_back;
+use crate::render::clip::{Screen, ScreenVertex, faces_observer};
+use crate::render::coverage::{PixelBox, doubled_area};
 use crate::render::frame::Frame;
-use crate::render::renderer::bounds_of;
-use crate::render::tile::{BLOCK_PIXELS, Seen, Visibility, seen};
+use crate::render::lines::LineNumber;
+use crate::render::painter::bounds_of;
+use crate::render::tile::{Seen, Visibility, seen};
 use crate::scene::{ItemId, LightAt};
 
 /// Pixels by effect and thing, and what the worst of them may be off by.
@@ -57,7 +58,7 @@ impl FramePlan {
                     let bounds = bounds_of(tile, self.size);
                     visibility.draw(level, self, frame, (tile, bounds));
                     tile_plan.begin(self, visibility, bounds);
-                    self.count_tile(frame, visibility, tile_plan)
+                    self.count_tile(level, frame, (visibility, bounds), tile_plan)
                 },
             )
             .reduce(Counts::default, Counts::with);
@@ -68,18 +69,22 @@ impl FramePlan {
         counts.off_by
     }
 
-    fn count_tile(&self, frame: &Frame, visibility: &Visibility, tile: &mut TilePlan) -> Counts {
+    fn count_tile(
+        &self,
+        level: Level,
+        frame: &Frame,
+        (visibility, bounds): (&mut Visibility, PixelBox),
+        tile: &mut TilePlan,
+    ) -> Counts {
         let mut counts = Counts::default();
         // By draw and pipeline.
         let mut surfaces = BTreeMap::<(u32, u32), u64>::new();
-        let words = (0..BLOCK_PIXELS).flat_map(|block| visibility.block(block).0);
         let mut last = None;
-        for word in words {
-            match seen(*word) {
+        let rows = bounds.top..bounds.bottom;
+        for (y, x) in rows.flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x))) {
+            match seen(visibility.word(level, x, y)) {
                 Seen::Background => {}
-                Seen::Line(number) => {
-                    self.count_line(frame.lines[number as usize].draw, &mut counts);
-                }
+                Seen::Line(line) => self.count_line(frame, line, &mut counts),
                 Seen::Triangle(number) => {
                     let (draw, start) = frame.draw_of(number);
                     let pipeline = self.draws[draw as usize].pipeline_of(number - start.number);
@@ -106,27 +111,34 @@ impl FramePlan {
         counts
     }
 
+    /// Whether the observer sees the back of a triangle.
     fn is_back(&self, frame: &Frame, draw: u32, number: u32) -> bool {
         let own = &self.draws[draw as usize];
         let vertices = frame.vertices_of(self, draw);
-        let ids = own.model.mesh.draw_order().vertices_of(number);
+        let order = own.model.mesh.draw_order();
+        let ids = order.vertices_of(number);
         let corners = ids.map(|vertex| vertices[vertex as usize]);
-        let whole = corners.iter().all(|corner| corner.is_inside());
-        let screen = Screen::new(own.clip_from_object, self.size);
-        shows_back(own, &screen, number, whole.then(|| corners.map(|corner| corner.at())))
+        let front = if corners.iter().all(ScreenVertex::is_inside) {
+            doubled_area(corners.map(|corner| corner.at())) < 0
+        } else {
+            let screen = Screen::new(own.clip_from_object, self.size);
+            faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
+        };
+        front == own.mirrored
     }
 
-    /// Lines are not told apart where several kinds are drawn: each is given all of them.
-    fn count_line(&self, draw: u32, counts: &mut Counts) {
+    /// Drawn normals of faces and of vertices are not told apart: each is given both.
+    fn count_line(&self, frame: &Frame, line: LineNumber, counts: &mut Counts) {
+        let Some((draw, _)) = frame.line_seen(self, line) else { return };
         let draw = &self.draws[draw as usize];
-        let lines = &draw.lines;
-        let kinds = [
-            (Effect::Edges, lines.edges),
-            (Effect::FaceNormals, lines.face_normals.is_some()),
-            (Effect::VertexNormals, lines.vertex_normals.is_some()),
-        ];
-        for (effect, _) in kinds.into_iter().filter(|(_, drawn)| *drawn) {
-            counts.add(effect, draw.item, 1);
+        if frame.is_edge(line) {
+            return counts.add(Effect::Edges, draw.item, 1);
+        }
+        if draw.lines.face_normals.is_some() {
+            counts.add(Effect::FaceNormals, draw.item, 1);
+        }
+        if draw.lines.vertex_normals.is_some() {
+            counts.add(Effect::VertexNormals, draw.item, 1);
         }
     }
 
@@ -140,11 +152,16 @@ impl FramePlan {
         counts: &mut Counts,
     ) {
         let light = tile.light(self, pipeline, shaded);
-        for stage in light.stages {
+        let stages: Vec<&Stage> = match light.kept {
+            None => light.stages.iter().collect(),
+            Some(kept) => kept.iter().map(|place| &light.stages[*place as usize]).collect(),
+        };
+        let mirrors = stages.iter().any(|stage| stage.highlight != Form::Plain);
+        for stage in stages {
             counts.add(Effect::Light(self.lights[stage.lamp as usize]), item, pixels);
         }
         let features = [
-            (Effect::Highlights, light.stages.iter().any(|stage| stage.highlight != Form::Plain)),
+            (Effect::Highlights, mirrors),
             (Effect::Normals, self.light_at == LightAt::Pixel && light.places),
             (Effect::Texture, shaded.texture.is_some()),
             (Effect::Holes, shaded.cutout.is_some()),

@@ -8,7 +8,6 @@
 mod bounded;
 mod count;
 mod draw;
-mod facing;
 mod features;
 mod lamps;
 mod observer;
@@ -16,6 +15,7 @@ mod planner;
 pub mod rules;
 mod surfaces;
 mod tile;
+mod turning;
 mod uses;
 mod without;
 
@@ -24,12 +24,12 @@ use std::sync::Arc;
 use glam::DMat4;
 
 pub(super) use self::draw::{Back, Draw, Lines, Pipeline, Shaded, Stage};
-pub use self::facing::Facing;
 use self::lamps::lamps;
 pub(super) use self::observer::ObserverSpace;
 use self::planner::Planner;
 use self::rules::Rules;
 pub(super) use self::tile::{TileLight, TilePlan};
+pub use self::turning::Turning;
 use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectUse, State, Thing};
 use super::effects::Lamp;
@@ -54,6 +54,8 @@ pub struct FramePlan {
     pub(in crate::render) light_at: LightAt,
     /// What textures give between their texels.
     pub(in crate::render) filter: Filter,
+    /// Where the observer is and which way they look.
+    pub(in crate::render) view_from_world: DMat4,
     /// `clip_from_view`.
     pub(in crate::render) clip_from_view: DMat4,
     /// Width of lines in pixels: 1 or 2.
@@ -139,6 +141,7 @@ impl FramePlan {
             arithmetic: settings.arithmetic,
             light_at: settings.light,
             filter: settings.filter,
+            view_from_world: observer.view_from_world,
             clip_from_view: observer.clip_from_view,
             line_width: if view.wide_lines { 2 } else { 1 },
             lamps: Vec::new(),
@@ -164,12 +167,6 @@ impl FramePlan {
             });
         }
         into
-    }
-
-    /// Why nothing needs to be drawn where the picture of `before` stands, if that is so.
-    #[must_use]
-    pub fn left_out_after(&self, before: &Self) -> rules::Verdict {
-        self.rules.frame(before, self)
     }
 
     /// Pixels.

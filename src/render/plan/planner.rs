@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::facing::Facing;
 use super::features::presence;
 use super::lamps::Shining;
 use super::rules::Thing;
 use super::surfaces::Ground;
+use super::turning::Turning;
 use super::uses::{self, EffectUse, State};
 use super::{Back, Draw, Lines, ObserverSpace, Pipeline, Planning};
 use crate::base::{Shared, color::Color, math};
@@ -131,8 +131,8 @@ impl Planner<'_> {
         if draw.part_pipelines.is_empty() {
             let seen = rules.surfaces(&thing).is_none();
             let (region, tiled) = self.region(&draw, bounds.corners());
-            let facing = Facing::of(&draw, self.settings.light);
-            let ground = Ground { item, object, region, facing, tiled, seen };
+            let turning = Turning::of(&draw, self.settings.light);
+            let ground = Ground { item, object, region, turning, tiled, seen };
             draw.part_pipelines = self.part_pipelines(into, &ground);
         }
         let first = draw.part_pipelines.first().copied().flatten();

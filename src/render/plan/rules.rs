@@ -6,9 +6,10 @@
 
 use std::sync::{Arc, LazyLock};
 
-use super::facing::{Facing, is_turned_away};
 use super::observer::ObserverSpace;
-use super::{Draw, FramePlan, Stage};
+use super::turning::{Turning, is_turned_away};
+use super::{Draw, Stage};
+use crate::render::changes::Changes;
 use crate::render::effects::{Entry, Lamp, Matter};
 use crate::render::region::Region;
 use crate::scene::{Bounds, Light, LightKind, SpotOwner, Texture};
@@ -30,7 +31,7 @@ pub enum Test {
     /// Whether a light is left out on what a tile of the picture shows.
     Tile(fn(&Meeting<'_>) -> Verdict),
     /// Whether the places and normals of what is seen are left out.
-    Places(fn(&Reading<'_>) -> Verdict),
+    Places(fn(&Reading) -> Verdict),
     /// Whether the colours of surfaces are left out.
     Surfaces(fn(&Thing<'_>) -> Verdict),
     /// Whether an object is left out.
@@ -39,8 +40,8 @@ pub enum Test {
     Texture(fn(Option<&Texture>) -> Verdict),
     /// Whether looking for the holes of a texture is left out.
     Holes(fn(&Covering<'_>) -> Verdict),
-    /// Whether a whole frame is left out: the picture of one plan stands already, another is wanted.
-    Frame(fn(&FramePlan, &FramePlan) -> Verdict),
+    /// Whether a whole frame is left out, for what it changes of the last one.
+    Frame(fn(&Changes) -> Verdict),
 }
 
 /// A rule of the table.
@@ -90,26 +91,24 @@ pub struct Meeting<'a> {
     /// Where the surface is, where that is known.
     pub region: Option<&'a Region>,
     /// How its faces are turned, where that is known.
-    pub facing: Option<&'a Facing>,
+    pub turning: Option<&'a Turning>,
 }
 
 /// The lights of a surface.
-#[derive(Clone, Copy, Debug)]
-pub struct Reading<'a> {
-    pub(super) stages: &'a [Stage],
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reading {
+    /// How many they are.
+    pub lights: usize,
+    /// How many of them look at where a place is, how it is turned, or from where it is seen.
+    pub of_places: usize,
 }
 
-impl Reading<'_> {
-    /// How many they are.
-    #[must_use]
-    pub const fn lights(&self) -> usize {
-        self.stages.len()
-    }
-
-    /// Whether any of them looks at where a place is, how it is turned, or from where it is seen.
-    #[must_use]
-    pub fn needs_places(&self) -> bool {
-        self.stages.iter().any(|stage| stage.effect.reads_places)
+impl Reading {
+    pub(super) fn of<'a>(stages: impl Iterator<Item = &'a Stage>) -> Self {
+        stages.fold(Self::default(), |sum, stage| Self {
+            lights: sum.lights + 1,
+            of_places: sum.of_places + usize::from(stage.effect.reads_places),
+        })
     }
 }
 
@@ -176,20 +175,17 @@ const TABLE: &[(&str, Test)] = &[
     ("object beyond the light", Test::Object(|it| (it.effect.misses)(it.lamp, it.region?))),
     ("light behind the faces", Test::Object(behind)),
     ("tile beyond the light", Test::Tile(|it| (it.effect.misses)(it.lamp, it.region?))),
-    (
-        "normals not needed",
-        Test::Places(|it| (!it.needs_places()).then_some("no light reads them")),
-    ),
+    ("normals not needed", Test::Places(|it| (it.of_places == 0).then_some("no light reads them"))),
     ("surfaces not filled", Test::Surfaces(|it| (!it.is_filled()).then_some("edges only"))),
     ("outside the view", Test::Thing(|it| it.is_outside().then_some("outside the view"))),
     ("turned away", Test::Thing(|it| it.is_turned_away().then_some("every face is turned away"))),
     ("no texture", Test::Texture(|it| it.is_none().then_some("there is none"))),
     ("texture without holes", Test::Holes(|it| it.has_no_holes().then_some("it has no holes"))),
-    ("unchanged", Test::Frame(|before, now| (before == now).then_some("nothing has changed"))),
+    ("unchanged", Test::Frame(|it| it.is_nothing().then_some("nothing has changed"))),
 ];
 
 fn behind(it: &Meeting<'_>) -> Verdict {
-    let is_behind = (it.effect.is_behind)(it.lamp, it.region?, it.facing?);
+    let is_behind = (it.effect.is_behind)(it.lamp, it.region?, it.turning?);
     is_behind.then_some("it comes from behind every face")
 }
 
@@ -206,6 +202,9 @@ fn without_owner(it: &LightFacts<'_>) -> Verdict {
 pub struct Rules(Vec<Rule>);
 
 impl Rules {
+    /// How many there are.
+    pub const COUNT: usize = TABLE.len();
+
     /// The rules of the table.
     #[must_use]
     pub fn sound() -> Arc<Self> {
@@ -293,10 +292,10 @@ kinds! {
     highlight Highlight(it: &Meeting<'_>);
     object Object(it: &Meeting<'_>);
     tile Tile(it: &Meeting<'_>);
-    places Places(it: &Reading<'_>);
+    places Places(it: &Reading);
     surfaces Surfaces(it: &Thing<'_>);
     thing Thing(it: &Thing<'_>);
     texture Texture(it: Option<&Texture>);
     holes Holes(it: &Covering<'_>);
-    frame Frame(before: &FramePlan, now: &FramePlan);
+    frame Frame(it: &Changes);
 }

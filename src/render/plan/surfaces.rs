@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use super::draw::Form;
-use super::facing::Facing;
 use super::lamps::Shining;
 use super::planner::Planner;
 use super::rules::{Covering, Meeting, Reading};
+use super::turning::Turning;
 use super::uses::{self, Class, Effect, EffectUse, State};
 use super::{Pipeline, Planning, Shaded, Stage, bounded};
 use crate::base::image::{Picture, Size};
@@ -26,7 +26,7 @@ pub(super) struct Ground<'a> {
     /// Where they are lit, where that is known.
     pub(super) region: Option<Region>,
     /// How they are turned, where that is known.
-    pub(super) facing: Option<Facing>,
+    pub(super) turning: Option<Turning>,
     /// See [`Shaded::tiled`].
     pub(super) tiled: bool,
     /// Whether their colours are seen at all.
@@ -112,7 +112,7 @@ impl Planner<'_> {
             (matter, shaded.cut_off) = self.cut(into, ground, matter, &mut stages);
         }
         shaded.matter = matter;
-        shaded.places = into.plan.rules.places(&Reading { stages: &stages }).is_none();
+        shaded.places = into.plan.rules.places(&Reading::of(stages.iter())).is_none();
         // Tile by tile where some light shines on a part of space only, or is too faint in some.
         shaded.tiled = ground.tiled
             && (self.settings.leave_out == LeaveOut::HalfStep
@@ -146,8 +146,8 @@ impl Planner<'_> {
         let mut no_highlight = Some("no light is on it");
         for Shining { id, name, effect, lamp, .. } in &self.shining {
             let source = into.plan.lamps[*lamp as usize];
-            let (region, facing) = (ground.region.as_ref(), ground.facing.as_ref());
-            let meeting = Meeting { effect, lamp: &source, matter, region, facing };
+            let (region, turning) = (ground.region.as_ref(), ground.turning.as_ref());
+            let meeting = Meeting { effect, lamp: &source, matter, region, turning };
             let rules = &into.plan.rules;
             let reason = rules.reflection(&meeting).or_else(|| rules.object(&meeting));
             into.notes.add(|| EffectUse {
@@ -210,7 +210,9 @@ impl Planner<'_> {
             });
         };
         let region = ground.region.as_ref();
-        bounded::thin(stages, (&plan.lamps, matter), region, bounded::LIGHTS, tell)
+        let most =
+            |stage: &Stage| bounded::most(stage, &plan.lamps[stage.lamp as usize], matter, region);
+        bounded::thin(stages, most, bounded::LIGHTS, tell)
     }
 
     /// Cuts off the foot of highlights. Gives what that takes away, in steps of a byte.

@@ -10,7 +10,7 @@ use super::rules::{Meeting, Reading};
 use super::{Eye, FramePlan, Pipeline, Shaded, Stage, bounded};
 use crate::render::coverage::PixelBox;
 use crate::render::region::Region;
-use crate::render::tile::{self, BLOCK_PIXELS, Seen, Visibility};
+use crate::render::tile::Visibility;
 use crate::scene::LeaveOut;
 
 /// What interpolating a depth, or one by w, in 32 bits may be wrong by, as a part of the largest.
@@ -23,9 +23,10 @@ pub(in crate::render) struct TilePlan {
     region: Option<Region>,
     /// By pipeline: what was decided, if it was in this tile.
     decided: Vec<Option<Decided>>,
-    /// The lists of stages, one behind the other.
-    stages: Vec<Stage>,
-    kept: Vec<Stage>,
+    /// The places of the stages that are kept, list behind list.
+    kept: Vec<u32>,
+    /// Those of the list that is being made.
+    own: Vec<u32>,
 }
 
 /// What was decided about a pipeline in a tile.
@@ -40,8 +41,10 @@ struct Decided {
 /// The lights that a tile is coloured by, with one pipeline.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::render) struct TileLight<'a> {
-    /// In the order of the scene.
+    /// All of the pipeline's, in the order of the scene.
     pub(in crate::render) stages: &'a [Stage],
+    /// The places of those that are evaluated, where not all are.
+    pub(in crate::render) kept: Option<&'a [u32]>,
     /// Whether any of them looks at places and normals.
     pub(in crate::render) places: bool,
     /// What the lights that were left out add at most, in steps of a byte.
@@ -57,11 +60,11 @@ impl TilePlan {
         bounds: PixelBox,
     ) {
         self.decided.clear();
-        self.stages.clear();
+        self.kept.clear();
         let tiled =
             |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
-        let depths = plan.pipelines.iter().any(tiled).then(|| depths(visibility));
-        self.region = depths.flatten().map(|depths| region(plan, bounds, depths));
+        let depths = plan.pipelines.iter().any(tiled).then(|| visibility.depths());
+        self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));
         if self.region.is_some() {
             self.decided.resize(plan.pipelines.len(), None);
         }
@@ -75,7 +78,8 @@ impl TilePlan {
         shaded: &'a Shaded,
     ) -> TileLight<'a> {
         let stages = shaded.light.as_deref().unwrap_or_default();
-        let whole = TileLight { stages, places: shaded.places, dropped: shaded.dropped };
+        let Shaded { places, dropped, .. } = *shaded;
+        let whole = TileLight { stages, kept: None, places, dropped };
         let Some(region) = self.region.filter(|_| shaded.tiled) else { return whole };
         let at = pipeline as usize;
         let decided = match self.decided[at] {
@@ -84,7 +88,7 @@ impl TilePlan {
         };
         self.decided[at] = Some(decided);
         let Decided { from, to, places, dropped } = decided;
-        TileLight { stages: &self.stages[from..to], places, dropped }
+        TileLight { stages, kept: Some(&self.kept[from..to]), places, dropped }
     }
 
     fn decide(
@@ -95,39 +99,29 @@ impl TilePlan {
         region: &Region,
     ) -> Decided {
         let matter = &shaded.matter;
-        self.kept.clear();
-        self.kept.extend(stages.iter().filter(|stage| {
-            let lamp = &plan.lamps[stage.lamp as usize];
-            let meeting =
-                Meeting { effect: stage.effect, lamp, matter, region: Some(region), facing: None };
-            plan.rules.tile(&meeting).is_none()
-        }));
+        let lamp = |place: u32| &plan.lamps[stages[place as usize].lamp as usize];
+        let reaches = |place: &u32| {
+            let effect = stages[*place as usize].effect;
+            let (lamp, region, turning) = (lamp(*place), Some(region), None);
+            plan.rules.tile(&Meeting { effect, lamp, matter, region, turning }).is_none()
+        };
+        self.own.clear();
+        let count = u32::try_from(stages.len()).expect("fewer than 2^32 lights");
+        self.own.extend((0..count).filter(reaches));
         let mut dropped = shaded.dropped;
         if plan.leave_out == LeaveOut::HalfStep {
             let budget = bounded::LIGHTS - dropped;
-            let lit = (&plan.lamps[..], matter);
-            dropped += bounded::thin(&mut self.kept, lit, Some(region), budget, |_, _| {});
+            let most = |place: &u32| {
+                bounded::most(&stages[*place as usize], lamp(*place), matter, Some(region))
+            };
+            dropped += bounded::thin(&mut self.own, most, budget, |_, _| {});
         }
-        let from = self.stages.len();
-        self.stages.extend_from_slice(&self.kept);
-        let places = plan.rules.places(&Reading { stages: &self.kept }).is_none();
-        Decided { from, to: self.stages.len(), places, dropped }
+        let kept = self.own.iter().map(|place| &stages[*place as usize]);
+        let places = plan.rules.places(&Reading::of(kept)).is_none();
+        let from = self.kept.len();
+        self.kept.extend_from_slice(&self.own);
+        Decided { from, to: self.kept.len(), places, dropped }
     }
-}
-
-/// The farthest and the nearest depth of all triangles that a tile shows.
-fn depths(visibility: &Visibility) -> Option<[f64; 2]> {
-    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-    for block in 0..BLOCK_PIXELS {
-        let (words, _) = visibility.block(block);
-        for word in words {
-            if let Seen::Triangle(_) = tile::seen(*word) {
-                let depth = tile::depth(*word);
-                (low, high) = (low.min(depth), high.max(depth));
-            }
-        }
-    }
-    (low <= high).then(|| [f64::from(low), f64::from(high)])
 }
 
 /// The piece of view space whose pixels and depths these are.

@@ -53,7 +53,7 @@ impl FramePlan {
         self.for_each_shaded(|shaded| {
             if let Some(stages) = &mut shaded.light {
                 change(stages);
-                shaded.places = rules.places(&Reading { stages }).is_none();
+                shaded.places = rules.places(&Reading::of(stages.iter())).is_none();
             }
         });
     }

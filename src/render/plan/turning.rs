@@ -15,9 +15,9 @@ const FEW: usize = 64;
 
 /// The normals by which a small mesh is lit, in view space, of length 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Facing(Vec<DVec3>);
+pub struct Turning(Vec<DVec3>);
 
-impl Facing {
+impl Turning {
     /// Those of a draw; `None` where they are many, where backs are lit, or where placing stretches some
     /// so much more than others that their mixtures are not sure.
     pub(super) fn of(draw: &Draw, light_at: LightAt) -> Option<Self> {

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-use super::random::Random;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
+use crate::lab::prove::dice::Dice;
 use crate::scene::{
     FileMaterial, LoadOptions, Material, Mesh, MeshSource, Model, NONE, Part, SourceCorner,
     Texture, Wrap,
@@ -160,30 +160,30 @@ fn colored() -> Shared<Model> {
 }
 
 /// A material, often with nothing in some of its coefficients.
-pub(super) fn material(random: &mut Random) -> Material {
-    let mut row = || match random.below(4) {
+pub(super) fn material(dice: &mut Dice) -> Material {
+    let mut row = || match dice.index(4) {
         0 => [0.0; 3],
-        1 => [random.part(), random.part(), random.part()],
-        _ => [0; 3].map(|_| random.pick(&COEFFICIENTS)),
+        1 => [dice.part(), dice.part(), dice.part()],
+        _ => [0; 3].map(|_| dice.pick(&COEFFICIENTS)),
     };
     let (ambient, diffuse, specular) = (row(), row(), row());
-    let exponent = random.pick(&[0.0, 1.0, 5.0, 32.0, 128.0, 1000.0]);
+    let exponent = dice.pick(&[0.0, 1.0, 5.0, 32.0, 128.0, 1000.0]);
     Material { ambient, diffuse, specular, exponent }
 }
 
 /// A texture of a few texels, with holes or without.
-pub(super) fn texture(random: &mut Random) -> Shared<Texture> {
-    let side = random.pick(&[1, 2, 5]);
-    let alphas: &[u8] = if random.percent(50) { &[255] } else { &[0, 127, 128, 255] };
+pub(super) fn texture(dice: &mut Dice) -> Shared<Texture> {
+    let side = dice.pick(&[1, 2, 5]);
+    let alphas: &[u8] = if dice.percent(50) { &[255] } else { &[0, 127, 128, 255] };
     let mut texel = || {
-        let byte = |random: &mut Random| random.pick(&[0_u8, 1, 100, 255]);
-        [byte(random), byte(random), byte(random), random.pick(alphas)]
+        let byte = |dice: &mut Dice| dice.pick(&[0_u8, 1, 100, 255]);
+        [byte(dice), byte(dice), byte(dice), dice.pick(alphas)]
     };
     let texels = (0..side * side).map(|_| texel()).collect();
     Shared::new(Texture {
         source: PathBuf::new(),
         picture: Picture::from_pixels(Size::new(side, side), texels).expect("as many as it has"),
-        wrap: random.pick(&[Wrap::Repeat, Wrap::Clamp]),
+        wrap: dice.pick(&[Wrap::Repeat, Wrap::Clamp]),
         offset: [0.0; 2],
         scale: [1.0; 2],
     })

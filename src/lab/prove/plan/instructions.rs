@@ -8,10 +8,10 @@ use std::hint::black_box;
 use fearless_simd::Level;
 
 use super::absent::with_lights_off;
-use super::random::Random;
-use super::scenes::Sample;
+use super::samples::Sample;
 use crate::base::image::Size;
 use crate::io;
+use crate::lab::prove::dice::Dice;
 use crate::render::{FramePlan, Renderer};
 use crate::scene::Settings;
 
@@ -38,8 +38,9 @@ pub fn draw(frame: Frame) -> Result<(), rayon::ThreadPoolBuildError> {
     // All on this thread, for counting is switched on for the thread that comes by.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()?;
     let (scene, view) = io::default_scene();
-    let it = Sample { scene, view, settings: Settings::default(), size: Size::new(128, 128) };
-    let more = with_lights_off(&it, LIGHTS_OFF, &mut Random::new(1));
+    let it =
+        Sample { seed: 0, scene, view, settings: Settings::default(), size: Size::new(128, 128) };
+    let more = with_lights_off(&it, LIGHTS_OFF, &mut Dice::new(1));
     let plan = |it: &Sample| FramePlan::new(&it.scene, &it.view, &it.settings, it.size);
     let plans = [plan(&it), plan(&more)];
     let mut renderer = Renderer::new(level());

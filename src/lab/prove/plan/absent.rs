@@ -1,40 +1,44 @@
 //! What is not seen is not there: a light that is off, a hidden object, a material that nothing has,
 //! put in anywhere, change no byte.
 
-use std::ops::Range;
-
-use rayon::prelude::*;
-
-use super::random::Random;
-use super::scenes::{Sample, sample};
-use super::shapes;
+use super::samples::{Sample, sample};
+use super::{seeds, shapes};
 use crate::base::Shared;
+use crate::lab::prove::Tally;
+use crate::lab::prove::dice::Dice;
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     Command, FileMaterial, Item, Light, LightId, LightKind, Mesh, MeshSource, Model, Object,
     ObjectId, Part, Placed, SourceCorner, SpotOwner,
 };
 
-/// The seed of the first of these scenes whose picture or whose ways of drawing change by what is not
-/// seen.
-#[must_use]
-pub fn seen_after_all(seeds: Range<u64>) -> Option<u64> {
-    seeds.into_par_iter().find_first(|seed| {
-        let it = sample(*seed);
-        let more = with_absent(&it, &mut Random::new(seed ^ 0x5eed));
+/// Draws the scenes of a lot as they are and with what is not seen, and wants the same bytes and the
+/// same ways of drawing.
+pub(super) fn is_not_seen(lot: u64) -> Result<Tally, String> {
+    let mut tally = Tally::default();
+    for it in seeds(lot).map(sample) {
+        let more = with_absent(&it, &mut Dice::new(it.seed ^ 0x5eed));
         let plan = |it: &Sample| FramePlan::new(&it.scene, &it.view, &it.settings, it.size);
         let (before, after) = (plan(&it), plan(&more));
-        before.keys() != after.keys()
-            || Renderer::default().render(&before) != Renderer::default().render(&after)
-    })
+        if before.keys() != after.keys() {
+            return Err(format!("scene {}: it is drawn in other ways", it.seed));
+        }
+        super::same(
+            it.seed,
+            Renderer::default().render(&after),
+            Renderer::default().render(&before),
+        )?;
+        tally.count("scenes", 1);
+    }
+    Ok(tally)
 }
 
 /// The scene with `count` lights that are off among the others.
 #[must_use]
-pub fn with_lights_off(it: &Sample, count: u32, random: &mut Random) -> Sample {
+pub fn with_lights_off(it: &Sample, count: u32, dice: &mut Dice) -> Sample {
     let mut more = it.clone();
     for i in 0..count {
-        let kind = random.pick(&[
+        let kind = dice.pick(&[
             LightKind::Ambient,
             LightKind::Sun { direction: Placed::new(glam::DVec3::NEG_Y) },
             LightKind::Bulb { position: Placed::new(glam::DVec3::ZERO), orbit: Default::default() },
@@ -45,26 +49,26 @@ pub fn with_lights_off(it: &Sample, count: u32, random: &mut Random) -> Sample {
             },
         ]);
         let light = Light { on: false, ..Light::new("off", 500 + i, kind) };
-        let at = random.below(more.scene.lights.len() + 1);
+        let at = dice.index(more.scene.lights.len() + 1);
         insert(&mut more, at, Item::Light(LightId(500 + i), Box::new(light)));
     }
     more
 }
 
 /// The scene with a light, an object and a material that are not seen.
-fn with_absent(it: &Sample, random: &mut Random) -> Sample {
-    let mut more = with_lights_off(it, 1, random);
+fn with_absent(it: &Sample, dice: &mut Dice) -> Sample {
+    let mut more = with_lights_off(it, 1, dice);
     // Older than all, or younger.
-    let id = ObjectId(random.pick(&[20, 700]));
-    let material = crate::scene::MaterialChoice::Own(shapes::material(random));
-    let mut hidden = Object::new(random.pick(&shapes::SHAPES), material);
+    let id = ObjectId(dice.pick(&[20, 700]));
+    let material = crate::scene::MaterialChoice::Own(shapes::material(dice));
+    let mut hidden = Object::new(dice.pick(&shapes::SHAPES), material);
     hidden.visible = false;
     hidden.placement = Placed::new(glam::DMat4::from_scale(glam::DVec3::splat(20.0)));
-    let at = random.below(more.scene.objects.len() + 1);
+    let at = dice.index(more.scene.objects.len() + 1);
     insert(&mut more, at, Item::Object(id, Box::new(hidden)));
     let objects: Vec<_> = more.scene.objects.iter().map(|(id, o)| (id, o.clone())).collect();
     for (id, mut object) in objects {
-        object.model = with_unused_material(&object.model, random);
+        object.model = with_unused_material(&object.model, dice);
         let item = Item::Object(id, Box::new(object));
         Command::Replace(item).apply(&mut more.scene).expect("it was there already");
     }
@@ -76,12 +80,12 @@ fn insert(more: &mut Sample, at: usize, item: Item) {
 }
 
 /// The same model, with a material among its others that none of its parts has.
-fn with_unused_material(model: &Shared<Model>, random: &mut Random) -> Shared<Model> {
+fn with_unused_material(model: &Shared<Model>, dice: &mut Dice) -> Shared<Model> {
     let mesh = &model.mesh;
-    let at = random.below(model.materials.len() + 1);
+    let at = dice.index(model.materials.len() + 1);
     let mut materials = model.materials.clone();
-    let material = shapes::material(random);
-    let texture = Some(shapes::texture(random));
+    let material = shapes::material(dice);
+    let texture = Some(shapes::texture(dice));
     materials
         .insert(at, FileMaterial { name: "unused".to_owned(), material, opacity: 0.7, texture });
     let moved = |material: u32| if material as usize >= at { material + 1 } else { material };
