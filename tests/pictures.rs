@@ -10,7 +10,7 @@ use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::{EffectUse, FramePlan, Renderer};
 use marraztu::scene::{
     Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Normals, ObjectId, PolygonMode,
     PresetId, Projection, Scene, Settings, SpecularForm, View,
@@ -352,13 +352,26 @@ fn what_is_left_out_is_named_with_its_reason() {
         let rubber = PresetId::named("black plastic").unwrap();
         object.material = MaterialChoice::Preset(rubber);
     });
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(64, 64));
-    let reason = |effect: &str| {
-        plan.skipped().iter().find(|skipped| skipped.effect == effect).map(|s| s.reason.clone())
+    let explained = |scene: &Scene| {
+        FramePlan::explained(scene, &view, &Settings::default(), Size::new(64, 64)).1
     };
-    assert_eq!(reason("cube").as_deref(), Some("outside the view"));
-    assert_eq!(reason("camera spot").as_deref(), Some("switched off"));
-    assert_eq!(reason("ambient on cube").as_deref(), Some("Ka of the material is 0"));
+    let reason = |uses: &[EffectUse], name: &str, on: Option<&str>| {
+        let is_it = |one: &&EffectUse| {
+            one.name == name && one.on.as_ref().map(|thing| thing.name.as_str()) == on
+        };
+        let found = uses.iter().find(is_it).unwrap();
+        assert!(!found.state.is_on(), "{name}");
+        found.state.why().to_owned()
+    };
+    let uses = explained(&scene);
+    assert_eq!(reason(&uses, "Surfaces", Some("cube")), "outside the view");
+    assert_eq!(reason(&uses, "camera spot", None), "switched off");
+    edit(&mut scene, FIRST, |object| {
+        object.placement = object.placement.replaced(at(40.0, 0.0, 0.0, 0.0));
+    });
+    let uses = explained(&scene);
+    assert_eq!(reason(&uses, "ambient", Some("cube")), "Ka of the material is 0");
+    assert_eq!(reason(&uses, "Textures", Some("cube")), "the file places none");
 }
 
 #[test]

@@ -5,6 +5,7 @@
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{CentralPanel, Context, Frame, Key, ThemePreference, ViewportCommand};
@@ -17,6 +18,7 @@ use super::dialogs::{After, Dialogs, Wanted};
 use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
 use super::material_dialog::MaterialDialog;
+use super::measuring::Measuring;
 use super::pace::{Happening, Motion};
 use super::painter::Snapshot;
 use super::scene_files::Waiting;
@@ -26,7 +28,7 @@ use super::worker::Worker;
 use super::{notices, panels};
 use crate::edit::selection::{self, Selection};
 use crate::edit::{Gesture, items};
-use crate::scene::{Command, Scene, Subject, View};
+use crate::scene::{Command, LeaveOut, Scene, Subject, View};
 
 /// The editor.
 #[derive(Debug)]
@@ -38,6 +40,8 @@ pub struct App {
     pub(super) waiting: Option<Waiting>,
     pub(super) viewport: Viewport,
     worker: Option<Worker<Purpose>>,
+    /// The measuring of effects that goes on.
+    pub(super) measuring: Option<Measuring>,
     /// It was decided to leave: nothing more is asked.
     leaving: bool,
     /// Whether what is shown is on the move.
@@ -62,6 +66,7 @@ impl App {
             waiting: None,
             viewport: Viewport::default(),
             worker: None,
+            measuring: None,
             leaving: false,
             motion: Motion::default(),
             moved_at: None,
@@ -112,6 +117,7 @@ impl App {
             self.take_answer(&ctx, answer);
         }
         self.hear_loading(&ctx);
+        self.hear_measuring();
         self.take_dropped(&ctx);
         self.close_requested(&ctx);
         self.draw(&ctx);
@@ -147,6 +153,9 @@ impl App {
                 let rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
                 self.state.statistics.note(drawn, rate);
             }
+            if let Some(explained) = &news.explained {
+                self.state.plan.explained = Some(Arc::clone(explained));
+            }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, asks);
             if failed {
@@ -176,7 +185,8 @@ impl App {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
         let State { scene, view, settings, .. } = &self.state;
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
-        let mut wanted = Snapshot { scene, view, settings, size, moving: false };
+        let mut wanted =
+            Snapshot { scene, view, settings, size, moving: false, explain: self.state.shown.plan };
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
         // What moves by itself is always being drawn.
@@ -314,6 +324,14 @@ impl App {
             Action::ToggleProperties => shown.properties ^= true,
             Action::ToggleViewPanel => shown.view ^= true,
             Action::ToggleStatistics => shown.statistics ^= true,
+            Action::TogglePlan => shown.plan ^= true,
+            Action::MeasurePlan => self.measure(ctx),
+            Action::ToggleLeaveOut => {
+                state.settings.leave_out = match state.settings.leave_out {
+                    LeaveOut::Unseen => LeaveOut::HalfStep,
+                    LeaveOut::HalfStep => LeaveOut::Unseen,
+                };
+            }
             Action::ThemeSystem => set_theme(ctx, shown, ThemePreference::System),
             Action::ThemeLight => set_theme(ctx, shown, ThemePreference::Light),
             Action::ThemeDark => set_theme(ctx, shown, ThemePreference::Dark),

@@ -19,6 +19,7 @@ mod files;
 pub mod gestures;
 mod keyboard;
 mod material_dialog;
+mod measuring;
 mod mouse;
 mod notices;
 mod overlay;

@@ -242,6 +242,7 @@ mod tests {
             light: LightAt::Pixel,
             filter: Filter::Bilinear,
             specular: crate::scene::SpecularForm::Reflection,
+            leave_out: crate::scene::LeaveOut::Unseen,
         },
         textured: true,
     };

@@ -10,6 +10,7 @@ use egui::ColorImage;
 
 use super::pace::{Attempt, Economy, Pace, Wealth};
 use crate::base::image::{Picture, Size};
+use crate::lab::cost::{self, Explained};
 use crate::render::{Changes, FramePlan, GivenUp, Hit, Renderer};
 use crate::scene::{ItemId, Scene, Settings, Surface, View};
 
@@ -22,12 +23,14 @@ pub(super) struct Snapshot {
     pub(super) size: Size,
     /// Whether it is on the move, so that a coarser picture in time is better than none.
     pub(super) moving: bool,
+    /// Whether it shall be said what the picture is made of.
+    pub(super) explain: bool,
 }
 
 impl Snapshot {
     /// Whether another one shows something else than the passing of time.
     pub(super) fn differs_from(&self, other: &Self) -> bool {
-        let Self { scene, view, settings, size, moving: _ } = self;
+        let Self { scene, view, settings, size, moving: _, explain: _ } = self;
         let view = |of: &View| View { time: view.time, ..of.clone() };
         (*settings, *size) != (other.settings, other.size)
             || *scene != other.scene
@@ -90,6 +93,8 @@ pub(super) struct Painter {
     shown: Option<Economy>,
     /// Whether the last frame was given up.
     gave_up: bool,
+    /// What was said last of what the picture is made of.
+    explained: Option<Arc<Explained>>,
     /// One is shown while the other is drawn.
     images: [Arc<ColorImage>; 2],
 }
@@ -102,6 +107,7 @@ impl Painter {
             pace: Pace::default(),
             shown: None,
             gave_up: false,
+            explained: None,
             images: <[Arc<ColorImage>; 2]>::default(),
         }
     }
@@ -152,6 +158,26 @@ impl Painter {
             economy,
             changes,
         })
+    }
+
+    /// What the picture that was finished last is made of; `None` where that is not wanted, or was
+    /// said.
+    pub(super) fn explain(&mut self, wanted: &Snapshot) -> Option<Arc<Explained>> {
+        if !wanted.explain {
+            self.explained = None;
+            return None;
+        }
+        if self.gave_up {
+            return None;
+        }
+        let (settings, size) = self.shown?.applied(wanted.settings, wanted.size);
+        let of = (&wanted.scene, &wanted.view, &settings, size);
+        let explained = cost::explain_with(&mut self.renderer, of);
+        if self.explained.as_deref() == Some(&explained) {
+            return None;
+        }
+        self.explained = Some(Arc::new(explained));
+        self.explained.clone()
     }
 
     /// What is seen at a pixel of a picture with all.
@@ -245,7 +271,7 @@ mod tests {
 
     fn snapshot(size: Size) -> Snapshot {
         let (scene, view) = io::default_scene();
-        Snapshot { scene, view, settings: Settings::default(), size, moving: false }
+        Snapshot { scene, view, settings: Settings::default(), size, moving: false, explain: false }
     }
 
     /// The same in another colour, for which everything has to be drawn.

@@ -1,6 +1,7 @@
 //! Everything that panels read. Only the app writes it.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::action::Action;
@@ -8,6 +9,7 @@ pub use super::pace::Economy;
 use super::painter::Drawn;
 use crate::base::image::Size;
 use crate::edit::{Gesture, History, Stroke, selection};
+use crate::lab::cost::{Costs, Explained};
 use crate::render::Changes;
 use crate::scene::{ItemId, Light, LightKind, Panels, Scene, Settings, View};
 
@@ -30,6 +32,8 @@ pub struct State {
     pub notices: Vec<Notice>,
     /// What the last picture took.
     pub statistics: Statistics,
+    /// What the last picture is made of, while somebody wants to see that.
+    pub plan: Plan,
     /// Which panels are shown.
     pub shown: Shown,
     /// The item that is being given a name.
@@ -116,6 +120,30 @@ impl Statistics {
     }
 }
 
+/// What the last picture is made of.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// Its effects.
+    pub explained: Option<Arc<Explained>>,
+    /// What they cost in time, when that was measured last.
+    pub costs: Option<Arc<Measured>>,
+    /// Whether it is being measured.
+    pub measuring: bool,
+}
+
+/// What effects cost, and in which picture.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// What was measured.
+    pub costs: Costs,
+    /// What there was to draw.
+    pub scene: Scene,
+    /// How it was looked at.
+    pub view: View,
+    /// How exactly it was drawn.
+    pub settings: Settings,
+}
+
 /// Which panels are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
@@ -127,6 +155,8 @@ pub struct Shown {
     pub view: bool,
     /// What a picture takes.
     pub statistics: bool,
+    /// What a picture is made of.
+    pub plan: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
     /// Whether the window is light or dark.
@@ -143,15 +173,15 @@ impl Shown {
     /// The panels that a scene was saved with, in a theme.
     #[must_use]
     pub const fn of(panels: Panels, theme: egui::ThemePreference) -> Self {
-        let Panels { outline, properties, view, statistics, cheat_sheet } = panels;
-        Self { outline, properties, view, statistics, cheat_sheet, theme }
+        let Panels { outline, properties, view, statistics, plan, cheat_sheet } = panels;
+        Self { outline, properties, view, statistics, plan, cheat_sheet, theme }
     }
 
     /// The panels, as a scene is saved with them.
     #[must_use]
     pub const fn panels(&self) -> Panels {
-        let Self { outline, properties, view, statistics, cheat_sheet, .. } = *self;
-        Panels { outline, properties, view, statistics, cheat_sheet }
+        let Self { outline, properties, view, statistics, plan, cheat_sheet, .. } = *self;
+        Panels { outline, properties, view, statistics, plan, cheat_sheet }
     }
 }
 
@@ -168,6 +198,7 @@ impl State {
             message: None,
             notices: Vec::new(),
             statistics: Statistics::default(),
+            plan: Plan::default(),
             shown: Shown::default(),
             renaming: None,
             gesture: Gesture::Whole,

@@ -12,6 +12,7 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 use super::painter::{Asked, Border, Drawn, Painter, Snapshot};
+use crate::lab::cost::Explained;
 use crate::render::Hit;
 use crate::scene::ItemId;
 
@@ -27,6 +28,7 @@ pub(super) struct Pick<P> {
 pub(super) struct News<P> {
     pub(super) border: Option<Border>,
     pub(super) drawn: Option<Drawn>,
+    pub(super) explained: Option<Arc<Explained>>,
     pub(super) picked: Vec<(Pick<P>, Option<Hit>)>,
     pub(super) failed: bool,
 }
@@ -141,7 +143,7 @@ impl<P> Drop for Worker<P> {
 
 impl<P> News<P> {
     const fn none() -> Self {
-        Self { border: None, drawn: None, picked: Vec::new(), failed: false }
+        Self { border: None, drawn: None, explained: None, picked: Vec::new(), failed: false }
     }
 }
 
@@ -192,13 +194,22 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
         };
         // A fault of the renderer costs a picture, not the user's work.
         match catch_unwind(AssertUnwindSafe(|| painter.draw(&wanted, &asked))) {
-            Ok(None) => continue,
-            Ok(Some(drawn)) => shared.lock().news.drawn = Some(drawn),
+            Ok(None) => {}
+            Ok(Some(drawn)) => {
+                shared.lock().news.drawn = Some(drawn);
+                wake();
+            }
             Err(_) => {
                 painter = Painter::new(Instant::now);
                 shared.lock().news.failed = true;
+                wake();
+                continue;
             }
         }
-        wake();
+        // After the picture, which nobody should wait for because of it.
+        if let Ok(Some(explained)) = catch_unwind(AssertUnwindSafe(|| painter.explain(&wanted))) {
+            shared.lock().news.explained = Some(explained);
+            wake();
+        }
     }
 }

@@ -8,12 +8,13 @@ use clap::{Args, Parser, Subcommand};
 
 use super::job::Job;
 use super::keys::Keys;
+use super::plan::Plan;
 use super::prove::Prove;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::scene::{
-    Arithmetic, Filter, LightAt, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale,
-    SpecularForm, Surface, UpAxis, Winding,
+    Arithmetic, Filter, LeaveOut, LightAt, LoadOptions, MaterialChoice, Normals, PresetId,
+    Projection, Scale, SpecularForm, Surface, UpAxis, Winding,
 };
 
 /// The longest side that a picture may have.
@@ -51,6 +52,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Headless {
     /// Draws a picture into a file: the same pixels that the editor shows
     Render(Box<Render>),
+    /// Says what a picture takes: each effect, on or left out, why, and its cost
+    Plan(Box<Plan>),
     /// Says what files hold: shape, parts, materials, and what is wrong with them
     Info(Info),
     /// Lists every key of the editor
@@ -76,12 +79,19 @@ Examples:
   marraztu render shelf.marraztu --out shelf.ppm --camera 2 --time 1.5
   marraztu render ship.obj --out lines.png --edges --projection orthographic --background 0,0,0")]
 pub(crate) struct Render {
-    /// Models (.obj), and at most one scene (.marraztu) that they are put into
-    pub(crate) files: Vec<PathBuf>,
-
     /// The picture to write; its ending says how: .png or .ppm
     #[arg(short, long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) shot: Shot,
+}
+
+/// A picture, whatever becomes of it.
+#[derive(Debug, Args)]
+pub(crate) struct Shot {
+    /// Models (.obj), and at most one scene (.marraztu) that they are put into
+    pub(crate) files: Vec<PathBuf>,
+
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
     pub(crate) size: Size,
@@ -213,6 +223,12 @@ pub(crate) struct Accuracy {
         ("half-vector", SpecularForm::HalfVector),
     ]))]
     pub(crate) specular: Option<SpecularForm>,
+    /// What may be left out: unseen* changes no bit, half-step a byte by one step at most
+    #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
+        ("unseen", LeaveOut::Unseen),
+        ("half-step", LeaveOut::HalfStep),
+    ]))]
+    pub(crate) leave_out: Option<LeaveOut>,
 }
 
 /// Says what files hold.

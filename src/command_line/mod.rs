@@ -9,6 +9,7 @@ mod failure;
 mod info;
 mod job;
 mod keys;
+mod plan;
 mod prove;
 mod render;
 mod stage;
@@ -31,6 +32,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Render(arguments)) => render::render(&arguments),
         Some(Headless::Info(arguments)) => info::info(&arguments),
         Some(Headless::Keys(arguments)) => keys::keys(&arguments),
+        Some(Headless::Plan(arguments)) => plan::plan(&arguments),
         Some(Headless::Prove(arguments)) => prove::prove(&arguments),
         Some(Headless::Job(arguments)) => match job::job(&arguments) {
             Ok(status) => return ExitCode::from(status),

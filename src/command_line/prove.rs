@@ -2,10 +2,12 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::process::Command;
 use std::time::Instant;
 
 use clap::Args;
 use marraztu::lab::prove::pictures::{levels, samples};
+use marraztu::lab::prove::plan::instructions::{self, Frame};
 use marraztu::lab::prove::{PROOFS, Proof, Tally};
 
 use super::failure::Failure;
@@ -20,6 +22,7 @@ its lot; --from LOT --count 1 looks at it again.
 Examples:
   marraztu prove                          every claim, in the numbers that the project promises
   marraztu prove fans --count 1000000     one claim, in a million cases
+  marraztu prove instructions             a frame's instructions, with lights that are off and without
   marraztu prove pictures                 the sums of a dozen pictures, to compare processors by")]
 pub(crate) struct Prove {
     /// The claim: its name, as the list of `marraztu prove --list` has it; all where none is named
@@ -30,6 +33,9 @@ pub(crate) struct Prove {
     /// The first lot
     #[arg(long, value_name = "LOT", default_value_t = 0)]
     pub(crate) from: u64,
+    /// Draws one of the frames whose instructions are counted, and nothing else
+    #[arg(long, hide = true, value_enum)]
+    pub(crate) draw_counted: Option<Counted>,
     /// Lists the claims
     #[arg(long)]
     pub(crate) list: bool,
@@ -38,17 +44,32 @@ pub(crate) struct Prove {
     pub(crate) figures: Option<PathBuf>,
 }
 
+/// See [`instructions`].
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum Counted {
+    Plain,
+    LightsOff,
+}
+
 /// Looks at the cases of one claim, or of all.
 pub(crate) fn prove(arguments: &Prove) -> Result<(), Failure> {
     if arguments.list {
         let rows = PROOFS.iter().map(|proof| {
             format!("{:<9} {} {}: {}", proof.name, proof.whole, proof.unit, proof.claim)
         });
-        let rows = rows.chain(["pictures  the sums of a dozen pictures".to_owned()]);
+        let others = [
+            "instructions  two frames: 100 lights that are off cost no instruction of drawing",
+            "pictures  the sums of a dozen pictures",
+        ];
+        let rows = rows.chain(others.map(str::to_owned));
         return tell(&rows.collect::<Vec<_>>().join("\n"));
+    }
+    if let Some(counted) = arguments.draw_counted {
+        return draw_counted(counted);
     }
     match arguments.name.as_deref() {
         Some("pictures") => pictures(),
+        Some("instructions") => same_instructions(),
         Some(name) => {
             let Some(proof) = Proof::named(name) else {
                 say("error", &format_args!("there is no claim \"{name}\"; --list lists them"));
@@ -107,4 +128,44 @@ fn pictures() -> Result<(), Failure> {
 
 fn tell(text: &str) -> Result<(), Failure> {
     writeln!(std::io::stdout().lock(), "{text}").map_err(Failure::Output)
+}
+
+fn draw_counted(counted: Counted) -> Result<(), Failure> {
+    let frame = match counted {
+        Counted::Plain => Frame::Plain,
+        Counted::LightsOff => Frame::WithLightsOff,
+    };
+    instructions::draw(frame).map_err(|error| Failure::Absent(error.to_string()))
+}
+
+/// Counts the instructions of two frames that should have as many.
+fn same_instructions() -> Result<(), Failure> {
+    let (plain, off) = (counted("plain")?, counted("lights-off")?);
+    tell(&format!(
+        "instructions: {plain} for a frame, {off} with {} lights that are off",
+        instructions::LIGHTS_OFF
+    ))?;
+    if plain == off {
+        return Ok(());
+    }
+    say("error", &"lights that are off cost instructions");
+    Err(Failure::Told)
+}
+
+/// How many instructions a frame takes, by callgrind.
+fn counted(frame: &str) -> Result<u64, Failure> {
+    let program = std::env::current_exe().map_err(Failure::Output)?;
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(format!("--toggle-collect={}", instructions::COUNTED))
+        .arg(program)
+        .args(["prove", "--draw-counted", frame])
+        .output()
+        .map_err(|error| {
+            Failure::Absent(format!("valgrind, which counts, does not run: {error}"))
+        })?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let collected = said.lines().find_map(|line| line.split_once("Collected : "));
+    let count = collected.and_then(|(_, count)| count.trim().parse().ok()).filter(|n| *n > 0);
+    count.ok_or_else(|| Failure::Absent(format!("callgrind counted nothing; it said:\n{said}")))
 }

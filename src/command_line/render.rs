@@ -7,7 +7,7 @@ use marraztu::io;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{Camera, CameraId, Command, Fill, ItemId, Object, Placed, Pose};
 
-use super::arguments::{Accuracy, Render, Seeing, Slots, Surfaces};
+use super::arguments::{Accuracy, Render, Seeing, Shot, Slots, Surfaces};
 use super::bar::Bar;
 use super::failure::Failure;
 use super::say;
@@ -15,21 +15,26 @@ use super::stage::{Stage, usage};
 
 /// Draws the picture that the arguments describe.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
-    let mut stage = Stage::of(&arguments.files, &arguments.reading)?;
-    for finding in &stage.findings {
-        say("note", finding);
-    }
-    cover(&mut stage, &arguments.surfaces)?;
-    look(&mut stage, &arguments.seeing)?;
-    choose(&mut stage, &arguments.accuracy);
-
+    let stage = stage(&arguments.shot)?;
     let bar = Bar::unmeasured("drawing");
-    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.size);
+    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.shot.size);
     let mut renderer = Renderer::default();
     let picture = renderer.render(&plan);
     drop(bar);
     let _bar = Bar::unmeasured(&format!("writing {}", arguments.out.display()));
     Ok(io::save_picture(&arguments.out, picture)?)
+}
+
+/// Reads the files and arranges everything as it is asked for. What was found in the files is told.
+pub(super) fn stage(shot: &Shot) -> Result<Stage, Failure> {
+    let mut stage = Stage::of(&shot.files, &shot.reading)?;
+    for finding in &stage.findings {
+        say("note", finding);
+    }
+    cover(&mut stage, &shot.surfaces)?;
+    look(&mut stage, &shot.seeing)?;
+    choose(&mut stage, &shot.accuracy);
+    Ok(stage)
 }
 
 /// Gives all objects the surface that is asked for.
@@ -131,5 +136,6 @@ fn choose(stage: &mut Stage, accuracy: &Accuracy) {
     settings.arithmetic = accuracy.arithmetic.unwrap_or(settings.arithmetic);
     settings.filter = accuracy.filter.unwrap_or(settings.filter);
     settings.specular = accuracy.specular.unwrap_or(settings.specular);
+    settings.leave_out = accuracy.leave_out.unwrap_or(settings.leave_out);
     stage.view.normals = accuracy.normals.unwrap_or(stage.view.normals);
 }

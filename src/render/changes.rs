@@ -149,7 +149,9 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         lamps: _,
         draws: _,
         pipelines: _,
-        skipped: _,
+        leave_out,
+        rules,
+        lights: _,
     } = after;
     let moved = *eye != before.eye
         || !alike_matrices(view_from_world, &before.view_from_world)
@@ -157,7 +159,9 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
     let settings = *arithmetic != before.arithmetic
         || *light_at != before.light_at
         || *filter != before.filter
-        || *line_width != before.line_width;
+        || *line_width != before.line_width
+        || *leave_out != before.leave_out
+        || *rules != before.rules;
     match () {
         () if *size != before.size => Some(Cause::Size),
         () if moved => Some(Cause::Camera),
@@ -250,7 +254,18 @@ impl Compared<'_> {
     }
 
     fn alike_surfaces(&self, before: &Shaded, after: &Shaded) -> bool {
-        let Shaded { matter, light, vertex_colors, tint, texture, cutout } = after;
+        let Shaded {
+            matter,
+            light,
+            places: _,
+            tiled,
+            dropped,
+            cut_off: _,
+            vertex_colors,
+            tint,
+            texture,
+            cutout,
+        } = after;
         let textures = match (texture, &before.texture) {
             (Some(after), Some(before)) => Shared::same(after, before),
             (None, None) => true,
@@ -273,6 +288,7 @@ impl Compared<'_> {
         };
         textures
             && stages
+            && (*tiled, dropped.to_bits()) == (before.tiled, before.dropped.to_bits())
             && alike_matter(matter, &before.matter)
             && *vertex_colors == before.vertex_colors
             && alike(tint, &before.tint)

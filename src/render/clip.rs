@@ -103,6 +103,12 @@ impl Screen {
         [w - z, z, gx * w + x, gx * w - x, gy * w + y, gy * w - y]
     }
 
+    /// Whether a place is inside the planes by more than rounding could make of it.
+    pub(super) fn holds(&self, clip: Clip) -> bool {
+        let least = 1e-9 * clip.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        self.distances(clip).iter().all(|distance| *distance > least)
+    }
+
     /// The place on the screen, or [beyond](ScreenVertex::BEYOND) it.
     #[inline(always)]
     pub(super) fn vertex(&self, clip: Clip) -> ScreenVertex {

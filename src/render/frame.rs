@@ -291,6 +291,11 @@ impl Frame {
         plan.draws[self.draw_of_line(line)].lines.color.opaque()
     }
 
+    /// Whether a line is an edge, and not a normal.
+    pub(super) fn is_edge(&self, line: LineNumber) -> bool {
+        line.line() < self.starts[self.draw_of_line(line)].normal
+    }
+
     /// The draw of a line, and the polygon that it is drawn for.
     pub(super) fn line_seen(&self, plan: &FramePlan, line: LineNumber) -> Option<(u32, u32)> {
         let draw = self.draw_of_line(line);

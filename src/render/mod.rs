@@ -22,8 +22,9 @@ mod lines;
 mod marks;
 mod painter;
 mod pick;
-mod plan;
+pub mod plan;
 pub mod real;
+pub mod region;
 mod renderer;
 mod setup;
 mod single;
@@ -36,6 +37,6 @@ mod vertices;
 mod watch;
 
 pub use changes::{Cause, Change, Changes};
-pub use plan::{FramePlan, Skipped};
+pub use plan::{Class, Effect, EffectUse, FramePlan, State};
 pub use renderer::{GivenUp, Hit, Renderer};
 pub use stages::Stages;

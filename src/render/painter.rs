@@ -69,6 +69,7 @@ impl<T: Light> Painter<T> {
         }
         let bounds = bounds_of(tile, plan.size);
         self.visibility.draw(level, plan, frame, (tile, bounds));
+        self.shader.tile.begin(plan, &self.visibility, bounds);
         self.pixels.fill(plan.background.opaque());
         let mut shows = false;
         for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {

@@ -15,7 +15,7 @@ use super::interpolate::{Located, Mixed, mix, surroundings};
 use super::items::Items;
 use super::light::Lit;
 use super::pick::SLOTS;
-use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage};
+use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage, TilePlan};
 use super::real::{Kernel, Machine, Number, Triple};
 use super::texture;
 use super::tile::{BLOCK, BLOCK_PIXELS, Seen, TILE_SIDE, seen};
@@ -58,6 +58,8 @@ impl<T: Number> Shines<T> {
 /// Colours pixels. Each thread has its own.
 #[derive(Debug)]
 pub(super) struct Shader<T> {
+    /// The lights of the tile that is coloured.
+    pub(super) tile: TilePlan,
     items: Items,
     faces: Faces<T>,
     located: Located<T>,
@@ -79,6 +81,7 @@ struct Group<'a> {
 impl<T: Light> Default for Shader<T> {
     fn default() -> Self {
         Self {
+            tile: TilePlan::default(),
             items: Items::default(),
             faces: Faces::default(),
             located: Located::default(),
@@ -228,7 +231,7 @@ impl<T: Light> Shader<T> {
         self.batch.len = self.items.len;
         match light {
             None => {}
-            Some((LightAt::Pixel, stages)) => self.light_pixels(scenery, group, stages, new),
+            Some((LightAt::Pixel, _)) => self.light_pixels(scenery, group, shaded, new),
             Some((LightAt::Vertex, _)) if self.mix_light(scenery, group, new) => return,
             Some((LightAt::Vertex, _)) => {}
             Some((LightAt::Face, stages)) => self.light_faces(scenery, group, stages, textured),
@@ -250,18 +253,33 @@ impl<T: Light> Shader<T> {
         &mut self,
         scenery: &Scenery<'_, T>,
         group: &Group<'_>,
-        stages: &[Stage],
+        shaded: &Shaded,
         new: bool,
     ) {
         let Scenery { level, plan, shines, .. } = *scenery;
-        let Self { items, faces, located, batch, .. } = self;
-        if new {
-            faces.carry_normals(group.draw);
-            faces.spread(level);
+        let Self { tile, items, faces, located, batch, .. } = self;
+        let light = tile.light(plan, group.pipeline, shaded);
+        if light.places {
+            if new {
+                faces.carry_normals(group.draw);
+                faces.spread(level);
+            }
+            surroundings(level, (plan, group.draw), items, faces, located, batch);
+        } else {
+            // What they carry is not taken, so it is not there.
+            faces.forget();
         }
-        surroundings(level, (plan, group.draw), items, faces, located, batch);
         batch.darken();
-        run(stages, shines.of(group.pipeline), level, batch);
+        let shines = shines.of(group.pipeline);
+        match light.kept {
+            None => run(light.stages, shines, level, batch),
+            Some(kept) => {
+                for place in kept {
+                    let at = *place as usize..=*place as usize;
+                    run(&light.stages[at.clone()], &shines[at], level, batch);
+                }
+            }
+        }
     }
 
     /// Light of the vertices, mixed at every pixel. Says whether that gave the colours already.

@@ -152,6 +152,25 @@ impl Visibility {
         &self.words.as_chunks().0[block]
     }
 
+    /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
+    /// nearer than; `None` where no triangle is seen.
+    pub(super) fn depths(&self) -> Option<[f32; 2]> {
+        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+        for block in (0..BLOCK_PIXELS).filter(|block| self.shows(*block)) {
+            if self.whole(block).is_some() {
+                low = low.min(self.farthest[block]);
+                high = high.max(self.nearest[block]);
+                continue;
+            }
+            for word in self.block(block) {
+                if let Seen::Triangle(_) = seen(*word) {
+                    (low, high) = (low.min(depth(*word)), high.max(depth(*word)));
+                }
+            }
+        }
+        (low <= high).then_some([low, high])
+    }
+
     /// The upper left pixel of a block.
     pub(super) fn corner(&self, block: usize) -> [i32; 2] {
         let at = i32::try_from(block).expect("a tile has few blocks");

@@ -33,7 +33,7 @@ pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Windin
 pub use object::{Object, PartLook, Spin, Surface};
 pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;
-pub use settings::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
+pub use settings::{Arithmetic, Filter, LeaveOut, LightAt, Settings, SpecularForm};
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,
     Transformation, View,

@@ -14,6 +14,8 @@ pub struct Settings {
     pub filter: Filter,
     /// Which form the highlight has.
     pub specular: SpecularForm,
+    /// What may be left out of a picture.
+    pub leave_out: LeaveOut,
 }
 
 /// The numbers that light is computed in.
@@ -56,4 +58,14 @@ pub enum SpecularForm {
     Reflection,
     /// (N.H)^Ns, H half-way between L and V: Blinn's.
     HalfVector,
+}
+
+/// What may be left out of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum LeaveOut {
+    /// What changes no bit of it.
+    #[default]
+    Unseen,
+    /// Light, too, that together adds less than half a step of a byte: a byte is one step off at most.
+    HalfStep,
 }

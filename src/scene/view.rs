@@ -71,14 +71,22 @@ pub struct Panels {
     pub view: bool,
     /// What a picture takes.
     pub statistics: bool,
+    /// What a picture is made of.
+    pub plan: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
 }
 
 impl Panels {
     /// Those that a first look needs.
-    pub const DEFAULT: Self =
-        Self { outline: true, properties: true, view: true, statistics: false, cheat_sheet: false };
+    pub const DEFAULT: Self = Self {
+        outline: true,
+        properties: true,
+        view: true,
+        statistics: false,
+        plan: false,
+        cheat_sheet: false,
+    };
 }
 
 impl Default for Panels {

@@ -9,4 +9,5 @@ mod editor;
 mod keys_and_clicks;
 mod mouse;
 mod panels;
+mod plan;
 mod properties;

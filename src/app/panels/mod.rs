@@ -10,6 +10,7 @@ mod menu_bar;
 mod number;
 mod outline;
 mod outline_row;
+mod plan;
 mod properties;
 pub(super) mod spheres;
 mod status_line;
@@ -54,6 +55,10 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             .default_size(right)
             .size_range(220.0..=most_right)
             .show(ui, |ui| properties::show(ui, state, asks));
+    }
+    // Under the picture alone, so that the lists beside it keep their height.
+    if state.shown.plan {
+        plan::show(ui, state, asks);
     }
     if state.shown.cheat_sheet {
         cheat_sheet::show(ui, state, asks);

@@ -46,6 +46,16 @@ impl Dice {
         all[self.index(all.len())]
     }
 
+    /// One of some that are not copied by themselves.
+    pub fn pick<T: Clone>(&mut self, all: &[T]) -> T {
+        all[self.index(all.len())].clone()
+    }
+
+    /// Whether this is so in so many of a hundred cases.
+    pub fn percent(&mut self, percent: u64) -> bool {
+        self.below(100) < percent
+    }
+
     /// Whether this is one of `in_how_many` cases.
     pub fn chance(&mut self, in_how_many: u64) -> bool {
         self.below(in_how_many) == 0

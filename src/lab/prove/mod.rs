@@ -11,6 +11,7 @@ pub mod exact;
 mod fans;
 mod far;
 pub mod pictures;
+pub mod plan;
 mod presses;
 mod scenes;
 mod sizes;
@@ -42,8 +43,18 @@ pub struct Proof {
 }
 
 /// Every proof.
-pub static PROOFS: &[Proof] =
-    &[fans::PROOF, far::PROOF, scenes::PROOF, presses::PROOF, undo::PROOF, sizes::PROOF];
+pub static PROOFS: &[Proof] = &[
+    fans::PROOF,
+    far::PROOF,
+    scenes::PROOF,
+    presses::PROOF,
+    undo::PROOF,
+    sizes::PROOF,
+    plan::PLAN,
+    plan::RULES,
+    plan::FAINT,
+    plan::ABSENT,
+];
 
 /// What was seen in the cases of a proof.
 #[derive(Clone, Debug, Default, PartialEq)]

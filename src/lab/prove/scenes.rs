@@ -17,11 +17,11 @@ use crate::edit::transform::{self, Sign};
 use crate::edit::{Stroke, place};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
-    Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, Lens,
-    Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource,
-    Model, NONE, NormalLength, Normals, Object, ObjectId, Observer, Orbit, Part, Placed, Pose,
-    PresetId, Projection, Scene, Settings, SourceCorner, SpecularForm, Spin, SpotOwner, Subject,
-    Surface, Texture, Transformation, View, Wrap,
+    Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
+    Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
+    MeshSource, Model, NONE, NormalLength, Normals, Object, ObjectId, Observer, Orbit, Part,
+    Placed, Pose, PresetId, Projection, Scene, Settings, SourceCorner, SpecularForm, Spin,
+    SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
 };
 
 pub(super) const PROOF: Proof = Proof {
@@ -416,6 +416,7 @@ impl Hostile {
             light: self.dice.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]),
             filter: self.dice.one_of(&[Filter::Nearest, Filter::Bilinear]),
             specular: self.dice.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
+            leave_out: self.dice.one_of(&[LeaveOut::Unseen, LeaveOut::HalfStep]),
         }
     }
 }

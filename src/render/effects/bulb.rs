@@ -1,7 +1,11 @@
 //! Light from a point, in all directions.
 
-use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, phong, set};
+use super::{
+    Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, most_left, phong, set,
+};
+use crate::render::plan::Turning;
 use crate::render::real::{Machine, Real as _, Triple};
+use crate::render::region::Region;
 
 /// A point that shines alike in all directions and fades with distance.
 pub(super) struct Bulb;
@@ -11,6 +15,14 @@ impl Effect for Bulb {
 
     fn needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str> {
         lamp_needless(lamp, matter)
+    }
+
+    fn is_behind(lamp: &Lamp, region: &Region, turning: &Turning) -> bool {
+        turning.all(|normal| region.faces_away(normal, lamp.position.into()))
+    }
+
+    fn arrives(lamp: &Lamp, region: Option<&Region>) -> f64 {
+        most_left(lamp, region)
     }
 
     #[inline(always)]

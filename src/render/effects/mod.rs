@@ -11,7 +11,9 @@ use std::marker::PhantomData;
 use fearless_simd::Level;
 
 use super::interpolate::Interpolated;
+use super::plan::Turning;
 use super::real::{Kernel, Machine, Number, Power, Real, Triple};
+use super::region::Region;
 
 /// Places lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
 /// that the call of an effect costs nothing beside its work.
@@ -105,6 +107,12 @@ pub struct Matter {
 }
 
 impl Matter {
+    /// Whether any of a lamp's light can come back as a highlight.
+    #[must_use]
+    pub fn mirrors(&self, lamp: &Lamp) -> bool {
+        self.specular.iter().zip(lamp.color).any(|(ks, color)| ks * color != 0.0)
+    }
+
     /// Sets from where on a power counts as 0.
     #[must_use]
     pub fn with_floor(self, floor: f64) -> Self {
@@ -170,8 +178,36 @@ const GATHERED_FLOOR: f64 = -24.0;
 pub trait Effect {
     /// Its name in the plan.
     const NAME: &'static str;
+    /// Whether it looks at where a place is, how it is turned, or from where it is seen.
+    const READS_PLACES: bool = true;
+    /// Whether it shines on a part of space only, so that `misses` may say so.
+    const HAS_REACH: bool = false;
     /// Why the surface needs none of it, where it does not: leaving it out then changes no bit.
     fn needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str>;
+    /// Why none of it arrives in a region, where that is so: leaving it out there then changes no bit.
+    fn misses(_: &Lamp, _: &Region) -> Option<&'static str> {
+        None
+    }
+    /// Whether it comes from behind all faces of a region, which are turned as `turning` says: leaving
+    /// it out there then changes no bit.
+    fn is_behind(_: &Lamp, _: &Region, _: &Turning) -> bool {
+        false
+    }
+    /// The largest part of the lamp's light that arrives in a region, anywhere where none is said.
+    fn arrives(_: &Lamp, _: Option<&Region>) -> f64 {
+        1.0
+    }
+    /// The most that it adds to a channel at any place of a region, with its highlight or without, as
+    /// a factor; a surface's texture takes away from that at most.
+    fn most(lamp: &Lamp, matter: &Matter, highlight: bool, region: Option<&Region>) -> f64 {
+        let mut sent_back = matter.diffuse;
+        if highlight {
+            for (kd, ks) in sent_back.iter_mut().zip(matter.specular) {
+                *kd += ks;
+            }
+        }
+        most_of_channels(lamp.color, sent_back) * Self::arrives(lamp, region)
+    }
     /// What the observer gets from some places; `None` where that is nothing at all of them.
     fn shade<M: Machine, H: Highlight>(
         machine: M,
@@ -268,6 +304,18 @@ fn phong<M: Machine, H: Highlight>(
     Some(Reflected { diffuse, specular })
 }
 
+/// The largest of a surface's three channels under a light.
+fn most_of_channels(color: [f64; 3], sent_back: [f64; 3]) -> f64 {
+    color.iter().zip(sent_back).map(|(color, part)| color * part).fold(0.0, f64::max)
+}
+
+/// The largest part of a lamp's light that is left at its distance from a region.
+fn most_left(lamp: &Lamp, region: Option<&Region>) -> f64 {
+    let d = region.map_or(0.0, |region| region.least_distance(lamp.position.into()));
+    let [a0, a1, a2] = lamp.attenuation;
+    1.0 / (a0 + (a1 + a2 * d) * d)
+}
+
 /// Three numbers, the same for all lanes.
 #[inline(always)]
 pub(super) fn set<M: Machine>(machine: M, numbers: [M::Number; 3]) -> Triple<M::R> {
@@ -298,8 +346,20 @@ pub struct Variant {
 pub struct Entry {
     /// See [`Effect::NAME`].
     pub name: &'static str,
+    /// See [`Effect::READS_PLACES`].
+    pub reads_places: bool,
+    /// See [`Effect::HAS_REACH`].
+    pub has_reach: bool,
     /// See [`Effect::needless`].
     pub needless: fn(&Lamp, &Matter) -> Option<&'static str>,
+    /// See [`Effect::misses`].
+    pub misses: fn(&Lamp, &Region) -> Option<&'static str>,
+    /// See [`Effect::is_behind`].
+    pub is_behind: fn(&Lamp, &Region, &Turning) -> bool,
+    /// See [`Effect::arrives`].
+    pub arrives: fn(&Lamp, Option<&Region>) -> f64,
+    /// See [`Effect::most`].
+    pub most: fn(&Lamp, &Matter, bool, Option<&Region>) -> f64,
     /// Without a highlight.
     pub plain: Variant,
     /// With [`Reflection`].
@@ -330,7 +390,13 @@ effects! {
 const fn entry<E: Effect>() -> Entry {
     Entry {
         name: E::NAME,
+        reads_places: E::READS_PLACES,
+        has_reach: E::HAS_REACH,
         needless: E::needless,
+        misses: E::misses,
+        is_behind: E::is_behind,
+        arrives: E::arrives,
+        most: E::most,
         plain: variant::<E, Nothing>(),
         reflection: variant::<E, Reflection>(),
         half_vector: variant::<E, HalfVector>(),

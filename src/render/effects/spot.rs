@@ -1,17 +1,44 @@
 //! Light from a point, in a cone.
 
 use super::bulb::arriving;
-use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, phong, set};
+use super::{
+    Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, most_left, phong, set,
+};
+use crate::render::plan::Turning;
 use crate::render::real::{Machine, Real};
+use crate::render::region::Region;
 
 /// A point that shines along an axis.
 pub(super) struct Spot;
 
 impl Effect for Spot {
     const NAME: &'static str = "Spot";
+    const HAS_REACH: bool = true;
 
     fn needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str> {
         lamp_needless(lamp, matter)
+    }
+
+    fn misses(lamp: &Lamp, region: &Region) -> Option<&'static str> {
+        let (apex, axis) = (lamp.position.into(), lamp.direction.into());
+        if lamp.cos_half_aperture >= 1.0 {
+            // No cosine is more than 1.
+            Some("its cone is closed")
+        } else if region.misses_cone(apex, axis, lamp.cos_half_aperture) {
+            Some("nothing is within its cone")
+        } else {
+            None
+        }
+    }
+
+    fn is_behind(lamp: &Lamp, region: &Region, turning: &Turning) -> bool {
+        turning.all(|normal| region.faces_away(normal, lamp.position.into()))
+    }
+
+    fn arrives(lamp: &Lamp, region: Option<&Region>) -> f64 {
+        let (apex, axis) = (lamp.position.into(), lamp.direction.into());
+        let cosine = region.map_or(1.0, |region| region.most_cosine(apex, axis));
+        most_left(lamp, region) * libm::pow(cosine.max(0.0), lamp.exponent)
     }
 
     /// With c = min(1, F.(-L)), F the axis: c^n of the light arrives where c is more than the cosine
