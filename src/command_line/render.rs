@@ -1,5 +1,7 @@
 //! `marraztu render`: a picture into a file.
 
+use std::path::PathBuf;
+
 use glam::{DMat3, DVec3};
 use marraztu::base::math;
 use marraztu::edit::{frame, items};
@@ -7,7 +9,8 @@ use marraztu::io;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{Camera, CameraId, Command, Fill, ItemId, Object, Placed, Pose};
 
-use super::arguments::{Accuracy, Render, Seeing, Slots, Surfaces};
+use super::accuracy::Accuracy;
+use super::arguments::{Reading, Render, Seeing, Slots, Surfaces};
 use super::bar::Bar;
 use super::failure::Failure;
 use super::say;
@@ -15,13 +18,8 @@ use super::stage::{Stage, usage};
 
 /// Draws the picture that the arguments describe.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
-    let mut stage = Stage::of(&arguments.files, &arguments.reading)?;
-    for finding in &stage.findings {
-        say("note", finding);
-    }
-    cover(&mut stage, &arguments.surfaces)?;
-    look(&mut stage, &arguments.seeing)?;
-    choose(&mut stage, &arguments.accuracy);
+    let Render { files, reading, surfaces, seeing, accuracy, .. } = arguments;
+    let stage = staged(files, reading, surfaces, seeing, accuracy)?;
 
     let bar = Bar::unmeasured("drawing");
     let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.size);
@@ -30,6 +28,24 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     drop(bar);
     let _bar = Bar::unmeasured(&format!("writing {}", arguments.out.display()));
     Ok(io::save_picture(&arguments.out, picture)?)
+}
+
+/// The scene of these files, as it is to be seen and drawn.
+pub(crate) fn staged(
+    files: &[PathBuf],
+    reading: &Reading,
+    surfaces: &Surfaces,
+    seeing: &Seeing,
+    accuracy: &Accuracy,
+) -> Result<Stage, Failure> {
+    let mut stage = Stage::of(files, reading)?;
+    for finding in &stage.findings {
+        say("note", finding);
+    }
+    cover(&mut stage, surfaces)?;
+    look(&mut stage, seeing)?;
+    stage.settings = accuracy.of(&stage.settings);
+    Ok(stage)
 }
 
 /// Gives all objects the surface that is asked for.
@@ -62,6 +78,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     }
     let view = &mut stage.view;
     view.projection = seeing.projection.unwrap_or(view.projection);
+    view.normals = seeing.normals.unwrap_or(view.normals);
     view.time = seeing.time.unwrap_or(view.time);
     if seeing.edges {
         view.fill = Fill::Edges;
@@ -122,14 +139,4 @@ fn camera(stage: &Stage, number: u32) -> Result<CameraId, Failure> {
         let cameras = if count == 1 { "camera" } else { "cameras" };
         Failure::Absent(format!("the scene has {count} {cameras}: there is no camera {number}"))
     })
-}
-
-/// Draws as exactly as it is asked for.
-fn choose(stage: &mut Stage, accuracy: &Accuracy) {
-    let settings = &mut stage.settings;
-    settings.light = accuracy.shading.unwrap_or(settings.light);
-    settings.arithmetic = accuracy.arithmetic.unwrap_or(settings.arithmetic);
-    settings.filter = accuracy.filter.unwrap_or(settings.filter);
-    settings.specular = accuracy.specular.unwrap_or(settings.specular);
-    stage.view.normals = accuracy.normals.unwrap_or(stage.view.normals);
 }

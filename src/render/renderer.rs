@@ -115,6 +115,34 @@ impl Renderer {
         pixels
     }
 
+    /// Which primitive each pixel of the last picture shows, row by row from the top: 0 for the
+    /// background, else a number that is another for every triangle and line of one scene.
+    #[must_use]
+    pub fn primitives(&self) -> Vec<u32> {
+        let size = self.picture.size();
+        let mut pixels = vec![0; size.area()];
+        let Some(plan) = &self.plan else { return pixels };
+        let [columns, rows] = tiles_of(plan.size);
+        let mut visibility = Visibility::default();
+        for tile in 0..usize::try_from(columns * rows).expect("not negative") {
+            let bounds = bounds_of(tile, plan.size);
+            visibility.draw(self.level, plan, &self.frame, (tile, bounds));
+            for (y, x) in (bounds.top..bounds.bottom)
+                .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
+            {
+                let number = match tile::seen(visibility.word(x, y)) {
+                    Seen::Background => 0,
+                    Seen::Triangle(number) => number + 1,
+                    // Counted from the other end, so that no line has the number of a triangle.
+                    Seen::Line(number) => u32::MAX - number,
+                };
+                let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
+                pixels[y * size.width + x] = number;
+            }
+        }
+        pixels
+    }
+
     /// The draw and the polygon that a word of the visibility stands for.
     fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
         match tile::seen(word) {
