@@ -210,6 +210,7 @@ actions! {
     ToggleProperties Window ONCE [] "Properties" "Shows the properties of the selected item.";
     ToggleViewPanel Window ONCE [] "View switches" "Shows every switch of the view.";
     ToggleStatistics Window ONCE [] "Statistics" "Shows how much is drawn and how long it takes.";
+    ToggleLaboratory Window ONCE [] "Laboratory" "Shows what accuracy costs in time: each choice of each axis, measured and judged.";
     ThemeSystem    Window ONCE [] "As the system" "The window is light or dark as the system is.";
     ThemeLight     Window ONCE [] "Light" "Dark text on light panels.";
     ThemeDark      Window ONCE [] "Dark" "Light text on dark panels.";
@@ -264,6 +265,7 @@ impl Action {
             Self::ToggleProperties => shown.properties,
             Self::ToggleViewPanel => shown.view,
             Self::ToggleStatistics => shown.statistics,
+            Self::ToggleLaboratory => shown.laboratory,
             Self::ThemeSystem => shown.theme == ThemePreference::System,
             Self::ThemeLight => shown.theme == ThemePreference::Light,
             Self::ThemeDark => shown.theme == ThemePreference::Dark,

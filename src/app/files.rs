@@ -311,6 +311,7 @@ impl App {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
             }
+            After::Lesson(key) => self.show_lesson(key),
             After::Open(Some(path)) => self.open_scene(ctx, path),
             After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
         }
@@ -319,6 +320,7 @@ impl App {
     /// Edits something else from now on; which panels are shown stays.
     pub(super) fn replace(&mut self, state: State) {
         let (shown, statistics) = (self.state.shown, self.state.statistics);
+        self.end_measuring();
         self.state = State { shown, statistics, ..state };
     }
 }

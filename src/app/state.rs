@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::action::Action;
+use super::laboratory::Laboratory;
 use crate::base::image::Size;
 use crate::edit::{Gesture, History, Stroke, selection};
 use crate::scene::{ItemId, Light, LightKind, Panels, Scene, Settings, View};
@@ -29,6 +30,8 @@ pub struct State {
     pub statistics: Statistics,
     /// Which panels are shown.
     pub shown: Shown,
+    /// What the laboratory has found out.
+    pub lab: Laboratory,
     /// The item that is being given a name.
     pub renaming: Option<ItemId>,
     /// What the last change of the scene was part of.
@@ -98,6 +101,8 @@ pub struct Shown {
     pub statistics: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
+    /// What accuracy costs in time.
+    pub laboratory: bool,
     /// Whether the window is light or dark.
     pub theme: egui::ThemePreference,
 }
@@ -112,15 +117,15 @@ impl Shown {
     /// The panels that a scene was saved with, in a theme.
     #[must_use]
     pub const fn of(panels: Panels, theme: egui::ThemePreference) -> Self {
-        let Panels { outline, properties, view, statistics, cheat_sheet } = panels;
-        Self { outline, properties, view, statistics, cheat_sheet, theme }
+        let Panels { outline, properties, view, statistics, cheat_sheet, laboratory } = panels;
+        Self { outline, properties, view, statistics, cheat_sheet, laboratory, theme }
     }
 
     /// The panels, as a scene is saved with them.
     #[must_use]
     pub const fn panels(&self) -> Panels {
-        let Self { outline, properties, view, statistics, cheat_sheet, .. } = *self;
-        Panels { outline, properties, view, statistics, cheat_sheet }
+        let Self { outline, properties, view, statistics, cheat_sheet, laboratory, .. } = *self;
+        Panels { outline, properties, view, statistics, cheat_sheet, laboratory }
     }
 }
 
@@ -138,6 +143,7 @@ impl State {
             notices: Vec::new(),
             statistics: Statistics::default(),
             shown: Shown::default(),
+            lab: Laboratory::default(),
             renaming: None,
             gesture: Gesture::Whole,
         }

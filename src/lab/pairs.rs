@@ -5,9 +5,9 @@
 //! picture is hashed after it was timed, so that none of the work can be left out, and the same settings
 //! are held to give the same bytes.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
@@ -33,18 +33,56 @@ pub struct Limits {
 pub struct Watch {
     /// How far they are, and whether they should end.
     pub progress: Progress,
-    touches: Arc<AtomicU64>,
+    touches: Arc<Touches>,
 }
 
+#[derive(Debug, Default)]
+struct Touches {
+    /// Odd while the machine is used for something else.
+    count: AtomicU64,
+    last: Mutex<Option<Instant>>,
+}
+
+/// The machine is used for something else as long as this lives.
+#[derive(Debug)]
+pub struct Touch(Arc<Touches>);
+
+/// What goes on for a little after a touch, like the showing of what was drawn, is waited for.
+const AFTERMATH: Duration = Duration::from_millis(40);
+
 impl Watch {
-    /// Says that the machine was used for something else: the pair that was measured meanwhile is thrown
-    /// away.
-    pub fn touch(&self) {
-        self.touches.fetch_add(1, Ordering::Relaxed);
+    /// Watches with the progress of other work.
+    #[must_use]
+    pub fn with(self, progress: &Progress) -> Self {
+        Self { progress: progress.clone(), ..self }
+    }
+
+    /// Says that the machine is used for something else from now on: the pair that is measured meanwhile
+    /// is thrown away.
+    #[must_use]
+    pub fn touch(&self) -> Touch {
+        self.touches.count.fetch_add(1, Ordering::Relaxed);
+        Touch(Arc::clone(&self.touches))
     }
 
     fn touches(&self) -> u64 {
-        self.touches.load(Ordering::Relaxed)
+        self.touches.count.load(Ordering::Relaxed)
+    }
+
+    /// Waits for the aftermath of the last touch; but only once, for whoever touches without pause shall
+    /// see that the work goes on.
+    fn settle(&self) {
+        let last = *self.touches.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(rest) = last.and_then(|last| AFTERMATH.checked_sub(last.elapsed())) {
+            std::thread::sleep(rest);
+        }
+    }
+}
+
+impl Drop for Touch {
+    fn drop(&mut self) {
+        self.0.count.fetch_add(1, Ordering::Relaxed);
+        *self.0.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
     }
 }
 
@@ -125,10 +163,11 @@ pub fn abba(
         if watch.progress.is_cancelled() {
             return Err(Unmeasured::Cancelled);
         }
+        watch.settle();
         let before = watch.touches();
         let [a1, b1, b2, a2] = [run(0)?, run(1)?, run(1)?, run(0)?];
         spent += a1 + b1 + b2 + a2;
-        if watch.touches() == before {
+        if watch.touches() == before && before.is_multiple_of(2) {
             ratios.push((b1 + b2) / (a1 + a2));
             of_a.extend([a1, a2]);
         } else {
@@ -173,17 +212,16 @@ mod tests {
             runs += 1;
             // The second pair, behind two runs that are not counted.
             if runs == 8 {
-                watch.touch();
+                drop(watch.touch());
                 return Ok(1000.0);
             }
             Ok(if which == 0 { 2.0 } else { 1.0 } * 0.001)
         });
         let ratio = ratio.unwrap();
         assert_eq!((ratio.thrown, ratio.quartiles.upper), (1, 0.5));
-        let disturbed = abba(&LIMITS, &watch, &mut |_| {
-            watch.touch();
-            Ok(1.0)
-        });
+        let touch = watch.touch();
+        let disturbed = abba(&LIMITS, &watch, &mut |_| Ok(1.0));
+        drop(touch);
         assert_eq!(disturbed, Err(Unmeasured::Disturbed));
     }
 

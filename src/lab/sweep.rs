@@ -67,7 +67,9 @@ pub struct Measured {
     pub ratio: Ratio,
     /// Whether that means anything.
     pub verdict: Verdict,
-    /// How far the picture is from the reference.
+    /// Whether their model is the one that is drawn now: only then can they stand in for it.
+    pub scored: bool,
+    /// How far the picture is from the reference of its own model.
     pub error: Error,
     /// The picture's hash, as 16 hexadecimal digits.
     pub hash: String,
@@ -174,7 +176,7 @@ impl Bench<'_> {
         let thoroughness = self.question.thoroughness;
         let Candidates { all, left_out } = candidates;
         let base = all.first().expect("the default is always measured").settings;
-        let reference = self.easel.shot(&base.reference());
+        let reference = (base.reference(), self.easel.shot(&base.reference()));
         let control = self.measured(&base, &base)?;
         let mut findings = self.begin(control, left_out);
         // Each piece of arithmetic counts as a choice.
@@ -233,27 +235,15 @@ impl Bench<'_> {
         findings: &mut Findings,
         base: &Settings,
         candidate: Candidate,
-        reference: &Shot,
+        reference: &(Settings, Shot),
     ) -> Result<(), Unmeasured> {
         let Candidate { group, name, settings } = candidate;
         let known = findings.points.iter().position(|point| point.settings == settings);
         let point = match known {
             Some(point) => point,
             None => {
-                let ratio = match settings == *base {
-                    true => findings.control.clone(),
-                    false => self.measured(base, &settings)?,
-                };
-                let error = self.easel.shot(&settings).error(reference);
-                findings.points.push(Measured {
-                    name: settings.in_words(),
-                    settings,
-                    ms: findings.control.a_ms * ratio.quartiles.median,
-                    verdict: Verdict::of(&ratio.quartiles, findings.floor),
-                    ratio,
-                    error,
-                    hash: format!("{:016x}", hash(self.easel.picture())),
-                });
+                let point = self.point(findings, base, settings, reference)?;
+                findings.points.push(point);
                 findings.points.len() - 1
             }
         };
@@ -262,5 +252,39 @@ impl Bench<'_> {
             findings.rows.push(Row { group, name, point });
         }
         Ok(())
+    }
+
+    fn point(
+        &mut self,
+        findings: &Findings,
+        base: &Settings,
+        settings: Settings,
+        (exact, reference): &(Settings, Shot),
+    ) -> Result<Measured, Unmeasured> {
+        let a_ms = findings.control.a_ms;
+        // The default is what all times are told in, and its ratio is the control's.
+        let (ratio, ms) = if settings == *base {
+            (findings.control.clone(), a_ms)
+        } else {
+            let ratio = self.measured(base, &settings)?;
+            let ms = a_ms * ratio.quartiles.median;
+            (ratio, ms)
+        };
+        let shot = self.easel.shot(&settings);
+        let scored = settings.reference() == *exact;
+        let error = match scored {
+            true => shot.error(reference),
+            false => shot.error(&self.easel.shot(&settings.reference())),
+        };
+        Ok(Measured {
+            name: settings.in_words(),
+            settings,
+            ms,
+            verdict: Verdict::of(&ratio.quartiles, findings.floor),
+            ratio,
+            scored,
+            error,
+            hash: format!("{:016x}", hash(shot.picture())),
+        })
     }
 }

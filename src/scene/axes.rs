@@ -62,6 +62,8 @@ pub struct Lesson {
     pub coarse: &'static str,
     /// Where that shows.
     pub shows: &'static str,
+    /// The small scene, carried by the program, in which the difference is plain to see.
+    pub scene: &'static str,
 }
 
 /// A named point in the space of accuracy.
@@ -117,6 +119,7 @@ pub const AXES: &[Axis] = &[
                 polygon is missed, and one on a corner is smeared along its edges.",
             shows: "Shiny surfaces of few polygons show it most: compare the bright spot on the \
                 ball with Vertex and with Pixel.",
+            scene: "ball",
         },
     },
     Axis {
@@ -139,6 +142,7 @@ pub const AXES: &[Axis] = &[
             coarse: "The digits that are lost almost never reach the eye: a byte changes only \
                 where the exact value lies next to the border between two steps.",
             shows: "Nowhere without help: look at the picture of the error, amplified 256 times.",
+            scene: "ball",
         },
     },
     Axis {
@@ -164,6 +168,7 @@ pub const AXES: &[Axis] = &[
             coarse: "With the nearest texel alone a picture that is seen from near falls into \
                 blocks, and its edges jump as the view moves.",
             shows: "Look at a texture from so near that a texel covers many pixels.",
+            scene: "plate",
         },
     },
     Axis {
@@ -189,6 +194,7 @@ pub const AXES: &[Axis] = &[
             coarse: "Neither is an error of the other: with the same exponent N.H is about twice \
                 as wide, and it stretches where light grazes.",
             shows: "On the rim of a shiny ball lit from behind, and in the size of every highlight.",
+            scene: "ball",
         },
     },
 ];

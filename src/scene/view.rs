@@ -71,12 +71,20 @@ pub struct Panels {
     pub statistics: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
+    /// What accuracy costs in time.
+    pub laboratory: bool,
 }
 
 impl Panels {
     /// Those that a first look needs.
-    pub const DEFAULT: Self =
-        Self { outline: true, properties: true, view: true, statistics: false, cheat_sheet: false };
+    pub const DEFAULT: Self = Self {
+        outline: true,
+        properties: true,
+        view: true,
+        statistics: false,
+        cheat_sheet: false,
+        laboratory: false,
+    };
 }
 
 impl Default for Panels {

@@ -17,6 +17,8 @@ pub enum MarkKind {
     Axis,
     /// Several axes.
     Combination,
+    /// Another model, which cannot stand in for this one.
+    Model,
 }
 
 /// A point of the plot.
@@ -89,15 +91,21 @@ impl Chart {
     }
 }
 
-/// A scale of milliseconds, with ticks at 1, 2 and 5 of each decade.
+/// A scale of milliseconds, with ticks at 1, 2 and 5 of each decade; at more digits where it is short.
 fn time_scale(logarithms: impl Iterator<Item = f64>) -> Scale {
     let range = padded(logarithms);
-    let ticks = (-6..8)
-        .flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| (digit, f64::from(decade))))
-        .map(|(digit, decade)| libm::log10(digit) + decade)
-        .filter(|place| (range[0]..=range[1]).contains(place))
-        .map(|place| (place, brief(libm::pow(10.0, place))));
-    Scale { label: "milliseconds a picture".to_owned(), range, ticks: ticks.collect() }
+    let at = |digits: &[f64]| -> Vec<(f64, String)> {
+        let decades = (-6..8).map(f64::from);
+        let places =
+            decades.flat_map(|decade| digits.iter().map(move |d| libm::log10(*d) + decade));
+        let inside = places.filter(|place| (range[0]..=range[1]).contains(place));
+        inside.map(|place| (place, brief(libm::pow(10.0, place)))).collect()
+    };
+    let mut ticks = at(&[1.0, 2.0, 5.0]);
+    if ticks.len() < 3 {
+        ticks = at(&[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0]);
+    }
+    Scale { label: "milliseconds a picture".to_owned(), range, ticks }
 }
 
 /// A scale of errors with a tick at each decade and one at 0; and where 0 stands.

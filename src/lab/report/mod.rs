@@ -12,7 +12,7 @@ pub use self::table::{brief, csv, heading, text};
 use super::candidates::Group;
 use super::error::Measure;
 use super::front::{Point, fastest_within, front, most_exact_within};
-use super::sweep::Findings;
+use super::sweep::{Findings, Row};
 
 /// What is told, and of what.
 #[derive(Clone, Debug, Serialize)]
@@ -40,6 +40,14 @@ pub struct Budgets {
 }
 
 impl Report {
+    /// The rows of the table. Presets were measured first and last, and stand together.
+    #[must_use]
+    pub fn rows(&self) -> Vec<&Row> {
+        let mut rows: Vec<&Row> = self.findings.rows.iter().collect();
+        rows.sort_by_key(|row| row.group != Group::Preset);
+        rows
+    }
+
     /// The points as time and error.
     #[must_use]
     pub fn points(&self) -> Vec<Point> {
@@ -47,22 +55,31 @@ impl Report {
         points.map(|p| Point { time: p.ms, error: self.measure.of(&p.error) }).collect()
     }
 
+    /// The points that can stand in for one another, with their places among all.
+    fn scored(&self) -> (Vec<usize>, Vec<Point>) {
+        let all = self.points().into_iter().enumerate();
+        all.filter(|(i, _)| self.findings.points[*i].scored).unzip()
+    }
+
     /// The places of the points that are worth choosing, the fastest first.
     #[must_use]
     pub fn front(&self) -> Vec<usize> {
-        front(&self.points())
+        let (places, points) = self.scored();
+        front(&points).into_iter().map(|i| places[i]).collect()
     }
 
     /// The fastest point whose error is at most the budget's; `None` where there is no such budget.
     #[must_use]
     pub fn fastest(&self) -> Option<Option<usize>> {
-        self.budgets.error.map(|most| fastest_within(&self.points(), most))
+        let (places, points) = self.scored();
+        self.budgets.error.map(|most| fastest_within(&points, most).map(|i| places[i]))
     }
 
     /// The most exact point within the budget of time; `None` where there is no such budget.
     #[must_use]
     pub fn most_exact(&self) -> Option<Option<usize>> {
-        self.budgets.ms.map(|most| most_exact_within(&self.points(), most))
+        let (places, points) = self.scored();
+        self.budgets.ms.map(|most| most_exact_within(&points, most).map(|i| places[i]))
     }
 
     /// The place of the point that the picture is drawn with now.
@@ -104,6 +121,8 @@ impl Report {
         let rows = || self.findings.rows.iter().filter(|row| row.point == point);
         if point == 0 {
             MarkKind::Default
+        } else if !self.findings.points[point].scored {
+            MarkKind::Model
         } else if rows().any(|row| row.group == Group::Preset) {
             MarkKind::Preset
         } else if rows().any(|row| matches!(row.group, Group::Axis(_))) {

@@ -173,6 +173,7 @@ fn mark<DB: DrawingBackend>(
         }
         MarkKind::Axis => area.draw(&Circle::new((x, y), 5, ink.filled())),
         MarkKind::Combination => area.draw(&Circle::new((x, y), 3, ink.filled())),
+        MarkKind::Model => area.draw(&Circle::new((x, y), 5, ink.stroke_width(1))),
     }
 }
 
@@ -181,7 +182,7 @@ const fn color(kind: MarkKind) -> RGBColor {
         MarkKind::Default => INK,
         MarkKind::Preset => PRESET,
         MarkKind::Axis => AXIS,
-        MarkKind::Combination => GREY,
+        MarkKind::Combination | MarkKind::Model => GREY,
     }
 }
 
@@ -222,7 +223,11 @@ fn legend<DB: DrawingBackend>(
         let style = TextStyle { color: ink.to_backend_color(), ..small.clone() };
         let number = at(HPos::Right, VPos::Top, &style);
         area.draw(&Text::new((i + 1).to_string(), (LEGEND + 14, y), number))?;
-        let now = if mark.current { " (now)" } else { "" };
+        let now = match (mark.current, mark.kind) {
+            (true, _) => " (now)",
+            (false, MarkKind::Model) => " (a model: not scored)",
+            _ => "",
+        };
         let (ms, error) = (brief(points[i].time), brief(points[i].error));
         let name = format!("{}{now}: {ms} ms, {error}", mark.name);
         area.draw(&Text::new(name, (LEGEND + 22, y), at(HPos::Left, VPos::Top, &style)))?;

@@ -71,10 +71,7 @@ pub fn text(report: &Report) -> String {
     );
     let (front, current) = (report.front(), report.current());
     let mut last = String::new();
-    // Presets were measured first and last, and stand together.
-    let mut rows: Vec<&Row> = report.findings.rows.iter().collect();
-    rows.sort_by_key(|row| row.group != Group::Preset);
-    for row in rows {
+    for row in report.rows() {
         let heading = heading(row);
         if heading != last {
             let _ = writeln!(text, "{heading}");
