@@ -137,6 +137,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         normal_length: NormalLength::BySize,
         wide_lines: true,
         marks: false,
+        coarse_while_moving: false,
         time: a,
         panels: Panels { outline: false, statistics: true, ..Panels::DEFAULT },
     };

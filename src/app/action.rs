@@ -175,6 +175,7 @@ actions! {
     ToggleVertexNormals Show ONCE [Either(Key::M)] "Vertex normals" "Draws the normal of each vertex.";
     ToggleNormalLength Show ONCE [] "Normals by size" "Draws normals in proportion to the object rather than 5 units long.";
     ToggleMarks    Show ONCE [] "Camera and lamp marks" "Draws the other cameras and the bulbs.";
+    ToggleCoarse   Show ONCE [] "Coarser while moving" "Draws a slow scene less exactly while something moves, so that the picture follows; with all when it is still.";
     ToggleLightNormals Show ONCE [Either(Key::I)] "Light by face normals" "Lights polygons with the normals of faces, or of vertices.";
 
     ToggleProjection Camera ONCE [Either(Key::P)] "Orthographic" "Projects in parallel, or in perspective.";
@@ -257,6 +258,7 @@ impl Action {
             Self::ToggleVertexNormals => view.vertex_normals,
             Self::ToggleNormalLength => view.normal_length == NormalLength::BySize,
             Self::ToggleMarks => view.marks,
+            Self::ToggleCoarse => view.coarse_while_moving,
             Self::ToggleLightNormals => view.normals == Normals::Face,
             Self::ToggleProjection => view.projection == Projection::Orthographic,
             Self::ToggleObserver => view.observer == Observer::Object,

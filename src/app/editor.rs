@@ -5,6 +5,7 @@
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::time::Duration;
 
 use egui::{CentralPanel, Context, Frame, Key, ThemePreference, ViewportCommand};
 
@@ -18,10 +19,12 @@ use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
 use super::laboratory::Work;
 use super::material_dialog::MaterialDialog;
+use super::pace::{Happening, Motion};
+use super::painter::Snapshot;
 use super::scene_files::Waiting;
 use super::state::{Message, Shown, State, Tone};
 use super::viewport::{Purpose, Viewport};
-use super::worker::{Snapshot, Worker};
+use super::worker::Worker;
 use super::{notices, panels};
 use crate::edit::selection::{self, Selection};
 use crate::edit::{Gesture, items};
@@ -41,6 +44,8 @@ pub struct App {
     worker: Option<Worker<Purpose>>,
     /// It was decided to leave: nothing more is asked.
     leaving: bool,
+    /// Whether what is shown is on the move.
+    motion: Motion,
     /// When the last frame was shown in which something moved by itself.
     moved_at: Option<f64>,
     /// When the pictures of the last second were shown.
@@ -64,6 +69,7 @@ impl App {
             comparison: Comparison::default(),
             worker: None,
             leaving: false,
+            motion: Motion::default(),
             moved_at: None,
             shown_at: VecDeque::new(),
             title: String::new(),
@@ -120,7 +126,7 @@ impl App {
         self.compare(&ctx);
         self.take_dropped(&ctx);
         self.close_requested(&ctx);
-        self.draw();
+        self.draw(&ctx);
         self.name_window(&ctx);
     }
 
@@ -153,16 +159,11 @@ impl App {
         if let Some(worker) = &self.worker {
             let news = worker.news();
             if let Some(drawn) = &news.drawn {
-                let statistics = &mut self.state.statistics;
-                statistics.time = drawn.time;
-                statistics.triangles = drawn.triangles;
-                let [width, height] = drawn.image.size;
-                statistics.size = crate::base::image::Size::new(width, height);
-                statistics.pictures += 1;
                 let now = ctx.input(|input| input.time);
                 self.shown_at.push_back(now);
                 self.shown_at.retain(|then| now - then < 1.0);
-                statistics.rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
+                let rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
+                self.state.statistics.note(drawn, rate);
             }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, asks);
@@ -188,15 +189,23 @@ impl App {
         }
     }
 
-    fn draw(&mut self) {
+    /// Wants the picture of what there is now; while it moves, and soon after, a coarser one will do.
+    fn draw(&mut self, ctx: &Context) {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
         let State { scene, view, settings, .. } = &self.state;
-        worker.draw(Snapshot {
-            scene: scene.clone(),
-            view: view.clone(),
-            settings: *settings,
-            size,
-        });
+        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
+        let mut wanted = Snapshot { scene, view, settings, size, moving: false };
+        let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
+        let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
+        // What moves by itself is always being drawn.
+        let drawing = worker.is_drawing() && !self.state.is_animated();
+        let happening = Happening { changed, held, drawing };
+        let moving = self.motion.notice(now, happening);
+        wanted.moving = moving && wanted.view.coarse_while_moving;
+        if let Some(rest) = self.motion.rest(now) {
+            ctx.request_repaint_after(Duration::from_secs_f64(rest));
+        }
+        worker.draw(wanted);
     }
 
     fn name_window(&mut self, ctx: &Context) {

@@ -24,6 +24,8 @@ mod material_dialog;
 mod mouse;
 mod notices;
 mod overlay;
+mod pace;
+mod painter;
 pub mod panels;
 mod scene_files;
 mod start;

@@ -5,8 +5,11 @@ use std::time::Duration;
 
 use super::action::Action;
 use super::laboratory::Laboratory;
+pub use super::pace::Economy;
+use super::painter::Drawn;
 use crate::base::image::Size;
 use crate::edit::{Gesture, History, Stroke, selection};
+use crate::render::Changes;
 use crate::scene::{ItemId, Light, LightKind, Panels, Scene, Settings, View};
 
 /// What is edited and shown.
@@ -68,9 +71,9 @@ pub struct Notice {
 }
 
 /// What the last picture took.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Statistics {
-    /// From the snapshot to the finished picture.
+    /// From the snapshot to the finished picture in memory, on the thread that draws.
     pub time: Duration,
     /// How large the picture is.
     pub size: Size,
@@ -80,11 +83,39 @@ pub struct Statistics {
     pub rate: u32,
     /// How many triangles of the picture faced the observer inside the view.
     pub triangles: usize,
+    /// What it does without.
+    pub economy: Economy,
+    /// What of it was drawn anew, and why.
+    pub changes: Option<Changes>,
 }
 
 impl Default for Statistics {
     fn default() -> Self {
-        Self { time: Duration::ZERO, size: Size::new(0, 0), pictures: 0, rate: 0, triangles: 0 }
+        Self {
+            time: Duration::ZERO,
+            size: Size::new(0, 0),
+            pictures: 0,
+            rate: 0,
+            triangles: 0,
+            economy: Economy::NONE,
+            changes: None,
+        }
+    }
+}
+
+impl Statistics {
+    /// Notes a picture, the `rate`th in the last second.
+    pub(super) fn note(&mut self, drawn: &Drawn, rate: u32) {
+        let [width, height] = drawn.image.size;
+        *self = Self {
+            time: drawn.time,
+            size: Size::new(width, height),
+            pictures: self.pictures + 1,
+            rate,
+            triangles: drawn.triangles,
+            economy: drawn.economy,
+            changes: Some(drawn.changes.clone()),
+        };
     }
 }
 

@@ -10,6 +10,7 @@ use super::accuracy::Accuracy;
 use super::job::Job;
 use super::keys::Keys;
 use super::lab::Lab;
+use super::prove::Prove;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::scene::{
@@ -59,6 +60,8 @@ pub(crate) enum Headless {
     Lab(Box<Lab>),
     /// Measures one drawing job in a form that other renderers share
     Job(Job),
+    /// Puts what is claimed of the program to the proof, in any number of cases
+    Prove(Prove),
 }
 
 /// A picture, and the file that it goes to.

@@ -11,6 +11,7 @@ mod info;
 mod job;
 mod keys;
 mod lab;
+mod prove;
 mod render;
 mod stage;
 
@@ -33,6 +34,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Info(arguments)) => info::info(&arguments),
         Some(Headless::Keys(arguments)) => keys::keys(&arguments),
         Some(Headless::Lab(arguments)) => lab::lab(&arguments),
+        Some(Headless::Prove(arguments)) => prove::prove(&arguments),
         Some(Headless::Job(arguments)) => match job::job(&arguments) {
             Ok(status) => return ExitCode::from(status),
             Err(failure) => Err(failure),

@@ -60,7 +60,7 @@ impl Studio {
 
     /// What is seen at a pixel of the last picture: the name of the item, and the polygon.
     #[must_use]
-    pub fn seen(&self, [x, y]: [usize; 2]) -> Option<(String, u32)> {
+    pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<(String, u32)> {
         use crate::scene::ItemId;
         let hit = self.renderer.hit(x, y)?;
         let name = match hit.item {

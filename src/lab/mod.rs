@@ -1,4 +1,5 @@
-//! What drawing costs in time, and what accuracy costs: measured, never guessed.
+//! What drawing costs in time, what accuracy costs, and what drawing is proved to do: measured, never
+//! guessed.
 
 pub mod blame;
 pub mod candidates;
@@ -10,6 +11,7 @@ pub mod front;
 pub mod job;
 pub mod kernels;
 pub mod pairs;
+pub mod prove;
 pub mod report;
 pub mod statistics;
 pub mod sweep;

@@ -10,9 +10,9 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::DrawOrder;
 use super::mesh_points::{check, points_and_corners};
 use super::triangulate::triangulate;
+use super::{DrawOrder, EdgeOrder};
 use crate::base::math;
 
 /// In place of an index: there is none.
@@ -135,6 +135,8 @@ pub struct Mesh {
     mean: DVec3,
     edges: OnceLock<Edges>,
     order: OnceLock<DrawOrder>,
+    edge_order: OnceLock<EdgeOrder>,
+    centres: OnceLock<Vec<[f32; 3]>>,
 }
 
 /// Why a mesh cannot be made.
@@ -219,6 +221,8 @@ impl Mesh {
             has_file_normals,
             edges: OnceLock::new(),
             order: OnceLock::new(),
+            edge_order: OnceLock::new(),
+            centres: OnceLock::new(),
         })
     }
 
@@ -290,6 +294,15 @@ impl Mesh {
         mean(corners.map(|corner| dvec3(self.positions[corner.position as usize])))
     }
 
+    /// The means of the corners of all polygons. Found when first asked for.
+    #[must_use]
+    pub fn polygon_centres(&self) -> &[[f32; 3]] {
+        self.centres.get_or_init(|| {
+            let polygons = 0..index(self.polygon_count());
+            polygons.map(|polygon| self.polygon_centre(polygon).as_vec3().to_array()).collect()
+        })
+    }
+
     /// The triangles of all polygons, in the order of the polygons.
     #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
@@ -332,6 +345,12 @@ impl Mesh {
     #[must_use]
     pub fn draw_order(&self) -> &DrawOrder {
         self.order.get_or_init(|| DrawOrder::new(self))
+    }
+
+    /// The edges in the order in which they are drawn fastest. Found when first asked for.
+    #[must_use]
+    pub fn edge_order(&self) -> &EdgeOrder {
+        self.edge_order.get_or_init(|| EdgeOrder::new(self))
     }
 
     /// The sides of all polygons, each once. Found when first asked for.

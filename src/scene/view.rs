@@ -51,6 +51,8 @@ pub struct View {
     pub wide_lines: bool,
     /// Whether the marks of cameras and of the bulb are drawn.
     pub marks: bool,
+    /// Whether pictures may be coarser while something moves, where they would come too late else.
+    pub coarse_while_moving: bool,
     /// Seconds of the scene's clock.
     pub time: f64,
     /// Which panels stand beside the picture.
@@ -119,6 +121,7 @@ impl View {
             normal_length: NormalLength::Units,
             wide_lines: false,
             marks: true,
+            coarse_while_moving: true,
             time: 0.0,
             panels: Panels::DEFAULT,
         }

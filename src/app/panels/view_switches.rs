@@ -39,6 +39,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
                 Action::ToggleVertexNormals,
                 Action::ToggleNormalLength,
                 Action::ToggleMarks,
+                Action::ToggleCoarse,
             ] {
                 action_switch(ui, state, asks, action);
             }

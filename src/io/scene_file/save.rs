@@ -185,6 +185,7 @@ impl FileView {
             normal_length,
             wide_lines,
             marks,
+            coarse_while_moving,
             time,
             panels,
         } = view;
@@ -213,6 +214,7 @@ impl FileView {
             normal_length: *normal_length,
             wide_lines: *wide_lines,
             marks: *marks,
+            coarse_while_moving: *coarse_while_moving,
             time: *time,
             panels: *panels,
         }

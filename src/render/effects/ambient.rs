@@ -1,7 +1,7 @@
 //! Light from everywhere.
 
-use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample};
-use crate::render::real::{Machine, Triple};
+use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, set};
+use crate::render::real::Machine;
 
 /// The same light at every place, whichever way it faces: Ia Ka.
 pub(super) struct Ambient;
@@ -23,11 +23,8 @@ impl Effect for Ambient {
     fn shade<M: Machine, H: Highlight>(
         machine: M,
         _: Sample<M::R>,
-        lamp: &Lamp,
-        matter: &Matter,
+        shine: &Shine<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        let ([r, g, b], [x, y, z]) = (lamp.color, matter.ambient);
-        let diffuse = Triple::lift(machine.lift(0.0), [r * x, g * y, b * z]);
-        Some(Reflected { diffuse, specular: None })
+        Some(Reflected { diffuse: set(machine, shine.ambient), specular: None })
     }
 }

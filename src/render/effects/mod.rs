@@ -10,8 +10,8 @@ use std::marker::PhantomData;
 
 use fearless_simd::Level;
 
-use super::gather::Locate;
-use super::real::{Kernel, Machine, Number, Real, Triple};
+use super::interpolate::Interpolated;
+use super::real::{Kernel, Machine, Number, Power, Real, Triple};
 
 /// Places lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
 /// that the call of an effect costs nothing beside its work.
@@ -38,6 +38,15 @@ impl<T: Copy + Default> Default for Batch<T> {
     fn default() -> Self {
         let zero = [[T::default(); BATCH]; 3];
         Self { len: 0, position: zero, normal: zero, to_eye: zero, diffuse: zero, specular: zero }
+    }
+}
+
+impl<T: Copy + Default> Batch<T> {
+    /// Takes all light away.
+    pub(super) fn darken(&mut self) {
+        for row in self.diffuse.iter_mut().chain(&mut self.specular) {
+            row.fill(T::default());
+        }
     }
 }
 
@@ -105,6 +114,58 @@ impl Matter {
     }
 }
 
+/// A lamp on a surface, in the numbers that light is computed in.
+#[derive(Clone, Copy, Debug)]
+pub struct Shine<T> {
+    /// I Ka.
+    pub ambient: [T; 3],
+    /// I Kd.
+    pub diffuse: [T; 3],
+    /// I Ks.
+    pub specular: [T; 3],
+    /// See [`Lamp::position`].
+    pub position: [T; 3],
+    /// Against the way its light goes.
+    pub axis: [T; 3],
+    /// See [`Lamp::attenuation`].
+    pub attenuation: [T; 3],
+    /// Whether its light fades with distance.
+    pub fades: bool,
+    /// See [`Lamp::cos_half_aperture`].
+    pub cos_half_aperture: T,
+    /// How much its light is gathered along the axis.
+    pub gathered: Power,
+    /// The power of the highlight.
+    pub highlight: Power,
+    /// See [`Matter::least_cosine`].
+    pub least_cosine: T,
+}
+
+impl<T: Number> Shine<T> {
+    /// What a lamp does to a surface.
+    #[must_use]
+    pub fn new(lamp: &Lamp, matter: &Matter) -> Self {
+        let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
+        let times = |k: [f64; 3]| all([0, 1, 2].map(|i| lamp.color[i] * k[i]));
+        Self {
+            ambient: times(matter.ambient),
+            diffuse: times(matter.diffuse),
+            specular: times(matter.specular),
+            position: all(lamp.position),
+            axis: all(lamp.direction.map(|x| -x)),
+            attenuation: all(lamp.attenuation),
+            fades: lamp.attenuation != [1.0, 0.0, 0.0],
+            cos_half_aperture: T::from_f64(lamp.cos_half_aperture),
+            gathered: Power::new(lamp.exponent, GATHERED_FLOOR),
+            highlight: Power::new(matter.exponent, matter.floor),
+            least_cosine: T::from_f64(matter.least_cosine),
+        }
+    }
+}
+
+/// A cosine's power below 2^-24 counts as 0, where a spot gathers its light by it.
+const GATHERED_FLOOR: f64 = -24.0;
+
 /// One way of lighting a surface.
 pub trait Effect {
     /// Its name in the plan.
@@ -115,8 +176,7 @@ pub trait Effect {
     fn shade<M: Machine, H: Highlight>(
         machine: M,
         sample: Sample<M::R>,
-        lamp: &Lamp,
-        matter: &Matter,
+        shine: &Shine<M::Number>,
     ) -> Option<Reflected<M::R>>;
 }
 
@@ -167,39 +227,51 @@ impl Highlight for HalfVector {
 /// has a highlight. It is a hundred times the rounding error, and 0.0006 degrees.
 const GRAZING: f64 = 1e-5;
 
+/// What is left of a part of light.
+#[inline(always)]
+fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
+    match strength {
+        Some(strength) => part * strength,
+        None => part,
+    }
+}
+
 /// Light that arrives from a direction, reflected:
 ///
 ///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
 ///
-/// with s the `strength` that is left of the lamp's light I, L the direction `to_light`, and c the
+/// with s the `strength` that is left of the lamp's light I (1 where it is `None`), L the direction `to_light`, and c the
 /// cosine of the [`Highlight`].
 #[inline(always)]
 fn phong<M: Machine, H: Highlight>(
     machine: M,
     sample: Sample<M::R>,
     to_light: Triple<M::R>,
-    strength: M::R,
-    lamp: &Lamp,
-    matter: &Matter,
+    strength: Option<M::R>,
+    shine: &Shine<M::Number>,
 ) -> Option<Reflected<M::R>> {
     let zero = machine.lift(0.0);
     let n_l = sample.normal.dot(to_light);
     if !machine.any_more(n_l, zero) {
         return None;
     }
-    let [r, g, b] = lamp.color;
-    let times = |[x, y, z]: [f64; 3]| Triple::lift(strength, [r * x, g * y, b * z]);
-    let diffuse = times(matter.diffuse).times(Real::max(n_l, zero) * strength);
+    let diffuse = set(machine, shine.diffuse).times(weakened(Real::max(n_l, zero), strength));
     let mut specular = None;
     if let Some(cosine) = H::cosine(sample, to_light, n_l) {
         let lit = n_l.if_more(machine.lift(GRAZING), cosine, zero);
-        if machine.any_more(lit, machine.lift(matter.least_cosine)) {
+        if machine.any_more(lit, machine.set(shine.least_cosine)) {
             // Rounding can bring a cosine above 1.
-            let power = Real::min(lit, machine.lift(1.0)).power(matter.exponent, matter.floor);
-            specular = Some(times(matter.specular).times(power * strength));
+            let power = Real::min(lit, machine.lift(1.0)).power(&shine.highlight);
+            specular = Some(set(machine, shine.specular).times(weakened(power, strength)));
         }
     }
     Some(Reflected { diffuse, specular })
+}
+
+/// Three numbers, the same for all lanes.
+#[inline(always)]
+pub(super) fn set<M: Machine>(machine: M, numbers: [M::Number; 3]) -> Triple<M::R> {
+    Triple([machine.set(numbers[0]), machine.set(numbers[1]), machine.set(numbers[2])])
 }
 
 /// Why a lamp needs not be looked at for a surface.
@@ -217,8 +289,8 @@ fn lamp_needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str> {
 /// An effect compiled for one form of highlight: for the reference, and for what the editor shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
-    reference: fn(Level, &mut Batch<f64>, &Lamp, &Matter),
-    fast: fn(Level, &mut Batch<f32>, &Lamp, &Matter),
+    reference: fn(Level, &mut Batch<f64>, &Shine<f64>),
+    fast: fn(Level, &mut Batch<f32>, &Shine<f32>),
 }
 
 /// A row of the table.
@@ -270,19 +342,13 @@ const fn variant<E: Effect, H: Highlight>() -> Variant {
 }
 
 /// Adds what an effect reflects at every place of a batch.
-fn shade<T: Number, E: Effect, H: Highlight>(
-    level: Level,
-    batch: &mut Batch<T>,
-    lamp: &Lamp,
-    matter: &Matter,
-) {
-    T::run(level, Shade::<T, E, H> { batch, lamp, matter, of: PhantomData });
+fn shade<T: Number, E: Effect, H: Highlight>(level: Level, batch: &mut Batch<T>, shine: &Shine<T>) {
+    T::run(level, Shade::<T, E, H> { batch, shine, of: PhantomData });
 }
 
 struct Shade<'a, T, E, H> {
     batch: &'a mut Batch<T>,
-    lamp: &'a Lamp,
-    matter: &'a Matter,
+    shine: &'a Shine<T>,
     of: PhantomData<(E, H)>,
 }
 
@@ -296,7 +362,7 @@ impl<T: Number, E: Effect, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
                 normal: load(machine, &batch.normal, at),
                 to_eye: load(machine, &batch.to_eye, at),
             };
-            let Some(reflected) = E::shade::<M, H>(machine, sample, self.lamp, self.matter) else {
+            let Some(reflected) = E::shade::<M, H>(machine, sample, self.shine) else {
                 continue;
             };
             add(machine, reflected.diffuse, &mut batch.diffuse, at);
@@ -336,38 +402,20 @@ fn add<M: Machine>(machine: M, more: Triple<M::R>, rows: &mut Rows<M::Number>, a
 }
 
 /// Numbers that effects are compiled for.
-pub trait Light: Number + Locate {
+pub trait Light: Number + Interpolated {
     /// Adds what an effect reflects at every place of the batch.
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        lamp: &Lamp,
-        matter: &Matter,
-    );
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &Shine<Self>);
 }
 
 impl Light for f64 {
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        lamp: &Lamp,
-        matter: &Matter,
-    ) {
-        (variant.reference)(level, batch, lamp, matter);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &Shine<Self>) {
+        (variant.reference)(level, batch, shine);
     }
 }
 
 impl Light for f32 {
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        lamp: &Lamp,
-        matter: &Matter,
-    ) {
-        (variant.fast)(level, batch, lamp, matter);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &Shine<Self>) {
+        (variant.fast)(level, batch, shine);
     }
 }
 

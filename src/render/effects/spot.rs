@@ -1,11 +1,8 @@
 //! Light from a point, in a cone.
 
 use super::bulb::arriving;
-use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, phong};
-use crate::render::real::{Machine, Real, Triple};
-
-/// A cosine's power below 2^-24 counts as 0.
-const GATHERED_FLOOR: f64 = -24.0;
+use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, phong, set};
+use crate::render::real::{Machine, Real};
 
 /// A point that shines along an axis.
 pub(super) struct Spot;
@@ -24,19 +21,16 @@ impl Effect for Spot {
     fn shade<M: Machine, H: Highlight>(
         machine: M,
         sample: Sample<M::R>,
-        lamp: &Lamp,
-        matter: &Matter,
+        shine: &Shine<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        let (to_light, strength) = arriving(sample.position, lamp);
-        let [x, y, z] = lamp.direction;
-        let axis = Triple::lift(strength, [-x, -y, -z]);
-        let c = Real::min(axis.dot(to_light), machine.lift(1.0));
-        let border = machine.lift(lamp.cos_half_aperture);
+        let (to_light, strength) = arriving(machine, sample.position, shine);
+        let c = Real::min(set(machine, shine.axis).dot(to_light), machine.lift(1.0));
+        let border = machine.set(shine.cos_half_aperture);
         if !machine.any_more(c, border) {
             return None;
         }
-        let gathered = c.power(lamp.exponent, GATHERED_FLOOR);
+        let gathered = c.power(&shine.gathered);
         let strength = c.if_more(border, strength * gathered, machine.lift(0.0));
-        phong::<M, H>(machine, sample, to_light, strength, lamp, matter)
+        phong::<M, H>(machine, sample, to_light, Some(strength), shine)
     }
 }

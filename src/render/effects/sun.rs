@@ -1,7 +1,7 @@
 //! Light from infinitely far away.
 
-use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, phong};
-use crate::render::real::{Machine, Triple};
+use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, phong, set};
+use crate::render::real::Machine;
 
 /// The same direction at every place, and no fading.
 pub(super) struct Sun;
@@ -17,12 +17,8 @@ impl Effect for Sun {
     fn shade<M: Machine, H: Highlight>(
         machine: M,
         sample: Sample<M::R>,
-        lamp: &Lamp,
-        matter: &Matter,
+        shine: &Shine<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        let one = machine.lift(1.0);
-        let [x, y, z] = lamp.direction;
-        let to_light = Triple::lift(one, [-x, -y, -z]);
-        phong::<M, H>(machine, sample, to_light, one, lamp, matter)
+        phong::<M, H>(machine, sample, set(machine, shine.axis), None, shine)
     }
 }

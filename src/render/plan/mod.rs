@@ -34,6 +34,8 @@ pub struct FramePlan {
     pub(in crate::render) light_at: LightAt,
     /// What textures give between their texels.
     pub(in crate::render) filter: Filter,
+    /// Where the observer is and which way they look.
+    pub(in crate::render) view_from_world: DMat4,
     /// `clip_from_view`.
     pub(in crate::render) clip_from_view: DMat4,
     /// Width of lines in pixels: 1 or 2.
@@ -44,7 +46,7 @@ pub struct FramePlan {
     pub(in crate::render) draws: Vec<Draw>,
     /// The different ways in which surfaces are drawn.
     pub(in crate::render) pipelines: Vec<Pipeline>,
-    skipped: Vec<Skipped>,
+    pub(in crate::render) skipped: Vec<Skipped>,
 }
 
 /// Where directions to the observer go.
@@ -80,6 +82,7 @@ impl FramePlan {
             arithmetic: settings.arithmetic,
             light_at: settings.light,
             filter: settings.filter,
+            view_from_world: observer.view_from_world,
             clip_from_view: observer.clip_from_view,
             line_width: if view.wide_lines { 2 } else { 1 },
             lamps: Vec::new(),
