@@ -13,10 +13,12 @@ use egui::{CentralPanel, Context, Frame, Key, ThemePreference, ViewportCommand};
 use super::action::Action;
 use super::ask::Ask;
 use super::chord::Chord;
+use super::comparison::Comparison;
 use super::decide::{Meaning, decide};
 use super::dialogs::{After, Dialogs, Wanted};
 use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
+use super::laboratory::Work;
 use super::material_dialog::MaterialDialog;
 use super::measuring::Measuring;
 use super::pace::{Happening, Motion};
@@ -39,6 +41,8 @@ pub struct App {
     /// A scene whose models are not where it says.
     pub(super) waiting: Option<Waiting>,
     pub(super) viewport: Viewport,
+    pub(super) lab: Work,
+    pub(super) comparison: Comparison,
     worker: Option<Worker<Purpose>>,
     /// The measuring of effects that goes on.
     pub(super) measuring: Option<Measuring>,
@@ -65,6 +69,8 @@ impl App {
             loading: Vec::new(),
             waiting: None,
             viewport: Viewport::default(),
+            lab: Work::default(),
+            comparison: Comparison::default(),
             worker: None,
             measuring: None,
             leaving: false,
@@ -91,13 +97,17 @@ impl App {
     pub fn editor_ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut asks = Vec::new();
+        let _touch = self.lab.touch();
         Keyboard::begin(&ctx);
         self.begin(&ctx, &mut asks);
         panels::show(ui, &self.state, &mut asks);
         if let Some(worker) = &self.worker {
-            CentralPanel::default()
-                .frame(Frame::NONE)
-                .show(ui, |ui| self.viewport.ui(ui, &self.state, worker, &mut asks));
+            CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+                self.viewport.ui(ui, &self.state, worker, &mut asks);
+                if let Some(rect) = self.viewport.rect() {
+                    self.comparison.ui(ui, rect, &self.state, &mut asks);
+                }
+            });
         }
         notices::show(&ctx, &self.state, &self.loading, &mut asks);
         let answer = self.dialogs.ui(&ctx);
@@ -118,6 +128,8 @@ impl App {
         }
         self.hear_loading(&ctx);
         self.hear_measuring();
+        self.hear_laboratory(&ctx);
+        self.compare(&ctx);
         self.take_dropped(&ctx);
         self.close_requested(&ctx);
         self.draw(&ctx);
@@ -139,7 +151,13 @@ impl App {
             // Leaving is an action like the others.
             ctx.options_mut(|options| options.quit_shortcuts.clear());
             let waker = ctx.clone();
-            match Worker::start(move || waker.request_repaint()) {
+            let watch = self.lab.watch();
+            let wake = move || {
+                // A picture was drawn: what was measured meanwhile means nothing.
+                drop(watch.touch());
+                waker.request_repaint();
+            };
+            match Worker::start(wake) {
                 Ok(worker) => self.worker = Some(worker),
                 Err(error) => self.refuse(format!("no thread to draw with: {error}")),
             }
@@ -233,6 +251,7 @@ impl App {
             Ask::Change { command, gesture, label } => self.change(command, gesture, &label),
             Ask::Look(view) => self.look(*view),
             Ask::Settings(settings) => state.settings = settings,
+            Ask::Lab(ask) => self.answer_lab(ctx, ask),
             Ask::Select(id) => match selection::pick(&state.scene, &state.view, id) {
                 Ok(selection) => self.select(selection, Gesture::Whole),
                 Err(refusal) => self.refuse(refusal.to_string()),
@@ -332,6 +351,7 @@ impl App {
                     LeaveOut::HalfStep => LeaveOut::Unseen,
                 };
             }
+            Action::ToggleLaboratory => shown.laboratory ^= true,
             Action::ThemeSystem => set_theme(ctx, shown, ThemePreference::System),
             Action::ThemeLight => set_theme(ctx, shown, ThemePreference::Light),
             Action::ThemeDark => set_theme(ctx, shown, ThemePreference::Dark),
@@ -435,6 +455,7 @@ fn set_theme(ctx: &Context, shown: &mut Shown, theme: ThemePreference) {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.lab.rest();
         // A fault of the program costs a frame, not the user's work. One that comes in every frame
         // cannot be lived with.
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {

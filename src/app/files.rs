@@ -322,6 +322,7 @@ impl App {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
             }
+            After::Lesson(key) => self.show_lesson(key),
             After::Open(Some(path)) => self.open_scene(ctx, path),
             After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
         }
@@ -330,6 +331,7 @@ impl App {
     /// Edits something else from now on; which panels are shown stays.
     pub(super) fn replace(&mut self, state: State) {
         let (shown, statistics) = (self.state.shown, self.state.statistics.clone());
+        self.end_measuring();
         self.state = State { shown, statistics, ..state };
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::action::Action;
+use super::laboratory::Laboratory;
 pub use super::pace::Economy;
 use super::painter::Drawn;
 use crate::base::image::Size;
@@ -36,6 +37,8 @@ pub struct State {
     pub plan: Plan,
     /// Which panels are shown.
     pub shown: Shown,
+    /// What the laboratory has found out.
+    pub lab: Laboratory,
     /// The item that is being given a name.
     pub renaming: Option<ItemId>,
     /// What the last change of the scene was part of.
@@ -159,6 +162,8 @@ pub struct Shown {
     pub plan: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
+    /// What accuracy costs in time.
+    pub laboratory: bool,
     /// Whether the window is light or dark.
     pub theme: egui::ThemePreference,
 }
@@ -173,15 +178,17 @@ impl Shown {
     /// The panels that a scene was saved with, in a theme.
     #[must_use]
     pub const fn of(panels: Panels, theme: egui::ThemePreference) -> Self {
-        let Panels { outline, properties, view, statistics, plan, cheat_sheet } = panels;
-        Self { outline, properties, view, statistics, plan, cheat_sheet, theme }
+        let Panels { outline, properties, view, statistics, plan, cheat_sheet, laboratory } =
+            panels;
+        Self { outline, properties, view, statistics, plan, cheat_sheet, laboratory, theme }
     }
 
     /// The panels, as a scene is saved with them.
     #[must_use]
     pub const fn panels(&self) -> Panels {
-        let Self { outline, properties, view, statistics, plan, cheat_sheet, .. } = *self;
-        Panels { outline, properties, view, statistics, plan, cheat_sheet }
+        let Self { outline, properties, view, statistics, plan, cheat_sheet, laboratory, .. } =
+            *self;
+        Panels { outline, properties, view, statistics, plan, cheat_sheet, laboratory }
     }
 }
 
@@ -200,6 +207,7 @@ impl State {
             statistics: Statistics::default(),
             plan: Plan::default(),
             shown: Shown::default(),
+            lab: Laboratory::default(),
             renaming: None,
             gesture: Gesture::Whole,
         }

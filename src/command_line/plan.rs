@@ -22,7 +22,7 @@ reason; what is on is counted in pixels, and with --measure in milliseconds.
 Examples:
   marraztu plan
   marraztu plan teapot.obj --lights 0,1 --measure
-  marraztu plan room.marraztu --leave-out half-step --format csv")]
+  marraztu plan room.marraztu --faint left-out --format csv")]
 pub(crate) struct Plan {
     #[command(flatten)]
     shot: Shot,

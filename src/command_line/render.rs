@@ -1,5 +1,7 @@
 //! `marraztu render`: a picture into a file.
 
+use std::path::PathBuf;
+
 use glam::{DMat3, DVec3};
 use marraztu::base::math;
 use marraztu::edit::{frame, items};
@@ -7,7 +9,8 @@ use marraztu::io;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{Camera, CameraId, Command, Fill, ItemId, Object, Placed, Pose};
 
-use super::arguments::{Accuracy, Render, Seeing, Shot, Slots, Surfaces};
+use super::accuracy::Accuracy;
+use super::arguments::{Reading, Render, Seeing, Shot, Slots, Surfaces};
 use super::bar::Bar;
 use super::failure::Failure;
 use super::say;
@@ -27,13 +30,25 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
 
 /// Reads the files and arranges everything as it is asked for. What was found in the files is told.
 pub(super) fn stage(shot: &Shot) -> Result<Stage, Failure> {
-    let mut stage = Stage::of(&shot.files, &shot.reading)?;
+    let Shot { files, reading, surfaces, seeing, accuracy, .. } = shot;
+    staged(files, reading, surfaces, seeing, accuracy)
+}
+
+/// The scene of these files, as it is to be seen and drawn.
+pub(crate) fn staged(
+    files: &[PathBuf],
+    reading: &Reading,
+    surfaces: &Surfaces,
+    seeing: &Seeing,
+    accuracy: &Accuracy,
+) -> Result<Stage, Failure> {
+    let mut stage = Stage::of(files, reading)?;
     for finding in &stage.findings {
         say("note", finding);
     }
-    cover(&mut stage, &shot.surfaces)?;
-    look(&mut stage, &shot.seeing)?;
-    choose(&mut stage, &shot.accuracy);
+    cover(&mut stage, surfaces)?;
+    look(&mut stage, seeing)?;
+    stage.settings = accuracy.of(&stage.settings);
     Ok(stage)
 }
 
@@ -67,6 +82,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     }
     let view = &mut stage.view;
     view.projection = seeing.projection.unwrap_or(view.projection);
+    view.normals = seeing.normals.unwrap_or(view.normals);
     view.time = seeing.time.unwrap_or(view.time);
     if seeing.edges {
         view.fill = Fill::Edges;
@@ -127,15 +143,4 @@ fn camera(stage: &Stage, number: u32) -> Result<CameraId, Failure> {
         let cameras = if count == 1 { "camera" } else { "cameras" };
         Failure::Absent(format!("the scene has {count} {cameras}: there is no camera {number}"))
     })
-}
-
-/// Draws as exactly as it is asked for.
-fn choose(stage: &mut Stage, accuracy: &Accuracy) {
-    let settings = &mut stage.settings;
-    settings.light = accuracy.shading.unwrap_or(settings.light);
-    settings.arithmetic = accuracy.arithmetic.unwrap_or(settings.arithmetic);
-    settings.filter = accuracy.filter.unwrap_or(settings.filter);
-    settings.specular = accuracy.specular.unwrap_or(settings.specular);
-    settings.leave_out = accuracy.leave_out.unwrap_or(settings.leave_out);
-    stage.view.normals = accuracy.normals.unwrap_or(stage.view.normals);
 }

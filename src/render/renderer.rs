@@ -224,6 +224,34 @@ impl Renderer {
         self.plan.as_ref().map_or(0.0, |plan| plan.count(self.level, &self.frame, uses))
     }
 
+    /// Which primitive each pixel of the last picture shows, row by row from the top: 0 for the
+    /// background, else a number that is another for every triangle and line of one scene.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the lower half of a word names what is seen"
+    )]
+    pub fn primitives(&mut self) -> Vec<u32> {
+        self.build_again();
+        let Some(plan) = &self.plan else { return Vec::new() };
+        let size = plan.size;
+        let mut pixels = vec![0; size.area()];
+        let [columns, rows] = tiles_of(plan.size);
+        let mut visibility = Visibility::default();
+        for tile in 0..usize::try_from(columns * rows).expect("not negative") {
+            let bounds = bounds_of(tile, plan.size);
+            visibility.draw(self.level, plan, &self.frame, (tile, bounds));
+            for (y, x) in (bounds.top..bounds.bottom)
+                .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
+            {
+                let word = visibility.word(self.level, x, y);
+                let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
+                pixels[y * size.width + x] = word as u32;
+            }
+        }
+        pixels
+    }
+
     /// The draw and the polygon that a word of the visibility stands for.
     fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
         match tile::seen(word) {

@@ -2,6 +2,7 @@
 //!
 //! Plain data. Nothing here draws, nothing here reads files, nothing here knows of windows.
 
+mod axes;
 mod camera;
 mod command;
 mod edge_order;
@@ -19,6 +20,7 @@ mod settings;
 pub mod triangulate;
 mod view;
 
+pub use axes::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Lesson, Preset as AccuracyPreset};
 pub use camera::{Camera, CameraMode, Lens, Pose};
 pub use command::{Command, CommandError, Item};
 pub use edge_order::{DrawEdge, EdgeOrder};

@@ -75,6 +75,8 @@ pub struct Panels {
     pub plan: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
+    /// What accuracy costs in time.
+    pub laboratory: bool,
 }
 
 impl Panels {
@@ -86,6 +88,7 @@ impl Panels {
         statistics: false,
         plan: false,
         cheat_sheet: false,
+        laboratory: false,
     };
 }
 
