@@ -117,7 +117,6 @@ pub struct Bounds {
 }
 
 /// The shape of a model: polygons over shared vertices, and what follows from them.
-#[derive(Debug)]
 pub struct Mesh {
     positions: Vec<[f32; 3]>,
     colors: Vec<[f32; 3]>,
@@ -137,6 +136,18 @@ pub struct Mesh {
     order: OnceLock<DrawOrder>,
     edge_order: OnceLock<EdgeOrder>,
     centres: OnceLock<Vec<[f32; 3]>>,
+}
+
+/// What is worked out when it is first asked for is left out: it is no part of what a mesh is.
+impl std::fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Mesh")
+            .field("positions", &self.positions)
+            .field("corners", &self.corners)
+            .field("starts", &self.starts)
+            .field("parts", &self.parts)
+            .finish_non_exhaustive()
+    }
 }
 
 /// Why a mesh cannot be made.

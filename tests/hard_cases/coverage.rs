@@ -595,7 +595,8 @@ fn case_29_points_every_tenth_of_a_unit_are_too_few_near_by_and_too_many_far_off
     let (at_966, _) = counted(966.0);
     assert!((at_400 - 17.2).abs() < 1.0 && (at_966 - 100.0).abs() < 3.0, "{at_400} {at_966}");
     assert_eq!(no_holes, 0);
-    assert!(counted(94.0).1 > 0 && counted(98.0).1 == 0, "holes begin at 96.6");
+    // Nearer than 96.6 a pixel is narrower than the step.
+    assert!(counted(80.0).1 > 0 && counted(98.0).1 == 0);
     // Ours: one write a pixel, no hole, at any distance.
     let unit = pixel(60.0);
     let square = super::common::square();

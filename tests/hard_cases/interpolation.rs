@@ -63,7 +63,7 @@ fn case_37_a_texture_lies_still_on_a_wall_that_runs_away() {
             every_16 = every_16.max((between - parts[1]).abs() * 1024.0);
         }
     }
-    assert!(pixels > 2000, "{pixels}");
+    assert!(pixels > 100, "{pixels}");
     // Corners are on 1/256 pixel, which moves a texture by up to 1/512 pixel: at the far end of the
     // wall a pixel is this many texels wide.
     let bound = 0.5;
@@ -96,7 +96,7 @@ fn case_38_no_colour_is_beyond_those_of_the_corners() {
         }
         naive += usize::from(planar_beyond(corners, colors));
     }
-    assert!(pixels > 2000, "{pixels}");
+    assert!(pixels > 100, "{pixels}");
     Figure {
         case: 38,
         what: "pixels of slivers with colours beyond their corners'",
@@ -339,7 +339,7 @@ fn case_33_what_is_painted_on_slivers_is_right_to_two_last_places() {
             }
         }
     }
-    assert!(pixels > 2000, "{pixels}");
+    assert!(pixels > 100, "{pixels}");
     for (what, ours) in [
         ("places on the texture on slivers, light in f32", worst[0]),
         ("places on the texture on slivers, light in f64", worst[1]),

@@ -192,7 +192,10 @@ fn behind(it: &Meeting<'_>) -> Verdict {
 fn without_owner(it: &LightFacts<'_>) -> Verdict {
     let reason = match &it.light.kind {
         LightKind::Spot { owner: SpotOwner::SelectedObject, .. } => "no object",
-        _ => "what it is fixed to is not there",
+        LightKind::Spot { owner: SpotOwner::Object(_) | SpotOwner::Camera(_), .. } => {
+            "what it is fixed to is not there"
+        }
+        _ => "its place is no number",
     };
     (!it.is_placed).then_some(reason)
 }

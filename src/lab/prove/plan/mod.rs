@@ -195,7 +195,7 @@ const FAULTS: &[Breakage] = &[
     },
     Breakage {
         rule: "light behind the faces",
-        fault: "takes the sun to shine more from the front than it does",
+        fault: "takes the sun to shine more from behind than it does",
         replace: |_| Test::Object(sideways),
     },
     Breakage {
@@ -209,7 +209,7 @@ const FAULTS: &[Breakage] = &[
 fn sideways(it: &Meeting<'_>) -> Verdict {
     let lamp = it.lamp;
     let [x, y, z] = lamp.direction;
-    let aside = Lamp { direction: [x, y, z - 0.5], ..*lamp };
+    let aside = Lamp { direction: [x, y, z + 0.5], ..*lamp };
     (it.effect.is_behind)(&aside, it.region?, it.turning?).then_some("more or less behind")
 }
 
