@@ -11,7 +11,7 @@ use marraztu::render::Effect;
 use marraztu::scene::{LeaveOut, Settings};
 
 use crate::editor::Editor;
-use crate::panels::click;
+use crate::panels::{click, control};
 
 fn effects(editor: &Editor) -> Vec<Effect> {
     let explained = editor.state().plan.explained.clone().expect("the panel is shown");
@@ -38,6 +38,12 @@ fn the_plan_follows_the_scene_while_it_is_shown() {
     assert!(!editor.shows("sun on, all 3"));
 }
 
+/// Clicks a line, which may have to be scrolled to.
+fn unfold(editor: &mut Editor, line: &str) {
+    control(editor, Role::Row, line).click_accesskit();
+    editor.settle();
+}
+
 #[test]
 fn every_effect_has_a_line_and_what_differs_is_folded_out() {
     let mut editor = Editor::of_size(1400.0, 1400.0);
@@ -47,9 +53,9 @@ fn every_effect_has_a_line_and_what_differs_is_folded_out() {
     }
     let spot = "object spot on, 2 of 3 objects";
     assert!(!editor.shows("left out, x_wing: nothing is within its cone"));
-    click(&mut editor, Role::Row, spot);
+    unfold(&mut editor, spot);
     assert!(editor.shows("left out, x_wing: nothing is within its cone"));
-    click(&mut editor, Role::Row, spot);
+    unfold(&mut editor, spot);
     assert!(!editor.shows("left out, x_wing: nothing is within its cone"));
 }
 

@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         Panel::bottom("laboratory")
             .frame(side)
             .resizable(true)
-            .default_size(300.0_f32.min(most))
+            .default_size(348.0_f32.min(most))
             .size_range(160.0..=most)
             .show(ui, |ui| lab::show(ui, state, asks));
     }

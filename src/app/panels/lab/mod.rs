@@ -42,10 +42,10 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
 
 fn within(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
     let layout = Layout::top_down(egui::Align::Min);
-    ui.scope_builder(UiBuilder::new().max_rect(rect).layout(layout), |ui| {
-        ui.set_clip_rect(rect.expand(2.0).intersect(ui.clip_rect()));
-        add(ui);
-    });
+    // A child of its own, so that what it holds does not make the panel larger.
+    let mut child = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
+    child.set_clip_rect(rect.expand(2.0).intersect(ui.clip_rect()));
+    add(&mut child);
 }
 
 fn right_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
