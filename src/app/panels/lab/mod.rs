@@ -28,7 +28,8 @@ enum Side {
 
 /// Shows it; what is asked for is added to `asks`.
 pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
-    let all = ui.available_rect_before_wrap().shrink2(vec2(0.0, 2.0));
+    let whole = ui.available_rect_before_wrap();
+    let all = whole.shrink2(vec2(0.0, 2.0));
     let gap = f32::from(theme::MARGIN);
     let asked = all.with_max_x(all.left() + ASKED);
     let rest = all.with_min_x(asked.right() + gap);
@@ -37,7 +38,8 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     within(ui, asked, |ui| controls_ui::show(ui, state, asks));
     within(ui, middle, |ui| scatter::show(ui, state, asks));
     within(ui, right, |ui| right_ui(ui, state, asks));
-    ui.allocate_rect(all, egui::Sense::hover());
+    // All of it, else the panel would shrink from frame to frame.
+    ui.allocate_rect(whole, egui::Sense::hover());
 }
 
 fn within(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
