@@ -137,7 +137,7 @@ pub trait Machine: Copy {
     fn lift(self, constant: f64) -> Self::R;
     /// One number for all.
     fn set(self, number: Self::Number) -> Self::R;
-    /// The places in rows of [`SLOTS`] that [`Self::pick`] takes numbers from.
+    /// The places in rows of `SLOTS` that [`Self::pick`] takes numbers from.
     fn slots(self, slots: &[i32], at: usize) -> Self::Slots;
     /// The numbers of a row at some places, all of which are among the first `PAGES` times sixteen.
     fn pick<const PAGES: usize>(self, row: &[Self::Number; SLOTS], slots: Self::Slots) -> Self::R;

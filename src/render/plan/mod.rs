@@ -3,7 +3,7 @@
 //! A [`FramePlan`] holds a snapshot of everything that drawing reads, already in the observer's
 //! terms. What the scene does not call for is not in it; [`FramePlan::explained`] says what that is,
 //! and why. What only a part of the picture does without is decided when its depths are known, tile by
-//! tile ([`TilePlan`]).
+//! tile (`TilePlan`).
 
 mod bounded;
 mod count;

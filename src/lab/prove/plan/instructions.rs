@@ -1,6 +1,6 @@
 //! A frame whose instructions are counted: the same however many lights are off.
 //!
-//! `callgrind` counts what runs inside [`counted_frame`] and nothing else. Every process that is counted
+//! `callgrind` counts what runs inside `counted_frame` and nothing else. Every process that is counted
 //! does the same before: it plans and draws both frames, so that memory is laid out alike.
 
 use std::hint::black_box;
