@@ -26,9 +26,9 @@ pub struct Located<T> {
     /// The second and third barycentric coordinate, linear on the screen.
     linear: [[T; BATCH]; 2],
     /// The same with perspective.
-    weights: [[T; BATCH]; 2],
+    pub(super) weights: [[T; BATCH]; 2],
     /// The distance along the observer's axis.
-    w: [T; BATCH],
+    pub(super) w: [T; BATCH],
 }
 
 impl<T: Number> Default for Located<T> {
@@ -370,8 +370,9 @@ pub(super) fn surroundings<T: Number>(
 ) {
     let rays = Rays::new(plan);
     let normals = matrix(draw.view_from_normal);
-    paged!(faces.count, PAGES => T::run(
+    paged!(faces.count, PAGES => T::run_by(
         level,
+        plan.ways.rare_roots(),
         Surroundings::<T, PAGES> { items, faces, located, batch, rays, normals },
     ));
 }
