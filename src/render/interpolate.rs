@@ -370,9 +370,13 @@ pub(super) fn surroundings<T: Number>(
 ) {
     let rays = Rays::new(plan);
     let normals = matrix(draw.view_from_normal);
-    paged!(faces.count, PAGES => T::run_by(
+    let way = plan.ways.rare_roots();
+    if way.is_some() {
+        let kernel = Surroundings::<T, 4> { items, faces, located, batch, rays, normals };
+        return T::run_by(level, way, kernel);
+    }
+    paged!(faces.count, PAGES => T::run(
         level,
-        plan.ways.rare_roots(),
         Surroundings::<T, PAGES> { items, faces, located, batch, rays, normals },
     ));
 }
