@@ -10,10 +10,8 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::DrawOrder;
-use super::mesh_points::{check, points_and_corners};
-use super::triangulate::triangulate;
-use crate::base::math;
+use super::mesh_edges::{Edge, Edges};
+use super::{Bounds, DrawOrder};
 
 /// In place of an index: there is none.
 pub const NONE: u32 = u32::MAX;
@@ -90,51 +88,25 @@ pub struct Triangle {
     pub polygon: u32,
 }
 
-/// A side of one or more polygons.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Edge {
-    /// The vertices at its ends, the smaller index first.
-    pub ends: [u32; 2],
-    /// Where its polygons begin in the list that [`Mesh::edge_polygons`] reads.
-    first: u32,
-    count: u32,
-}
-
-/// The sides of a mesh's polygons, each once, sorted by their ends.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Edges {
-    edges: Vec<Edge>,
-    polygons: Vec<u32>,
-}
-
-/// The extent of a set of points, in object space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// The smallest coordinates.
-    pub min: DVec3,
-    /// The largest coordinates.
-    pub max: DVec3,
-}
-
 /// The shape of a model: polygons over shared vertices, and what follows from them.
 #[derive(Debug)]
 pub struct Mesh {
-    positions: Vec<[f32; 3]>,
-    colors: Vec<[f32; 3]>,
-    uvs: Vec<[f32; 2]>,
-    points: Vec<Point>,
-    corners: Vec<Corner>,
-    starts: Vec<u32>,
-    polygon_parts: Vec<u32>,
-    polygon_normals: Vec<[f32; 3]>,
-    triangles: Vec<Triangle>,
-    triangle_starts: Vec<u32>,
-    parts: Vec<Part>,
-    has_file_normals: bool,
-    bounds: Option<Bounds>,
-    mean: DVec3,
-    edges: OnceLock<Edges>,
-    order: OnceLock<DrawOrder>,
+    pub(super) positions: Vec<[f32; 3]>,
+    pub(super) colors: Vec<[f32; 3]>,
+    pub(super) uvs: Vec<[f32; 2]>,
+    pub(super) points: Vec<Point>,
+    pub(super) corners: Vec<Corner>,
+    pub(super) starts: Vec<u32>,
+    pub(super) polygon_parts: Vec<u32>,
+    pub(super) polygon_normals: Vec<[f32; 3]>,
+    pub(super) without_area: Vec<u32>,
+    pub(super) triangles: Vec<Triangle>,
+    pub(super) parts: Vec<Part>,
+    pub(super) has_file_normals: bool,
+    pub(super) bounds: Option<Bounds>,
+    pub(super) mean: DVec3,
+    pub(super) edges: OnceLock<Edges>,
+    pub(super) order: OnceLock<DrawOrder>,
 }
 
 /// Why a mesh cannot be made.
@@ -171,57 +143,6 @@ impl PartialEq for Mesh {
 }
 
 impl Mesh {
-    /// Checks the parts, triangulates the polygons and computes their normals.
-    ///
-    /// # Errors
-    /// Where a number is not finite, an index out of range, or a list of the wrong length.
-    pub fn new(source: MeshSource) -> Result<Self, MeshError> {
-        check(&source)?;
-        let starts = running_sum(&source.arities);
-        let polygon = |i: usize| starts[i] as usize..starts[i + 1] as usize;
-        let polygons = source.arities.len();
-
-        let at = |corner: &SourceCorner| dvec3(source.positions[corner.position as usize]);
-        let normals: Vec<Option<DVec3>> = (0..polygons)
-            .map(|i| math::unit(newell(source.corners[polygon(i)].iter().map(at))))
-            .collect();
-
-        let (points, corners) = points_and_corners(&source, &starts, &normals);
-
-        let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * polygons));
-        let mut triangle_starts = vec![0];
-        for i in 0..polygons {
-            let range = polygon(i);
-            let outline: Vec<DVec3> = source.corners[range.clone()].iter().map(at).collect();
-            for [a, b, c] in triangulate(&outline, normals[i].unwrap_or(DVec3::Z)) {
-                let corners = [a, b, c].map(|corner| starts[i] + corner);
-                triangles.push(Triangle { corners, polygon: index(i) });
-            }
-            triangle_starts.push(index(triangles.len()));
-        }
-
-        let has_file_normals = corners.iter().any(|corner| corner.filed != corner.smooth);
-        let fallback = |normal: &Option<DVec3>| normal.unwrap_or(DVec3::Z).as_vec3().to_array();
-        Ok(Self {
-            bounds: Bounds::of(source.positions.iter().copied().map(dvec3)),
-            mean: mean(source.positions.iter().copied().map(dvec3)),
-            polygon_normals: normals.iter().map(fallback).collect(),
-            positions: source.positions,
-            colors: source.colors,
-            uvs: source.uvs,
-            points,
-            corners,
-            starts,
-            polygon_parts: source.polygon_parts,
-            triangles,
-            triangle_starts,
-            parts: source.parts,
-            has_file_normals,
-            edges: OnceLock::new(),
-            order: OnceLock::new(),
-        })
-    }
-
     /// Where the vertices are, in object space.
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
@@ -283,6 +204,12 @@ impl Mesh {
         &self.polygon_normals
     }
 
+    /// The polygons without area, which have no normal of their own; ascending.
+    #[must_use]
+    pub fn without_area(&self) -> &[u32] {
+        &self.without_area
+    }
+
     /// The mean of a polygon's corners.
     #[must_use]
     pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
@@ -299,8 +226,10 @@ impl Mesh {
     /// Where the triangles of one polygon stand in [`Self::triangles`].
     #[must_use]
     pub fn triangles_of(&self, polygon: u32) -> std::ops::Range<usize> {
-        let polygon = polygon as usize;
-        self.triangle_starts[polygon] as usize..self.triangle_starts[polygon + 1] as usize
+        // Every polygon before this one has two triangles less than it has corners.
+        let corners = self.corners_of(polygon);
+        let before = 2 * polygon as usize;
+        corners.start - before..corners.end - before - 2
     }
 
     /// The runs of the file's `o`, `g` and `usemtl`.
@@ -331,83 +260,35 @@ impl Mesh {
     /// asked for.
     #[must_use]
     pub fn draw_order(&self) -> &DrawOrder {
-        self.order.get_or_init(|| DrawOrder::new(self))
+        found_once(&self.order, || DrawOrder::new(self))
     }
 
     /// The sides of all polygons, each once. Found when first asked for.
     #[must_use]
     pub fn edges(&self) -> &[Edge] {
-        &self.edge_table().edges
+        self.edge_table().edges()
     }
 
     /// The polygons that have this edge as a side.
     #[must_use]
     pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
-        &self.edge_table().polygons[edge.first as usize..(edge.first + edge.count) as usize]
+        self.edge_table().polygons(edge)
     }
 
     fn edge_table(&self) -> &Edges {
-        self.edges.get_or_init(|| {
-            // Sides as (ends, polygon), sorted so that those with equal ends stand together.
-            let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(self.corners.len());
-            for polygon in 0..index(self.polygon_count()) {
-                let corners = self.polygon(polygon);
-                for (i, corner) in corners.iter().enumerate() {
-                    let (a, b) = (corner.position, corners[(i + 1) % corners.len()].position);
-                    if a != b {
-                        sides.push(([a.min(b), a.max(b)], polygon));
-                    }
-                }
-            }
-            sides.sort_unstable();
-            sides.dedup();
-            let polygons = sides.iter().map(|(_, polygon)| *polygon).collect();
-            let mut edges: Vec<Edge> = Vec::new();
-            for (i, (ends, _)) in sides.iter().enumerate() {
-                match edges.last_mut() {
-                    Some(last) if last.ends == *ends => last.count += 1,
-                    _ => edges.push(Edge { ends: *ends, first: index(i), count: 1 }),
-                }
-            }
-            Edges { edges, polygons }
-        })
+        found_once(&self.edges, || Edges::of(self))
     }
 }
 
-impl Bounds {
-    /// The extent of points; `None` where there are none.
-    #[must_use]
-    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
-        points.into_iter().fold(None, |bounds: Option<Self>, p| {
-            Some(
-                bounds.map_or(Self { min: p, max: p }, |b| Self {
-                    min: b.min.min(p),
-                    max: b.max.max(p),
-                }),
-            )
-        })
-    }
-
-    /// The middle of the box.
-    #[must_use]
-    pub fn centre(&self) -> DVec3 {
-        (self.min + self.max) * 0.5
-    }
-
-    /// Length, height and width of the box.
-    #[must_use]
-    pub fn extent(&self) -> DVec3 {
-        self.max - self.min
-    }
-
-    /// Its eight corners.
-    #[must_use]
-    pub fn corners(&self) -> [DVec3; 8] {
-        let pick = |i: usize, bit: usize, axis: usize| {
-            if i & bit == 0 { self.min[axis] } else { self.max[axis] }
-        };
-        std::array::from_fn(|i| DVec3::new(pick(i, 1, 0), pick(i, 2, 1), pick(i, 4, 2)))
-    }
+/// What a cell holds, found where it holds nothing yet.
+///
+/// It is found outside of the cell: a thread that waits for others in the middle of it may take up
+/// work that needs the same thing, and would wait for itself. Rather is it found twice.
+fn found_once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> T) -> &T {
+    cell.get().unwrap_or_else(|| {
+        let found = find();
+        cell.get_or_init(|| found)
+    })
 }
 
 /// The normal of a polygon, as long as twice its area.
@@ -431,7 +312,7 @@ pub fn dvec3(v: [f32; 3]) -> DVec3 {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "fewer than 2^32 points")]
-fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
+pub(super) fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
     let (sum, count) = points.fold((DVec3::ZERO, 0_usize), |(sum, n), p| (sum + p, n + 1));
     sum / count.max(1) as f64
 }
@@ -439,14 +320,6 @@ fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
 /// An index of 32 bits. `check` has made sure that it fits.
 pub(super) fn index(i: usize) -> u32 {
     u32::try_from(i).expect("the constructor has checked that everything can be numbered")
-}
-
-fn running_sum(counts: &[u32]) -> Vec<u32> {
-    let sums = counts.iter().scan(0, |sum, count| {
-        *sum += count;
-        Some(*sum)
-    });
-    std::iter::once(0).chain(sums).collect()
 }
 
 #[cfg(test)]

@@ -5,7 +5,10 @@
 //! between equal depths, so that the order cannot show. Morton, "A Computer Oriented Geodetic Data
 //! Base", IBM 1966.
 
+use rayon::prelude::*;
+
 use super::{Bounds, Corner, Mesh, NONE, dvec3};
+use crate::base::lists::sorted_by_keys;
 
 /// A triangle as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,25 +65,43 @@ impl DrawOrder {
             mesh.triangles()[number].corners.map(|c| mesh.corners()[c as usize].position)
         };
         let count = mesh.triangles().len();
-        let mut keyed: Vec<(u32, u32)> = (0..count)
-            .map(|number| (morton(mesh, bounds, vertices(number)), index(number)))
-            .collect();
-        keyed.sort_unstable();
+        let keys = (0..count).into_par_iter().map(|number| morton(mesh, bounds, vertices(number)));
+        let numbers = sorted_by_keys(keys.collect(), 30);
 
-        let mut order = Self { places: vec![0; count], ..Self::default() };
-        let mut places = vec![NONE; mesh.positions().len()];
-        for (place, (_, number)) in keyed.into_iter().enumerate() {
-            let vertices = vertices(number as usize).map(|vertex| {
-                let place = &mut places[vertex as usize];
+        let triangle = |number| DrawTriangle { vertices: vertices(number as usize), number };
+        let mut triangles: Vec<DrawTriangle> = numbers.into_par_iter().map(triangle).collect();
+
+        // Vertices by their first use.
+        let mut vertex_places = vec![NONE; mesh.positions().len()];
+        let mut used = Vec::with_capacity(vertex_places.len());
+        let mut places = vec![0; count];
+        for (place, triangle) in (0..).zip(&mut triangles) {
+            places[triangle.number as usize] = place;
+            for vertex in &mut triangle.vertices {
+                let place = &mut vertex_places[*vertex as usize];
                 if *place == NONE {
-                    *place = order.push(mesh.positions()[vertex as usize]);
+                    *place = index(used.len());
+                    used.push(*vertex);
                 }
-                *place
-            });
-            order.places[number as usize] = index(place);
-            order.triangles.push(DrawTriangle { vertices, number });
+                *vertex = *place;
+            }
         }
-        order.smooth = order.points_of(mesh, |corner| corner.smooth);
+        let coordinate = |axis: usize| -> Vec<f32> {
+            used.par_iter().map(|vertex| mesh.positions()[*vertex as usize][axis]).collect()
+        };
+        let [x, y, z] = [0, 1, 2].map(coordinate);
+        let mut order = Self { x, y, z, triangles, places, ..Self::default() };
+        order.smooth = if mesh.points().len() == mesh.positions().len() {
+            // Every vertex has one point, with its number.
+            let normal = |vertex: &u32| mesh.points()[*vertex as usize].normal;
+            Points {
+                of: order.triangles.par_iter().map(|triangle| triangle.vertices).collect(),
+                normals: used.par_iter().map(normal).collect(),
+                vertices: (0..index(used.len())).collect(),
+            }
+        } else {
+            order.points_of(mesh, |corner| corner.smooth)
+        };
         if mesh.has_file_normals() {
             order.filed = order.points_of(mesh, |corner| corner.filed);
         }
@@ -135,13 +156,6 @@ impl DrawOrder {
     pub fn position(&self, vertex: u32) -> [f64; 3] {
         let i = vertex as usize;
         [f64::from(self.x[i]), f64::from(self.y[i]), f64::from(self.z[i])]
-    }
-
-    fn push(&mut self, [x, y, z]: [f32; 3]) -> u32 {
-        self.x.push(x);
-        self.y.push(y);
-        self.z.push(z);
-        index(self.x.len() - 1)
     }
 }
 
