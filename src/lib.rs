@@ -12,7 +12,7 @@
 //! * [`io`]: models, textures, scene files and pictures, to and from the disk.
 //! * [`edit`]: which command a key means, and the history of commands.
 //! * [`render`]: from a scene to a picture: plan, geometry, bins, tiles, stages.
-//! * [`lab`]: what drawing costs in time.
+//! * [`lab`]: what drawing costs in time, and what accuracy costs.
 //! * [`app`]: the window. The only floor that knows of egui.
 
 pub mod app;

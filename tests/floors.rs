@@ -21,6 +21,9 @@ const GUESTS: &[(&str, &str)] = &[
     ("tobj", "io"),
     ("image", "io"),
     ("ron", "io"),
+    ("egui_plot", "app"),
+    ("plotters", "lab"),
+    ("serde_json", "lab"),
 ];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {

@@ -185,10 +185,14 @@ fn what_tobj_reads_of_a_model_is_read_alike_bit_for_bit() {
         let statement = |word: &str| text.lines().any(|line| line.starts_with(word));
         let loaded = load(&path, &LoadOptions::default(), &Progress::new());
         let (Ok(loaded), false) = (loaded, statement("l ") || statement("p ")) else { continue };
+        // It gives the first place on the texture to faces of which none names any.
+        let named = text.lines().any(|line| line.starts_with('f') && line.contains('/'));
         let count = |kind| count(&loaded.findings, kind);
         let mixed = count(FindingKind::UvMixed) + count(FindingKind::NormalMixed);
         let short = count(FindingKind::FaceShort) + count(FindingKind::FaceRange);
-        let Some(theirs) = by_tobj(&path).filter(|_| mixed + short == 0) else { continue };
+        // It divides by weights, which are here passed over and listed.
+        let other = mixed + short + count(FindingKind::Weight);
+        let Some(theirs) = by_tobj(&path).filter(|_| other == 0) else { continue };
         let mesh = &loaded.model.mesh;
         assert_eq!(mesh.polygon_count(), theirs.len(), "faces of {}", row.file);
         let row_of = |row: Option<&[f32]>| -> Vec<u32> {
@@ -200,7 +204,9 @@ fn what_tobj_reads_of_a_model_is_read_alike_bit_for_bit() {
                 let ours = &mesh.positions()[corner.position as usize];
                 assert_eq!(row_of(Some(ours)), position, "{}: {polygon}", row.file);
                 let ours = mesh.uvs().get(corner.uv as usize).map(|row| &row[..]);
-                assert_eq!(row_of(ours), uv, "{}: {polygon}", row.file);
+                if named {
+                    assert_eq!(row_of(ours), uv, "{}: {polygon}", row.file);
+                }
                 // Ours are brought to length 1, theirs are as they stand in the file.
                 let theirs = normal.iter().map(|bits| f64::from(f32::from_bits(*bits)));
                 let theirs = DVec3::from_slice(&theirs.chain([0.0; 3]).collect::<Vec<_>>());
@@ -212,7 +218,7 @@ fn what_tobj_reads_of_a_model_is_read_alike_bit_for_bit() {
         }
         compared += 1;
     }
-    assert!(compared > 50, "only {compared} models");
+    assert!(compared > 60, "only {compared} models");
 }
 
 #[test]

@@ -10,7 +10,7 @@ use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::{EffectUse, FramePlan, Renderer};
 use marraztu::scene::{
     Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Normals, ObjectId, PolygonMode,
     PresetId, Projection, Scene, Settings, SpecularForm, View,
@@ -195,6 +195,45 @@ fn what_is_nearer_hides_what_is_farther_whatever_the_order() {
 }
 
 #[test]
+fn a_wall_looks_the_same_whether_or_not_there_is_something_behind_it() {
+    // Where a triangle is alone in a tile, nobody asks what is seen at its pixels.
+    let wall = (square(), at(400.0, 3.0, -7.0, 0.0));
+    let (alone, view) = scene(std::slice::from_ref(&wall));
+    let (both, _) = scene(&[wall, (ball(6), at(100.0, 0.0, 0.0, -300.0))]);
+    let without_lamps_of_objects = |mut scene: Scene| {
+        switch(&mut scene, 3, false);
+        scene
+    };
+    let (alone, both) = (without_lamps_of_objects(alone), without_lamps_of_objects(both));
+    let view = without_marks(view);
+    for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
+        for projection in [Projection::Perspective, Projection::Orthographic] {
+            for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+                let settings = Settings { light, arithmetic, ..Settings::default() };
+                let view = View { projection, ..view.clone() };
+                let pictures = [&alone, &both].map(|scene| draw(scene, &view, &settings, 150));
+                assert!(pictures[0] == pictures[1], "{light:?} {projection:?} {arithmetic:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_renderer_that_has_drawn_other_pictures_draws_the_same() {
+    let mut renderer = Renderer::default();
+    for round in 0..12_u32 {
+        let aside = f64::from(round % 5) * 60.0 - 120.0;
+        let (mut scene, view) = scene(&[(ball(8), at(40.0, aside, 20.0, 0.0))]);
+        scene.background = if round % 4 == 3 { Color::WHITE } else { scene.background };
+        let light = [LightAt::Pixel, LightAt::Vertex, LightAt::Face][round as usize % 3];
+        let settings = Settings { light, ..Settings::default() };
+        let size = if round < 6 { Size::new(200, 150) } else { Size::new(150, 200) };
+        let plan = FramePlan::new(&scene, &without_marks(view), &settings, size);
+        assert!(*renderer.render(&plan) == *Renderer::default().render(&plan), "{round}");
+    }
+}
+
+#[test]
 fn among_equal_depths_the_older_object_wins() {
     let (mut scene, view) =
         scene(&[(square(), at(50.0, 0.0, 0.0, 0.0)), (square(), at(50.0, 0.0, 0.0, 0.0))]);
@@ -271,7 +310,7 @@ fn a_pixel_knows_whose_it_is() {
     let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(200, 200));
     let mut renderer = Renderer::default();
     renderer.render(&plan);
-    let item = |x: usize, y: usize| renderer.hit(x, y).map(|hit| (hit.item, hit.polygon));
+    let mut item = |x: usize, y: usize| renderer.hit(x, y).map(|hit| (hit.item, hit.polygon));
     assert_eq!(item(52, 100), Some((ItemId::Object(FIRST), 1)));
     assert_eq!(item(148, 100), Some((ItemId::Object(SECOND), 1)));
     assert_eq!(item(100, 20), None);
@@ -313,13 +352,26 @@ fn what_is_left_out_is_named_with_its_reason() {
         let rubber = PresetId::named("black plastic").unwrap();
         object.material = MaterialChoice::Preset(rubber);
     });
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(64, 64));
-    let reason = |effect: &str| {
-        plan.skipped().iter().find(|skipped| skipped.effect == effect).map(|s| s.reason.clone())
+    let explained = |scene: &Scene| {
+        FramePlan::explained(scene, &view, &Settings::default(), Size::new(64, 64)).1
     };
-    assert_eq!(reason("cube").as_deref(), Some("outside the view"));
-    assert_eq!(reason("camera spot").as_deref(), Some("switched off"));
-    assert_eq!(reason("ambient on cube").as_deref(), Some("Ka of the material is 0"));
+    let reason = |uses: &[EffectUse], name: &str, on: Option<&str>| {
+        let is_it = |one: &&EffectUse| {
+            one.name == name && one.on.as_ref().map(|thing| thing.name.as_str()) == on
+        };
+        let found = uses.iter().find(is_it).unwrap();
+        assert!(!found.state.is_on(), "{name}");
+        found.state.why().to_owned()
+    };
+    let uses = explained(&scene);
+    assert_eq!(reason(&uses, "Surfaces", Some("cube")), "outside the view");
+    assert_eq!(reason(&uses, "camera spot", None), "switched off");
+    edit(&mut scene, FIRST, |object| {
+        object.placement = object.placement.replaced(at(40.0, 0.0, 0.0, 0.0));
+    });
+    let uses = explained(&scene);
+    assert_eq!(reason(&uses, "ambient", Some("cube")), "Ka of the material is 0");
+    assert_eq!(reason(&uses, "Textures", Some("cube")), "the file places none");
 }
 
 #[test]

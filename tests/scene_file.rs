@@ -16,10 +16,10 @@ use marraztu::io::{
 };
 use marraztu::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Fill, Filter, Frame, Item,
-    Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength,
-    Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId,
-    Projection, Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject, Surface,
-    Texture, Transformation, UpAxis, View, Winding, Wrap,
+    LeaveOut, Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice,
+    NormalLength, Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose,
+    PresetId, Projection, Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject,
+    Surface, Texture, Transformation, UpAxis, View, Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -137,14 +137,16 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         normal_length: NormalLength::BySize,
         wide_lines: true,
         marks: false,
+        coarse_while_moving: false,
         time: a,
-        panels: Panels { outline: false, statistics: true, ..Panels::DEFAULT },
+        panels: Panels { outline: false, statistics: true, plan: true, ..Panels::DEFAULT },
     };
     let settings = Settings {
         arithmetic: Arithmetic::F64,
         light: LightAt::Vertex,
         filter: Filter::Nearest,
         specular: SpecularForm::HalfVector,
+        leave_out: LeaveOut::HalfStep,
     };
     (scene, view, settings)
 }

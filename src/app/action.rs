@@ -9,8 +9,8 @@ use egui::{Key, ThemePreference};
 use super::chord::Chord::{self, Command, CommandShift, Either, Lower, Named, Text, Upper};
 use super::state::State;
 use crate::scene::{
-    CameraMode, Fill, Frame, ItemId, NormalLength, Normals, Observer, Projection, Subject,
-    Transformation,
+    CameraMode, Fill, Frame, ItemId, LeaveOut, NormalLength, Normals, Observer, Projection,
+    Subject, Transformation,
 };
 
 /// How an action appears.
@@ -174,7 +174,9 @@ actions! {
     ToggleFaceNormals Show ONCE [Either(Key::N)] "Face normals" "Draws the normal of each polygon.";
     ToggleVertexNormals Show ONCE [Either(Key::M)] "Vertex normals" "Draws the normal of each vertex.";
     ToggleNormalLength Show ONCE [] "Normals by size" "Draws normals in proportion to the object rather than 5 units long.";
+    ToggleLeaveOut Show ONCE [] "Leave out faint light" "Leaves out light that adds less than half a step of a byte together.";
     ToggleMarks    Show ONCE [] "Camera and lamp marks" "Draws the other cameras and the bulbs.";
+    ToggleCoarse   Show ONCE [] "Coarser while moving" "Draws a slow scene less exactly while something moves, so that the picture follows; with all when it is still.";
     ToggleLightNormals Show ONCE [Either(Key::I)] "Light by face normals" "Lights polygons with the normals of faces, or of vertices.";
 
     ToggleProjection Camera ONCE [Either(Key::P)] "Orthographic" "Projects in parallel, or in perspective.";
@@ -210,6 +212,9 @@ actions! {
     ToggleProperties Window ONCE [] "Properties" "Shows the properties of the selected item.";
     ToggleViewPanel Window ONCE [] "View switches" "Shows every switch of the view.";
     ToggleStatistics Window ONCE [] "Statistics" "Shows how much is drawn and how long it takes.";
+    TogglePlan     Window ONCE [Named(Key::F3)] "Plan" "Shows each effect of the picture: on or left out, why, and what it costs.";
+    MeasurePlan    Window ONCE [Named(Key::F4)] "Measure effects" "Measures how long a picture takes with and without each of its effects.";
+    ToggleLaboratory Window ONCE [] "Laboratory" "Shows what accuracy costs in time: each choice of each axis, measured and judged.";
     ThemeSystem    Window ONCE [] "As the system" "The window is light or dark as the system is.";
     ThemeLight     Window ONCE [] "Light" "Dark text on light panels.";
     ThemeDark      Window ONCE [] "Dark" "Light text on dark panels.";
@@ -256,6 +261,7 @@ impl Action {
             Self::ToggleVertexNormals => view.vertex_normals,
             Self::ToggleNormalLength => view.normal_length == NormalLength::BySize,
             Self::ToggleMarks => view.marks,
+            Self::ToggleCoarse => view.coarse_while_moving,
             Self::ToggleLightNormals => view.normals == Normals::Face,
             Self::ToggleProjection => view.projection == Projection::Orthographic,
             Self::ToggleObserver => view.observer == Observer::Object,
@@ -264,6 +270,10 @@ impl Action {
             Self::ToggleProperties => shown.properties,
             Self::ToggleViewPanel => shown.view,
             Self::ToggleStatistics => shown.statistics,
+            Self::TogglePlan => shown.plan,
+            Self::MeasurePlan => state.plan.measuring,
+            Self::ToggleLeaveOut => state.settings.leave_out == LeaveOut::HalfStep,
+            Self::ToggleLaboratory => shown.laboratory,
             Self::ThemeSystem => shown.theme == ThemePreference::System,
             Self::ThemeLight => shown.theme == ThemePreference::Light,
             Self::ThemeDark => shown.theme == ThemePreference::Dark,

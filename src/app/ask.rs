@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::action::Action;
+use super::laboratory::LabAsk;
 use crate::edit::Gesture;
 use crate::scene::{Command, ItemId, ObjectId, Settings, View};
 
@@ -24,6 +25,8 @@ pub enum Ask {
     Look(Box<View>),
     /// A change of how exactly pictures are drawn.
     Settings(Settings),
+    /// Something of the laboratory.
+    Lab(LabAsk),
     /// Selects an item, and makes its kind the subject.
     Select(ItemId),
     /// Selects a polygon of the selected object while polygons are shown one at a time.

@@ -134,6 +134,7 @@ fn look(action: Action, state: &State) -> Decided {
                 other(view.normal_length, NormalLength::Units, NormalLength::BySize);
         }
         Action::ToggleMarks => view.marks ^= true,
+        Action::ToggleCoarse => view.coarse_while_moving ^= true,
         Action::ToggleLightNormals => {
             view.normals = other(view.normals, Normals::Vertex, Normals::Face);
         }

@@ -41,6 +41,8 @@ pub(super) enum After {
     Quit,
     New,
     Open(Option<PathBuf>),
+    /// The scene of a lesson, by the key of its axis.
+    Lesson(&'static str),
 }
 
 /// What the user has answered.
@@ -309,6 +311,9 @@ fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
     ui.label(match after {
         After::Quit => "It has changes that are not saved. Without saving they are lost.",
         After::New => "A new scene replaces this one, whose changes are not saved.",
+        After::Lesson(_) => {
+            "The small scene of the lesson replaces this one, whose changes are not saved."
+        }
         After::Open(_) => "Another scene replaces this one, whose changes are not saved.",
     });
     ui.add_space(4.0);

@@ -5,25 +5,32 @@
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::time::Duration;
 
 use egui::{CentralPanel, Context, Frame, Key, ThemePreference, ViewportCommand};
 
 use super::action::Action;
 use super::ask::Ask;
 use super::chord::Chord;
+use super::comparison::Comparison;
 use super::decide::{Meaning, decide};
 use super::dialogs::{After, Dialogs, Wanted};
 use super::files::Loading;
 use super::keyboard::{Keyboard, Press};
+use super::laboratory::Work;
 use super::material_dialog::MaterialDialog;
+use super::measuring::Measuring;
+use super::pace::{Happening, Motion};
+use super::painter::Snapshot;
 use super::scene_files::Waiting;
 use super::state::{Message, Shown, State, Tone};
 use super::viewport::{Purpose, Viewport};
-use super::worker::{Snapshot, Worker};
+use super::worker::Worker;
 use super::{notices, panels};
 use crate::edit::selection::{self, Selection};
 use crate::edit::{Gesture, items};
-use crate::scene::{Command, Scene, Subject, View};
+use crate::scene::{Command, LeaveOut, Scene, Subject, View};
 
 /// The editor.
 #[derive(Debug)]
@@ -34,9 +41,15 @@ pub struct App {
     /// A scene whose models are not where it says.
     pub(super) waiting: Option<Waiting>,
     pub(super) viewport: Viewport,
+    pub(super) lab: Work,
+    pub(super) comparison: Comparison,
     worker: Option<Worker<Purpose>>,
+    /// The measuring of effects that goes on.
+    pub(super) measuring: Option<Measuring>,
     /// It was decided to leave: nothing more is asked.
     leaving: bool,
+    /// Whether what is shown is on the move.
+    motion: Motion,
     /// When the last frame was shown in which something moved by itself.
     moved_at: Option<f64>,
     /// When the pictures of the last second were shown.
@@ -56,8 +69,12 @@ impl App {
             loading: Vec::new(),
             waiting: None,
             viewport: Viewport::default(),
+            lab: Work::default(),
+            comparison: Comparison::default(),
             worker: None,
+            measuring: None,
             leaving: false,
+            motion: Motion::default(),
             moved_at: None,
             shown_at: VecDeque::new(),
             title: String::new(),
@@ -80,13 +97,17 @@ impl App {
     pub fn editor_ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut asks = Vec::new();
+        let _touch = self.lab.touch();
         Keyboard::begin(&ctx);
         self.begin(&ctx, &mut asks);
         panels::show(ui, &self.state, &mut asks);
         if let Some(worker) = &self.worker {
-            CentralPanel::default()
-                .frame(Frame::NONE)
-                .show(ui, |ui| self.viewport.ui(ui, &self.state, worker, &mut asks));
+            CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+                self.viewport.ui(ui, &self.state, worker, &mut asks);
+                if let Some(rect) = self.viewport.rect() {
+                    self.comparison.ui(ui, rect, &self.state, &mut asks);
+                }
+            });
         }
         notices::show(&ctx, &self.state, &self.loading, &mut asks);
         let answer = self.dialogs.ui(&ctx);
@@ -106,9 +127,12 @@ impl App {
             self.take_answer(&ctx, answer);
         }
         self.hear_loading(&ctx);
+        self.hear_measuring();
+        self.hear_laboratory(&ctx);
+        self.compare(&ctx);
         self.take_dropped(&ctx);
         self.close_requested(&ctx);
-        self.draw();
+        self.draw(&ctx);
         self.name_window(&ctx);
     }
 
@@ -127,7 +151,13 @@ impl App {
             // Leaving is an action like the others.
             ctx.options_mut(|options| options.quit_shortcuts.clear());
             let waker = ctx.clone();
-            match Worker::start(move || waker.request_repaint()) {
+            let watch = self.lab.watch();
+            let wake = move || {
+                // A picture was drawn: what was measured meanwhile means nothing.
+                drop(watch.touch());
+                waker.request_repaint();
+            };
+            match Worker::start(wake) {
                 Ok(worker) => self.worker = Some(worker),
                 Err(error) => self.refuse(format!("no thread to draw with: {error}")),
             }
@@ -135,16 +165,14 @@ impl App {
         if let Some(worker) = &self.worker {
             let news = worker.news();
             if let Some(drawn) = &news.drawn {
-                let statistics = &mut self.state.statistics;
-                statistics.time = drawn.time;
-                statistics.triangles = drawn.triangles;
-                let [width, height] = drawn.image.size;
-                statistics.size = crate::base::image::Size::new(width, height);
-                statistics.pictures += 1;
                 let now = ctx.input(|input| input.time);
                 self.shown_at.push_back(now);
                 self.shown_at.retain(|then| now - then < 1.0);
-                statistics.rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
+                let rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
+                self.state.statistics.note(drawn, rate);
+            }
+            if let Some(explained) = &news.explained {
+                self.state.plan.explained = Some(Arc::clone(explained));
             }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, asks);
@@ -170,15 +198,24 @@ impl App {
         }
     }
 
-    fn draw(&mut self) {
+    /// Wants the picture of what there is now; while it moves, and soon after, a coarser one will do.
+    fn draw(&mut self, ctx: &Context) {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
         let State { scene, view, settings, .. } = &self.state;
-        worker.draw(Snapshot {
-            scene: scene.clone(),
-            view: view.clone(),
-            settings: *settings,
-            size,
-        });
+        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
+        let mut wanted =
+            Snapshot { scene, view, settings, size, moving: false, explain: self.state.shown.plan };
+        let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
+        let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
+        // What moves by itself is always being drawn.
+        let drawing = worker.is_drawing() && !self.state.is_animated();
+        let happening = Happening { changed, held, drawing };
+        let moving = self.motion.notice(now, happening);
+        wanted.moving = moving && wanted.view.coarse_while_moving;
+        if let Some(rest) = self.motion.rest(now) {
+            ctx.request_repaint_after(Duration::from_secs_f64(rest));
+        }
+        worker.draw(wanted);
     }
 
     fn name_window(&mut self, ctx: &Context) {
@@ -214,6 +251,7 @@ impl App {
             Ask::Change { command, gesture, label } => self.change(command, gesture, &label),
             Ask::Look(view) => self.look(*view),
             Ask::Settings(settings) => state.settings = settings,
+            Ask::Lab(ask) => self.answer_lab(ctx, ask),
             Ask::Select(id) => match selection::pick(&state.scene, &state.view, id) {
                 Ok(selection) => self.select(selection, Gesture::Whole),
                 Err(refusal) => self.refuse(refusal.to_string()),
@@ -305,6 +343,15 @@ impl App {
             Action::ToggleProperties => shown.properties ^= true,
             Action::ToggleViewPanel => shown.view ^= true,
             Action::ToggleStatistics => shown.statistics ^= true,
+            Action::TogglePlan => shown.plan ^= true,
+            Action::MeasurePlan => self.measure(ctx),
+            Action::ToggleLeaveOut => {
+                state.settings.leave_out = match state.settings.leave_out {
+                    LeaveOut::Unseen => LeaveOut::HalfStep,
+                    LeaveOut::HalfStep => LeaveOut::Unseen,
+                };
+            }
+            Action::ToggleLaboratory => shown.laboratory ^= true,
             Action::ThemeSystem => set_theme(ctx, shown, ThemePreference::System),
             Action::ThemeLight => set_theme(ctx, shown, ThemePreference::Light),
             Action::ThemeDark => set_theme(ctx, shown, ThemePreference::Dark),
@@ -408,6 +455,7 @@ fn set_theme(ctx: &Context, shown: &mut Shown, theme: ThemePreference) {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.lab.rest();
         // A fault of the program costs a frame, not the user's work. One that comes in every frame
         // cannot be lived with.
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {

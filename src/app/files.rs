@@ -11,14 +11,15 @@ use super::action::Action;
 use super::dialogs::{After, Answer, Wanted};
 use super::editor::App;
 use super::material_dialog::{MaterialChoices, MaterialDialog, file_name, own_or_silver, summary};
+use super::painter;
 use super::scene_files::{self, Opening};
-use super::state::{Notice, State};
+use super::state::{Economy, Notice, State};
 use super::tasks::{Outcome, Task};
-use super::worker;
 use crate::base::Shared;
-use crate::base::image::Size;
+use crate::base::image::{Picture, Size};
 use crate::edit::{Gesture, items};
 use crate::io::{self, LoadError, Loaded};
+use crate::render::{FramePlan, Renderer};
 use crate::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Projection, Texture};
 
 /// A file that is being read.
@@ -293,7 +294,7 @@ impl App {
     }
 
     fn save_picture(&mut self, path: &Path) {
-        let Some(picture) = self.viewport.image().and_then(|image| worker::picture(image)) else {
+        let Some(picture) = self.picture() else {
             self.refuse("there is no picture yet".to_owned());
             return;
         };
@@ -301,6 +302,16 @@ impl App {
             Ok(()) => self.state.tell(Some(format!("Saved {}", path.display()))),
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),
         }
+    }
+
+    /// What the viewport shows, with all that the picture has.
+    fn picture(&self) -> Option<Picture> {
+        let State { scene, view, settings, statistics, .. } = &self.state;
+        if statistics.economy == Economy::NONE {
+            return self.viewport.image().and_then(|image| painter::picture(image));
+        }
+        let plan = FramePlan::new(scene, view, settings, self.viewport.size()?);
+        Some(Renderer::default().render(&plan).clone())
     }
 
     /// What was to be done once the scene is saved, or given up.
@@ -311,6 +322,7 @@ impl App {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
             }
+            After::Lesson(key) => self.show_lesson(key),
             After::Open(Some(path)) => self.open_scene(ctx, path),
             After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
         }
@@ -318,7 +330,8 @@ impl App {
 
     /// Edits something else from now on; which panels are shown stays.
     pub(super) fn replace(&mut self, state: State) {
-        let (shown, statistics) = (self.state.shown, self.state.statistics);
+        let (shown, statistics) = (self.state.shown, self.state.statistics.clone());
+        self.end_measuring();
         self.state = State { shown, statistics, ..state };
     }
 }

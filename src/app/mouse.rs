@@ -14,9 +14,9 @@ use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, Res
 use glam::{DVec2, DVec3};
 
 use super::ask::Ask;
-use super::gestures;
 use super::state::State;
 use super::viewport::Purpose;
+use super::{comparison, gestures};
 use crate::base::image::Size;
 use crate::edit::{Gesture, Refusal, look};
 use crate::render::Hit;
@@ -158,6 +158,9 @@ impl Mouse {
             if button == PointerButton::Secondary {
                 self.cancel(asks);
             }
+            return;
+        }
+        if comparison::grip(state, response.rect).is_some_and(|grip| grip.contains(from)) {
             return;
         }
         // A press that closes a menu does no more than that.

@@ -1,11 +1,17 @@
 //! Everything that panels read. Only the app writes it.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::action::Action;
+use super::laboratory::Laboratory;
+pub use super::pace::Economy;
+use super::painter::Drawn;
 use crate::base::image::Size;
 use crate::edit::{Gesture, History, Stroke, selection};
+use crate::lab::cost::{Costs, Explained};
+use crate::render::Changes;
 use crate::scene::{ItemId, Light, LightKind, Panels, Scene, Settings, View};
 
 /// What is edited and shown.
@@ -27,8 +33,12 @@ pub struct State {
     pub notices: Vec<Notice>,
     /// What the last picture took.
     pub statistics: Statistics,
+    /// What the last picture is made of, while somebody wants to see that.
+    pub plan: Plan,
     /// Which panels are shown.
     pub shown: Shown,
+    /// What the laboratory has found out.
+    pub lab: Laboratory,
     /// The item that is being given a name.
     pub renaming: Option<ItemId>,
     /// What the last change of the scene was part of.
@@ -65,9 +75,9 @@ pub struct Notice {
 }
 
 /// What the last picture took.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Statistics {
-    /// From the snapshot to the finished picture.
+    /// From the snapshot to the finished picture in memory, on the thread that draws.
     pub time: Duration,
     /// How large the picture is.
     pub size: Size,
@@ -77,12 +87,64 @@ pub struct Statistics {
     pub rate: u32,
     /// How many triangles of the picture faced the observer inside the view.
     pub triangles: usize,
+    /// What it does without.
+    pub economy: Economy,
+    /// What of it was drawn anew, and why.
+    pub changes: Option<Changes>,
 }
 
 impl Default for Statistics {
     fn default() -> Self {
-        Self { time: Duration::ZERO, size: Size::new(0, 0), pictures: 0, rate: 0, triangles: 0 }
+        Self {
+            time: Duration::ZERO,
+            size: Size::new(0, 0),
+            pictures: 0,
+            rate: 0,
+            triangles: 0,
+            economy: Economy::NONE,
+            changes: None,
+        }
     }
+}
+
+impl Statistics {
+    /// Notes a picture, the `rate`th in the last second.
+    pub(super) fn note(&mut self, drawn: &Drawn, rate: u32) {
+        let [width, height] = drawn.image.size;
+        *self = Self {
+            time: drawn.time,
+            size: Size::new(width, height),
+            pictures: self.pictures + 1,
+            rate,
+            triangles: drawn.triangles,
+            economy: drawn.economy,
+            changes: Some(drawn.changes.clone()),
+        };
+    }
+}
+
+/// What the last picture is made of.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// Its effects.
+    pub explained: Option<Arc<Explained>>,
+    /// What they cost in time, when that was measured last.
+    pub costs: Option<Arc<Measured>>,
+    /// Whether it is being measured.
+    pub measuring: bool,
+}
+
+/// What effects cost, and in which picture.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// What was measured.
+    pub costs: Costs,
+    /// What there was to draw.
+    pub scene: Scene,
+    /// How it was looked at.
+    pub view: View,
+    /// How exactly it was drawn.
+    pub settings: Settings,
 }
 
 /// Which panels are shown.
@@ -96,8 +158,12 @@ pub struct Shown {
     pub view: bool,
     /// What a picture takes.
     pub statistics: bool,
+    /// What a picture is made of.
+    pub plan: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
+    /// What accuracy costs in time.
+    pub laboratory: bool,
     /// Whether the window is light or dark.
     pub theme: egui::ThemePreference,
 }
@@ -112,15 +178,17 @@ impl Shown {
     /// The panels that a scene was saved with, in a theme.
     #[must_use]
     pub const fn of(panels: Panels, theme: egui::ThemePreference) -> Self {
-        let Panels { outline, properties, view, statistics, cheat_sheet } = panels;
-        Self { outline, properties, view, statistics, cheat_sheet, theme }
+        let Panels { outline, properties, view, statistics, plan, cheat_sheet, laboratory } =
+            panels;
+        Self { outline, properties, view, statistics, plan, cheat_sheet, laboratory, theme }
     }
 
     /// The panels, as a scene is saved with them.
     #[must_use]
     pub const fn panels(&self) -> Panels {
-        let Self { outline, properties, view, statistics, cheat_sheet, .. } = *self;
-        Panels { outline, properties, view, statistics, cheat_sheet }
+        let Self { outline, properties, view, statistics, plan, cheat_sheet, laboratory, .. } =
+            *self;
+        Panels { outline, properties, view, statistics, plan, cheat_sheet, laboratory }
     }
 }
 
@@ -137,7 +205,9 @@ impl State {
             message: None,
             notices: Vec::new(),
             statistics: Statistics::default(),
+            plan: Plan::default(),
             shown: Shown::default(),
+            lab: Laboratory::default(),
             renaming: None,
             gesture: Gesture::Whole,
         }

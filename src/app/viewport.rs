@@ -14,9 +14,11 @@ use glam::DMat4;
 use super::action::Action;
 use super::ask::Ask;
 use super::keyboard::Keyboard;
+use super::laboratory::LabAsk;
 use super::mouse::{Mouse, Under};
+use super::painter::{Border, Drawn};
 use super::state::State;
-use super::worker::{Border, Drawn, News, Pick, Worker};
+use super::worker::{News, Pick, Worker};
 use super::{overlay, trace};
 use crate::base::image::Size;
 use crate::render::Hit;
@@ -74,6 +76,11 @@ impl Viewport {
         self.place.map(|(_, size)| size)
     }
 
+    /// Where in the window it is; `None` before it was shown.
+    pub(super) fn rect(&self) -> Option<Rect> {
+        self.place.map(|(rect, _)| rect)
+    }
+
     /// What it shows.
     pub(super) fn image(&self) -> Option<&Arc<ColorImage>> {
         self.image.as_ref()
@@ -126,7 +133,12 @@ impl Viewport {
         let picks = self.mouse.ui(ui, &response, state, under, asks);
         Keyboard::set_viewport(ui.ctx(), id, self.mouse.is_flying());
         for (at, purpose) in picks {
-            worker.pick(Pick { at: self.pixel(at), purpose });
+            let at = self.pixel(at);
+            if state.lab.picking && purpose == Purpose::Select {
+                asks.push(Ask::Lab(LabAsk::Blame(at)));
+            } else {
+                worker.pick(Pick { at, purpose });
+            }
         }
         self.hover(&response, worker);
         self.border_ui(ui, worker);

@@ -1,12 +1,28 @@
 //! A picture in memory: what the renderer makes, what a texture holds.
 
+use std::sync::OnceLock;
+
 /// Rows of pixels from the top; each pixel is red, green, blue and alpha, not premultiplied.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
     width: usize,
     height: usize,
     pixels: Vec<[u8; 4]>,
+    least_alpha: LeastAlpha,
 }
+
+/// The least alpha of a picture's pixels, once it has been asked for.
+#[derive(Clone, Debug, Default)]
+struct LeastAlpha(OnceLock<u8>);
+
+/// It follows from the pixels, and is compared with them.
+impl PartialEq for LeastAlpha {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Eq for LeastAlpha {}
 
 /// The width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -35,7 +51,9 @@ impl Picture {
     /// A picture of one colour.
     #[must_use]
     pub fn filled(size: Size, pixel: [u8; 4]) -> Self {
-        Self { width: size.width, height: size.height, pixels: vec![pixel; size.area()] }
+        let pixels = vec![pixel; size.area()];
+        let least_alpha = LeastAlpha::default();
+        Self { width: size.width, height: size.height, pixels, least_alpha }
     }
 
     /// A picture of these pixels, row by row from the top; `None` where their number does not fit.
@@ -45,6 +63,7 @@ impl Picture {
             width: size.width,
             height: size.height,
             pixels,
+            least_alpha: LeastAlpha::default(),
         })
     }
 
@@ -62,7 +81,15 @@ impl Picture {
 
     /// All pixels, to be written.
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
+        self.least_alpha = LeastAlpha::default();
         &mut self.pixels
+    }
+
+    /// The least alpha of all pixels; 255 where there are none.
+    #[must_use]
+    pub fn least_alpha(&self) -> u8 {
+        let least = || self.pixels.iter().fold(255, |least, pixel| pixel[3].min(least));
+        *self.least_alpha.0.get_or_init(least)
     }
 
     /// The pixel in column `x` of row `y`, both counted from the upper left.
@@ -75,5 +102,6 @@ impl Picture {
     pub fn resize(&mut self, size: Size) {
         (self.width, self.height) = (size.width, size.height);
         self.pixels.resize(size.area(), [0, 0, 0, 255]);
+        self.least_alpha = LeastAlpha::default();
     }
 }

@@ -118,9 +118,12 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
 /// The matrix that turns normals as `m` turns surfaces: sign(det m) times its cofactors.
 ///
 /// The inverse transpose, but for a positive factor, and defined for singular `m` as well; the sign
-/// keeps the normals of a mirrored object on its outer side.
+/// keeps the normals of a mirrored object on its outer side. The factor is a power of two that brings
+/// the largest entry of `m` to between 1/2 and 1, so that objects of any size have normals whose squares
+/// neither overflow nor vanish, in f32 too.
 #[must_use]
 pub fn normal_matrix(m: DMat3) -> DMat3 {
+    let m = m * power_of_two_near(1.0 / largest_entry(m));
     let cofactors = DMat3::from_cols(
         m.y_axis.cross(m.z_axis),
         m.z_axis.cross(m.x_axis),
@@ -129,10 +132,21 @@ pub fn normal_matrix(m: DMat3) -> DMat3 {
     if m.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }
 }
 
+/// The largest power of two that is not above `x`, for `x` above 0; 1 for what has none. Multiplied
+/// with it, a number keeps its digits.
+#[must_use]
+pub fn power_of_two_near(x: f64) -> f64 {
+    if x.is_normal() && x > 0.0 { libm::ldexp(1.0, libm::ilogb(x)) } else { 1.0 }
+}
+
+fn largest_entry(m: DMat3) -> f64 {
+    m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element()
+}
+
 /// Whether `m` keeps all three dimensions, judged against its own size.
 #[must_use]
 pub fn has_full_rank(m: DMat3) -> bool {
-    let size = m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element();
+    let size = largest_entry(m);
     m.is_finite() && size > 0.0 && ((m * (1.0 / size)).determinant().abs() > 1e-15)
 }
 
@@ -238,6 +252,27 @@ mod tests {
         assert!((axes.x_axis - last.x_axis).length() < 1e-12);
         assert!((axes.z_axis - DVec3::Y).length() < 1e-12);
         assert_eq!(look_at(DVec3::ONE, DVec3::ONE, DVec3::Y, last), last);
+    }
+
+    #[test]
+    fn a_power_of_two_near_a_number_is_at_most_that_number() {
+        for (x, near) in
+            [(1.0, 1.0), (1.99, 1.0), (2000.0, 1024.0), (0.3, 0.25), (1e300, 2.0_f64.powi(996))]
+        {
+            assert_eq!(power_of_two_near(x), near);
+        }
+        for x in [0.0, -4.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(power_of_two_near(x), 1.0);
+        }
+    }
+
+    #[test]
+    fn normals_of_objects_of_any_size_are_neither_huge_nor_nothing() {
+        for size in [1e-200, 1e-30, 1e-12, 1.0, 1e12, 1e30, 1e150] {
+            let n =
+                normal_matrix(DMat3::from_diagonal(DVec3::new(1.0, 1.5, 0.7) * size)) * DVec3::Y;
+            assert!((0.05..4.0).contains(&n.length()), "{size}: {n}");
+        }
     }
 
     #[test]

@@ -6,13 +6,16 @@ use std::path::PathBuf;
 use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
+use super::accuracy::Accuracy;
 use super::job::Job;
 use super::keys::Keys;
+use super::lab::Lab;
+use super::plan::Plan;
+use super::prove::Prove;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::scene::{
-    Arithmetic, Filter, LightAt, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale,
-    SpecularForm, Surface, UpAxis, Winding,
+    LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Surface, UpAxis, Winding,
 };
 
 /// The longest side that a picture may have.
@@ -50,12 +53,18 @@ pub(crate) struct Arguments {
 pub(crate) enum Headless {
     /// Draws a picture into a file: the same pixels that the editor shows
     Render(Box<Render>),
+    /// Says what a picture takes: each effect, on or left out, why, and its cost
+    Plan(Box<Plan>),
     /// Says what files hold: shape, parts, materials, and what is wrong with them
     Info(Info),
     /// Lists every key of the editor
     Keys(Keys),
+    /// Measures what accuracy costs in time: each choice of each axis, in time and in error
+    Lab(Box<Lab>),
     /// Measures one drawing job in a form that other renderers share
     Job(Job),
+    /// Puts what is claimed of the program to the proof, in any number of cases
+    Prove(Prove),
 }
 
 /// A picture, and the file that it goes to.
@@ -73,12 +82,19 @@ Examples:
   marraztu render shelf.marraztu --out shelf.ppm --camera 2 --time 1.5
   marraztu render ship.obj --out lines.png --edges --projection orthographic --background 0,0,0")]
 pub(crate) struct Render {
-    /// Models (.obj), and at most one scene (.marraztu) that they are put into
-    pub(crate) files: Vec<PathBuf>,
-
     /// The picture to write; its ending says how: .png or .ppm
     #[arg(short, long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) shot: Shot,
+}
+
+/// A picture, whatever becomes of it.
+#[derive(Debug, Args)]
+pub(crate) struct Shot {
+    /// Models (.obj), and at most one scene (.marraztu) that they are put into
+    pub(crate) files: Vec<PathBuf>,
+
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
     pub(crate) size: Size,
@@ -155,6 +171,12 @@ pub(crate) struct Seeing {
     /// What is seen where nothing is: red, green and blue, each from 0 to 255
     #[arg(long, value_name = "R,G,B", value_parser = color)]
     pub(crate) background: Option<Color>,
+    /// Which normals light uses: face, vertex*
+    #[arg(long, hide_possible_values = true, value_name = "WHOSE", value_parser = choice(&[
+        ("face", Normals::Face),
+        ("vertex", Normals::Vertex),
+    ]))]
+    pub(crate) normals: Option<Normals>,
     /// Draw edges only
     #[arg(long)]
     pub(crate) edges: bool,
@@ -173,43 +195,6 @@ pub(crate) struct Seeing {
     /// The marks of cameras and bulbs: none (so for models alone), all*
     #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[("none", false), ("all", true)]))]
     pub(crate) helpers: Option<bool>,
-}
-
-/// How exactly the picture is drawn.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Accuracy")]
-pub(crate) struct Accuracy {
-    /// Where light is evaluated: face, vertex, pixel*
-    #[arg(long, hide_possible_values = true, value_name = "WHERE", value_parser = choice(&[
-        ("face", LightAt::Face),
-        ("vertex", LightAt::Vertex),
-        ("pixel", LightAt::Pixel),
-    ]))]
-    pub(crate) shading: Option<LightAt>,
-    /// Which normals light uses: face, vertex*
-    #[arg(long, hide_possible_values = true, value_name = "WHOSE", value_parser = choice(&[
-        ("face", Normals::Face),
-        ("vertex", Normals::Vertex),
-    ]))]
-    pub(crate) normals: Option<Normals>,
-    /// The numbers that light is computed in: f32*, f64
-    #[arg(long, hide_possible_values = true, value_name = "TYPE", value_parser = choice(&[
-        ("f32", Arithmetic::F32),
-        ("f64", Arithmetic::F64),
-    ]))]
-    pub(crate) arithmetic: Option<Arithmetic>,
-    /// What a texture gives between its texels: nearest, bilinear*
-    #[arg(long, hide_possible_values = true, value_name = "HOW", value_parser = choice(&[
-        ("nearest", Filter::Nearest),
-        ("bilinear", Filter::Bilinear),
-    ]))]
-    pub(crate) filter: Option<Filter>,
-    /// The highlight: reflection* is (R.V)^Ns, half-vector is (N.H)^Ns
-    #[arg(long, hide_possible_values = true, value_name = "FORM", value_parser = choice(&[
-        ("reflection", SpecularForm::Reflection),
-        ("half-vector", SpecularForm::HalfVector),
-    ]))]
-    pub(crate) specular: Option<SpecularForm>,
 }
 
 /// Says what files hold.

@@ -1,8 +1,12 @@
 //! Why a command of the command line fails.
 
+use std::path::PathBuf;
+
 use marraztu::app::StartError;
 use marraztu::edit::Refusal;
 use marraztu::io::{LoadError, SaveError, SceneFileError};
+use marraztu::lab::pairs::Unmeasured;
+use marraztu::lab::report::PlotError;
 use marraztu::scene::CommandError;
 
 /// Why a command fails, in one sentence.
@@ -32,6 +36,15 @@ pub(crate) enum Failure {
     /// Standard output.
     #[error("standard output: {0}")]
     Output(std::io::Error),
+    /// A file of results.
+    #[error("{0} could not be written: {1}")]
+    Write(PathBuf, std::io::Error),
+    /// A measurement.
+    #[error(transparent)]
+    Measure(#[from] Unmeasured),
+    /// A plot.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
     /// The window.
     #[error(
         "{0}\nWithout a window, `marraztu render --out picture.png` draws the same pictures to files"

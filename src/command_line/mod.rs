@@ -3,12 +3,16 @@
 //! 0 where all was done, 1 where something failed, 2 where the arguments cannot be meant. What was
 //! asked for goes to standard output, everything said about it to standard error.
 
+mod accuracy;
 mod arguments;
 mod bar;
 mod failure;
 mod info;
 mod job;
 mod keys;
+mod lab;
+mod plan;
+mod prove;
 mod render;
 mod stage;
 
@@ -30,6 +34,9 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Render(arguments)) => render::render(&arguments),
         Some(Headless::Info(arguments)) => info::info(&arguments),
         Some(Headless::Keys(arguments)) => keys::keys(&arguments),
+        Some(Headless::Plan(arguments)) => plan::plan(&arguments),
+        Some(Headless::Lab(arguments)) => lab::lab(&arguments),
+        Some(Headless::Prove(arguments)) => prove::prove(&arguments),
         Some(Headless::Job(arguments)) => match job::job(&arguments) {
             Ok(status) => return ExitCode::from(status),
             Err(failure) => Err(failure),

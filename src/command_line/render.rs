@@ -1,5 +1,7 @@
 //! `marraztu render`: a picture into a file.
 
+use std::path::PathBuf;
+
 use glam::{DMat3, DVec3};
 use marraztu::base::math;
 use marraztu::edit::{frame, items};
@@ -7,7 +9,8 @@ use marraztu::io;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{Camera, CameraId, Command, Fill, ItemId, Object, Placed, Pose};
 
-use super::arguments::{Accuracy, Render, Seeing, Slots, Surfaces};
+use super::accuracy::Accuracy;
+use super::arguments::{Reading, Render, Seeing, Shot, Slots, Surfaces};
 use super::bar::Bar;
 use super::failure::Failure;
 use super::say;
@@ -15,16 +18,9 @@ use super::stage::{Stage, usage};
 
 /// Draws the picture that the arguments describe.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
-    let mut stage = Stage::of(&arguments.files, &arguments.reading)?;
-    for finding in &stage.findings {
-        say("note", finding);
-    }
-    cover(&mut stage, &arguments.surfaces)?;
-    look(&mut stage, &arguments.seeing)?;
-    choose(&mut stage, &arguments.accuracy);
-
+    let stage = stage(&arguments.shot)?;
     let bar = Bar::unmeasured("drawing");
-    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.size);
+    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.shot.size);
     let mut renderer = Renderer::default();
     let picture = renderer.render(&plan);
     drop(bar);
@@ -33,6 +29,30 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     // With this the process ends: to take a million vertices out of memory before only takes time.
     std::mem::forget((stage, plan, renderer));
     Ok(())
+}
+
+/// Reads the files and arranges everything as it is asked for. What was found in the files is told.
+pub(super) fn stage(shot: &Shot) -> Result<Stage, Failure> {
+    let Shot { files, reading, surfaces, seeing, accuracy, .. } = shot;
+    staged(files, reading, surfaces, seeing, accuracy)
+}
+
+/// The scene of these files, as it is to be seen and drawn.
+pub(crate) fn staged(
+    files: &[PathBuf],
+    reading: &Reading,
+    surfaces: &Surfaces,
+    seeing: &Seeing,
+    accuracy: &Accuracy,
+) -> Result<Stage, Failure> {
+    let mut stage = Stage::of(files, reading)?;
+    for finding in &stage.findings {
+        say("note", finding);
+    }
+    cover(&mut stage, surfaces)?;
+    look(&mut stage, seeing)?;
+    stage.settings = accuracy.of(&stage.settings);
+    Ok(stage)
 }
 
 /// Gives all objects the surface that is asked for.
@@ -65,6 +85,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     }
     let view = &mut stage.view;
     view.projection = seeing.projection.unwrap_or(view.projection);
+    view.normals = seeing.normals.unwrap_or(view.normals);
     view.time = seeing.time.unwrap_or(view.time);
     if seeing.edges {
         view.fill = Fill::Edges;
@@ -125,14 +146,4 @@ fn camera(stage: &Stage, number: u32) -> Result<CameraId, Failure> {
         let cameras = if count == 1 { "camera" } else { "cameras" };
         Failure::Absent(format!("the scene has {count} {cameras}: there is no camera {number}"))
     })
-}
-
-/// Draws as exactly as it is asked for.
-fn choose(stage: &mut Stage, accuracy: &Accuracy) {
-    let settings = &mut stage.settings;
-    settings.light = accuracy.shading.unwrap_or(settings.light);
-    settings.arithmetic = accuracy.arithmetic.unwrap_or(settings.arithmetic);
-    settings.filter = accuracy.filter.unwrap_or(settings.filter);
-    settings.specular = accuracy.specular.unwrap_or(settings.specular);
-    stage.view.normals = accuracy.normals.unwrap_or(stage.view.normals);
 }

@@ -6,10 +6,11 @@ use glam::{DMat4, DVec3};
 
 use super::obj::parse;
 use super::progress::Progress;
+use super::texture::own_picture;
 use crate::base::Shared;
 use crate::scene::{
     Camera, CameraId, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model, Object,
-    ObjectId, Placed, Pose, PresetId, Scene, View,
+    ObjectId, Placed, Pose, PresetId, Scene, Texture, View, Wrap,
 };
 
 /// A model that the program carries.
@@ -43,6 +44,11 @@ impl Asset {
 static CAM: Asset = Asset::new("cam", include_bytes!("../../assets/cam.obj"));
 static X_WING: Asset = Asset::new("x_wing", include_bytes!("../../assets/x_wing.obj"));
 static R_FALKE: Asset = Asset::new("r_falke", include_bytes!("../../assets/r_falke.obj"));
+static BALL: Asset = Asset::new("ball", include_bytes!("../../assets/lessons/ball.obj"));
+static PLATE: Asset = Asset::new("plate", include_bytes!("../../assets/lessons/plate.obj"));
+
+/// The one texture that the program carries, by the path that stands for it in a scene file.
+const TILES: (&str, &[u8]) = ("own:tiles.png", include_bytes!("../../assets/lessons/tiles.png"));
 
 /// The pyramid: the mark of cameras.
 #[must_use]
@@ -53,7 +59,21 @@ pub fn cam_model() -> Shared<Model> {
 /// A model that the program carries, by its name.
 #[must_use]
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
-    [&CAM, &X_WING, &R_FALKE].into_iter().find(|asset| asset.name == name).map(Asset::model)
+    let all = [&CAM, &X_WING, &R_FALKE, &BALL, &PLATE];
+    all.into_iter().find(|asset| asset.name == name).map(Asset::model)
+}
+
+/// A texture that the program carries, by the path that stands for it in a scene file.
+#[must_use]
+pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
+    static TEXTURE: OnceLock<Shared<Texture>> = OnceLock::new();
+    let (own, content) = TILES;
+    let read = || {
+        let picture = own_picture(content).expect("the program's own texture is sound");
+        let (wrap, offset, scale) = (Wrap::default(), [0.0; 2], [1.0; 2]);
+        Shared::new(Texture { source: own.into(), picture, wrap, offset, scale })
+    };
+    (path == own).then(|| TEXTURE.get_or_init(read).clone())
 }
 
 /// The scene that the program opens with, and how it is seen.

@@ -148,6 +148,14 @@ fn closed(mesh: &Mesh) -> String {
     if crowded > 0 {
         faults.push(format!("{} of more than two", grouped(crowded)));
     }
+    match mesh.split_edges() {
+        0 => {}
+        1 => faults.push("1 edge is split by corners of other faces: gaps may show".to_owned()),
+        n => faults.push(format!(
+            "{} edges are split by corners of other faces: gaps may show",
+            grouped(n)
+        )),
+    }
     format!("no ({all}: {})", faults.join(", "))
 }
 

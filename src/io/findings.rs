@@ -225,7 +225,7 @@ impl Findings {
             self.add_cases(kind, placed(cases));
         }
         for (kind, cases) in following.others {
-            self.add_others(kind, placed(cases));
+            self.add_others(kind, &placed(cases));
         }
     }
 
@@ -248,13 +248,13 @@ impl Findings {
         if let Some(cases) =
             last.map(|(key, _)| key.clone()).and_then(|key| self.cases.remove(&key))
         {
-            self.add_others(kind, cases);
+            self.add_others(kind, &cases);
         }
     }
 
     /// Takes up cases of names that are not told apart.
-    fn add_others(&mut self, kind: FindingKind, cases: Cases) {
-        let Cases { count, line, .. } = cases;
+    fn add_others(&mut self, kind: FindingKind, cases: &Cases) {
+        let Cases { count, line, .. } = *cases;
         let none = Cases { count: 0, name: "... and others".to_owned(), line };
         let others = self.others.entry(kind).or_insert(none);
         others.count += count;

@@ -58,6 +58,13 @@ pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
         .ok_or_else(|| LoadError::file(&file, "the picture is damaged"))
 }
 
+/// A picture that the program carries; `None` where it is none.
+pub(super) fn own_picture(content: &[u8]) -> Option<Picture> {
+    let texels = image::load_from_memory(content).ok()?.into_rgba8();
+    let size = Size::new(texels.width() as usize, texels.height() as usize);
+    Picture::from_pixels(size, texels.as_raw().as_chunks().0.to_vec())
+}
+
 fn reason(error: &image::ImageError) -> String {
     use image::ImageError;
     use image::error::LimitErrorKind;

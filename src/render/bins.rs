@@ -1,34 +1,15 @@
-//! Which triangles and lines may touch which tile.
+//! What may be seen in which tile.
 //!
-//! Every thread that sets up triangles has bins of its own, so that none waits for another. What is
-//! seen does not depend on the order in which a tile looks at them.
-//!
-//! Small triangles are kept ready to be rasterised sixteen at a time, in queues by the size of the
-//! box of pixels that they may cover: 2 x 2, 4 x 4, 8 x 8.
+//! Every thread that sets up triangles and lines has bins of its own, so that none waits for another.
+//! What is seen does not depend on the order in which a tile looks at them.
 
 use super::clip::ScreenVertex;
-use super::coverage::{PixelBox, SUBPIXELS};
+use super::coverage::PixelBox;
+use super::hits::Hits;
+use super::lines::{self, ScreenLine};
+use super::small::{Queue, SMALL};
 use super::tile::{TILE, TILE_SIDE};
 use crate::base::image::Size;
-
-/// Triangles in a pack.
-pub(super) const PACK: usize = 16;
-
-/// Pixels to a side of the boxes of the queues.
-pub(super) const SMALL: [i32; 3] = [2, 4, 8];
-
-/// Sixteen small triangles: coordinates in parts of a pixel from the tile's upper left corner.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(align(64))]
-pub(super) struct Pack {
-    pub(super) x: [[f32; PACK]; 3],
-    pub(super) y: [[f32; PACK]; 3],
-    pub(super) depth: [[f32; PACK]; 3],
-    /// Column and row of the first pixel of the box, from the tile's.
-    pub(super) left: [i32; PACK],
-    pub(super) top: [i32; PACK],
-    pub(super) number: [u32; PACK],
-}
 
 /// A triangle that is not small, or not simple.
 #[derive(Clone, Copy, Debug)]
@@ -39,27 +20,13 @@ pub(super) struct LargeTriangle {
     pub(super) cutout: bool,
 }
 
-/// What one tile has to look at.
+/// What one tile has to look at besides its hits.
 #[derive(Debug, Default)]
 pub(super) struct Bin {
-    packs: [Vec<Pack>; 3],
-    counts: [usize; 3],
+    /// Triangles, as places in [`Bins::large`].
     pub(super) large: Vec<u32>,
+    /// Lines, as places in [`Bins::lines`].
     pub(super) lines: Vec<u32>,
-}
-
-impl Bin {
-    /// Whether there is nothing to look at.
-    pub(super) fn is_empty(&self) -> bool {
-        self.counts == [0; 3] && self.large.is_empty() && self.lines.is_empty()
-    }
-
-    /// The packs of a queue, each with the number of triangles in it.
-    pub(super) fn packs(&self, queue: usize) -> impl Iterator<Item = (&Pack, usize)> {
-        let count = self.counts[queue];
-        let packs = &self.packs[queue][..count.div_ceil(PACK)];
-        packs.iter().enumerate().map(move |(i, pack)| (pack, (count - i * PACK).min(PACK)))
-    }
 }
 
 /// The bins of one thread.
@@ -68,7 +35,11 @@ pub(super) struct Bins {
     columns: i32,
     rows: i32,
     pub(super) tiles: Vec<Bin>,
+    pub(super) hits: Hits,
     pub(super) large: Vec<LargeTriangle>,
+    pub(super) lines: Vec<ScreenLine>,
+    /// Small triangles that wait to be drawn together, by the size of their boxes.
+    pub(super) queues: Box<[Queue; SMALL.len()]>,
     /// How many triangles, or pieces of such, are in the bins.
     pub(super) drawn: usize,
 }
@@ -87,48 +58,25 @@ impl Bins {
         let count = usize::try_from(self.columns * self.rows).expect("not negative");
         self.tiles.resize_with(count, Bin::default);
         for bin in &mut self.tiles {
-            bin.counts = [0; 3];
             bin.large.clear();
             bin.lines.clear();
         }
+        let extent = [size.width, size.height]
+            .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+        self.hits.clear(extent, [self.columns, self.rows]);
         self.large.clear();
+        self.lines.clear();
+        // A frame that was given up leaves some behind.
+        for queue in self.queues.iter_mut() {
+            queue.clear();
+        }
         self.drawn = 0;
     }
 
-    /// Adds a triangle whose box of pixels (not empty, and in the picture at least in part) is small
-    /// enough for a queue.
-    #[inline(always)]
-    pub(super) fn add_small(
-        &mut self,
-        queue: usize,
-        corners: [&ScreenVertex; 3],
-        bounds: PixelBox,
-        number: u32,
-    ) {
-        self.drawn += 1;
-        let columns = tiles(bounds.left, bounds.right, self.columns);
-        for row in tiles(bounds.top, bounds.bottom, self.rows) {
-            for column in columns.clone() {
-                let (left, top) = (column * TILE, row * TILE);
-                let bin = &mut self.tiles[(row * self.columns + column) as usize];
-                let count = bin.counts[queue];
-                let (pack, lane) = (count / PACK, count % PACK);
-                if pack == bin.packs[queue].len() {
-                    bin.packs[queue].push(Pack::default());
-                }
-                let pack = &mut bin.packs[queue][pack];
-                for (i, corner) in corners.into_iter().enumerate() {
-                    let at = corner.at();
-                    pack.x[i][lane] = (at.x - left * SUBPIXELS) as f32;
-                    pack.y[i][lane] = (at.y - top * SUBPIXELS) as f32;
-                    pack.depth[i][lane] = corner.depth;
-                }
-                pack.left[lane] = bounds.left - left;
-                pack.top[lane] = bounds.top - top;
-                pack.number[lane] = number;
-                bin.counts[queue] = count + 1;
-            }
-        }
+    /// Whether nothing reaches into a tile.
+    pub(super) fn is_empty(&self, tile: usize) -> bool {
+        let bin = &self.tiles[tile];
+        self.hits.is_empty(tile) && bin.large.is_empty() && bin.lines.is_empty()
     }
 
     /// Adds a triangle of any size, whose box of pixels is this.
@@ -139,9 +87,15 @@ impl Bins {
         self.each(bounds, |bin| bin.large.push(number));
     }
 
-    /// Adds a line whose box of pixels is this.
-    pub(super) fn add_line(&mut self, line: u32, bounds: PixelBox) {
-        self.each(bounds, |bin| bin.lines.push(line));
+    /// Adds a line of so many pixels' width to the tiles that it crosses.
+    pub(super) fn add_line(&mut self, line: ScreenLine, width: i32) {
+        let number = u32::try_from(self.lines.len()).expect("fewer than 2^32 lines");
+        self.lines.push(line);
+        let picture =
+            PixelBox { left: 0, top: 0, right: self.columns * TILE, bottom: self.rows * TILE };
+        for bounds in lines::stretches(&line, width, picture) {
+            self.each(bounds, |bin| bin.lines.push(number));
+        }
     }
 
     fn each(&mut self, bounds: PixelBox, mut add: impl FnMut(&mut Bin)) {

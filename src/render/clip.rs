@@ -19,11 +19,9 @@ const GUARD: f64 = 1_048_576.0;
 /// Added to a number below 2^51, this leaves the nearest whole number in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// In place of x: the vertex is beyond the near plane, the far plane or the guard band.
-const BEYOND: i32 = i32::MIN;
-
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(16))]
 pub(super) struct ScreenVertex {
     x: i32,
     y: i32,
@@ -34,11 +32,21 @@ pub(super) struct ScreenVertex {
 }
 
 impl ScreenVertex {
+    /// In place of x: the vertex is beyond the near plane, the far plane or the guard band.
+    pub(super) const BEYOND: i32 = i32::MIN;
+
+    /// Its numbers as they lie in memory: x, y, and the bits of the depth and of one by w.
+    #[inline(always)]
+    pub(super) const fn row(&self) -> [i32; 4] {
+        let (depth, inverse_w) = (self.depth.to_bits(), self.inverse_w.to_bits());
+        [self.x, self.y, depth.cast_signed(), inverse_w.cast_signed()]
+    }
+
     /// Whether it is inside the planes that triangles are cut by; elsewhere its place is of no
     /// meaning.
     #[inline(always)]
     pub(super) const fn is_inside(&self) -> bool {
-        self.x != BEYOND
+        self.x != Self::BEYOND
     }
 
     /// A vertex at a place, for tests.
@@ -95,13 +103,19 @@ impl Screen {
         [w - z, z, gx * w + x, gx * w - x, gy * w + y, gy * w - y]
     }
 
-    /// The place on the screen, or [`BEYOND`] it.
+    /// Whether a place is inside the planes by more than rounding could make of it.
+    pub(super) fn holds(&self, clip: Clip) -> bool {
+        let least = 1e-9 * clip.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        self.distances(clip).iter().all(|distance| *distance > least)
+    }
+
+    /// The place on the screen, or [beyond](ScreenVertex::BEYOND) it.
     #[inline(always)]
     pub(super) fn vertex(&self, clip: Clip) -> ScreenVertex {
         let [a, b, c, d, e, f] = self.distances(clip);
         let inside = (a >= 0.0) & (b >= 0.0) & (c >= 0.0) & (d >= 0.0) & (e >= 0.0) & (f >= 0.0);
         let vertex = self.project(clip);
-        ScreenVertex { x: if inside { vertex.x } else { BEYOND }, ..vertex }
+        ScreenVertex { x: if inside { vertex.x } else { ScreenVertex::BEYOND }, ..vertex }
     }
 
     /// The place on the screen of what is inside, or would be but for rounding.

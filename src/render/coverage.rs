@@ -65,6 +65,18 @@ impl PixelBox {
         }
     }
 
+    /// How many columns it has, where it is not empty.
+    #[must_use]
+    pub const fn width(self) -> i32 {
+        self.right - self.left
+    }
+
+    /// How many rows it has, where it is not empty.
+    #[must_use]
+    pub const fn height(self) -> i32 {
+        self.bottom - self.top
+    }
+
     /// Whether there is no pixel in it.
     #[must_use]
     pub const fn is_empty(self) -> bool {

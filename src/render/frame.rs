@@ -1,22 +1,31 @@
 //! A frame on the screen: its vertices, and its triangles and lines in bins.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
 use fearless_simd::Level;
+use glam::DMat4;
 use rayon::prelude::*;
 
 use super::bins::Bins;
+use super::changes::alike_matrices;
 use super::clip::{Screen, ScreenVertex};
-use super::lines::{self, ScreenLine};
-use super::plan::FramePlan;
-use super::setup::Setup;
+use super::edges::{self, EdgeSetup};
+use super::facing::Facing;
+use super::lines::LineNumber;
+use super::plan::{Draw, FramePlan};
+use super::setup::{self, Setup};
+use super::stages::{Laps, Stages};
 use super::vertices;
-use crate::scene::DrawTriangle;
+use super::watch::Watch;
+use crate::base::Shared;
+use crate::base::color::Color;
+use crate::base::image::Size;
+use crate::scene::Model;
 
-/// Triangles that a thread takes at a time.
+/// Triangles, polygons or edges that a thread takes at a time.
 const CHUNK: usize = 2048;
 
-/// Fewer triangles than this are set up by one thread: waking the others would take longer.
+/// Fewer than this are set up by one thread: waking the others would take longer.
 const FEW: usize = 4096;
 
 /// Everything of a frame that is on the screen.
@@ -24,95 +33,229 @@ const FEW: usize = 4096;
 pub(super) struct Frame {
     /// The vertices of all draws, in the order in which their meshes are drawn.
     vertices: Vec<ScreenVertex>,
+    /// What the vertices of each draw are of; nothing where they have yet to be brought there.
+    held: Vec<Option<Held>>,
     starts: Vec<Start>,
+    /// For each polygon of the draws whose edges are drawn the number of an
+    /// [`Outline`](super::facing::Outline).
+    outlines: Vec<AtomicU8>,
+    /// The polygons of the normals that are drawn.
+    normals: Vec<u32>,
+    work: Vec<Work>,
     bins: Vec<Bins>,
-    /// Edges and normals.
-    pub(super) lines: Vec<ScreenLine>,
-    /// Which tiles they reach into.
-    pub(super) line_bins: Bins,
 }
 
 /// Where the numbers of a draw begin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Start {
     vertex: usize,
+    vertex_end: usize,
     /// The number of its first triangle.
     pub(super) number: u32,
     /// The number after that of its last.
     pub(super) end: u32,
+    outline: usize,
+    /// The number of its first edge among the lines.
+    line: u32,
+    /// The number of its first normal among the lines.
+    normal: u32,
+    /// The number after that of its last line.
+    line_end: u32,
+    /// Where its normals begin among those of all draws.
+    normal_place: usize,
+}
+
+/// What a thread takes at a time.
+#[derive(Clone, Copy, Debug)]
+struct Work {
+    draw: usize,
+    what: What,
+    from: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum What {
+    /// Triangles into bins.
+    Triangles,
+    /// The outlines of polygons that are one triangle each, in the order of drawing.
+    Facing,
+    /// The outlines of polygons.
+    FacingOneByOne,
+    /// Edges into bins.
+    Edges,
+}
+
+/// What the screen vertices of a draw were made of.
+#[derive(Debug)]
+struct Held {
+    model: Shared<Model>,
+    clip_from_object: DMat4,
+    size: Size,
+    vertex: usize,
+}
+
+impl Held {
+    fn new(draw: &Draw, size: Size, vertex: usize) -> Self {
+        let clip_from_object = draw.clip_from_object;
+        Self { model: draw.model.clone(), clip_from_object, size, vertex }
+    }
+
+    fn is_of(&self, draw: &Draw, size: Size, vertex: usize) -> bool {
+        Shared::same(&self.model, &draw.model)
+            && alike_matrices(&self.clip_from_object, &draw.clip_from_object)
+            && (self.size, self.vertex) == (size, vertex)
+    }
 }
 
 impl Frame {
-    /// Brings everything that the plan draws onto the screen.
-    pub(super) fn build(&mut self, level: Level, plan: &FramePlan) {
-        self.place(level, plan);
-        self.set_up(level, plan);
-        let mut all = std::mem::take(&mut self.lines);
-        all.clear();
-        self.line_bins.clear(plan.size);
-        for (i, draw) in plan.draws.iter().enumerate() {
-            let i = number(i);
-            let vertices = self.vertices_of(plan, i);
-            lines::collect(draw, i, plan.size, vertices, &mut all);
-        }
-        self.lines = all;
-        for (i, line) in self.lines.iter().enumerate() {
-            self.line_bins.add_line(number(i), lines::bounds(line, plan.line_width));
-        }
+    /// Forgets what it holds.
+    pub(super) fn forget(&mut self) {
+        self.held.clear();
     }
 
-    /// Vertices to the screen.
-    fn place(&mut self, level: Level, plan: &FramePlan) {
+    /// Brings everything that the plan draws onto the screen, as long as that is wanted. Vertices
+    /// that are there already stay. Says how long it took.
+    pub(super) fn build(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) -> Stages {
+        let mut laps = Laps::start();
+        self.number(plan);
+        self.place(level, plan, watch);
+        let vertices = laps.lap();
+        self.set_up(level, plan, watch);
+        let set_up = laps.lap();
+        if !watch.is_given_up() {
+            self.add_lines(level, plan, watch);
+        }
+        Stages { vertices, set_up, lines: laps.lap(), ..Stages::default() }
+    }
+
+    /// Where the numbers of each draw begin.
+    fn number(&mut self, plan: &FramePlan) {
         self.starts.clear();
         let mut start = Start::default();
-        let mut vertex = 0;
+        let (mut vertex, mut outline) = (0, 0);
         for draw in &plan.draws {
-            let order = draw.model.mesh.draw_order();
-            start.vertex = vertex;
+            let mesh = &draw.model.mesh;
+            (start.vertex, start.outline) = (vertex, outline);
             start.number = start.end;
-            start.end += number(order.triangles.len());
-            vertex += order.x.len();
+            start.end += number(mesh.draw_order().triangles.len());
+            vertex += mesh.draw_order().x.len();
+            start.vertex_end = vertex;
+            outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
             self.starts.push(start);
         }
+        // What is not kept is overwritten from here on, whoever it belonged to.
+        self.held.resize_with(plan.draws.len(), || None);
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            *held = held.take().filter(|held| held.is_of(draw, plan.size, start.vertex));
+        }
         self.vertices.resize(vertex, ScreenVertex::default());
-        for (draw, start) in plan.draws.iter().zip(&self.starts) {
-            let order = draw.model.mesh.draw_order();
-            let screen = Screen::new(draw.clip_from_object, plan.size);
-            let out = &mut self.vertices[start.vertex..][..order.x.len()];
-            vertices::transform(level, &screen, order, out);
+        self.outlines.resize_with(outline, AtomicU8::default);
+    }
+
+    /// Vertices to the screen, all draws' together.
+    fn place(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
+        let (starts, held) = (&self.starts, &self.held);
+        let work = |(i, mut out): (usize, &mut [ScreenVertex])| {
+            let mut at = i * CHUNK;
+            let mut next = starts.partition_point(|start| start.vertex_end <= at);
+            while !out.is_empty() && watch.goes_on() {
+                let (draw, start) = (&plan.draws[next], starts[next]);
+                let (own, others) = out.split_at_mut(out.len().min(start.vertex_end - at));
+                if held[next].is_none() {
+                    let screen = Screen::new(draw.clip_from_object, plan.size);
+                    let order = draw.model.mesh.draw_order();
+                    vertices::transform(level, &screen, order, at - start.vertex, own);
+                }
+                at += own.len();
+                (out, next) = (others, next + 1);
+            }
+        };
+        if self.vertices.len() <= FEW {
+            self.vertices.chunks_mut(CHUNK).enumerate().for_each(work);
+        } else {
+            self.vertices.par_chunks_mut(CHUNK).enumerate().for_each(work);
+        }
+        if watch.is_given_up() {
+            return;
+        }
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            held.get_or_insert_with(|| Held::new(draw, plan.size, start.vertex));
         }
     }
 
-    /// Triangles into bins: one set of bins for each thread that takes part.
-    fn set_up(&mut self, level: Level, plan: &FramePlan) {
-        let total = self.starts.last().map_or(0, |start| start.end as usize);
-        let threads = if total < FEW { 1 } else { rayon::current_num_threads() };
-        self.bins.resize_with(threads, Bins::default);
-        let setups: Vec<Setup<'_>> = plan
-            .draws
-            .iter()
-            .zip(&self.starts)
-            .map(|(draw, start)| {
-                let count = draw.model.mesh.draw_order().x.len();
-                let vertices = &self.vertices[start.vertex..][..count];
-                Setup::new(draw, &plan.pipelines, vertices, plan.size, start.number)
-            })
-            .collect();
-        let work: Vec<(&Setup<'_>, &[DrawTriangle])> = setups
-            .iter()
-            .filter(|setup| setup.draw.filled)
-            .flat_map(|setup| setup.order.triangles.chunks(CHUNK).map(move |some| (setup, some)))
-            .collect();
-        let next = AtomicUsize::new(0);
-        let fill = |bins: &mut Bins| {
-            bins.clear(plan.size);
-            while let Some((setup, some)) = work.get(next.fetch_add(1, Ordering::Relaxed)) {
-                setup.run(level, some, &plan.pipelines, bins);
+    /// Triangles into bins: one set of bins for each thread that takes part. And which polygons face
+    /// the observer, for their outlines.
+    fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
+        self.work.clear();
+        let mut count = 0;
+        for (i, draw) in plan.draws.iter().enumerate() {
+            let mesh = &draw.model.mesh;
+            let triangles = mesh.draw_order().triangles.len();
+            if draw.filled {
+                count += self.add_work(i, What::Triangles, triangles);
             }
+            if draw.lines.edges && mesh.edge_order().triangles {
+                count += self.add_work(i, What::Facing, triangles);
+            } else if draw.lines.edges {
+                count += self.add_work(i, What::FacingOneByOne, mesh.polygon_count());
+            }
+        }
+        let threads = if count < FEW { 1 } else { rayon::current_num_threads() };
+        self.bins.resize_with(threads, Bins::default);
+        for bins in &mut self.bins {
+            bins.clear(plan.size);
+        }
+        self.share_out(level, plan, watch);
+    }
+
+    /// Lines into bins.
+    fn add_lines(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
+        self.work.clear();
+        self.normals.clear();
+        let mut next = 0;
+        for (i, draw) in plan.draws.iter().enumerate() {
+            if !watch.goes_on() {
+                return;
+            }
+            let edges = if draw.lines.edges { draw.model.mesh.edge_order().edges.len() } else { 0 };
+            let start = &mut self.starts[i];
+            (start.line, start.normal) = (next, next + number(edges));
+            start.normal_place = self.normals.len();
+            let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+            let setup = parts.edge_setup(i);
+            let first = self.starts[i].normal;
+            setup.add_normals(first, &mut self.bins[0], &mut self.normals);
+            next = first + number(self.normals.len() - self.starts[i].normal_place);
+            self.starts[i].line_end = next;
+            self.add_work(i, What::Edges, edges);
+        }
+        if !self.work.is_empty() {
+            self.share_out(level, plan, watch);
+        }
+    }
+
+    /// Cuts work into chunks; gives back how much it is.
+    fn add_work(&mut self, draw: usize, what: What, count: usize) -> usize {
+        self.work.extend((0..count).step_by(CHUNK).map(|from| Work { draw, what, from }));
+        count
+    }
+
+    /// Has all threads do the work, each into its own bins, as long as that is wanted.
+    fn share_out(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
+        let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+        let (work, next) = (&self.work, AtomicUsize::new(0));
+        let run = |bins: &mut Bins| {
+            while let Some(work) = work.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if !watch.goes_on() {
+                    return;
+                }
+                parts.run(level, work, bins);
+            }
+            setup::finish(level, bins);
         };
         match &mut self.bins[..] {
-            [one] => fill(one),
-            all => all.par_iter_mut().with_max_len(1).for_each(fill),
+            [one] => run(one),
+            all => all.par_iter_mut().with_max_len(1).for_each(run),
         }
     }
 
@@ -123,7 +266,7 @@ impl Frame {
 
     /// Whether nothing reaches into a tile.
     pub(super) fn is_empty(&self, tile: usize) -> bool {
-        self.bins.iter().chain([&self.line_bins]).all(|bins| bins.tiles[tile].is_empty())
+        self.bins.iter().all(|bins| bins.is_empty(tile))
     }
 
     /// The draw that a triangle belongs to, and where its numbers begin.
@@ -140,10 +283,118 @@ impl Frame {
         &self.vertices[self.starts[draw as usize].vertex..][..count]
     }
 
+    /// The colour of a line.
+    pub(super) fn line_color(&self, plan: &FramePlan, line: LineNumber) -> [u8; 4] {
+        if line.is_back() {
+            return Color::BACK_FACE.opaque();
+        }
+        plan.draws[self.draw_of_line(line)].lines.color.opaque()
+    }
+
+    /// Whether a line is an edge, and not a normal.
+    pub(super) fn is_edge(&self, line: LineNumber) -> bool {
+        line.line() < self.starts[self.draw_of_line(line)].normal
+    }
+
+    /// The draw of a line, and the polygon that it is drawn for.
+    pub(super) fn line_seen(&self, plan: &FramePlan, line: LineNumber) -> Option<(u32, u32)> {
+        let draw = self.draw_of_line(line);
+        let start = self.starts[draw];
+        let polygon = match line.line().checked_sub(start.normal) {
+            Some(normal) => self.normals[start.normal_place + normal as usize],
+            None => {
+                let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+                edges::polygon_of(
+                    &plan.draws[draw],
+                    line.line() - start.line,
+                    parts.outlines_of(draw),
+                )?
+            }
+        };
+        Some((number(draw), polygon))
+    }
+
+    fn draw_of_line(&self, line: LineNumber) -> usize {
+        self.starts.partition_point(|start| start.line_end <= line.line())
+    }
+
     /// How many triangles of the frame face the observer and may cover a pixel.
     pub(super) fn triangles(&self) -> usize {
         self.bins.iter().map(|bins| bins.drawn).sum()
     }
+}
+
+/// What all threads read while they fill their bins.
+#[derive(Debug)]
+struct Parts<'a> {
+    plan: &'a FramePlan,
+    vertices: &'a [ScreenVertex],
+    starts: &'a [Start],
+    outlines: &'a [AtomicU8],
+}
+
+impl<'a> Parts<'a> {
+    fn new(
+        plan: &'a FramePlan,
+        vertices: &'a [ScreenVertex],
+        starts: &'a [Start],
+        outlines: &'a [AtomicU8],
+    ) -> Self {
+        Self { plan, vertices, starts, outlines }
+    }
+
+    fn run(&self, level: Level, work: &Work, bins: &mut Bins) {
+        let Work { draw: i, what, from } = *work;
+        let draw = &self.plan.draws[i];
+        let mesh = &draw.model.mesh;
+        let (vertices, size) = (self.vertices_of(i), self.plan.size);
+        match what {
+            What::Triangles => {
+                let pipelines = &self.plan.pipelines;
+                let setup = Setup::new(draw, pipelines, vertices, size, self.starts[i].number);
+                setup.run(level, chunk(&mesh.draw_order().triangles, from), pipelines, bins);
+            }
+            What::Facing => {
+                let triangles = chunk(&mesh.draw_order().triangles, from);
+                let facing = Facing::new(draw, vertices, size);
+                facing.of_triangles(level, triangles, self.outlines_of(i));
+            }
+            What::FacingOneByOne => {
+                let facing = Facing::new(draw, vertices, size);
+                for polygon in from..(from + CHUNK).min(mesh.polygon_count()) {
+                    facing.one(number(polygon), self.outlines_of(i));
+                }
+            }
+            What::Edges => {
+                self.edge_setup(i).run(level, chunk(&mesh.edge_order().edges, from), bins);
+            }
+        }
+    }
+
+    fn edge_setup(&self, i: usize) -> EdgeSetup<'a> {
+        let plan = self.plan;
+        let (draw, first) = (&plan.draws[i], self.starts[i].line);
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let (vertices, outlines) = (self.vertices_of(i), self.outlines_of(i));
+        EdgeSetup { draw, vertices, screen, outlines, first, width: plan.line_width }
+    }
+
+    fn vertices_of(&self, draw: usize) -> &'a [ScreenVertex] {
+        let count = self.plan.draws[draw].model.mesh.draw_order().x.len();
+        &self.vertices[self.starts[draw].vertex..][..count]
+    }
+
+    /// The outlines of a draw whose edges are drawn; none elsewhere.
+    fn outlines_of(&self, draw: usize) -> &'a [AtomicU8] {
+        let Draw { model, lines, .. } = &self.plan.draws[draw];
+        let count = if lines.edges { model.mesh.polygon_count() } else { 0 };
+        &self.outlines[self.starts[draw].outline..][..count]
+    }
+}
+
+/// Some of a list, from `from` on.
+fn chunk<T>(all: &[T], from: usize) -> &[T] {
+    &all[from..all.len().min(from + CHUNK)]
 }
 
 fn number(i: usize) -> u32 {

@@ -1,132 +1,206 @@
 //! Light that is evaluated at faces or at vertices, before any pixel.
 
 use fearless_simd::Level;
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::effects::{BATCH, Batch, Light, Rows, load, store};
-use super::plan::{Back, Draw, Eye, FramePlan, Pipeline};
-use super::real::{Kernel, Machine, Triple};
-use super::surface::run;
+use super::effects::{BATCH, Batch, Light, Rows, load, set, store};
+use super::faces::Faces;
+use super::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded};
+use super::real::{Kernel, Machine, Number, Real, Triple};
+use super::surface::{Shines, run};
 use crate::scene::{LightAt, Normals, dvec3};
 
 /// Places that a thread takes at a time.
 const CHUNK: usize = 16 * BATCH;
 
-/// Light at the faces or vertices of a frame: diffuse, then specular, each red, green and blue.
+/// Light at the vertices of a frame, and what it takes to light faces.
 #[derive(Debug, Default)]
 pub(super) struct Lit<T> {
     tables: Vec<Table<T>>,
+    /// How many of the tables are of this frame.
+    used: usize,
+    /// For each draw the way to view space.
+    to_view: Vec<ToView<T>>,
 }
 
-/// The light of one draw by one pipeline on one side.
-#[derive(Debug)]
-struct Table<T> {
+/// The light of one draw by one pipeline on one side, at its points or (with the normals of faces)
+/// at its corners.
+#[derive(Debug, Default)]
+pub(super) struct Table<T> {
     draw: u32,
     pipeline: u32,
     back: bool,
-    light: Vec<[T; 6]>,
+    /// Diffuse light; where `specular` is empty, the colour that both give.
+    pub(super) diffuse: Vec<[T; 4]>,
+    pub(super) specular: Vec<[T; 4]>,
+}
+
+impl<T> Table<T> {
+    /// Whether it has colours, ready to be mixed: t D + S with one t for all of the surface.
+    pub(super) const fn is_colored(&self) -> bool {
+        self.specular.is_empty()
+    }
 }
 
 impl<T: Light> Lit<T> {
-    /// Lights what the plan says is lit at faces or vertices; nothing where it is lit per pixel.
-    pub(super) fn new(plan: &FramePlan, level: Level) -> Self {
-        let mut lit = Self { tables: Vec::new() };
-        if plan.light_at == LightAt::Pixel {
-            return lit;
+    /// Lights what the plan says is lit at vertices.
+    pub(super) fn prepare(&mut self, plan: &FramePlan, shines: &Shines<T>, level: Level) {
+        self.to_view.clear();
+        self.to_view.extend(plan.draws.iter().map(|draw| ToView::new(plan, draw)));
+        self.used = 0;
+        if plan.light_at != LightAt::Vertex {
+            return;
         }
         for (i, draw) in (0_u32..).zip(&plan.draws) {
-            let mut pipelines: Vec<u32> = draw.part_pipelines.iter().copied().flatten().collect();
-            pipelines.sort_unstable();
-            pipelines.dedup();
-            for pipeline in pipelines {
+            for pipeline in 0..u32::try_from(plan.pipelines.len()).unwrap_or(u32::MAX) {
+                let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { continue };
+                if shaded.light.is_none() || !draw.part_pipelines.contains(&Some(pipeline)) {
+                    continue;
+                }
                 for back in [false, true] {
-                    if !back || draw.back == Back::Lit {
-                        let light = light_of(plan, level, draw, pipeline, back);
-                        lit.tables.push(Table { draw: i, pipeline, back, light });
+                    if back && draw.back != Back::Lit {
+                        continue;
                     }
+                    if self.used == self.tables.len() {
+                        self.tables.push(Table::default());
+                    }
+                    let table = &mut self.tables[self.used];
+                    (table.draw, table.pipeline, table.back) = (i, pipeline, back);
+                    self.used += 1;
+                    let to_view = self.to_view[i as usize].seen_from(back);
+                    table.fill(level, draw, shaded, (shines, to_view));
                 }
             }
         }
-        lit
     }
 
-    /// The light of a draw by a pipeline: of its polygons, its points, or (with the normals of
-    /// faces) its corners. Empty where the pipeline is not lit.
-    pub(super) fn table(&self, draw: u32, pipeline: u32, back: bool) -> &[[T; 6]] {
-        let found = |back: bool| {
-            self.tables.iter().find(|t| (t.draw, t.pipeline, t.back) == (draw, pipeline, back))
-        };
-        found(back).or_else(|| found(false)).map_or(&[], |table| &table.light)
+    /// The light of a draw by a pipeline, on the front and on the back; the same where only one side
+    /// is lit.
+    pub(super) fn tables(&self, draw: u32, pipeline: u32) -> [&Table<T>; 2] {
+        let mut tables = self.tables[..self.used]
+            .iter()
+            .filter(|table| (table.draw, table.pipeline) == (draw, pipeline));
+        let front = tables.next().expect("what is lit at vertices was lit before");
+        [front, tables.next().unwrap_or(front)]
+    }
+
+    /// Puts the centres and the normals of some faces of a draw into a batch, in view space.
+    pub(super) fn place_faces(
+        &self,
+        level: Level,
+        (index, draw): (u32, &Draw),
+        faces: &Faces<T>,
+        batch: &mut Batch<T>,
+    ) {
+        let mesh = &draw.model.mesh;
+        let (centres, normals) = (mesh.polygon_centres(), mesh.polygon_normals());
+        for (slot, number) in faces.numbers[..faces.count].iter().enumerate() {
+            let polygon = mesh.triangles()[*number as usize].polygon as usize;
+            let turn =
+                if faces.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
+            put(batch, slot, centres[polygon], normals[polygon].map(|x| x * turn));
+        }
+        T::run(level, Place { batch, to_view: self.to_view[index as usize] });
     }
 }
 
-/// Lights the places of a draw.
-fn light_of<T: Light>(
-    plan: &FramePlan,
-    level: Level,
-    draw: &Draw,
-    pipeline: u32,
-    back: bool,
-) -> Vec<[T; 6]> {
-    let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { return Vec::new() };
-    let Some(stages) = &shaded.light else { return Vec::new() };
-    let mesh = &draw.model.mesh;
-    let order = mesh.draw_order();
-    let points = order.points(draw.normal_source);
-    let count = match (plan.light_at, draw.normals) {
-        (LightAt::Face, _) => mesh.polygon_count(),
-        (_, Normals::Vertex) => points.normals.len(),
-        (_, Normals::Face) => mesh.corners().len(),
-    };
-    let polygon_of = match (plan.light_at, draw.normals) {
-        (LightAt::Vertex, Normals::Face) => polygons_of_corners(draw),
-        _ => Vec::new(),
-    };
-    let place = |i: usize| -> [[f32; 3]; 2] {
-        let number = u32::try_from(i).expect("a mesh's places have 32-bit numbers");
-        match (plan.light_at, draw.normals) {
-            (LightAt::Face, _) => {
-                let centre = mesh.polygon_centre(number).as_vec3().to_array();
-                [centre, mesh.polygon_normals()[i]]
-            }
-            (_, Normals::Vertex) => {
+/// Writes a place and a normal of object space into a batch.
+#[inline(always)]
+fn put<T: Number>(batch: &mut Batch<T>, i: usize, position: [f32; 3], normal: [f32; 3]) {
+    for axis in 0..3 {
+        batch.position[axis][i] = T::from_f64(f64::from(position[axis]));
+        batch.normal[axis][i] = T::from_f64(f64::from(normal[axis]));
+    }
+}
+
+impl<T: Light> Table<T> {
+    /// Lights the places of a draw.
+    fn fill(
+        &mut self,
+        level: Level,
+        draw: &Draw,
+        shaded: &Shaded,
+        (shines, to_view): (&Shines<T>, ToView<T>),
+    ) {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        let points = order.points(draw.normal_source);
+        let (count, polygons) = match draw.normals {
+            Normals::Vertex => (points.normals.len(), Vec::new()),
+            Normals::Face => (mesh.corners().len(), polygons_of_corners(draw)),
+        };
+        let place = |i: usize| match draw.normals {
+            Normals::Vertex => {
                 let vertex = points.vertices[i] as usize;
-                [[order.x[vertex], order.y[vertex], order.z[vertex]], points.normals[i]]
+                ([order.x[vertex], order.y[vertex], order.z[vertex]], points.normals[i])
             }
-            (_, Normals::Face) => {
+            Normals::Face => {
                 let position = mesh.corners()[i].position as usize;
-                [mesh.positions()[position], mesh.polygon_normals()[polygon_of[i] as usize]]
+                (mesh.positions()[position], mesh.polygon_normals()[polygons[i] as usize])
             }
-        }
-    };
-    let to_view = ToView::new(plan, draw, back);
-    let mut light = vec![[T::default(); 6]; count];
-    light.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, light)| {
-        let mut batch = Box::<Batch<T>>::default();
-        for (i, light) in light.chunks_mut(BATCH).enumerate() {
-            batch.len = light.len();
-            for (lane, number) in (chunk * CHUNK + i * BATCH..).take(light.len()).enumerate() {
-                let [position, normal] = place(number);
-                for axis in 0..3 {
-                    batch.position[axis][lane] = T::from_f64(f64::from(position[axis]));
-                    batch.normal[axis][lane] = T::from_f64(f64::from(normal[axis]));
+        };
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let shines = shines.of(self.pipeline);
+        let tint = shaded.tint.map(T::from_f64);
+        let colored = shaded.texture.is_none() && !shaded.vertex_colors;
+        self.diffuse.resize(count, [T::default(); 4]);
+        self.specular.resize(if colored { 0 } else { count }, [T::default(); 4]);
+        let light = |first: usize, diffuse: &mut [[T; 4]], specular: &mut [[T; 4]]| {
+            let mut batch = Batch::<T>::default();
+            for (i, diffuse) in diffuse.chunks_mut(BATCH).enumerate() {
+                batch.len = diffuse.len();
+                for lane in 0..batch.len {
+                    let (position, normal) = place(first + i * BATCH + lane);
+                    put(&mut batch, lane, position, normal);
                 }
-            }
-            for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
-                row.fill(T::default());
-            }
-            T::run(level, Place { batch: &mut batch, to_view });
-            run(stages, shaded, plan, level, &mut batch);
-            for (lane, light) in light.iter_mut().enumerate() {
-                for axis in 0..3 {
-                    light[axis] = batch.diffuse[axis][lane];
-                    light[axis + 3] = batch.specular[axis][lane];
+                T::run(level, Place { batch: &mut batch, to_view });
+                batch.darken();
+                run(stages, shines, level, &mut batch);
+                if colored {
+                    T::run(level, Color { batch: &mut batch, tint });
+                } else {
+                    let specular = &mut specular[i * BATCH..][..batch.len];
+                    take_rows(&batch.specular, specular);
                 }
+                take_rows(&batch.diffuse, diffuse);
             }
+        };
+        let chunks = self.diffuse.par_chunks_mut(CHUNK);
+        if colored {
+            chunks.enumerate().for_each(|(i, diffuse)| light(i * CHUNK, diffuse, &mut []));
+        } else {
+            let both = chunks.zip(self.specular.par_chunks_mut(CHUNK)).enumerate();
+            both.for_each(|(i, (diffuse, specular))| light(i * CHUNK, diffuse, specular));
         }
-    });
-    light
+    }
+}
+
+/// Copies what stands in rows to where it is fetched from.
+#[inline(always)]
+fn take_rows<T: Number>([r, g, b]: &Rows<T>, to: &mut [[T; 4]]) {
+    for (((to, r), g), b) in to.iter_mut().zip(r).zip(g).zip(b) {
+        *to = [*r, *g, *b, T::default()];
+    }
+}
+
+/// t D + S, in the place of D.
+struct Color<'a, T> {
+    batch: &'a mut Batch<T>,
+    tint: [T; 3],
+}
+
+impl<T: Number> Kernel<T> for Color<'_, T> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { batch, tint } = self;
+        let Triple([tr, tg, tb]) = set(machine, tint);
+        for at in (0..batch.len).step_by(M::LANES) {
+            let Triple([r, g, b]) = load(machine, &batch.diffuse, at);
+            let color = Triple([tr * r, tg * g, tb * b]).plus(load(machine, &batch.specular, at));
+            store(machine, color, &mut batch.diffuse, at);
+        }
+    }
 }
 
 /// The polygon of each corner.
@@ -139,74 +213,84 @@ fn polygons_of_corners(draw: &Draw) -> Vec<u32> {
     polygons
 }
 
+/// How far off a vertex is lit, in units of view space.
+const FARTHEST: f64 = 1e15;
+
 /// From object space to view space. What is far from the origin is first brought near it, so that
 /// f32 keeps its digits.
 #[derive(Clone, Copy, Debug)]
-struct ToView {
-    middle: DVec3,
-    middle_in_view: DVec3,
-    linear: DMat3,
-    normals: DMat3,
+struct ToView<T> {
+    middle: [T; 3],
+    middle_in_view: [T; 3],
+    linear: [[T; 3]; 3],
+    normals: [[T; 3]; 3],
     eye: Eye,
 }
 
-impl ToView {
-    fn new(plan: &FramePlan, draw: &Draw, back: bool) -> Self {
+impl<T: Number> ToView<T> {
+    fn new(plan: &FramePlan, draw: &Draw) -> Self {
         let bounds = draw.model.mesh.bounds();
         // A number of f32, so that taking it away is exact where it matters.
         let middle =
             bounds.map_or(DVec3::ZERO, |bounds| dvec3(bounds.centre().as_vec3().to_array()));
-        let view_from_object: DMat4 = draw.view_from_object;
+        let numbers = |v: DVec3| v.to_array().map(T::from_f64);
+        let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(numbers);
         Self {
-            middle,
-            middle_in_view: view_from_object.transform_point3(middle),
-            linear: DMat3::from_mat4(view_from_object),
-            normals: draw.view_from_normal * if back { -1.0 } else { 1.0 },
+            middle: numbers(middle),
+            middle_in_view: numbers(draw.view_from_object.transform_point3(middle)),
+            linear: columns(DMat3::from_mat4(draw.view_from_object)),
+            normals: columns(draw.view_from_normal),
             eye: plan.eye,
         }
     }
+
+    /// The same for one side of the surface.
+    fn seen_from(self, back: bool) -> Self {
+        let normals =
+            if back { self.normals.map(|column| column.map(|x| -x)) } else { self.normals };
+        Self { normals, ..self }
+    }
+}
+
+/// Vectors times a matrix, which is given by its columns.
+#[inline(always)]
+fn turned<M: Machine>(
+    machine: M,
+    [a, b, c]: [[M::Number; 3]; 3],
+    Triple([x, y, z]): Triple<M::R>,
+) -> Triple<M::R> {
+    let (a, b, c) = (set(machine, a), set(machine, b), set(machine, c));
+    a.times(x).plus(b.times(y)).plus(c.times(z))
 }
 
 /// Brings the places of a batch from object space to view space.
 struct Place<'a, T> {
     batch: &'a mut Batch<T>,
-    to_view: ToView,
+    to_view: ToView<T>,
 }
 
-impl<T: Light> Kernel<T> for Place<'_, T> {
+impl<T: Number> Kernel<T> for Place<'_, T> {
     #[inline(always)]
     fn run<M: Machine<Number = T>>(self, machine: M) {
         let Self { batch, to_view } = self;
-        let zero = machine.lift(0.0);
-        let lift = |v: DVec3| Triple::lift(zero, [v.x, v.y, v.z]);
-        let (middle, origin) = (lift(to_view.middle), lift(to_view.middle_in_view));
+        let (middle, origin) = (set(machine, to_view.middle), set(machine, to_view.middle_in_view));
         for at in (0..batch.len).step_by(M::LANES) {
-            let turn = |m: DMat3, Triple([x, y, z]): Triple<M::R>| {
-                let (a, b, c) = (lift(m.x_axis), lift(m.y_axis), lift(m.z_axis));
-                a.times(x).plus(b.times(y)).plus(c.times(z))
-            };
             let near = load(machine, &batch.position, at).minus(middle);
-            let position = turn(to_view.linear, near).plus(origin);
-            let normal = turn(to_view.normals, load(machine, &batch.normal, at)).unit();
+            // What lies beyond everything that can be seen is brought near enough for its distance to
+            // a lamp to have a square.
+            let (low, high) = (machine.lift(-FARTHEST), machine.lift(FARTHEST));
+            let held = |x: M::R| Real::min(Real::max(x, low), high);
+            let [x, y, z] = turned(machine, to_view.linear, near).plus(origin).0;
+            let position = Triple([held(x), held(y), held(z)]);
+            let normal = turned(machine, to_view.normals, load(machine, &batch.normal, at)).unit();
+            let zero = machine.lift(0.0);
             let to_eye = match to_view.eye {
                 Eye::Point => Triple([zero, zero, zero]).minus(position).unit(),
-                Eye::Parallel => lift(DVec3::Z),
+                Eye::Parallel => Triple([zero, zero, machine.lift(1.0)]),
             };
-            store_all(machine, batch, [position, normal, to_eye], at);
+            store(machine, position, &mut batch.position, at);
+            store(machine, normal, &mut batch.normal, at);
+            store(machine, to_eye, &mut batch.to_eye, at);
         }
-    }
-}
-
-#[inline(always)]
-fn store_all<M: Machine>(
-    machine: M,
-    batch: &mut Batch<M::Number>,
-    [position, normal, to_eye]: [Triple<M::R>; 3],
-    at: usize,
-) {
-    let rows: [&mut Rows<M::Number>; 3] =
-        [&mut batch.position, &mut batch.normal, &mut batch.to_eye];
-    for (rows, value) in rows.into_iter().zip([position, normal, to_eye]) {
-        store(machine, value, rows, at);
     }
 }

@@ -35,9 +35,10 @@ pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Optio
     if w <= 0.0 {
         return None;
     }
-    // A unit across the view is this many pixels high at that distance.
+    // A unit of the world across the view is this many pixels high at that distance.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 rows")]
-    let pixels = observer.clip_from_view.y_axis.y / w * observer.size.height as f64 / 2.0;
+    let pixels =
+        observer.clip_from_view.y_axis.y * observer.unit / w * observer.size.height as f64 / 2.0;
     let half = DIAMOND.max(DIAMOND_PIXELS / 2.0 / pixels);
     let axes = DMat3::from_mat4(observer.world_from_view);
     Some(math::placed(axes * half, bulb))

@@ -4,25 +4,39 @@
 //! Scene, View, Settings, Size  ->  FramePlan  ->  Renderer  ->  Picture
 //! ```
 
-mod attributes;
 mod bins;
+mod changes;
 mod clip;
-mod corners;
 pub mod coverage;
+mod edges;
 pub mod effects;
+mod faces;
+mod facing;
 mod frame;
-mod gather;
+mod hits;
+mod interpolate;
+mod items;
+mod large;
 mod light;
 mod lines;
 mod marks;
-mod plan;
+mod painter;
+mod pick;
+pub mod plan;
 pub mod real;
+pub mod region;
 mod renderer;
 mod setup;
+mod single;
+mod small;
+mod stages;
 mod surface;
 mod texture;
 mod tile;
 mod vertices;
+mod watch;
 
-pub use plan::{FramePlan, Skipped};
-pub use renderer::{Hit, Renderer};
+pub use changes::{Cause, Change, Changes};
+pub use plan::{Class, Effect, EffectUse, FramePlan, State};
+pub use renderer::{GivenUp, Hit, Renderer};
+pub use stages::Stages;

@@ -1,18 +1,27 @@
 //! Runs plans: does, and asks no setting.
+//!
+//! A picture is drawn as a whole, or what has changed of the last one is drawn again, to the same
+//! bytes. What is picked is asked of the last picture that was finished, also after a frame that was
+//! given up.
 
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::bins::tiles_of;
-use super::coverage::PixelBox;
+use super::changes::{Cause, Changes};
 use super::effects::Light;
 use super::frame::Frame;
 use super::light::Lit;
-use super::plan::FramePlan;
-use super::surface::Shader;
-use super::tile::{self, BLOCK_PIXELS, Seen, TILE, TILE_SIDE, Visibility};
+use super::painter::{Band, Painter, bounds_of};
+use super::plan::{EffectUse, FramePlan};
+use super::stages::{Laps, Stages};
+use super::surface::{Scenery, Shines};
+use super::tile::{self, Seen, TILE, TILE_SIDE, Visibility};
+use super::watch::Watch;
+use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Arithmetic, ItemId};
 
@@ -22,9 +31,21 @@ pub struct Renderer {
     level: Level,
     picture: Picture,
     frame: Frame,
-    /// The plan of the picture, for picking.
+    /// For each tile of the picture the colour that fills it as a whole, where one is known to.
+    filled: Vec<Option<Color>>,
+    rooms: Rooms,
+    /// The plan of the last picture that was finished.
     plan: Option<FramePlan>,
+    /// Whether the picture is that one still: nothing has been painted over it.
+    finished: bool,
+    /// Whether the frame holds what is on that picture.
+    built: bool,
+    stages: Stages,
 }
+
+/// A frame was given up before it was finished: something else was wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GivenUp;
 
 /// What is seen at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,25 +68,104 @@ impl Renderer {
     /// A renderer that uses instructions of this level. The pictures are the same on every level.
     #[must_use]
     pub fn new(level: Level) -> Self {
-        Self { level, picture: Picture::default(), frame: Frame::default(), plan: None }
+        Self {
+            level,
+            picture: Picture::default(),
+            frame: Frame::default(),
+            filled: Vec::new(),
+            rooms: Rooms::default(),
+            plan: None,
+            finished: false,
+            built: false,
+            stages: Stages::default(),
+        }
     }
 
-    /// Draws what is planned.
+    /// Draws all that is planned, whatever was drawn before.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
-        self.picture.resize(plan.size);
-        self.frame.build(self.level, plan);
-        match plan.arithmetic {
-            Arithmetic::F32 => self.draw::<f32>(plan),
-            Arithmetic::F64 => self.draw::<f64>(plan),
+        self.finished = false;
+        self.frame.forget();
+        self.redraw(plan, &|| true).expect("it is always wanted");
+        &self.picture
+    }
+
+    /// Draws again what another plan changes of the last picture, and says what that was. The picture
+    /// is the one that [`Self::render`] draws.
+    ///
+    /// # Errors
+    /// Where `wanted`, which every thread asks between tiles, says no: then the picture is of no
+    /// meaning until the next one is finished.
+    pub fn redraw(
+        &mut self,
+        plan: &FramePlan,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Changes, GivenUp> {
+        let watch = Watch::new(wanted);
+        let changes = self.changes(plan);
+        self.built &= !changes.geometry;
+        if plan.rules.frame(&changes).is_none() {
+            self.resize(plan.size);
+            self.finished = false;
+            // From one of the threads that draw, so that the caller sleeps and wakes once a frame.
+            rayon::scope(|_| self.draw_changes(plan, &changes, &watch));
+            if watch.is_given_up() {
+                return Err(GivenUp);
+            }
+            (self.finished, self.built) = (true, true);
         }
         self.plan = Some(plan.clone());
-        &self.picture
+        Ok(changes)
+    }
+
+    /// Makes the picture as large as it has to be.
+    fn resize(&mut self, size: Size) {
+        if self.picture.size() != size {
+            self.picture.resize(size);
+            let [columns, rows] = [size.width, size.height].map(|n| n.div_ceil(TILE_SIDE));
+            self.filled.clear();
+            self.filled.resize(columns * rows, None);
+        }
+    }
+
+    fn draw_changes(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+        self.stages =
+            if self.built { Stages::default() } else { self.frame.build(self.level, plan, watch) };
+        if !watch.is_given_up() {
+            match plan.arithmetic {
+                Arithmetic::F32 => self.draw::<f32>(plan, changes, watch),
+                Arithmetic::F64 => self.draw::<f64>(plan, changes, watch),
+            }
+        }
+    }
+
+    /// What [`Self::redraw`] would draw again.
+    #[must_use]
+    pub fn changes(&self, plan: &FramePlan) -> Changes {
+        match &self.plan {
+            Some(before) if self.finished => Changes::between(before, plan),
+            _ => Changes::all(Cause::First, plan.size),
+        }
+    }
+
+    /// Brings what the last finished picture shows onto the screen again, where something else was
+    /// begun since.
+    fn build_again(&mut self) {
+        if let (false, Some(plan)) = (self.built, &self.plan) {
+            self.frame.build(self.level, plan, &Watch::new(&|| true));
+            self.built = true;
+        }
     }
 
     /// The picture that was drawn last.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.picture
+    }
+
+    /// Where the time of the last picture went.
+    #[must_use]
+    pub const fn stages(&self) -> Stages {
+        self.stages
     }
 
     /// How many triangles the last picture was made of.
@@ -76,9 +176,10 @@ impl Renderer {
 
     /// What the last picture shows in column `x` of row `y`; `None` for the background.
     #[must_use]
-    pub fn hit(&self, x: usize, y: usize) -> Option<Hit> {
+    pub fn hit(&mut self, x: usize, y: usize) -> Option<Hit> {
+        self.build_again();
         let plan = self.plan.as_ref()?;
-        let Size { width, height } = self.picture.size();
+        let Size { width, height } = plan.size;
         if x >= width || y >= height {
             return None;
         }
@@ -87,17 +188,18 @@ impl Renderer {
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
         let mut visibility = Visibility::default();
         visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
-        let word = visibility.word(x, y);
+        let word = visibility.word(self.level, x, y);
         let (draw, polygon) = self.seen(plan, word)?;
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth: tile::depth(word) })
     }
 
     /// Where the last picture shows an item: a flag for each pixel, row by row from the top.
     #[must_use]
-    pub fn pixels_of(&self, item: ItemId) -> Vec<bool> {
-        let size = self.picture.size();
+    pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
+        self.build_again();
+        let Some(plan) = &self.plan else { return Vec::new() };
+        let size = plan.size;
         let mut pixels = vec![false; size.area()];
-        let Some(plan) = &self.plan else { return pixels };
         let [columns, rows] = tiles_of(plan.size);
         let mut visibility = Visibility::default();
         for tile in 0..usize::try_from(columns * rows).expect("not negative") {
@@ -106,10 +208,45 @@ impl Renderer {
             for (y, x) in (bounds.top..bounds.bottom)
                 .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
             {
-                let seen = self.seen(plan, visibility.word(x, y));
+                let seen = self.seen(plan, visibility.word(self.level, x, y));
                 let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
                 pixels[y * size.width + x] =
                     seen.is_some_and(|(draw, _)| plan.draws[draw as usize].item == item);
+            }
+        }
+        pixels
+    }
+
+    /// Says of each effect of the last picture how many pixels it takes part in, and gives by how many
+    /// steps of a byte a channel of theirs may be off. Takes about as long as finding what is seen.
+    pub fn count(&mut self, uses: &mut [EffectUse]) -> f64 {
+        self.build_again();
+        self.plan.as_ref().map_or(0.0, |plan| plan.count(self.level, &self.frame, uses))
+    }
+
+    /// Which primitive each pixel of the last picture shows, row by row from the top: 0 for the
+    /// background, else a number that is another for every triangle and line of one scene.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the lower half of a word names what is seen"
+    )]
+    pub fn primitives(&mut self) -> Vec<u32> {
+        self.build_again();
+        let Some(plan) = &self.plan else { return Vec::new() };
+        let size = plan.size;
+        let mut pixels = vec![0; size.area()];
+        let [columns, rows] = tiles_of(plan.size);
+        let mut visibility = Visibility::default();
+        for tile in 0..usize::try_from(columns * rows).expect("not negative") {
+            let bounds = bounds_of(tile, plan.size);
+            visibility.draw(self.level, plan, &self.frame, (tile, bounds));
+            for (y, x) in (bounds.top..bounds.bottom)
+                .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
+            {
+                let word = visibility.word(self.level, x, y);
+                let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
+                pixels[y * size.width + x] = word as u32;
             }
         }
         pixels
@@ -124,91 +261,84 @@ impl Renderer {
                 let mesh = &plan.draws[draw as usize].model.mesh;
                 Some((draw, mesh.triangles()[(number - start.number) as usize].polygon))
             }
-            Seen::Line(number) => {
-                let line = &self.frame.lines[number as usize];
-                Some((line.draw, line.polygon))
-            }
+            Seen::Line(line) => self.frame.line_seen(plan, line),
         }
     }
 
-    /// Draws the tiles, each thread its own; a band of rows is locked only while a tile is copied.
-    fn draw<T: Light>(&mut self, plan: &FramePlan) {
-        let lit = Lit::<T>::new(plan, self.level);
-        let [columns, rows] = tiles_of(plan.size);
+    /// Draws tiles, each thread its own; a band of rows is locked only while a tile is copied.
+    fn draw<T: Painted>(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+        let mut laps = Laps::start();
+        let Room { shines, lit, painters } = T::room(&mut self.rooms);
+        shines.prepare(plan);
+        lit.prepare(plan, shines, self.level);
+        self.stages.light = laps.lap();
         let (level, frame) = (self.level, &self.frame);
-        let bands = self.picture.pixels_mut().chunks_mut(plan.size.width * TILE_SIDE);
-        let bands: Vec<Mutex<&mut [[u8; 4]]>> = bands.map(Mutex::new).collect();
-        let tiles = usize::try_from(columns * rows).expect("not negative");
-        (0..tiles).into_par_iter().with_max_len(1).for_each_init(
-            || Painter::<T>::new(plan, frame, &lit, level),
-            |painter, tile| {
-                let bounds = bounds_of(tile, plan.size);
-                painter.paint(tile, bounds);
-                let band = &bands[usize::try_from(bounds.top / TILE).expect("not negative")];
-                let mut band = band.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                painter.copy(&mut band, bounds, plan.size.width);
-            },
-        );
-    }
-}
-
-/// The pixels of a tile; tiles are counted along rows.
-fn bounds_of(tile: usize, size: Size) -> PixelBox {
-    let [columns, _] = tiles_of(size);
-    let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
-    let (left, top) = (tile % columns * TILE, tile / columns * TILE);
-    let [right, bottom] = [size.width, size.height]
-        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
-    let picture = PixelBox { left: 0, top: 0, right, bottom };
-    PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
-}
-
-/// Draws one tile after another.
-#[derive(Debug)]
-struct Painter<'a, T> {
-    plan: &'a FramePlan,
-    frame: &'a Frame,
-    level: Level,
-    shader: Shader<'a, T>,
-    visibility: Visibility,
-    pixels: Box<[[u8; 4]; TILE_SIDE * TILE_SIDE]>,
-}
-
-impl<'a, T: Light> Painter<'a, T> {
-    fn new(plan: &'a FramePlan, frame: &'a Frame, lit: &'a Lit<T>, level: Level) -> Self {
-        Self {
-            plan,
-            frame,
-            level,
-            shader: Shader::new(plan, frame, lit, level),
-            visibility: Visibility::default(),
-            pixels: Box::new([[0; 4]; TILE_SIDE * TILE_SIDE]),
-        }
-    }
-
-    fn paint(&mut self, tile: usize, bounds: PixelBox) {
-        self.pixels.fill(self.plan.background.opaque());
-        if self.frame.is_empty(tile) {
-            return;
-        }
-        self.visibility.draw(self.level, self.plan, self.frame, (tile, bounds));
-        for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {
-            let (words, corner) = self.visibility.block(block);
-            if words.iter().fold(0, |all, word| all | word) == 0 {
-                continue;
+        let scenery = Scenery { level, plan, frame, lit, shines };
+        let Size { width, .. } = plan.size;
+        let columns = width.div_ceil(TILE_SIDE);
+        let bands: Vec<Mutex<Band<'_>>> = self
+            .picture
+            .pixels_mut()
+            .chunks_mut(width * TILE_SIDE)
+            .zip(self.filled.chunks_mut(columns))
+            .map(|(pixels, filled)| Mutex::new(Band { pixels, filled }))
+            .collect();
+        let tiles = bands.len() * columns;
+        let next = AtomicUsize::new(0);
+        let work = |painter: &mut Painter<T>| {
+            painter.begin();
+            loop {
+                let tile = next.fetch_add(1, Ordering::Relaxed);
+                if tile >= tiles || !watch.goes_on() {
+                    return;
+                }
+                if !changes.tiles.contains(tile) {
+                    continue;
+                }
+                let shows = painter.paint(&scenery, tile);
+                let band = bands[tile / columns].lock();
+                let mut band = band.unwrap_or_else(std::sync::PoisonError::into_inner);
+                if shows {
+                    painter.copy(tile, plan.size, &mut band);
+                } else {
+                    Painter::<T>::fill(tile, plan.size, plan.background, &mut band);
+                }
             }
-            let [x, y] = [corner[0] - bounds.left, corner[1] - bounds.top]
-                .map(|i| usize::try_from(i).expect("not negative"));
-            self.shader.block(words, corner, &mut self.pixels[..], y * TILE_SIDE + x);
-        }
+        };
+        painters.resize_with(rayon::current_num_threads(), Painter::default);
+        painters.par_iter_mut().with_max_len(1).for_each(work);
+        self.stages.tiles = laps.lap();
     }
+}
 
-    /// Copies the tile into its band of the picture.
-    fn copy(&self, band: &mut [[u8; 4]], bounds: PixelBox, width: usize) {
-        let [left, columns] = [bounds.left, bounds.right - bounds.left]
-            .map(|i| usize::try_from(i).expect("not negative"));
-        for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.chunks_mut(width)) {
-            to[left..left + columns].copy_from_slice(&from[..columns]);
-        }
+/// What is kept from frame to frame for one kind of numbers.
+#[derive(Debug, Default)]
+struct Room<T> {
+    shines: Shines<T>,
+    lit: Lit<T>,
+    /// One for each thread.
+    painters: Vec<Painter<T>>,
+}
+
+#[derive(Debug, Default)]
+struct Rooms {
+    fast: Room<f32>,
+    exact: Room<f64>,
+}
+
+/// Numbers that pictures are painted in.
+trait Painted: Light {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self>;
+}
+
+impl Painted for f32 {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self> {
+        &mut rooms.fast
+    }
+}
+
+impl Painted for f64 {
+    fn room(rooms: &mut Rooms) -> &mut Room<Self> {
+        &mut rooms.exact
     }
 }

@@ -4,18 +4,21 @@
 //! picture are dropped before anything of theirs is copied. What has a corner beyond the planes is
 //! cut, and what is so large that its area needs 64 bits is looked at one by one.
 
-use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16};
 
-use super::bins::{Bins, LargeTriangle, SMALL};
+use super::bins::{Bins, LargeTriangle};
 use super::clip::{Screen, ScreenVertex};
 use super::coverage::{PixelBox, SUBPIXELS, doubled_area};
+use super::hits::PACK;
 use super::plan::{Back, Draw, Pipeline};
+use super::small::{self, Pack, SMALL};
+use super::vertices::fetch;
 use crate::base::image::Size;
 use crate::base::math::each;
 use crate::scene::{DrawOrder, DrawTriangle};
 
 /// The largest box, in parts of a pixel, whose doubled area fits 31 bits.
-const NARROW: i32 = 1 << 14;
+pub(super) const NARROW: i32 = 1 << 14;
 
 /// What setting up the triangles of one draw reads.
 #[derive(Debug)]
@@ -24,7 +27,6 @@ pub(super) struct Setup<'a> {
     pub(super) order: &'a DrawOrder,
     pub(super) vertices: &'a [ScreenVertex],
     pub(super) screen: Screen,
-    pub(super) size: Size,
     /// The number of the draw's first triangle in the frame.
     pub(super) base: u32,
     /// Whether some triangles are not drawn or have holes: then each is asked.
@@ -52,7 +54,7 @@ impl<'a> Setup<'a> {
                 pipeline.is_none_or(|pipeline| pipelines[pipeline as usize].is_cutout())
             });
         let screen = Screen::new(draw.clip_from_object, size);
-        Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, size, base, choosy }
+        Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
     }
 
     /// Puts some of the draw's triangles into bins.
@@ -74,78 +76,68 @@ impl<'a> Setup<'a> {
         pipelines: &[Pipeline],
         bins: &mut Bins,
     ) {
-        for sixteen in triangles.chunks(16) {
-            self.sixteen(simd, sixteen, pipelines, bins);
+        let (whole, rest) = triangles.as_chunks::<PACK>();
+        for sixteen in whole {
+            self.sixteen(simd, sixteen, PACK, pipelines, bins);
+        }
+        if let Some(last) = rest.last() {
+            let mut sixteen = [*last; PACK];
+            sixteen[..rest.len()].copy_from_slice(rest);
+            self.sixteen(simd, &sixteen, rest.len(), pipelines, bins);
         }
     }
 
+    /// Sets up sixteen triangles, of which the first `count` are meant.
     #[inline(always)]
     fn sixteen<S: Simd>(
         &self,
         simd: S,
-        triangles: &[DrawTriangle],
+        triangles: &[DrawTriangle; PACK],
+        count: usize,
         pipelines: &[Pipeline],
         bins: &mut Bins,
     ) {
-        let (mut x, mut y) = ([[0; 16]; 3], [[0; 16]; 3]);
-        let mut beyond = 0_u64;
-        for (lane, triangle) in triangles.iter().enumerate() {
-            for (i, vertex) in triangle.vertices.into_iter().enumerate() {
-                let vertex = &self.vertices[vertex as usize];
-                let at = vertex.at();
-                (x[i][lane], y[i][lane]) = (at.x, at.y);
-                beyond |= u64::from(!vertex.is_inside()) << lane;
-            }
-        }
-        let x = each([0, 1, 2], |i: usize| i32x16::from_slice(simd, &x[i]));
-        let y = each([0, 1, 2], |i: usize| i32x16::from_slice(simd, &y[i]));
-        let (low_x, high_x) = (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
-        let (low_y, high_y) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+        let [x0, y0, d0, _] = self.corners(simd, triangles, 0);
+        let [x1, y1, d1, _] = self.corners(simd, triangles, 1);
+        let [x2, y2, d2, _] = self.corners(simd, triangles, 2);
+        let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
+        let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
 
         let half = SUBPIXELS / 2;
         let left = (low_x + (half - 1)) >> 8;
         let right = ((high_x - half) >> 8) + 1;
         let top = (low_y + (half - 1)) >> 8;
         let bottom = ((high_y - half) >> 8) + 1;
-        let [width, height] = [self.size.width, self.size.height]
-            .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+        let [width, height] = bins.hits.extent();
         let seen = left.simd_lt(right)
             & top.simd_lt(bottom)
             & right.simd_gt(0)
             & bottom.simd_gt(0)
             & left.simd_lt(width)
             & top.simd_lt(height);
+        let beyond = low_x.simd_eq(ScreenVertex::BEYOND);
         let wide = (high_x - low_x).simd_gt(NARROW) | (high_y - low_y).simd_gt(NARROW);
-        let area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
-        let turned = if self.draw.back == Back::Left {
-            let away = if self.draw.mirrored { area.simd_lt(1) } else { area.simd_gt(-1) };
-            away.to_bitmask()
-        } else {
-            area.simd_eq(0).to_bitmask()
+        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+        let faces = match (self.draw.back, self.draw.mirrored) {
+            (Back::Left, false) => area.simd_lt(0),
+            (Back::Left, true) => area.simd_gt(0),
+            _ => !area.simd_eq(0),
         };
-
-        let there = (1_u64 << triangles.len()) - 1;
-        let odd = (beyond | (wide.to_bitmask() & seen.to_bitmask())) & there;
-        let mut plain = seen.to_bitmask() & !turned & !wide.to_bitmask() & !beyond & there;
-        if plain != 0 {
-            let mut bounds = [[0; 16]; 4];
-            left.store_slice(&mut bounds[0]);
-            top.store_slice(&mut bounds[1]);
-            right.store_slice(&mut bounds[2]);
-            bottom.store_slice(&mut bounds[3]);
-            while plain != 0 {
-                let lane = plain.trailing_zeros() as usize;
-                plain &= plain - 1;
-                let bounds = PixelBox {
-                    left: bounds[0][lane],
-                    top: bounds[1][lane],
-                    right: bounds[2][lane],
-                    bottom: bounds[3][lane],
-                };
-                self.add(&triangles[lane], bounds, pipelines, bins);
-            }
+        let there = mask32x16::from_bitmask(simd, (1 << count) - 1);
+        let odd = (beyond | (wide & seen)) & there;
+        let plain = seen & faces & there & !odd;
+        if plain.any_true() {
+            let [_, _, _, number] = fetch(
+                simd,
+                #[inline(always)]
+                |lane| triangles[lane].row(),
+            );
+            let number = number + self.base.cast_signed();
+            let pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
+            let side = (right - left).max(bottom - top);
+            self.sort(simd, triangles, &pack, (plain, side), pipelines, bins);
         }
-        let mut odd = odd;
+        let mut odd = odd.to_bitmask();
         while odd != 0 {
             let lane = odd.trailing_zeros() as usize;
             odd &= odd - 1;
@@ -153,30 +145,85 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Adds a triangle that is inside all planes, seen, and small enough for 32 bits.
+    /// x, y, depth and one by w of one corner of sixteen triangles.
     #[inline(always)]
-    fn add(
+    fn corners<S: Simd>(
         &self,
-        triangle: &DrawTriangle,
-        bounds: PixelBox,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        corner: usize,
+    ) -> [i32x16<S>; 4] {
+        // What is held to the last needs no check in each lane.
+        let last = self.vertices.len().saturating_sub(1);
+        fetch(
+            simd,
+            #[inline(always)]
+            |lane| self.vertices[(triangles[lane].vertices[corner] as usize).min(last)].row(),
+        )
+    }
+
+    /// Sorts triangles that are seen by the larger sides of their boxes: into the queues of small
+    /// ones, or to the large ones.
+    #[inline(always)]
+    fn sort<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        pack: &Pack<S>,
+        (mut plain, side): (mask32x16<S>, i32x16<S>),
         pipelines: &[Pipeline],
         bins: &mut Bins,
     ) {
-        let number = self.base + triangle.number;
-        let corners = each(triangle.vertices, |vertex| &self.vertices[vertex as usize]);
-        let kind = if self.choosy { self.kind(triangle.number, pipelines) } else { Kind::Plain };
-        let side = (bounds.right - bounds.left).max(bounds.bottom - bounds.top);
-        match kind {
-            Kind::Plain if side <= SMALL[0] => bins.add_small(0, corners, bounds, number),
-            Kind::Plain if side <= SMALL[1] => bins.add_small(1, corners, bounds, number),
-            Kind::Plain if side <= SMALL[2] => bins.add_small(2, corners, bounds, number),
-            Kind::Not => {}
-            _ => {
-                let cutout = kind == Kind::Cutout;
-                let corners = each(corners, |corner| *corner);
-                bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
+        let mut cutout = 0;
+        if self.choosy {
+            let kinds = self.kinds(triangles, plain.to_bitmask(), pipelines);
+            plain = mask32x16::from_bitmask(simd, kinds[0]);
+            cutout = kinds[1];
+        }
+        let mut above = 0;
+        for (queue, limit) in SMALL.into_iter().enumerate() {
+            let some = plain & side.simd_gt(above) & side.simd_le(limit);
+            above = limit;
+            let count = some.to_bitmask().count_ones() as usize;
+            if count == 0 {
+                continue;
+            }
+            bins.drawn += count;
+            if bins.queues[queue].add(pack, some, count) {
+                small::draw_full(simd, queue, bins);
             }
         }
+        let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
+        while large != 0 {
+            let lane = large.trailing_zeros() as usize;
+            large &= large - 1;
+            let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
+            let number = self.base + triangles[lane].number;
+            let bounds = PixelBox::of(each(corners, |corner| corner.at()));
+            let cutout = cutout >> lane & 1 != 0;
+            bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
+        }
+    }
+
+    /// Which of some triangles are drawn plainly, and of which a texture decides where.
+    fn kinds(
+        &self,
+        triangles: &[DrawTriangle; PACK],
+        some: u64,
+        pipelines: &[Pipeline],
+    ) -> [u64; 2] {
+        let mut kinds = [0; 2];
+        let mut left = some;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            match self.kind(triangles[lane].number, pipelines) {
+                Kind::Not => {}
+                Kind::Plain => kinds[0] |= 1 << lane,
+                Kind::Cutout => kinds[1] |= 1 << lane,
+            }
+        }
+        kinds
     }
 
     /// Adds a triangle that has to be cut, or whose area needs 64 bits.
@@ -222,4 +269,13 @@ impl<'a> Setup<'a> {
             Some(_) => Kind::Plain,
         }
     }
+}
+
+/// Draws the small triangles that are still waiting.
+pub(super) fn finish(level: Level, bins: &mut Bins) {
+    dispatch!(level, simd => {
+        for queue in 0..SMALL.len() {
+            small::draw_rest(simd, queue, bins);
+        }
+    });
 }

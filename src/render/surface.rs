@@ -1,245 +1,359 @@
 //! From what is seen to colours.
 //!
-//! The pixels of a block that show the same draw are gathered into rows, and the rows are computed
-//! with: first where in its triangle each pixel lies, then the attributes there, with perspective,
-//! then light, then bytes. A value that all corners share comes out as it went in, bit for bit, since
-//! only differences are weighted.
-//!
-//! The place of a pixel in space is the point of its ray at its depth, so that the direction to the
-//! observer is exact whatever the triangle.
-//!
-//! Perspective: Heckbert and Moreton, "Interpolation for Polygon Texture Mapping and Shading", 1991.
+//! A block's pixels are listed by the triangles that they show ([`Items`]). What is known of these is
+//! fetched once for each triangle ([`Faces`]), taken from there by the pixels ([`Located`]), lit
+//! ([`Batch`]), and made bytes. Light that is evaluated at faces is evaluated at the faces of the
+//! block; no pixel asks where it lies.
 
 use fearless_simd::Level;
 use glam::DVec3;
 
-use super::attributes::{attributes, mix};
-use super::corners::{Corners, gather_light, gather_places};
-use super::effects::{BATCH, Batch, Light, Rows, load};
+use super::effects::{BATCH, Batch, Light, Rows, Shine, load, set};
+use super::faces::{Faces, weights};
 use super::frame::Frame;
-use super::gather::Gathered;
+use super::interpolate::{Located, Mixed, mix, surroundings};
+use super::items::Items;
 use super::light::Lit;
-use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded};
-use super::real::{Kernel, Machine, Triple};
+use super::pick::SLOTS;
+use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage, TilePlan};
+use super::real::{Kernel, Machine, Number, Triple};
 use super::texture;
 use super::tile::{BLOCK, BLOCK_PIXELS, Seen, TILE_SIDE, seen};
 use crate::base::color::Color;
 use crate::scene::{LightAt, NONE};
 
+/// What colouring pixels reads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scenery<'a, T> {
+    pub(super) level: Level,
+    pub(super) plan: &'a FramePlan,
+    pub(super) frame: &'a Frame,
+    pub(super) lit: &'a Lit<T>,
+    pub(super) shines: &'a Shines<T>,
+}
+
+/// For each pipeline its lamps, in the order of its stages.
+#[derive(Debug, Default)]
+pub(super) struct Shines<T>(Vec<Vec<Shine<T>>>);
+
+impl<T: Number> Shines<T> {
+    /// Prepares the lamps of a plan.
+    pub(super) fn prepare(&mut self, plan: &FramePlan) {
+        self.0.resize_with(plan.pipelines.len(), Vec::new);
+        for (shines, pipeline) in self.0.iter_mut().zip(&plan.pipelines) {
+            shines.clear();
+            if let Pipeline::Shaded(Shaded { light: Some(stages), matter, .. }) = pipeline {
+                let lamps = stages.iter().map(|stage| &plan.lamps[stage.lamp as usize]);
+                shines.extend(lamps.map(|lamp| Shine::new(lamp, matter)));
+            }
+        }
+    }
+
+    /// The lamps of a pipeline.
+    pub(super) fn of(&self, pipeline: u32) -> &[Shine<T>] {
+        &self.0[pipeline as usize]
+    }
+}
+
 /// Colours pixels. Each thread has its own.
 #[derive(Debug)]
-pub(super) struct Shader<'a, T> {
-    plan: &'a FramePlan,
-    frame: &'a Frame,
-    lit: &'a Lit<T>,
-    level: Level,
-    rows: Box<RowsOfBlock<T>>,
-}
-
-/// What is computed for the pixels of a block.
-#[derive(Debug)]
-struct RowsOfBlock<T> {
-    gathered: Gathered<T>,
+pub(super) struct Shader<T> {
+    /// The lights of the tile that is coloured.
+    pub(super) tile: TilePlan,
+    items: Items,
+    faces: Faces<T>,
+    located: Located<T>,
     batch: Batch<T>,
     texels: Rows<T>,
-    colors: [[u8; 4]; BATCH],
+    colors: [u32; BATCH],
 }
 
-/// The pixels of a block that are coloured together.
+/// Pixels that are coloured together.
+#[derive(Clone, Copy, Debug)]
 struct Group<'a> {
     draw: &'a Draw,
     draw_index: u32,
+    /// The number of the draw's first triangle.
     base: u32,
-    /// Places in the block.
-    pixels: &'a [u8],
-    numbers: &'a [u32; BLOCK_PIXELS],
-    corner: [i32; 2],
+    pipeline: u32,
 }
 
-impl Group<'_> {
-    /// Whether all pixels of the block show one triangle.
-    fn is_whole(&self) -> bool {
-        let first = self.numbers[0];
-        let other = self.numbers.iter().fold(0, |other, number| other | (number ^ first));
-        self.pixels.len() == BLOCK_PIXELS && other == 0
+impl<T: Light> Default for Shader<T> {
+    fn default() -> Self {
+        Self {
+            tile: TilePlan::default(),
+            items: Items::default(),
+            faces: Faces::default(),
+            located: Located::default(),
+            batch: Batch::default(),
+            texels: [[T::default(); BATCH]; 3],
+            colors: [0; BATCH],
+        }
     }
 }
 
-impl<'a, T: Light> Shader<'a, T> {
-    pub(super) fn new(
-        plan: &'a FramePlan,
-        frame: &'a Frame,
-        lit: &'a Lit<T>,
-        level: Level,
-    ) -> Self {
-        let rows = RowsOfBlock {
-            gathered: Gathered::default(),
-            batch: Batch::default(),
-            texels: [[T::default(); BATCH]; 3],
-            colors: [[255; 4]; BATCH],
-        };
-        Self { plan, frame, lit, level, rows: Box::new(rows) }
+impl<T: Light> Shader<T> {
+    /// Gets ready for another frame.
+    pub(super) const fn begin(&mut self) {
+        self.faces.forget();
     }
 
     /// Colours the pixels of a block whose upper left pixel is `corner` into the rows of a tile, from
-    /// `at` on. What shows the background is left as it is.
+    /// `at` on. What shows the background is left as it is; says whether anything else is shown.
     pub(super) fn block(
         &mut self,
+        scenery: &Scenery<'_, T>,
         words: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
         tile: &mut [[u8; 4]],
         at: usize,
+    ) -> bool {
+        let shown = self.items.list(scenery.level, words, corner);
+        let mut lines = shown.lines;
+        while lines != 0 {
+            let i = lines.trailing_zeros() as usize;
+            lines &= lines - 1;
+            if let Seen::Line(line) = seen(words[i]) {
+                tile[at + place(i)] = scenery.frame.line_color(scenery.plan, line);
+            }
+        }
+        if shown.triangles == 0 {
+            return shown.lines != 0;
+        }
+        if let Some(group) = one_group(scenery, &self.items) {
+            self.group(scenery, &group);
+            self.copy(tile, at);
+        } else {
+            self.groups(scenery, corner, tile, at);
+        }
+        true
+    }
+
+    /// Colours the pixels of a block that one triangle covers as a whole.
+    pub(super) fn whole_block(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        number: u32,
+        corner: [i32; 2],
+        tile: &mut [[u8; 4]],
+        at: usize,
     ) {
-        let mut numbers = [0; BLOCK_PIXELS];
-        let mut waiting = 0_u64;
-        let place = |i: usize| at + i / BLOCK as usize * TILE_SIDE + i % BLOCK as usize;
-        for (i, word) in words.iter().enumerate() {
-            match seen(*word) {
-                Seen::Background => {}
-                Seen::Line(number) => {
-                    tile[place(i)] = self.frame.lines[number as usize].color;
-                }
-                Seen::Triangle(number) => {
-                    numbers[i] = number;
-                    waiting |= 1 << i;
-                }
+        self.items.list_whole(number, corner);
+        self.group(scenery, &group_of(scenery, number));
+        self.copy(tile, at);
+    }
+
+    /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
+    /// ways.
+    fn groups(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        corner: [i32; 2],
+        tile: &mut [[u8; 4]],
+        at: usize,
+    ) {
+        let mut done = [false; SLOTS];
+        let all = std::mem::take(&mut self.items);
+        for slot in 0..all.count {
+            if done[slot] {
+                continue;
             }
+            let group = group_of(scenery, all.numbers[slot]);
+            let end = scenery.frame.draw_of(all.numbers[slot]).1.end;
+            let mut keep = [false; SLOTS];
+            for (other, number) in all.numbers[..all.count].iter().enumerate().skip(slot) {
+                keep[other] = (group.base..end).contains(number)
+                    && group.draw.pipeline_of(number - group.base) == group.pipeline;
+                done[other] |= keep[other];
+            }
+            self.items.take_from(&all, &keep, corner);
+            self.group(scenery, &group);
+            self.copy(tile, at);
         }
-        while waiting != 0 {
-            let first = numbers[waiting.trailing_zeros() as usize];
-            let (draw_index, start) = self.frame.draw_of(first);
-            let draw = &self.plan.draws[draw_index as usize];
-            let pipeline = draw.pipeline_of(first - start.number);
-            let mut pixels = [0; BATCH];
-            let mut count = 0;
-            let mut left = waiting;
-            while left != 0 {
-                let i = left.trailing_zeros();
-                left &= left - 1;
-                let number = numbers[i as usize];
-                let own = (start.number..start.end).contains(&number)
-                    && (draw.uniform.is_some()
-                        || draw.pipeline_of(number - start.number) == pipeline);
-                if own {
-                    pixels[count] = u8::try_from(i).expect("below 64");
-                    count += 1;
-                    waiting &= !(1 << i);
+        self.items = all;
+    }
+
+    /// Copies the colours into the rows of the tile.
+    fn copy(&self, tile: &mut [[u8; 4]], at: usize) {
+        if self.items.is_whole() {
+            let rows = self.colors.chunks_exact(BLOCK as usize);
+            for (to, from) in tile[at..].chunks_mut(TILE_SIDE).zip(rows) {
+                for (to, from) in to[..BLOCK as usize].iter_mut().zip(from) {
+                    *to = from.to_le_bytes();
                 }
             }
-            let base = start.number;
-            let pixels = &pixels[..count];
-            let group = Group { draw, draw_index, base, pixels, numbers: &numbers, corner };
-            self.group(&group, pipeline);
-            for (pixel, color) in pixels.iter().zip(&self.rows.colors) {
-                tile[place(usize::from(*pixel))] = *color;
+        } else {
+            let places = &self.items.places[..self.items.len];
+            for (i, color) in places.iter().zip(&self.colors) {
+                tile[at + place(usize::from(*i))] = color.to_le_bytes();
             }
         }
     }
 
-    fn group(&mut self, group: &Group<'_>, pipeline: u32) {
-        match &self.plan.pipelines[pipeline as usize] {
-            Pipeline::Flat(color) => self.rows.colors.fill(color.opaque()),
+    fn group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>) {
+        match &scenery.plan.pipelines[group.pipeline as usize] {
+            Pipeline::Flat(color) => self.colors.fill(u32::from_le_bytes(color.opaque())),
             Pipeline::Shaded(shaded) => {
-                self.gather(group, pipeline);
-                let rows = &mut *self.rows;
-                rows.batch.len = group.pixels.len();
-                rows.gathered.locate(self.level);
-                if let Some(stages) = &shaded.light {
-                    self.light(group, stages, shaded);
-                }
-                self.texels(group, shaded);
-                let rows = &mut *self.rows;
-                let lit = shaded.light.is_some();
-                let RowsOfBlock { batch, texels, colors, .. } = rows;
-                T::run(self.level, Finish { batch, texels, lit, colors });
-            }
-        }
-        if group.draw.back == Back::Red {
-            for i in 0..group.pixels.len() {
-                if self.rows.gathered.back[i] {
-                    self.rows.colors[i] = Color::BACK_FACE.opaque();
+                self.shaded(scenery, group, shaded);
+                if group.draw.back == Back::Red {
+                    self.redden();
                 }
             }
         }
     }
 
-    /// Light at the pixels of the group.
-    fn light(&mut self, group: &Group<'_>, stages: &[super::plan::Stage], shaded: &Shaded) {
-        let rows = &mut *self.rows;
-        match self.plan.light_at {
-            LightAt::Pixel => {
-                attributes(self.level, self.plan, group.draw, &rows.gathered, &mut rows.batch);
-                for row in rows.batch.diffuse.iter_mut().chain(&mut rows.batch.specular) {
-                    row.fill(T::default());
-                }
-                run(stages, shaded, self.plan, self.level, &mut rows.batch);
-            }
-            LightAt::Face | LightAt::Vertex => {
-                mix(self.level, &rows.gathered, &mut rows.batch);
+    /// Backs that are red are red.
+    fn redden(&mut self) {
+        for (color, slot) in self.colors[..self.items.len].iter_mut().zip(&self.items.slots) {
+            if self.faces.back >> slot & 1 == 1 {
+                *color = u32::from_le_bytes(Color::BACK_FACE.opaque());
             }
         }
     }
 
-    /// Takes what is known of the triangles at the pixels of the group.
-    fn gather(&mut self, group: &Group<'_>, pipeline: u32) {
-        let (plan, frame, lit) = (self.plan, self.frame, self.lit);
-        let vertices = frame.vertices_of(plan, group.draw_index);
-        let rows = &mut self.rows.gathered;
-        rows.len = group.pixels.len();
-        rows.exact = 0;
-        let take = |number: u32, corners: &mut Corners<T>| {
-            corners.take(plan, group.draw, vertices, number);
-            match plan.light_at {
-                LightAt::Pixel => gather_places(group.draw, number, corners),
-                _ => {
-                    let draw = (group.draw_index, group.draw);
-                    gather_light(plan, lit, draw, number, pipeline, corners);
+    fn shaded(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let Group { draw, draw_index, base, .. } = *group;
+        let textured = shaded.texture.is_some() || shaded.vertex_colors;
+        let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
+        let places = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
+        let vertices = frame.vertices_of(plan, draw_index);
+        let new = self.faces.take(&self.items, draw.model.mesh.draw_order(), draw_index, base);
+        if new {
+            self.faces.find_sides(draw, plan, vertices);
+        }
+        if places {
+            if new {
+                self.faces.locate(level, draw, plan, vertices);
+            }
+            self.located.find(level, &self.items, &self.faces, (plan, draw));
+        }
+        self.batch.len = self.items.len;
+        match light {
+            None => {}
+            Some((LightAt::Pixel, _)) => self.light_pixels(scenery, group, shaded, new),
+            Some((LightAt::Vertex, _)) if self.mix_light(scenery, group, new) => return,
+            Some((LightAt::Vertex, _)) => {}
+            Some((LightAt::Face, stages)) => self.light_faces(scenery, group, stages, textured),
+        }
+        if textured {
+            self.texels(draw, shaded, plan);
+        }
+        let Self { batch, texels, colors, .. } = self;
+        let own =
+            if textured { Own::Texels(texels) } else { Own::Tint(shaded.tint.map(T::from_f64)) };
+        T::run(level, Finish { batch, lit: light.is_some(), own, colors });
+        if !places {
+            self.hand_out_colors();
+        }
+    }
+
+    /// Light at every pixel.
+    fn light_pixels(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        new: bool,
+    ) {
+        let Scenery { level, plan, shines, .. } = *scenery;
+        let Self { tile, items, faces, located, batch, .. } = self;
+        let light = tile.light(plan, group.pipeline, shaded);
+        if light.places {
+            if new {
+                faces.carry_normals(group.draw);
+                faces.spread(level);
+            }
+            surroundings(level, (plan, group.draw), items, faces, located, batch);
+        } else {
+            // What they carry is not taken, so it is not there.
+            faces.forget();
+        }
+        batch.darken();
+        let shines = shines.of(group.pipeline);
+        match light.kept {
+            None => run(light.stages, shines, level, batch),
+            Some(kept) => {
+                for place in kept {
+                    let at = *place as usize..=*place as usize;
+                    run(&light.stages[at.clone()], &shines[at], level, batch);
                 }
             }
-        };
-        let mut corners = Corners::default();
-        if group.is_whole() {
-            let number = group.numbers[0] - group.base;
-            take(number, &mut corners);
-            if rows.put_whole(self.level, group.corner, &corners, plan) {
-                return;
-            }
         }
-        let mut last = NONE;
-        for (i, pixel) in group.pixels.iter().enumerate() {
-            let number = group.numbers[usize::from(*pixel)] - group.base;
-            if number != last {
-                last = number;
-                take(number, &mut corners);
+    }
+
+    /// Light of the vertices, mixed at every pixel. Says whether that gave the colours already.
+    fn mix_light(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, new: bool) -> bool {
+        let level = scenery.level;
+        let Self { items, faces, located, batch, colors, .. } = self;
+        let [front, back] = scenery.lit.tables(group.draw_index, group.pipeline);
+        if new || !front.is_colored() {
+            faces.carry_light(group.draw, &front.diffuse, &back.diffuse);
+            faces.spread(level);
+        }
+        if front.is_colored() {
+            mix(level, items, faces, located, Mixed::Pixels(colors));
+            return true;
+        }
+        mix(level, items, faces, located, Mixed::Rows(&mut batch.diffuse));
+        faces.carry_light(group.draw, &front.specular, &back.specular);
+        faces.spread(level);
+        mix(level, items, faces, located, Mixed::Rows(&mut batch.specular));
+        false
+    }
+
+    /// Light of the faces: at every pixel where they have `places`, else face by face.
+    fn light_faces(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        stages: &[Stage],
+        places: bool,
+    ) {
+        let Scenery { level, lit, shines, .. } = *scenery;
+        let Self { items, faces, batch, .. } = self;
+        batch.len = faces.count;
+        lit.place_faces(level, (group.draw_index, group.draw), faces, batch);
+        batch.darken();
+        run(stages, shines.of(group.pipeline), level, batch);
+        if places {
+            for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
+                let of_faces = *row;
+                for (own, slot) in row.iter_mut().zip(&items.slots[..items.len]) {
+                    *own = of_faces[slot.cast_unsigned() as usize];
+                }
             }
-            let [left, top] = group.corner;
-            let (x, y) = (left + i32::from(pixel % 8), top + i32::from(pixel / 8));
-            rows.put(i, [x, y], &corners, plan, group.draw, number);
+            batch.len = items.len;
+        }
+    }
+
+    /// From colours of faces to colours of pixels.
+    fn hand_out_colors(&mut self) {
+        let of_faces = self.colors;
+        for (color, slot) in self.colors.iter_mut().zip(&self.items.slots) {
+            *color = of_faces[slot.cast_unsigned() as usize % SLOTS];
         }
     }
 
     /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
-    fn texels(&mut self, group: &Group<'_>, shaded: &Shaded) {
-        let rows = &mut *self.rows;
-        for (row, tint) in rows.texels.iter_mut().zip(shaded.tint) {
+    fn texels(&mut self, draw: &Draw, shaded: &Shaded, plan: &FramePlan) {
+        let Self { items, faces, located, texels, .. } = self;
+        for (row, tint) in texels.iter_mut().zip(shaded.tint) {
             row.fill(T::from_f64(tint));
         }
-        if shaded.texture.is_none() && !shaded.vertex_colors {
-            return;
-        }
-        for (i, pixel) in group.pixels.iter().enumerate() {
-            let number = group.numbers[usize::from(*pixel)] - group.base;
-            let weights = rows.gathered.weights(i);
+        for i in 0..items.len {
+            let number = faces.numbers[items.slots[i].cast_unsigned() as usize];
+            let weights = located.weights(i);
             if let Some(texture) = &shaded.texture
-                && let Some(uv) = uv(group.draw, number, weights)
+                && let Some(uv) = uv(draw, number, weights)
             {
-                let texel = texture::sample::<T>(texture, uv, self.plan.filter);
-                for (row, part) in rows.texels.iter_mut().zip(texel) {
+                let texel = texture::sample::<T>(texture, uv, plan.filter);
+                for (row, part) in texels.iter_mut().zip(texel) {
                     row[i] = row[i] * part;
                 }
             }
             if shaded.vertex_colors {
-                for (row, part) in rows.texels.iter_mut().zip(color(group.draw, number, weights)) {
+                for (row, part) in texels.iter_mut().zip(color(draw, number, weights)) {
                     row[i] = row[i] * T::from_f64(part);
                 }
             }
@@ -247,49 +361,83 @@ impl<'a, T: Light> Shader<'a, T> {
     }
 }
 
-/// I = t D + S where lit, t elsewhere; as bytes.
+/// Where pixel `i` of a block stands in the rows of a tile, from the block's first on.
+const fn place(i: usize) -> usize {
+    i / BLOCK as usize * TILE_SIDE + i % BLOCK as usize
+}
+
+/// The group that a triangle belongs to.
+fn group_of<'a, T>(scenery: &Scenery<'a, T>, number: u32) -> Group<'a> {
+    let (draw_index, start) = scenery.frame.draw_of(number);
+    let draw = &scenery.plan.draws[draw_index as usize];
+    let pipeline = draw.pipeline_of(number - start.number);
+    Group { draw, draw_index, base: start.number, pipeline }
+}
+
+/// The group of all triangles of a list, where they are all of one.
+fn one_group<'a, T>(scenery: &Scenery<'a, T>, items: &Items) -> Option<Group<'a>> {
+    let group = group_of(scenery, items.numbers[0]);
+    let end = scenery.frame.draw_of(items.numbers[0]).1.end;
+    let numbers = &items.numbers[..items.count];
+    let alike = |number: &u32| {
+        (group.base..end).contains(number)
+            && (group.draw.uniform.is_some()
+                || group.draw.pipeline_of(number - group.base) == group.pipeline)
+    };
+    numbers.iter().all(alike).then_some(group)
+}
+
+/// The colour t of the surface itself: one, or one for each pixel.
+#[derive(Clone, Copy, Debug)]
+enum Own<'a, T> {
+    Tint([T; 3]),
+    Texels(&'a Rows<T>),
+}
+
+impl<T: Number> Own<'_, T> {
+    #[inline(always)]
+    fn at<M: Machine<Number = T>>(self, machine: M, at: usize) -> Triple<M::R> {
+        match self {
+            Self::Tint(tint) => set(machine, tint),
+            Self::Texels(texels) => load(machine, texels, at),
+        }
+    }
+}
+
+/// Makes bytes of colours: t D + S where it is lit, with D and S the two kinds of light, else t.
 struct Finish<'a, T> {
     batch: &'a Batch<T>,
-    texels: &'a Rows<T>,
     lit: bool,
-    colors: &'a mut [[u8; 4]; BATCH],
+    own: Own<'a, T>,
+    colors: &'a mut [u32; BATCH],
 }
 
 impl<T: Light> Kernel<T> for Finish<'_, T> {
     #[inline(always)]
     fn run<M: Machine<Number = T>>(self, machine: M) {
-        let Self { batch, texels, lit, colors } = self;
-        let mut bytes = [[0; BATCH]; 3];
+        let Self { batch, lit, own, colors } = self;
         for at in (0..batch.len).step_by(M::LANES) {
-            let mut light = load(machine, texels, at);
+            let mut color = own.at(machine, at);
             if lit {
                 let (Triple([r, g, b]), Triple([tr, tg, tb])) =
-                    (load(machine, &batch.diffuse, at), light);
+                    (load(machine, &batch.diffuse, at), color);
                 let specular = load(machine, &batch.specular, at);
-                light = Triple([tr * r, tg * g, tb * b]).plus(specular);
+                color = Triple([tr * r, tg * g, tb * b]).plus(specular);
             }
-            machine.store_bytes(light.0[0], &mut bytes[0], at);
-            machine.store_bytes(light.0[1], &mut bytes[1], at);
-            machine.store_bytes(light.0[2], &mut bytes[2], at);
-        }
-        let [r, g, b] = &bytes;
-        for (((color, r), g), b) in colors.iter_mut().zip(r).zip(g).zip(b) {
-            *color = (r | g << 8 | b << 16 | 255 << 24_i32).to_le_bytes();
+            machine.store_pixels(color, colors, at);
         }
     }
 }
 
 /// Adds up the light of some stages at every place of a batch.
 pub(super) fn run<T: Light>(
-    stages: &[super::plan::Stage],
-    shaded: &Shaded,
-    plan: &FramePlan,
+    stages: &[Stage],
+    shines: &[Shine<T>],
     level: Level,
     batch: &mut Batch<T>,
 ) {
-    for stage in stages {
-        let lamp = &plan.lamps[stage.lamp as usize];
-        T::add_light(stage.variant(), level, batch, lamp, &shaded.matter);
+    for (stage, shine) in stages.iter().zip(shines) {
+        T::add_light(stage.variant(), level, batch, shine);
     }
 }
 
@@ -329,9 +477,7 @@ pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i3
         return true;
     };
     let (Some(opacity), Some(texture)) = (shaded.cutout, &shaded.texture) else { return true };
-    let vertices = frame.vertices_of(plan, index);
-    let corners = Corners::<f64>::new(plan, draw, vertices, number);
-    let weights = corners.weights(plan, draw, number, pixel);
+    let weights = weights(plan, draw, frame.vertices_of(plan, index), number, pixel);
     let Some(uv) = uv(draw, number, weights) else { return true };
     texture::sample::<f64>(texture, uv, plan.filter)[3] * opacity >= 0.5
 }

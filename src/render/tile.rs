@@ -7,20 +7,20 @@
 //!
 //! Which pixels a triangle covers, and how near it is there, is computed in one of two ways, chosen
 //! by the triangle's own size alone: in f32 for boxes up to 8 x 8, where whole numbers below 2^24 are
-//! exact, sixteen triangles at once; and in i64 for all others, a block of 8 x 8 pixels at once. So
-//! neither tiles nor threads nor instructions show in the picture.
+//! exact, sixteen triangles at once (`small`); and in 64 bits for all others, a block of 8 x 8 pixels
+//! at once (`large`). So neither tiles nor threads nor instructions show in the picture.
+//!
+//! A block that nothing reaches is never touched, and one that a single large triangle covers is not
+//! asked for its depths: that it is covered is all that is noted, until something else comes near.
 
-use fearless_simd::{
-    Bytes as _, Level, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch,
-    f32x16, i32x16, u32x16,
-};
+use fearless_simd::{Level, Simd, dispatch, i32x16};
 
-use super::bins::{Bin, LargeTriangle, PACK, Pack, SMALL};
-use super::coverage::{PixelBox, SUBPIXELS, Triangle};
+use super::bins::{Bins, LargeTriangle};
+use super::coverage::{PixelBox, Triangle};
 use super::frame::Frame;
-use super::lines;
+use super::large::Large;
+use super::lines::{self, LineNumber};
 use super::plan::FramePlan;
-use super::real::Real;
 use super::surface;
 use crate::base::math::each;
 
@@ -37,9 +37,6 @@ const BLOCKS: i32 = TILE / BLOCK;
 /// Pixels of a tile.
 const PIXELS: usize = TILE_SIDE * TILE_SIDE;
 
-/// Numbers of lines have this bit.
-const LINE: u32 = 1 << 31;
-
 /// What is seen at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Seen {
@@ -47,18 +44,19 @@ pub(super) enum Seen {
     Background,
     /// A triangle, by its number in the frame.
     Triangle(u32),
-    /// A line, by its place among the frame's lines.
-    Line(u32),
+    /// A line, by its number in the frame and its colour.
+    Line(LineNumber),
 }
 
 /// What a word says is seen.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
 pub(super) const fn seen(word: u64) -> Seen {
-    match (word, !(word as u32)) {
-        (0, _) => Seen::Background,
-        (_, number) if number & LINE != 0 => Seen::Line(number & !LINE),
-        (_, number) => Seen::Triangle(number),
+    let number = !(word as u32);
+    match LineNumber::of(number) {
+        _ if word == 0 => Seen::Background,
+        Some(line) => Seen::Line(line),
+        None => Seen::Triangle(number),
     }
 }
 
@@ -76,31 +74,32 @@ fn word(depth: f32, number: u32) -> u64 {
 #[derive(Debug)]
 pub(super) struct Visibility {
     words: Box<[u64; PIXELS]>,
+    /// The blocks whose words are written, a bit for each.
+    written: u64,
+    /// The blocks that are known to show one triangle, and have no words yet.
+    whole: u64,
+    /// What they show, as places in `large`.
+    shown: [u32; BLOCK_PIXELS],
+    /// Triangles that cover a block as a whole.
+    large: Vec<Large>,
     /// For each block a depth that all of its pixels are at least as near as.
     farthest: [f32; BLOCK_PIXELS],
+    /// For each block that shows one triangle a depth that no pixel is nearer than.
+    nearest: [f32; BLOCK_PIXELS],
     bounds: PixelBox,
-    hits: Box<Hits>,
 }
-
-/// Pixels that a pack of triangles covers.
-#[derive(Debug)]
-struct Hits {
-    pixel: [u32; HITS],
-    depth: [u32; HITS],
-    number: [u32; HITS],
-}
-
-/// All pixels of the boxes of a pack, and room for one store past the last.
-const HITS: usize = PACK * BLOCK_PIXELS + PACK;
 
 impl Default for Visibility {
     fn default() -> Self {
-        let row = [0; HITS];
         Self {
             words: Box::new([0; PIXELS]),
+            written: 0,
+            whole: 0,
+            shown: [0; BLOCK_PIXELS],
+            large: Vec::new(),
             farthest: [0.0; BLOCK_PIXELS],
+            nearest: [0.0; BLOCK_PIXELS],
             bounds: PixelBox { left: 0, top: 0, right: 0, bottom: 0 },
-            hits: Box::new(Hits { pixel: row, depth: row, number: row }),
         }
     }
 }
@@ -114,152 +113,232 @@ impl Visibility {
         frame: &Frame,
         (tile, bounds): (usize, PixelBox),
     ) {
-        self.words.fill(0);
-        self.farthest.fill(0.0);
-        self.bounds = bounds;
+        self.clear(bounds);
         for bins in frame.bins() {
-            let bin = &bins.tiles[tile];
-            dispatch!(level, simd => self.draw_small(simd, bin));
-            for &number in &bin.large {
+            dispatch!(level, simd => self.draw_plain(simd, bins, tile));
+        }
+        for bins in frame.bins() {
+            dispatch!(level, simd => self.draw_hits(simd, bins, tile));
+            for &number in &bins.tiles[tile].large {
                 let large = &bins.large[number as usize];
                 if large.cutout {
-                    self.draw_cutout(plan, frame, large);
-                } else {
-                    dispatch!(level, simd => self.draw_large(simd, large));
+                    self.draw_cutout(level, plan, frame, large);
+                }
+            }
+            dispatch!(level, simd => self.draw_lines(simd, bins, plan.line_width, tile));
+        }
+    }
+
+    fn clear(&mut self, bounds: PixelBox) {
+        (self.written, self.whole) = (0, 0);
+        self.large.clear();
+        self.farthest.fill(0.0);
+        self.bounds = bounds;
+    }
+
+    /// Whether a block shows anything; `block` counts along rows of blocks.
+    pub(super) const fn shows(&self, block: usize) -> bool {
+        (self.written | self.whole) >> block & 1 != 0
+    }
+
+    /// The triangle that a block shows, where one is known to cover it as a whole; its words are of
+    /// no meaning then.
+    pub(super) fn whole(&self, block: usize) -> Option<u32> {
+        (self.whole >> block & 1 != 0).then(|| self.large[self.shown[block] as usize].number)
+    }
+
+    /// The words of a block that shows something, row by row.
+    pub(super) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
+        &self.words.as_chunks().0[block]
+    }
+
+    /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
+    /// nearer than; `None` where no triangle is seen.
+    pub(super) fn depths(&self) -> Option<[f32; 2]> {
+        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+        for block in (0..BLOCK_PIXELS).filter(|block| self.shows(*block)) {
+            if self.whole(block).is_some() {
+                low = low.min(self.farthest[block]);
+                high = high.max(self.nearest[block]);
+                continue;
+            }
+            for word in self.block(block) {
+                if let Seen::Triangle(_) = seen(*word) {
+                    (low, high) = (low.min(depth(*word)), high.max(depth(*word)));
                 }
             }
         }
-        self.draw_lines(plan, frame, tile);
+        (low <= high).then_some([low, high])
     }
 
-    /// The words of one block, row by row, and its upper left pixel; `block` counts along rows of
-    /// blocks.
-    pub(super) fn block(&self, block: usize) -> (&[u64; BLOCK_PIXELS], [i32; 2]) {
-        let words = &self.words[block * BLOCK_PIXELS..][..BLOCK_PIXELS];
+    /// The upper left pixel of a block.
+    pub(super) fn corner(&self, block: usize) -> [i32; 2] {
         let at = i32::try_from(block).expect("a tile has few blocks");
-        let corner =
-            [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK];
-        (words.try_into().expect("a block has so many pixels"), corner)
+        [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
     }
 
     /// The word of a pixel of the tile.
-    pub(super) fn word(&self, x: i32, y: i32) -> u64 {
-        self.words[place(x - self.bounds.left, y - self.bounds.top)]
-    }
-
-    #[inline(always)]
-    fn put(&mut self, x: i32, y: i32, depth: f32, number: u32) {
+    pub(super) fn word(&mut self, level: Level, x: i32, y: i32) -> u64 {
         let place = place(x - self.bounds.left, y - self.bounds.top);
-        self.words[place] = self.words[place].max(word(depth, number));
+        if !self.shows(place / BLOCK_PIXELS) {
+            return 0;
+        }
+        dispatch!(level, simd => self.write(simd, place / BLOCK_PIXELS));
+        self.words[place]
     }
 
-    fn draw_lines(&mut self, plan: &FramePlan, frame: &Frame, tile: usize) {
-        for &number in &frame.line_bins.tiles[tile].lines {
-            let line = &frame.lines[number as usize];
-            lines::pixels(line, plan.line_width, self.bounds, |x, y, depth| {
-                self.put(x, y, depth, number | LINE);
-            });
+    /// Sees to it that a block has words.
+    #[inline(always)]
+    fn write<S: Simd>(&mut self, simd: S, block: usize) {
+        let bit = 1 << block;
+        if self.written & bit == 0 {
+            self.written |= bit;
+            let words = block_of(&mut self.words, block);
+            words.fill(0);
+            if self.whole & bit != 0 {
+                self.whole &= !bit;
+                self.large[self.shown[block] as usize].draw(simd, block, true, words);
+            }
         }
     }
 
-    fn draw_cutout(&mut self, plan: &FramePlan, frame: &Frame, large: &LargeTriangle) {
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, simd: S, x: i32, y: i32, depth: f32, number: u32) {
+        let place = place(x - self.bounds.left, y - self.bounds.top);
+        self.write(simd, place / BLOCK_PIXELS);
+        self.words[place] = self.words[place].max(word(depth, number));
+    }
+
+    /// Draws the lines of a tile that are not short.
+    #[inline(always)]
+    fn draw_lines<S: Simd>(&mut self, simd: S, bins: &Bins, width: i32, tile: usize) {
+        for &place in &bins.tiles[tile].lines {
+            let line = &bins.lines[place as usize];
+            lines::pixels(
+                line,
+                width,
+                self.bounds,
+                #[inline(always)]
+                |x, y, depth| self.put(simd, x, y, depth, line.number),
+            );
+        }
+    }
+
+    fn draw_cutout(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        frame: &Frame,
+        large: &LargeTriangle,
+    ) {
         let corners = each(large.corners, |corner| corner.at());
         let Some(triangle) = Triangle::new(corners) else { return };
-        let depth = DepthPlane::new(large, &triangle);
+        let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
         triangle.covered(self.bounds, |pixel| {
             if surface::is_opaque(plan, frame, large.number, [pixel.x, pixel.y]) {
-                self.put(pixel.x, pixel.y, depth.at(pixel.edges), large.number);
+                let depth = seen.depth(pixel.edges);
+                dispatch!(level, simd => self.put(simd, pixel.x, pixel.y, depth, large.number));
             }
         });
     }
 
+    /// Draws the small triangles of a tile, and lines that are short.
     #[inline(always)]
-    fn draw_large<S: Simd>(&mut self, _: S, large: &LargeTriangle) {
+    fn draw_hits<S: Simd>(&mut self, simd: S, bins: &Bins, tile: usize) {
+        bins.hits.each(
+            tile,
+            #[inline(always)]
+            |place, depth, number| {
+                let place = place as usize % PIXELS;
+                if self.written >> (place / BLOCK_PIXELS) & 1 == 0 {
+                    self.write(simd, place / BLOCK_PIXELS);
+                }
+                let word = u64::from(depth) << 32 | u64::from(!number);
+                self.words[place] = self.words[place].max(word);
+            },
+        );
+    }
+
+    /// Draws the large triangles of a tile whose textures have no part in where they are.
+    #[inline(always)]
+    fn draw_plain<S: Simd>(&mut self, simd: S, bins: &Bins, tile: usize) {
+        for &number in &bins.tiles[tile].large {
+            let large = &bins.large[number as usize];
+            if !large.cutout {
+                self.draw_large(simd, large);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn draw_large<S: Simd>(&mut self, simd: S, large: &LargeTriangle) {
         let Some(triangle) = Triangle::new(each(large.corners, |corner| corner.at())) else {
             return;
         };
-        let plane = DepthPlane::new(large, &triangle);
         let area = triangle.bounds().intersection(self.bounds);
         if area.is_empty() {
             return;
         }
-        let blocks = |low: i32, high: i32| low / BLOCK..(high - 1) / BLOCK + 1;
         let (left, top) = (self.bounds.left, self.bounds.top);
-        for row in blocks(area.top - top, area.bottom - top) {
-            for column in blocks(area.left - left, area.right - left) {
-                let block = (row * BLOCKS + column) as usize;
-                if plane.high < self.farthest[block] {
-                    continue;
-                }
-                let (x, y) = (left + column * BLOCK, top + row * BLOCK);
-                let edges = triangle.edges_at(x, y);
-                let Some(whole) = triangle.touches_block(edges) else { continue };
-                let words = &mut self.words[block * BLOCK_PIXELS..][..BLOCK_PIXELS];
-                let words = words.try_into().expect("a block has so many pixels");
-                draw_block(&triangle, &plane, edges, whole, large.number, words);
-                if whole {
-                    self.farthest[block] = self.farthest[block].max(plane.low);
-                }
+        let large = Large::new(large, &triangle, [left, top]);
+        let area = PixelBox {
+            left: area.left - left,
+            top: area.top - top,
+            right: area.right - left,
+            bottom: area.bottom - top,
+        };
+        let touched = large.blocks(simd, area);
+        let mut some = touched.some;
+        let mut place = None;
+        while some != 0 {
+            let block = some.trailing_zeros() as usize;
+            some &= some - 1;
+            if large.high < self.farthest[block] {
+                continue;
+            }
+            if touched.whole >> block & 1 != 0 {
+                self.draw_whole(simd, &large, block, &mut place);
+            } else {
+                self.write(simd, block);
+                large.draw(simd, block, false, block_of(&mut self.words, block));
             }
         }
     }
 
+    /// Draws a triangle into a block that it covers; `place` is where it stands among those that do.
     #[inline(always)]
-    fn draw_small<S: Simd>(&mut self, simd: S, bin: &Bin) {
-        for (queue, side) in SMALL.into_iter().enumerate() {
-            for (pack, count) in bin.packs(queue) {
-                self.draw_pack(simd, pack, count, side);
-            }
+    fn draw_whole<S: Simd>(
+        &mut self,
+        simd: S,
+        large: &Large,
+        block: usize,
+        place: &mut Option<u32>,
+    ) {
+        let [low, high] = large.depths(block);
+        if high < self.farthest[block] {
+            return;
         }
-    }
-
-    /// Draws sixteen triangles whose boxes have `side` x `side` pixels at most.
-    #[inline(always)]
-    fn draw_pack<S: Simd>(&mut self, simd: S, pack: &Pack, count: usize, side: i32) {
-        let lanes = PackLanes::new(simd, pack);
-        let columns = self.bounds.right - self.bounds.left;
-        let rows = self.bounds.bottom - self.bounds.top;
-        let there = (1_u64 << count) - 1;
-        let mut hits = 0;
-        let mut row = lanes.first;
-        for dy in 0..side {
-            let y = lanes.top + dy;
-            let in_rows = (y.simd_ge(0) & y.simd_lt(rows)).to_bitmask() & there;
-            let mut edges = row;
-            for dx in 0..side {
-                let x = lanes.left + dx;
-                let covered = edges[0].simd_ge(lanes.least[0])
-                    & edges[1].simd_ge(lanes.least[1])
-                    & edges[2].simd_ge(lanes.least[2])
-                    & x.simd_ge(0)
-                    & x.simd_lt(columns);
-                if covered.to_bitmask() & in_rows != 0 {
-                    let covered = covered & mask(simd, in_rows);
-                    let depth = lanes.depth_at(edges);
-                    let place: u32x16<S> = lanes_place(x, y).bitcast();
-                    let depth: u32x16<S> = depth.bitcast();
-                    let to = hits..hits + PACK;
-                    place.compress(covered).store_slice(&mut self.hits.pixel[to.clone()]);
-                    depth.compress(covered).store_slice(&mut self.hits.depth[to.clone()]);
-                    lanes.number.compress(covered).store_slice(&mut self.hits.number[to]);
-                    hits += covered.to_bitmask().count_ones() as usize;
-                }
-                edges = lanes.step(edges, lanes.a);
-            }
-            row = lanes.step(row, lanes.b);
+        let bit = 1 << block;
+        let alone = (self.written | self.whole) & bit == 0;
+        if alone || (self.whole & bit != 0 && low > self.nearest[block]) {
+            self.shown[block] = *place.get_or_insert_with(|| {
+                self.large.push(*large);
+                u32::try_from(self.large.len() - 1).expect("fewer than 2^32 triangles")
+            });
+            self.whole |= bit;
+            self.nearest[block] = high;
+        } else {
+            self.write(simd, block);
+            large.draw(simd, block, true, block_of(&mut self.words, block));
         }
-        let Hits { pixel, depth, number } = &*self.hits;
-        for ((pixel, depth), number) in pixel[..hits].iter().zip(depth).zip(number) {
-            let word = u64::from(*depth) << 32 | u64::from(!number);
-            let place = *pixel as usize % PIXELS;
-            self.words[place] = self.words[place].max(word);
-        }
+        self.farthest[block] = self.farthest[block].max(low);
     }
 }
 
+/// The words of a block.
 #[inline(always)]
-fn mask<S: Simd>(simd: S, bits: u64) -> fearless_simd::mask32x16<S> {
-    fearless_simd::mask32x16::from_bitmask(simd, bits)
+fn block_of(words: &mut [u64; PIXELS], block: usize) -> &mut [u64; BLOCK_PIXELS] {
+    &mut words.as_chunks_mut().0[block]
 }
 
 /// Where the word of a pixel stands, by column and row of the tile.
@@ -270,183 +349,22 @@ const fn place(x: i32, y: i32) -> usize {
 
 /// The same for sixteen pixels.
 #[inline(always)]
-fn lanes_place<S: Simd>(x: i32x16<S>, y: i32x16<S>) -> i32x16<S> {
+pub(super) fn lanes_place<S: Simd>(x: i32x16<S>, y: i32x16<S>) -> i32x16<S> {
     ((y >> 3) << 9) + ((x >> 3) << 6) + ((y & 7) << 3) + (x & 7)
-}
-
-/// Sixteen small triangles, ready to be asked pixel by pixel.
-struct PackLanes<S: Simd> {
-    left: i32x16<S>,
-    top: i32x16<S>,
-    number: u32x16<S>,
-    /// The edge functions at the first pixel of the box; positive inside, whatever the winding.
-    first: [f32x16<S>; 3],
-    /// The least values that count as inside: 0, or 1 where centres on the edge are out.
-    least: [f32x16<S>; 3],
-    /// What an edge function gains by a pixel to the right, and by one down.
-    a: [f32x16<S>; 3],
-    b: [f32x16<S>; 3],
-    depth: f32x16<S>,
-    to_second: f32x16<S>,
-    to_third: f32x16<S>,
-    low: f32x16<S>,
-    high: f32x16<S>,
-}
-
-impl<S: Simd> PackLanes<S> {
-    #[inline(always)]
-    fn new(simd: S, pack: &Pack) -> Self {
-        let [x0, x1, x2] = each([0, 1, 2], |i: usize| f32x16::from_slice(simd, &pack.x[i]));
-        let [y0, y1, y2] = each([0, 1, 2], |i: usize| f32x16::from_slice(simd, &pack.y[i]));
-        let [d0, d1, d2] = each([0, 1, 2], |i: usize| f32x16::from_slice(simd, &pack.depth[i]));
-        let left = i32x16::from_slice(simd, &pack.left);
-        let top = i32x16::from_slice(simd, &pack.top);
-
-        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
-        let one = f32x16::splat(simd, 1.0);
-        let sign = area.simd_lt(0.0).select(f32x16::splat(simd, -1.0), one);
-        let (parts, half) = (SUBPIXELS as f32, (SUBPIXELS / 2) as f32);
-        let cx: f32x16<S> = left.to_float::<f32x16<S>>() * parts + half;
-        let cy: f32x16<S> = top.to_float::<f32x16<S>>() * parts + half;
-        let middle = [cx, cy];
-        let e0 = lanes_edge([x1, y1], [x2, y2], sign, middle);
-        let e1 = lanes_edge([x2, y2], [x0, y0], sign, middle);
-        let e2 = lanes_edge([x0, y0], [x1, y1], sign, middle);
-        // Triangles without area cover nothing; 1 keeps their quotients finite.
-        let area = area * sign;
-        let per_area = one / area.simd_gt(0.0).select(area, one);
-        Self {
-            left,
-            top,
-            number: u32x16::from_slice(simd, &pack.number),
-            first: [e0.value, e1.value, e2.value],
-            least: [e0.least, e1.least, e2.least],
-            a: [e0.a, e1.a, e2.a],
-            b: [e0.b, e1.b, e2.b],
-            depth: d0,
-            to_second: (d1 - d0) * per_area,
-            to_third: (d2 - d0) * per_area,
-            low: Real::min(Real::min(d0, d1), d2),
-            high: Real::max(Real::max(d0, d1), d2),
-        }
-    }
-
-    #[inline(always)]
-    fn step(&self, [x, y, z]: [f32x16<S>; 3], by: [f32x16<S>; 3]) -> [f32x16<S>; 3] {
-        [x + by[0], y + by[1], z + by[2]]
-    }
-
-    /// The depths at a pixel, linear on the screen and within the depths of the corners.
-    #[inline(always)]
-    fn depth_at(&self, edges: [f32x16<S>; 3]) -> f32x16<S> {
-        let depth = self.depth + edges[1] * self.to_second + edges[2] * self.to_third;
-        let depth = depth.simd_gt(self.low).select(depth, self.low);
-        depth.simd_lt(self.high).select(depth, self.high)
-    }
-}
-
-/// An edge function of sixteen triangles.
-struct LanesEdge<S: Simd> {
-    value: f32x16<S>,
-    least: f32x16<S>,
-    a: f32x16<S>,
-    b: f32x16<S>,
-}
-
-/// As in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y); turned by the sign
-/// of the area, and with what it gains by a whole pixel.
-#[inline(always)]
-fn lanes_edge<S: Simd>(
-    [px, py]: [f32x16<S>; 2],
-    [qx, qy]: [f32x16<S>; 2],
-    sign: f32x16<S>,
-    [x, y]: [f32x16<S>; 2],
-) -> LanesEdge<S> {
-    let (a, b) = ((py - qy) * sign, (qx - px) * sign);
-    let on_edge = a.simd_gt(0.0) | (a.simd_eq(0.0) & b.simd_gt(0.0));
-    let simd = px.simd;
-    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
-    LanesEdge {
-        value: a * (x - px) + b * (y - py),
-        least: on_edge.select(zero, one),
-        a: a * (SUBPIXELS as f32),
-        b: b * (SUBPIXELS as f32),
-    }
-}
-
-/// The depth of a large triangle: linear on the screen, within the depths of its corners.
-#[derive(Clone, Copy, Debug)]
-struct DepthPlane {
-    depth: f64,
-    to_second: f64,
-    to_third: f64,
-    low: f32,
-    high: f32,
-}
-
-impl DepthPlane {
-    #[inline(always)]
-    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
-    fn new(large: &LargeTriangle, triangle: &Triangle) -> Self {
-        let [a, b, c] = each(large.corners, |corner| corner.depth);
-        let per_area = 1.0 / triangle.doubled_area() as f64;
-        Self {
-            depth: f64::from(a),
-            to_second: (f64::from(b) - f64::from(a)) * per_area,
-            to_third: (f64::from(c) - f64::from(a)) * per_area,
-            low: a.min(b).min(c),
-            high: a.max(b).max(c),
-        }
-    }
-
-    /// The depth where the edge functions have these values.
-    #[inline(always)]
-    #[expect(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        reason = "the nearest number is meant"
-    )]
-    fn at(&self, [_, second, third]: [i64; 3]) -> f32 {
-        let depth = self.depth + second as f64 * self.to_second + third as f64 * self.to_third;
-        let depth = depth as f32;
-        let depth = if depth > self.low { depth } else { self.low };
-        if depth < self.high { depth } else { self.high }
-    }
-}
-
-/// Draws a triangle into the words of a block; `edges` are the edge functions at its first pixel.
-#[inline(always)]
-fn draw_block(
-    triangle: &Triangle,
-    plane: &DepthPlane,
-    edges: [i64; 3],
-    whole: bool,
-    number: u32,
-    words: &mut [u64; BLOCK_PIXELS],
-) {
-    let [right, down] = triangle.steps();
-    let least = triangle.least();
-    for (y, row) in (0_i64..).zip(words.chunks_exact_mut(BLOCK as usize)) {
-        let at: [i64; 3] = [edges[0] + y * down[0], edges[1] + y * down[1], edges[2] + y * down[2]];
-        for (x, slot) in (0_i64..).zip(row) {
-            let at = [at[0] + x * right[0], at[1] + x * right[1], at[2] + x * right[2]];
-            let inside = (at[0] >= least[0]) & (at[1] >= least[1]) & (at[2] >= least[2]);
-            let new = word(plane.at(at), number);
-            let new = if whole | inside { new } else { 0 };
-            *slot = if new > *slot { new } else { *slot };
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::SimdBase as _;
+
     use super::*;
     use crate::base::image::Size;
-    use crate::render::bins::Bins;
     use crate::render::clip::ScreenVertex;
     use crate::render::coverage::Snapped;
+    use crate::render::small::{self, ROWS, SMALL};
 
-    const BOUNDS: PixelBox = PixelBox { left: 0, top: 0, right: 50, bottom: 60 };
+    const SIZE: Size = Size { width: 150, height: 140 };
+    const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };
 
     /// Numbers that look random.
     fn numbers(mut state: u64) -> impl FnMut(i32) -> i32 {
@@ -456,23 +374,63 @@ mod tests {
         }
     }
 
-    fn covered_by(bins: &Bins, level: Level) -> Vec<(i32, i32)> {
-        let mut visibility = Visibility { bounds: BOUNDS, ..Visibility::default() };
-        dispatch!(level, simd => visibility.draw_small(simd, &bins.tiles[0]));
-        for large in &bins.large {
-            dispatch!(level, simd => visibility.draw_large(simd, large));
+    fn bins() -> Bins {
+        let mut bins = Bins::default();
+        bins.clear(SIZE);
+        bins
+    }
+
+    /// The bins with some small triangles, sixteen at the most.
+    fn small(triangles: &[[Snapped; 3]]) -> Bins {
+        let mut rows = [[0; 16]; ROWS];
+        for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
+            for (i, corner) in corners.iter().enumerate() {
+                (rows[2 * i][lane], rows[2 * i + 1][lane]) = (corner.x, corner.y);
+                rows[6 + i][lane] = 0.5_f32.to_bits().cast_signed();
+            }
+            rows[9][lane] = number;
         }
-        let all = (0..60).flat_map(|y| (0..50).map(move |x| (x, y)));
-        all.filter(|(x, y)| visibility.word(*x, *y) != 0).collect()
+        let mut bins = bins();
+        dispatch!(Level::new(), simd => {
+            let mut pack = [i32x16::splat(simd, 0); ROWS];
+            for (row, values) in rows.iter().zip(&mut pack) {
+                *values = i32x16::from_slice(simd, row);
+            }
+            small::draw(simd, &pack, &mut bins);
+        });
+        bins
+    }
+
+    /// The pixels that show the primitive with the number 0, row by row.
+    fn seen_in(bins: &Bins) -> Vec<(i32, i32)> {
+        let mut visibility = Visibility::default();
+        let mut pixels = Vec::new();
+        for tile in 0..9 {
+            let (left, top) = (tile % 3 * TILE, tile / 3 * TILE);
+            let own = PixelBox { left, top, right: left + TILE, bottom: top + TILE };
+            let own = own.intersection(PICTURE);
+            visibility.clear(own);
+            dispatch!(Level::new(), simd => {
+                visibility.draw_plain(simd, bins, tile as usize);
+                visibility.draw_hits(simd, bins, tile as usize);
+            });
+            for (x, y) in (top..own.bottom).flat_map(|y| (left..own.right).map(move |x| (x, y))) {
+                if seen(visibility.word(Level::new(), x, y)) == Seen::Triangle(0) {
+                    pixels.push((y, x));
+                }
+            }
+        }
+        pixels.sort_unstable();
+        pixels
     }
 
     #[test]
-    fn both_ways_cover_the_pixels_that_the_rule_says() {
+    fn every_way_covers_the_pixels_that_the_rule_says() {
         let mut random = numbers(7);
-        for extent in [1, 2, 4, 8, 30] {
-            for _ in 0..4000 {
+        for extent in [1, 2, 4, 8, 30, 100] {
+            for _ in 0..2000 {
                 // Every second coordinate on a pixel's centre or border.
-                let (left, top) = (random(56) - 4, random(66) - 4);
+                let (left, top) = (random(158) - 8, random(148) - 8);
                 let mut coordinate = |from: i32| {
                     let place = from * 256 + random(extent * 256);
                     if random(2) == 0 { place } else { place / 128 * 128 }
@@ -481,27 +439,75 @@ mod tests {
                     [0, 1, 2].map(|_| Snapped { x: coordinate(left), y: coordinate(top) });
                 let mut want = Vec::new();
                 if let Some(triangle) = Triangle::new(corners) {
-                    triangle.covered(BOUNDS, |pixel| want.push((pixel.x, pixel.y)));
+                    triangle.covered(PICTURE, |pixel| want.push((pixel.y, pixel.x)));
                 }
-                let vertices = corners.map(|corner| ScreenVertex::new(corner, 0.5));
                 let bounds = PixelBox::of(corners);
-                let side = (bounds.right - bounds.left).max(bounds.bottom - bounds.top);
-                for queue in 0..4 {
-                    let mut bins = Bins::default();
-                    bins.clear(Size::new(50, 60));
-                    match SMALL.get(queue) {
-                        Some(small) if side <= *small && !bounds.is_empty() => {
-                            bins.add_small(queue, vertices.each_ref(), bounds, 5);
-                        }
-                        Some(_) => continue,
-                        None => bins.add_large(
-                            LargeTriangle { corners: vertices, number: 5, cutout: false },
-                            bounds,
-                        ),
-                    }
-                    let got = covered_by(&bins, Level::new());
-                    assert_eq!(got, want, "{corners:?} in queue {queue}");
+                let side = bounds.width().max(bounds.height());
+                if side <= SMALL[3] && !bounds.is_empty() {
+                    let got = seen_in(&small(&[corners]));
+                    assert_eq!(got, want, "{corners:?} alone");
+                    // Others far away are drawn pixel by pixel, whatever the tile.
+                    let far = [(2, 2), (140, 3), (4, 130), (141, 135)].map(|(x, y)| {
+                        [(0, 0), (200, 0), (0, 200)]
+                            .map(|(dx, dy)| Snapped { x: x * 256 + dx, y: y * 256 + dy })
+                    });
+                    let got = seen_in(&small(&[corners, far[0], far[1], far[2], far[3]]));
+                    let nearer = |pixel: &(i32, i32)| !got.contains(pixel);
+                    assert!(!want.iter().any(nearer), "{corners:?} among others");
+                    assert_eq!(got.len(), want.len(), "{corners:?} among others");
                 }
+                let mut bins = bins();
+                let corners = corners.map(|corner| ScreenVertex::new(corner, 0.5));
+                bins.add_large(LargeTriangle { corners, number: 0, cutout: false }, bounds);
+                assert_eq!(seen_in(&bins), want, "{corners:?} alone in 64 bits");
+            }
+        }
+    }
+
+    /// Squares that cover blocks as a whole, in few depths, some of them tilted.
+    #[test]
+    fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
+        let mut random = numbers(5);
+        for _ in 0..300 {
+            let triangles: Vec<LargeTriangle> = (0..6)
+                .map(|number| {
+                    let depth = random(4) as f32 / 4.0;
+                    let tilt = random(2) as f32 / 8.0;
+                    let mut corner = |depth: f32| {
+                        let [x, y] = [0, 0].map(|_| random(120) * 256 - 20 * 256);
+                        ScreenVertex::new(Snapped { x, y }, depth)
+                    };
+                    let corners = [corner(depth), corner(depth), corner(depth + tilt)];
+                    LargeTriangle { corners, number, cutout: false }
+                })
+                .collect();
+            let mut want = vec![0; PIXELS];
+            let tile = PixelBox { left: 0, top: 0, right: TILE, bottom: TILE };
+            let mut visibility = Visibility::default();
+            visibility.clear(tile);
+            for large in &triangles {
+                dispatch!(Level::new(), simd => visibility.draw_large(simd, large));
+                let corners = large.corners.map(|corner| corner.at());
+                let Some(triangle) = Triangle::new(corners) else { continue };
+                let seen = Large::new(large, &triangle, [0, 0]);
+                triangle.covered(tile, |pixel| {
+                    let word = word(seen.depth(pixel.edges), large.number);
+                    let old = &mut want[place(pixel.x, pixel.y)];
+                    *old = word.max(*old);
+                });
+            }
+            for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
+                let (block, pixel) = (place(x, y) / BLOCK_PIXELS, place(x, y) % BLOCK_PIXELS);
+                let got = match visibility.whole(block) {
+                    Some(number) => Seen::Triangle(number),
+                    None if visibility.shows(block) => seen(visibility.block(block)[pixel]),
+                    None => Seen::Background,
+                };
+                assert_eq!(got, seen(want[place(x, y)]), "{x}, {y}: {triangles:?}");
+            }
+            for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
+                let got = visibility.word(Level::new(), x, y);
+                assert_eq!(got, want[place(x, y)], "{x}, {y}: {triangles:?}");
             }
         }
     }

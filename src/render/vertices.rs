@@ -1,34 +1,24 @@
-//! All vertices of a mesh to the screen.
+//! Vertices of a mesh to the screen, and back in sixteens.
 //!
 //! The loop is plain arithmetic over rows of coordinates, compiled for each set of instructions: it
 //! does to eight vertices at once what [`Screen::vertex`] does to one, with the same bits.
 
-use fearless_simd::{Level, Simd, dispatch};
-use rayon::prelude::*;
+use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, dispatch, i32x4, i32x16};
 
 use super::clip::{Screen, ScreenVertex};
 use crate::scene::DrawOrder;
 
-/// Vertices that one thread takes at a time.
-const CHUNK: usize = 2048;
-
-/// Brings the vertices of a mesh onto the screen.
+/// Brings vertices of a mesh onto the screen, from number `first` on.
 pub(super) fn transform(
     level: Level,
     screen: &Screen,
     order: &DrawOrder,
+    first: usize,
     out: &mut [ScreenVertex],
 ) {
-    let work = |(i, out): (usize, &mut [ScreenVertex])| {
-        let rows = i * CHUNK..i * CHUNK + out.len();
-        let [x, y, z] = [&order.x, &order.y, &order.z].map(|row| &row[rows.clone()]);
-        dispatch!(level, simd => chunk(simd, screen, [x, y, z], out));
-    };
-    if out.len() <= CHUNK {
-        work((0, out));
-    } else {
-        out.par_chunks_mut(CHUNK).enumerate().for_each(work);
-    }
+    let rows = first..first + out.len();
+    let [x, y, z] = [&order.x, &order.y, &order.z].map(|row| &row[rows.clone()]);
+    dispatch!(level, simd => chunk(simd, screen, [x, y, z], out));
 }
 
 #[inline(always)]
@@ -36,4 +26,24 @@ fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [Scre
     for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
         *out = screen.vertex(screen.clip([f64::from(*x), f64::from(*y), f64::from(*z)]));
     }
+}
+
+/// Four rows of sixteen numbers from sixteen rows of four.
+#[inline(always)]
+pub(super) fn fetch<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [i32x16<S>; 4] {
+    let (even_low, odd_low) = four(simd, 0, &row).deinterleave(four(simd, 4, &row));
+    let (even_high, odd_high) = four(simd, 8, &row).deinterleave(four(simd, 12, &row));
+    let (a, c) = even_low.deinterleave(even_high);
+    let (b, d) = odd_low.deinterleave(odd_high);
+    [a, b, c, d]
+}
+
+/// Four rows of four numbers, one after the other.
+#[inline(always)]
+fn four<S: Simd>(simd: S, at: usize, row: &impl Fn(usize) -> [i32; 4]) -> i32x16<S> {
+    let a = i32x4::from_slice(simd, &row(at));
+    let b = i32x4::from_slice(simd, &row(at + 1));
+    let c = i32x4::from_slice(simd, &row(at + 2));
+    let d = i32x4::from_slice(simd, &row(at + 3));
+    a.combine(b).combine(c.combine(d))
 }

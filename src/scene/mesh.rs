@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use super::mesh_edges::{Edge, Edges};
-use super::{Bounds, DrawOrder};
+use super::{Bounds, DrawOrder, EdgeOrder};
 
 /// In place of an index: there is none.
 pub const NONE: u32 = u32::MAX;
@@ -89,7 +89,6 @@ pub struct Triangle {
 }
 
 /// The shape of a model: polygons over shared vertices, and what follows from them.
-#[derive(Debug)]
 pub struct Mesh {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) colors: Vec<[f32; 3]>,
@@ -107,6 +106,20 @@ pub struct Mesh {
     pub(super) mean: DVec3,
     pub(super) edges: OnceLock<Edges>,
     pub(super) order: OnceLock<DrawOrder>,
+    pub(super) edge_order: OnceLock<EdgeOrder>,
+    pub(super) centres: OnceLock<Vec<[f32; 3]>>,
+}
+
+/// What is worked out when it is first asked for is left out: it is no part of what a mesh is.
+impl std::fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Mesh")
+            .field("positions", &self.positions)
+            .field("corners", &self.corners)
+            .field("starts", &self.starts)
+            .field("parts", &self.parts)
+            .finish_non_exhaustive()
+    }
 }
 
 /// Why a mesh cannot be made.
@@ -217,6 +230,15 @@ impl Mesh {
         mean(corners.map(|corner| dvec3(self.positions[corner.position as usize])))
     }
 
+    /// The means of the corners of all polygons. Found when first asked for.
+    #[must_use]
+    pub fn polygon_centres(&self) -> &[[f32; 3]] {
+        self.centres.get_or_init(|| {
+            let polygons = 0..index(self.polygon_count());
+            polygons.map(|polygon| self.polygon_centre(polygon).as_vec3().to_array()).collect()
+        })
+    }
+
     /// The triangles of all polygons, in the order of the polygons.
     #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
@@ -261,6 +283,12 @@ impl Mesh {
     #[must_use]
     pub fn draw_order(&self) -> &DrawOrder {
         found_once(&self.order, || DrawOrder::new(self))
+    }
+
+    /// The edges in the order in which they are drawn fastest. Found when first asked for.
+    #[must_use]
+    pub fn edge_order(&self) -> &EdgeOrder {
+        found_once(&self.edge_order, || EdgeOrder::new(self))
     }
 
     /// The sides of all polygons, each once. Found when first asked for.

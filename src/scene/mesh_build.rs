@@ -101,6 +101,8 @@ impl Mesh {
             parts: source.parts,
             edges: OnceLock::new(),
             order: OnceLock::new(),
+            edge_order: OnceLock::new(),
+            centres: OnceLock::new(),
         })
     }
 }

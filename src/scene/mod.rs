@@ -2,9 +2,11 @@
 //!
 //! Plain data. Nothing here draws, nothing here reads files, nothing here knows of windows.
 
+mod axes;
 mod bounds;
 mod camera;
 mod command;
+mod edge_order;
 mod light;
 mod list;
 mod material;
@@ -12,6 +14,7 @@ mod mesh;
 mod mesh_build;
 mod mesh_edges;
 mod mesh_points;
+mod mesh_splits;
 mod model;
 mod object;
 mod order;
@@ -20,9 +23,11 @@ mod settings;
 pub mod triangulate;
 mod view;
 
+pub use axes::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Lesson, Preset as AccuracyPreset};
 pub use bounds::Bounds;
 pub use camera::{Camera, CameraMode, Lens, Pose};
 pub use command::{Command, CommandError, Item};
+pub use edge_order::{DrawEdge, EdgeOrder};
 pub use light::{Aim, Attenuation, Light, LightKind, Orbit, SpotOwner};
 pub use list::List;
 pub use material::{Material, MaterialChoice, PRESETS, Preset, PresetId};
@@ -35,7 +40,7 @@ pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Windin
 pub use object::{Object, PartLook, Spin, Surface};
 pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;
-pub use settings::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
+pub use settings::{Arithmetic, Filter, LeaveOut, LightAt, Settings, SpecularForm};
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,
     Transformation, View,

@@ -19,6 +19,16 @@ pub struct DrawTriangle {
     pub number: u32,
 }
 
+impl DrawTriangle {
+    /// Its numbers side by side.
+    #[inline(always)]
+    #[must_use]
+    pub const fn row(&self) -> [i32; 4] {
+        let [a, b, c] = self.vertices;
+        [a.cast_signed(), b.cast_signed(), c.cast_signed(), self.number.cast_signed()]
+    }
+}
+
 /// The triangles and vertices of a mesh in the order in which they are drawn fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawOrder {
@@ -40,8 +50,9 @@ pub struct DrawOrder {
 /// The points of a mesh with one kind of normals, numbered by first use.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Points {
-    /// The points of each triangle, in the order of [`DrawOrder::triangles`].
-    pub of: Vec<[u32; 3]>,
+    /// The points of each triangle, in the order of [`DrawOrder::triangles`]; empty where they have
+    /// the numbers of its vertices, each of which has one normal.
+    of: Vec<[u32; 3]>,
     /// Their normals, of length 1.
     pub normals: Vec<[f32; 3]>,
     /// Their vertices, as places in [`DrawOrder::x`].
@@ -55,6 +66,15 @@ pub enum NormalSource {
     Computed,
     /// The file's own, where a polygon has them.
     File,
+}
+
+impl Points {
+    /// The points of a triangle: of the one at `place`, with these vertices.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(&self, place: u32, vertices: [u32; 3]) -> [u32; 3] {
+        if self.of.is_empty() { vertices } else { self.of[place as usize] }
+    }
 }
 
 impl DrawOrder {
@@ -95,7 +115,7 @@ impl DrawOrder {
             // Every vertex has one point, with its number.
             let normal = |vertex: &u32| mesh.points()[*vertex as usize].normal;
             Points {
-                of: order.triangles.par_iter().map(|triangle| triangle.vertices).collect(),
+                of: Vec::new(),
                 normals: used.par_iter().map(normal).collect(),
                 vertices: (0..index(used.len())).collect(),
             }
@@ -112,21 +132,21 @@ impl DrawOrder {
     #[inline(always)]
     #[must_use]
     pub fn vertices_of(&self, number: u32) -> [u32; 3] {
-        self.triangles[self.place(number)].vertices
+        self.triangles[self.place(number) as usize].vertices
     }
 
     /// Where a triangle of the mesh stands in [`Self::triangles`].
     #[inline(always)]
     #[must_use]
-    pub fn place(&self, number: u32) -> usize {
-        self.places[number as usize] as usize
+    pub fn place(&self, number: u32) -> u32 {
+        self.places[number as usize]
     }
 
     /// The points with one kind of normals.
     #[must_use]
     pub const fn points(&self, source: NormalSource) -> &Points {
         match source {
-            NormalSource::File if !self.filed.of.is_empty() => &self.filed,
+            NormalSource::File if !self.filed.normals.is_empty() => &self.filed,
             _ => &self.smooth,
         }
     }
@@ -146,6 +166,10 @@ impl DrawOrder {
                 places[point]
             });
             points.of.push(of);
+        }
+        let of_vertices = self.triangles.iter().map(|triangle| triangle.vertices);
+        if points.of.iter().copied().eq(of_vertices) {
+            points.of = Vec::new();
         }
         points
     }

@@ -1,19 +1,24 @@
-//! A point in the space of accuracy. Each field is one axis; the default is what the editor shows.
+//! A point in the space of accuracy. Each field is one axis of [`super::AXES`]; the default is what the
+//! editor begins with.
 
 use serde::{Deserialize, Serialize};
 
 /// How exactly a picture is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
     /// The numbers that light is computed in.
     pub arithmetic: Arithmetic,
     /// Where light is evaluated.
+    #[serde(rename = "shading", alias = "light")]
     pub light: LightAt,
     /// What a texture gives between its texels.
     pub filter: Filter,
     /// Which form the highlight has.
     pub specular: SpecularForm,
+    /// What may be left out of a picture.
+    #[serde(rename = "faint")]
+    pub leave_out: LeaveOut,
 }
 
 /// The numbers that light is computed in.
@@ -56,4 +61,16 @@ pub enum SpecularForm {
     Reflection,
     /// (N.H)^Ns, H half-way between L and V: Blinn's.
     HalfVector,
+}
+
+/// What may be left out of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum LeaveOut {
+    /// What changes no bit of it.
+    #[default]
+    #[serde(rename = "Kept")]
+    Unseen,
+    /// Light, too, that together adds less than half a step of a byte: a byte is one step off at most.
+    #[serde(rename = "LeftOut")]
+    HalfStep,
 }

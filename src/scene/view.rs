@@ -51,6 +51,8 @@ pub struct View {
     pub wide_lines: bool,
     /// Whether the marks of cameras and of the bulb are drawn.
     pub marks: bool,
+    /// Whether pictures may be coarser while something moves, where they would come too late else.
+    pub coarse_while_moving: bool,
     /// Seconds of the scene's clock.
     pub time: f64,
     /// Which panels stand beside the picture.
@@ -69,14 +71,25 @@ pub struct Panels {
     pub view: bool,
     /// What a picture takes.
     pub statistics: bool,
+    /// What a picture is made of.
+    pub plan: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
+    /// What accuracy costs in time.
+    pub laboratory: bool,
 }
 
 impl Panels {
     /// Those that a first look needs.
-    pub const DEFAULT: Self =
-        Self { outline: true, properties: true, view: true, statistics: false, cheat_sheet: false };
+    pub const DEFAULT: Self = Self {
+        outline: true,
+        properties: true,
+        view: true,
+        statistics: false,
+        plan: false,
+        cheat_sheet: false,
+        laboratory: false,
+    };
 }
 
 impl Default for Panels {
@@ -111,6 +124,7 @@ impl View {
             normal_length: NormalLength::Units,
             wide_lines: false,
             marks: true,
+            coarse_while_moving: true,
             time: 0.0,
             panels: Panels::DEFAULT,
         }

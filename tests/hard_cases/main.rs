@@ -1,8 +1,28 @@
-//! The cases in which programs of this kind go wrong. Each says which breakage it catches.
+//! The cases in which programs of this kind go wrong, by their numbers; each says with what number a
+//! naive program does.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+#![expect(clippy::print_stdout, reason = "what was measured is shown")]
+#![allow(clippy::cast_possible_truncation, reason = "small numbers, and roundings that are meant")]
+#![allow(clippy::cast_precision_loss, reason = "small numbers, and roundings that are meant")]
+#![allow(clippy::cast_sign_loss, reason = "small numbers")]
 
-#[path = "../common/plates.rs"]
+#[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/plates.rs"]
+mod plates;
 
-mod camera_and_undo;
+mod cases;
+mod figures;
+mod oracle;
+
+mod camera;
+mod clipping;
+mod color;
+mod coverage;
+mod depth;
+mod files_and_scale;
+mod geometry;
+mod interpolation;
+mod light;
+mod undo;

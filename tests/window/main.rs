@@ -7,6 +7,8 @@
 mod dialogs;
 mod editor;
 mod keys_and_clicks;
+mod laboratory;
 mod mouse;
 mod panels;
+mod plan;
 mod properties;

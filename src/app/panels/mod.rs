@@ -6,10 +6,12 @@ pub(super) mod color_picker;
 mod controls;
 mod expression;
 pub(super) mod icons;
+mod lab;
 mod menu_bar;
 mod number;
 mod outline;
 mod outline_row;
+mod plan;
 mod properties;
 pub(super) mod spheres;
 mod status_line;
@@ -38,6 +40,15 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let side = Frame::new().fill(fill).inner_margin(margin);
     Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, asks));
     Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, asks));
+    if state.shown.laboratory {
+        let most = (ui.available_height() * 0.7).max(180.0);
+        Panel::bottom("laboratory")
+            .frame(side)
+            .resizable(true)
+            .default_size(348.0_f32.min(most))
+            .size_range(160.0..=most)
+            .show(ui, |ui| lab::show(ui, state, asks));
+    }
     // A new name is typed in the outline.
     let outline = state.shown.outline || state.renaming.is_some();
     if outline || state.shown.view {
@@ -54,6 +65,10 @@ pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             .default_size(right)
             .size_range(220.0..=most_right)
             .show(ui, |ui| properties::show(ui, state, asks));
+    }
+    // Under the picture alone, so that the lists beside it keep their height.
+    if state.shown.plan {
+        plan::show(ui, state, asks);
     }
     if state.shown.cheat_sheet {
         cheat_sheet::show(ui, state, asks);

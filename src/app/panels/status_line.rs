@@ -8,7 +8,7 @@ use super::controls;
 use super::icons::Icon;
 use super::number::short;
 use crate::app::ask::Ask;
-use crate::app::state::{Message, State, Tone};
+use crate::app::state::{Economy, Message, State, Tone};
 use crate::app::theme;
 use crate::scene::{
     CameraMode, Frame, ItemId, LightKind, Observer, Projection, Subject, Transformation,
@@ -43,8 +43,12 @@ fn line_ui(ui: &mut Ui, state: &State) {
     let whole = parts.join(BETWEEN);
     let response = ui.add(egui::Label::new(text).truncate());
     response.widget_info(|| WidgetInfo::labeled(Role::Status, true, &whole));
-    response.on_hover_text(whole);
+    response.on_hover_text(format!("{whole}\n{TIME}"));
 }
+
+/// What the time at the end of the line is.
+const TIME: &str = "The time is that of the last picture: from the scene to pixels in memory, on the \
+    thread that draws. What the window takes to show it is not in it.";
 
 fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     let (icon, color) = match message.tone {
@@ -83,8 +87,12 @@ fn parts(state: &State) -> Vec<String> {
         1 => "1 light".to_owned(),
         _ => format!("{on} lights"),
     });
-    if state.statistics.pictures > 0 {
-        parts.push(format!("{:.1} ms", state.statistics.time.as_secs_f64() * 1000.0));
+    let statistics = &state.statistics;
+    if statistics.economy != Economy::NONE {
+        parts.push(format!("while moving: {}", statistics.economy.words()));
+    }
+    if statistics.pictures > 0 {
+        parts.push(format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0));
     }
     parts
 }
@@ -222,6 +230,18 @@ mod tests {
     fn a_long_name_keeps_its_beginning_and_its_end() {
         assert_eq!(middle_elided("teapot", 10), "teapot");
         assert_eq!(middle_elided("a_very_long_name_2", 10), "a_ve...e_2");
+    }
+
+    #[test]
+    fn what_a_picture_does_without_is_said_before_its_time() {
+        let (scene, view) = crate::io::default_scene();
+        let mut state = State::new(scene, view);
+        state.statistics.pictures = 1;
+        assert!(!parts(&state).join(BETWEEN).contains("moving"));
+        state.statistics.economy.vertex_light = true;
+        state.statistics.economy.half_size = true;
+        let said = "  |  while moving: light per vertex, half size  |  0.0 ms";
+        assert!(parts(&state).join(BETWEEN).ends_with(said));
     }
 
     #[test]

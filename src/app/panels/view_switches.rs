@@ -9,8 +9,8 @@ use crate::app::ask::Ask;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::scene::{
-    Arithmetic, CameraMode, Command, Filter, Frame, LightAt, Normals, Observer, Projection,
-    Settings, SpecularForm, Subject, Transformation,
+    ACCURACY_PRESETS, AXES, Axis, CameraMode, Command, Frame, Normals, Observer, Projection,
+    Subject, Transformation,
 };
 
 /// Shows it; what is asked for is added to `asks`.
@@ -39,6 +39,8 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
                 Action::ToggleVertexNormals,
                 Action::ToggleNormalLength,
                 Action::ToggleMarks,
+                Action::ToggleLeaveOut,
+                Action::ToggleCoarse,
             ] {
                 action_switch(ui, state, asks, action);
             }
@@ -203,53 +205,40 @@ fn normals_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     row(ui, "Normals", |ui| actions_ui(ui, state, asks, "Normals", &all));
 }
 
-/// How exactly pictures are drawn.
+/// How exactly pictures are drawn: the presets, and every axis of the table.
 fn settings_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let now = state.settings;
-    let mut setting = |ui: &mut Ui, name, all: &[(&str, Settings, &str)]| {
-        let all_choices: Vec<Choice<'_>> = all
-            .iter()
-            .map(|(label, to, hint)| Choice::new(name, label, *to == now, hint))
-            .collect();
-        if let Some(clicked) = row(ui, name, |ui| choices(ui, &all_choices)) {
-            asks.push(Ask::Settings(all[clicked].1));
-        }
-    };
-    let at = |light| Settings { light, ..now };
-    setting(
-        ui,
-        "Shading",
-        &[
-            ("Face", at(LightAt::Face), "Light is evaluated once a polygon (flat)."),
-            ("Vertex", at(LightAt::Vertex), "Light is evaluated at vertices (Gouraud)."),
-            ("Pixel", at(LightAt::Pixel), "Light is evaluated at each pixel (Phong)."),
-        ],
-    );
-    let form = |specular| Settings { specular, ..now };
-    setting(
-        ui,
-        "Highlight",
-        &[
-            ("R.V", form(SpecularForm::Reflection), "Phong's highlight: (R.V)^Ns."),
-            ("N.H", form(SpecularForm::HalfVector), "Blinn's highlight: (N.H)^Ns."),
-        ],
-    );
-    let filter = |filter| Settings { filter, ..now };
-    setting(
-        ui,
-        "Textures",
-        &[
-            ("Nearest", filter(Filter::Nearest), "The texel that a place falls into."),
-            ("Bilinear", filter(Filter::Bilinear), "A mean of the four texels around a place."),
-        ],
-    );
-    let numbers = |arithmetic| Settings { arithmetic, ..now };
-    setting(
-        ui,
-        "Arithmetic",
-        &[
-            ("32 bits", numbers(Arithmetic::F32), "Light in 32-bit numbers, sixteen at once."),
-            ("64 bits", numbers(Arithmetic::F64), "Light in 64-bit numbers: the reference, slow."),
-        ],
-    );
+    let presets: Vec<Choice<'_>> = ACCURACY_PRESETS
+        .iter()
+        .map(|preset| Choice::new("Accuracy", preset.label, preset.of(&now) == now, preset.what))
+        .collect();
+    if let Some(clicked) = row(ui, "Accuracy", |ui| choices(ui, &presets)) {
+        asks.push(Ask::Settings(ACCURACY_PRESETS[clicked].of(&now)));
+    }
+    for axis in AXES {
+        axis_ui(ui, axis, state, asks);
+    }
+}
+
+/// The choices of an axis of accuracy.
+pub(super) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, asks: &mut Vec<Ask>) {
+    let now = state.settings;
+    let senseless = (axis.sense)(&state.scene, &state.view).err();
+    let hints: Vec<String> = axis
+        .choices
+        .iter()
+        .map(|choice| match senseless {
+            Some(why) => format!("{} Changes nothing now: {why}.", choice.what),
+            None => format!("{} Error: {}.", choice.what, choice.error),
+        })
+        .collect();
+    let all: Vec<Choice<'_>> = axis
+        .choices
+        .iter()
+        .zip(&hints)
+        .map(|(choice, hint)| Choice::new(axis.label, choice.label, choice.is(&now), hint))
+        .collect();
+    if let Some(clicked) = row(ui, axis.label, |ui| choices(ui, &all)) {
+        asks.push(Ask::Settings(axis.choices[clicked].of(&now)));
+    }
 }

@@ -227,6 +227,7 @@ pub(super) struct FileView {
     pub(super) normal_length: NormalLength,
     pub(super) wide_lines: bool,
     pub(super) marks: bool,
+    pub(super) coarse_while_moving: bool,
     pub(super) time: f64,
     pub(super) panels: Panels,
 }

@@ -133,9 +133,21 @@ pub fn open_with(
     let bytes = read(path, MOST_WORDS, |_| None, &Progress::new())?;
     let text =
         String::from_utf8(bytes).map_err(|_bytes| fail("this is no scene file".to_owned()))?;
-    let file = file_scene(&text, &name)?;
-    let mut files = Files::new(folder_of(path), relocated);
-    files.load(&file, &name, progress)?;
+    open_text(&text, &name, folder_of(path), relocated, progress)
+}
+
+/// Opens the text of a scene file that is called `name` and seen from `folder`.
+pub(super) fn open_text(
+    text: &str,
+    name: &str,
+    folder: PathBuf,
+    relocated: &BTreeMap<PathBuf, PathBuf>,
+    progress: &Progress,
+) -> Result<Opened, SceneFileError> {
+    let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
+    let file = file_scene(text, name)?;
+    let mut files = Files::new(folder, relocated);
+    files.load(&file, name, progress)?;
     let (scene, view) = open::scene(&file, &files).map_err(fail)?;
     Ok(Opened { scene, view, settings: file.settings, findings: files.findings })
 }
@@ -211,7 +223,11 @@ impl<'a> Files<'a> {
             self.models.push(((*model).clone(), loaded));
         }
         for path in textures {
-            self.textures.push((path.to_owned(), load_texture(&self.place(path))?));
+            let texture = match super::own_texture(path) {
+                Some(own) => own,
+                None => load_texture(&self.place(path))?,
+            };
+            self.textures.push((path.to_owned(), texture));
         }
         Ok(())
     }
@@ -227,7 +243,7 @@ impl<'a> Files<'a> {
             FileModel::Own(_) => None,
         });
         let mut missing: Vec<PathBuf> = of_models
-            .chain(textures.iter().copied())
+            .chain(textures.iter().copied().filter(|path| super::own_texture(path).is_none()))
             .map(|path| self.place(path))
             .filter(|place| !place.is_file())
             .collect();

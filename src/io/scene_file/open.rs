@@ -242,6 +242,7 @@ fn read_view(file: &FileView, scene: &Scene) -> Result<View, String> {
         normal_length: file.normal_length,
         wide_lines: file.wide_lines,
         marks: file.marks,
+        coarse_while_moving: file.coarse_while_moving,
         time: file.time,
         panels: file.panels,
     })

@@ -10,6 +10,7 @@ use super::format::{
     FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, VERSION,
 };
 use super::paths::relative;
+use crate::io::own_texture;
 use crate::scene::{
     Aim, Camera, CameraId, CameraMode, Light, LightKind, LoadOptions, Model, Object, Orbit, Pose,
     Scene, Settings, Spin, SpotOwner, Texture, View,
@@ -100,7 +101,8 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
 
 fn file_texture(texture: &Texture, folder: &Path) -> Result<FileTexture, String> {
     let Texture { source, picture: _, wrap, offset, scale } = texture;
-    let path = file_path(source, folder)?;
+    let own = source.to_str().filter(|path| own_texture(path).is_some());
+    let path = own.map_or_else(|| file_path(source, folder), |own| Ok(own.to_owned()))?;
     Ok(FileTexture { path, wrap: *wrap, offset: *offset, scale: *scale })
 }
 
@@ -183,6 +185,7 @@ impl FileView {
             normal_length,
             wide_lines,
             marks,
+            coarse_while_moving,
             time,
             panels,
         } = view;
@@ -211,6 +214,7 @@ impl FileView {
             normal_length: *normal_length,
             wide_lines: *wide_lines,
             marks: *marks,
+            coarse_while_moving: *coarse_while_moving,
             time: *time,
             panels: *panels,
         }

@@ -1,7 +1,11 @@
 //! Light from a point, in all directions.
 
-use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, phong};
-use crate::render::real::{Machine, Real, Triple};
+use super::{
+    Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, most_left, phong, set,
+};
+use crate::render::plan::Turning;
+use crate::render::real::{Machine, Real as _, Triple};
+use crate::render::region::Region;
 
 /// A point that shines alike in all directions and fades with distance.
 pub(super) struct Bulb;
@@ -13,15 +17,22 @@ impl Effect for Bulb {
         lamp_needless(lamp, matter)
     }
 
+    fn is_behind(lamp: &Lamp, region: &Region, turning: &Turning) -> bool {
+        turning.all(|normal| region.faces_away(normal, lamp.position.into()))
+    }
+
+    fn arrives(lamp: &Lamp, region: Option<&Region>) -> f64 {
+        most_left(lamp, region)
+    }
+
     #[inline(always)]
     fn shade<M: Machine, H: Highlight>(
         machine: M,
         sample: Sample<M::R>,
-        lamp: &Lamp,
-        matter: &Matter,
+        shine: &Shine<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        let (to_light, strength) = arriving(sample.position, lamp);
-        phong::<M, H>(machine, sample, to_light, strength, lamp, matter)
+        let (to_light, strength) = arriving(machine, sample.position, shine);
+        phong::<M, H>(machine, sample, to_light, Some(strength), shine)
     }
 }
 
@@ -29,12 +40,20 @@ impl Effect for Bulb {
 ///
 ///   att(d) = 1 / (a0 + a1 d + a2 d^2);   0 at d = 0, where a lamp adds nothing
 #[inline(always)]
-pub(super) fn arriving<R: Real>(position: Triple<R>, lamp: &Lamp) -> (Triple<R>, R) {
-    let way = Triple::lift(position.0[0], lamp.position).minus(position);
+pub(super) fn arriving<M: Machine>(
+    machine: M,
+    position: Triple<M::R>,
+    shine: &Shine<M::Number>,
+) -> (Triple<M::R>, M::R) {
+    let way = set(machine, shine.position).minus(position);
     let square = way.dot(way);
-    let (zero, one) = (square.lift(0.0), square.lift(1.0));
-    let d = square.if_more(zero, square, one).sqrt();
-    let [a0, a1, a2] = lamp.attenuation;
-    let faded = one / (square.lift(a0) + (square.lift(a1) + square.lift(a2) * d) * d);
-    (way.times(one / d), square.if_more(zero, faded, zero))
+    let per_d = square.reciprocal_root();
+    let (zero, one) = (machine.lift(0.0), machine.lift(1.0));
+    let mut left = one;
+    if shine.fades {
+        let d = square * per_d;
+        let Triple([a0, a1, a2]) = set(machine, shine.attenuation);
+        left = one / (a0 + (a1 + a2 * d) * d);
+    }
+    (way.times(per_d), per_d.if_more(zero, left, zero))
 }

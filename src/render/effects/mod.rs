@@ -10,8 +10,10 @@ use std::marker::PhantomData;
 
 use fearless_simd::Level;
 
-use super::gather::Locate;
-use super::real::{Kernel, Machine, Number, Real, Triple};
+use super::interpolate::Interpolated;
+use super::plan::Turning;
+use super::real::{Kernel, Machine, Number, Power, Real, Triple};
+use super::region::Region;
 
 /// Places lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
 /// that the call of an effect costs nothing beside its work.
@@ -38,6 +40,15 @@ impl<T: Copy + Default> Default for Batch<T> {
     fn default() -> Self {
         let zero = [[T::default(); BATCH]; 3];
         Self { len: 0, position: zero, normal: zero, to_eye: zero, diffuse: zero, specular: zero }
+    }
+}
+
+impl<T: Copy + Default> Batch<T> {
+    /// Takes all light away.
+    pub(super) fn darken(&mut self) {
+        for row in self.diffuse.iter_mut().chain(&mut self.specular) {
+            row.fill(T::default());
+        }
     }
 }
 
@@ -96,6 +107,12 @@ pub struct Matter {
 }
 
 impl Matter {
+    /// Whether any of a lamp's light can come back as a highlight.
+    #[must_use]
+    pub fn mirrors(&self, lamp: &Lamp) -> bool {
+        self.specular.iter().zip(lamp.color).any(|(ks, color)| ks * color != 0.0)
+    }
+
     /// Sets from where on a power counts as 0.
     #[must_use]
     pub fn with_floor(self, floor: f64) -> Self {
@@ -105,18 +122,97 @@ impl Matter {
     }
 }
 
+/// A lamp on a surface, in the numbers that light is computed in.
+#[derive(Clone, Copy, Debug)]
+pub struct Shine<T> {
+    /// I Ka.
+    pub ambient: [T; 3],
+    /// I Kd.
+    pub diffuse: [T; 3],
+    /// I Ks.
+    pub specular: [T; 3],
+    /// See [`Lamp::position`].
+    pub position: [T; 3],
+    /// Against the way its light goes.
+    pub axis: [T; 3],
+    /// See [`Lamp::attenuation`].
+    pub attenuation: [T; 3],
+    /// Whether its light fades with distance.
+    pub fades: bool,
+    /// See [`Lamp::cos_half_aperture`].
+    pub cos_half_aperture: T,
+    /// How much its light is gathered along the axis.
+    pub gathered: Power,
+    /// The power of the highlight.
+    pub highlight: Power,
+    /// See [`Matter::least_cosine`].
+    pub least_cosine: T,
+}
+
+impl<T: Number> Shine<T> {
+    /// What a lamp does to a surface.
+    #[must_use]
+    pub fn new(lamp: &Lamp, matter: &Matter) -> Self {
+        let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
+        let times = |k: [f64; 3]| all([0, 1, 2].map(|i| lamp.color[i] * k[i]));
+        Self {
+            ambient: times(matter.ambient),
+            diffuse: times(matter.diffuse),
+            specular: times(matter.specular),
+            position: all(lamp.position),
+            axis: all(lamp.direction.map(|x| -x)),
+            attenuation: all(lamp.attenuation),
+            fades: lamp.attenuation != [1.0, 0.0, 0.0],
+            cos_half_aperture: T::from_f64(lamp.cos_half_aperture),
+            gathered: Power::new(lamp.exponent, GATHERED_FLOOR),
+            highlight: Power::new(matter.exponent, matter.floor),
+            least_cosine: T::from_f64(matter.least_cosine),
+        }
+    }
+}
+
+/// A cosine's power below 2^-24 counts as 0, where a spot gathers its light by it.
+const GATHERED_FLOOR: f64 = -24.0;
+
 /// One way of lighting a surface.
 pub trait Effect {
     /// Its name in the plan.
     const NAME: &'static str;
+    /// Whether it looks at where a place is, how it is turned, or from where it is seen.
+    const READS_PLACES: bool = true;
+    /// Whether it shines on a part of space only, so that `misses` may say so.
+    const HAS_REACH: bool = false;
     /// Why the surface needs none of it, where it does not: leaving it out then changes no bit.
     fn needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str>;
+    /// Why none of it arrives in a region, where that is so: leaving it out there then changes no bit.
+    fn misses(_: &Lamp, _: &Region) -> Option<&'static str> {
+        None
+    }
+    /// Whether it comes from behind all faces of a region, which are turned as `turning` says: leaving
+    /// it out there then changes no bit.
+    fn is_behind(_: &Lamp, _: &Region, _: &Turning) -> bool {
+        false
+    }
+    /// The largest part of the lamp's light that arrives in a region, anywhere where none is said.
+    fn arrives(_: &Lamp, _: Option<&Region>) -> f64 {
+        1.0
+    }
+    /// The most that it adds to a channel at any place of a region, with its highlight or without, as
+    /// a factor; a surface's texture takes away from that at most.
+    fn most(lamp: &Lamp, matter: &Matter, highlight: bool, region: Option<&Region>) -> f64 {
+        let mut sent_back = matter.diffuse;
+        if highlight {
+            for (kd, ks) in sent_back.iter_mut().zip(matter.specular) {
+                *kd += ks;
+            }
+        }
+        most_of_channels(lamp.color, sent_back) * Self::arrives(lamp, region)
+    }
     /// What the observer gets from some places; `None` where that is nothing at all of them.
     fn shade<M: Machine, H: Highlight>(
         machine: M,
         sample: Sample<M::R>,
-        lamp: &Lamp,
-        matter: &Matter,
+        shine: &Shine<M::Number>,
     ) -> Option<Reflected<M::R>>;
 }
 
@@ -167,39 +263,63 @@ impl Highlight for HalfVector {
 /// has a highlight. It is a hundred times the rounding error, and 0.0006 degrees.
 const GRAZING: f64 = 1e-5;
 
+/// What is left of a part of light.
+#[inline(always)]
+fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
+    match strength {
+        Some(strength) => part * strength,
+        None => part,
+    }
+}
+
 /// Light that arrives from a direction, reflected:
 ///
 ///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
 ///
-/// with s the `strength` that is left of the lamp's light I, L the direction `to_light`, and c the
+/// with s the `strength` that is left of the lamp's light I (1 where it is `None`), L the direction `to_light`, and c the
 /// cosine of the [`Highlight`].
 #[inline(always)]
 fn phong<M: Machine, H: Highlight>(
     machine: M,
     sample: Sample<M::R>,
     to_light: Triple<M::R>,
-    strength: M::R,
-    lamp: &Lamp,
-    matter: &Matter,
+    strength: Option<M::R>,
+    shine: &Shine<M::Number>,
 ) -> Option<Reflected<M::R>> {
     let zero = machine.lift(0.0);
     let n_l = sample.normal.dot(to_light);
     if !machine.any_more(n_l, zero) {
         return None;
     }
-    let [r, g, b] = lamp.color;
-    let times = |[x, y, z]: [f64; 3]| Triple::lift(strength, [r * x, g * y, b * z]);
-    let diffuse = times(matter.diffuse).times(Real::max(n_l, zero) * strength);
+    let diffuse = set(machine, shine.diffuse).times(weakened(Real::max(n_l, zero), strength));
     let mut specular = None;
     if let Some(cosine) = H::cosine(sample, to_light, n_l) {
         let lit = n_l.if_more(machine.lift(GRAZING), cosine, zero);
-        if machine.any_more(lit, machine.lift(matter.least_cosine)) {
+        if machine.any_more(lit, machine.set(shine.least_cosine)) {
             // Rounding can bring a cosine above 1.
-            let power = Real::min(lit, machine.lift(1.0)).power(matter.exponent, matter.floor);
-            specular = Some(times(matter.specular).times(power * strength));
+            let power = Real::min(lit, machine.lift(1.0)).power(&shine.highlight);
+            specular = Some(set(machine, shine.specular).times(weakened(power, strength)));
         }
     }
     Some(Reflected { diffuse, specular })
+}
+
+/// The largest of a surface's three channels under a light.
+fn most_of_channels(color: [f64; 3], sent_back: [f64; 3]) -> f64 {
+    color.iter().zip(sent_back).map(|(color, part)| color * part).fold(0.0, f64::max)
+}
+
+/// The largest part of a lamp's light that is left at its distance from a region.
+fn most_left(lamp: &Lamp, region: Option<&Region>) -> f64 {
+    let d = region.map_or(0.0, |region| region.least_distance(lamp.position.into()));
+    let [a0, a1, a2] = lamp.attenuation;
+    1.0 / (a0 + (a1 + a2 * d) * d)
+}
+
+/// Three numbers, the same for all lanes.
+#[inline(always)]
+pub(super) fn set<M: Machine>(machine: M, numbers: [M::Number; 3]) -> Triple<M::R> {
+    Triple([machine.set(numbers[0]), machine.set(numbers[1]), machine.set(numbers[2])])
 }
 
 /// Why a lamp needs not be looked at for a surface.
@@ -217,8 +337,8 @@ fn lamp_needless(lamp: &Lamp, matter: &Matter) -> Option<&'static str> {
 /// An effect compiled for one form of highlight: for the reference, and for what the editor shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
-    reference: fn(Level, &mut Batch<f64>, &Lamp, &Matter),
-    fast: fn(Level, &mut Batch<f32>, &Lamp, &Matter),
+    reference: fn(Level, &mut Batch<f64>, &Shine<f64>),
+    fast: fn(Level, &mut Batch<f32>, &Shine<f32>),
 }
 
 /// A row of the table.
@@ -226,8 +346,20 @@ pub struct Variant {
 pub struct Entry {
     /// See [`Effect::NAME`].
     pub name: &'static str,
+    /// See [`Effect::READS_PLACES`].
+    pub reads_places: bool,
+    /// See [`Effect::HAS_REACH`].
+    pub has_reach: bool,
     /// See [`Effect::needless`].
     pub needless: fn(&Lamp, &Matter) -> Option<&'static str>,
+    /// See [`Effect::misses`].
+    pub misses: fn(&Lamp, &Region) -> Option<&'static str>,
+    /// See [`Effect::is_behind`].
+    pub is_behind: fn(&Lamp, &Region, &Turning) -> bool,
+    /// See [`Effect::arrives`].
+    pub arrives: fn(&Lamp, Option<&Region>) -> f64,
+    /// See [`Effect::most`].
+    pub most: fn(&Lamp, &Matter, bool, Option<&Region>) -> f64,
     /// Without a highlight.
     pub plain: Variant,
     /// With [`Reflection`].
@@ -258,7 +390,13 @@ effects! {
 const fn entry<E: Effect>() -> Entry {
     Entry {
         name: E::NAME,
+        reads_places: E::READS_PLACES,
+        has_reach: E::HAS_REACH,
         needless: E::needless,
+        misses: E::misses,
+        is_behind: E::is_behind,
+        arrives: E::arrives,
+        most: E::most,
         plain: variant::<E, Nothing>(),
         reflection: variant::<E, Reflection>(),
         half_vector: variant::<E, HalfVector>(),
@@ -270,19 +408,13 @@ const fn variant<E: Effect, H: Highlight>() -> Variant {
 }
 
 /// Adds what an effect reflects at every place of a batch.
-fn shade<T: Number, E: Effect, H: Highlight>(
-    level: Level,
-    batch: &mut Batch<T>,
-    lamp: &Lamp,
-    matter: &Matter,
-) {
-    T::run(level, Shade::<T, E, H> { batch, lamp, matter, of: PhantomData });
+fn shade<T: Number, E: Effect, H: Highlight>(level: Level, batch: &mut Batch<T>, shine: &Shine<T>) {
+    T::run(level, Shade::<T, E, H> { batch, shine, of: PhantomData });
 }
 
 struct Shade<'a, T, E, H> {
     batch: &'a mut Batch<T>,
-    lamp: &'a Lamp,
-    matter: &'a Matter,
+    shine: &'a Shine<T>,
     of: PhantomData<(E, H)>,
 }
 
@@ -296,7 +428,7 @@ impl<T: Number, E: Effect, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
                 normal: load(machine, &batch.normal, at),
                 to_eye: load(machine, &batch.to_eye, at),
             };
-            let Some(reflected) = E::shade::<M, H>(machine, sample, self.lamp, self.matter) else {
+            let Some(reflected) = E::shade::<M, H>(machine, sample, self.shine) else {
                 continue;
             };
             add(machine, reflected.diffuse, &mut batch.diffuse, at);
@@ -336,38 +468,20 @@ fn add<M: Machine>(machine: M, more: Triple<M::R>, rows: &mut Rows<M::Number>, a
 }
 
 /// Numbers that effects are compiled for.
-pub trait Light: Number + Locate {
+pub trait Light: Number + Interpolated {
     /// Adds what an effect reflects at every place of the batch.
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        lamp: &Lamp,
-        matter: &Matter,
-    );
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &Shine<Self>);
 }
 
 impl Light for f64 {
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        lamp: &Lamp,
-        matter: &Matter,
-    ) {
-        (variant.reference)(level, batch, lamp, matter);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &Shine<Self>) {
+        (variant.reference)(level, batch, shine);
     }
 }
 
 impl Light for f32 {
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        lamp: &Lamp,
-        matter: &Matter,
-    ) {
-        (variant.fast)(level, batch, lamp, matter);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &Shine<Self>) {
+        (variant.fast)(level, batch, shine);
     }
 }
 

@@ -1,7 +1,11 @@
 //! Light from infinitely far away.
 
-use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, lamp_needless, phong};
-use crate::render::real::{Machine, Triple};
+use glam::DVec3;
+
+use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, phong, set};
+use crate::render::plan::Turning;
+use crate::render::real::Machine;
+use crate::render::region::{EDGE_ON, Region};
 
 /// The same direction at every place, and no fading.
 pub(super) struct Sun;
@@ -13,16 +17,17 @@ impl Effect for Sun {
         lamp_needless(lamp, matter)
     }
 
+    fn is_behind(lamp: &Lamp, _: &Region, turning: &Turning) -> bool {
+        let way = DVec3::from_array(lamp.direction);
+        turning.all(|normal| normal.dot(way) > EDGE_ON)
+    }
+
     #[inline(always)]
     fn shade<M: Machine, H: Highlight>(
         machine: M,
         sample: Sample<M::R>,
-        lamp: &Lamp,
-        matter: &Matter,
+        shine: &Shine<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        let one = machine.lift(1.0);
-        let [x, y, z] = lamp.direction;
-        let to_light = Triple::lift(one, [-x, -y, -z]);
-        phong::<M, H>(machine, sample, to_light, one, lamp, matter)
+        phong::<M, H>(machine, sample, set(machine, shine.axis), None, shine)
     }
 }

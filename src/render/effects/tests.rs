@@ -40,7 +40,8 @@ fn lamp() -> Lamp {
 }
 
 fn run(entry: &Entry, batch: &mut Batch<f64>, lamp: &Lamp) -> [[f64; 3]; 2] {
-    f64::add_light(&entry.reflection, Level::new(), batch, lamp, &matter());
+    let shine = Shine::new(lamp, &matter());
+    f64::add_light(&entry.reflection, Level::new(), batch, &shine);
     [batch.diffuse.map(|row| row[0]), batch.specular.map(|row| row[0])]
 }
 
@@ -117,10 +118,10 @@ fn fast_light_is_near_the_reference_and_the_same_on_every_level() {
     for entry in EFFECTS {
         for variant in [&entry.plain, &entry.reflection, &entry.half_vector] {
             let (mut exact, lamp) = (scattered(), Lamp { position: [1.0, 2.0, 3.0], ..lamp() });
-            f64::add_light(variant, Level::new(), &mut exact, &lamp, &matter());
+            f64::add_light(variant, Level::new(), &mut exact, &Shine::new(&lamp, &matter()));
             let pictures = levels.iter().map(|level| {
                 let mut fast = narrow(&scattered());
-                f32::add_light(variant, *level, &mut fast, &lamp, &matter());
+                f32::add_light(variant, *level, &mut fast, &Shine::new(&lamp, &matter()));
                 [fast.diffuse, fast.specular]
             });
             let pictures: Vec<_> = pictures.collect();

@@ -88,6 +88,24 @@ pub(in crate::render) enum Pipeline {
 }
 
 impl Pipeline {
+    /// See [`FramePlan::keys`](super::FramePlan::keys).
+    pub(super) fn key(&self) -> String {
+        let Self::Shaded(shaded) = self else { return "flat".to_owned() };
+        let mut key = Vec::new();
+        let light = shaded.light.as_deref();
+        key.extend(light.is_none().then(|| "unlit".to_owned()));
+        key.extend(shaded.places.then(|| "places".to_owned()));
+        key.extend(light.unwrap_or_default().iter().map(|stage| match stage.highlight {
+            Form::Plain => stage.effect.name.to_owned(),
+            Form::Reflection => format!("{} R.V", stage.effect.name),
+            Form::HalfVector => format!("{} N.H", stage.effect.name),
+        }));
+        key.extend(shaded.texture.as_ref().map(|_| "texture".to_owned()));
+        key.extend(shaded.cutout.map(|_| "holes".to_owned()));
+        key.extend(shaded.vertex_colors.then(|| "vertex colours".to_owned()));
+        key.join(" + ")
+    }
+
     /// Whether a texture decides where it is drawn.
     pub(in crate::render) const fn is_cutout(&self) -> bool {
         matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
@@ -101,6 +119,15 @@ pub(in crate::render) struct Shaded {
     pub(in crate::render) matter: Matter,
     /// The lights that are evaluated; `None` where the surface is not lit.
     pub(in crate::render) light: Option<Vec<Stage>>,
+    /// Whether any of them looks at places and normals.
+    pub(in crate::render) places: bool,
+    /// Whether what a pixel shows lies where its depth says: nothing of it is cut by the planes of the
+    /// view. Then lights may be left out tile by tile.
+    pub(in crate::render) tiled: bool,
+    /// Lights that were left out add less than this, in steps of a byte.
+    pub(in crate::render) dropped: f64,
+    /// Highlights that are cut off add less than this, in steps of a byte.
+    pub(in crate::render) cut_off: f64,
     /// Whether vertex colours are multiplied in.
     pub(in crate::render) vertex_colors: bool,
     /// The tint as factors.

@@ -2,49 +2,78 @@
 
 use glam::{DMat4, DVec3};
 
-use super::{FramePlan, ObserverSpace};
+use super::rules::LightFacts;
+use super::uses::{Effect, EffectUse, State};
+use super::{ObserverSpace, Planning};
 use crate::base::math;
 use crate::render::effects::{self, Entry, Lamp};
-use crate::scene::{LightId, LightKind, Scene, SpotOwner, View};
+use crate::scene::{Attenuation, LightId, LightKind, Scene, SpotOwner, View};
 
-/// The lights that shine, in the observer's space.
+/// The lights that a frame evaluates, in the observer's space.
 pub(super) fn lamps(
-    plan: &mut FramePlan,
+    into: &mut Planning,
     scene: &Scene,
     view: &View,
     observer: &ObserverSpace,
 ) -> Vec<Shining> {
     let mut shining = Vec::new();
-    for (id, light) in scene.lights.iter() {
-        if !light.on {
-            plan.skip(&light.name, "switched off");
+    // The oldest first, as with objects: the order of the list cannot show in the last bit of a sum.
+    let mut lights: Vec<_> = scene.lights.iter().collect();
+    lights.sort_by_key(|(id, _)| *id);
+    for (id, light) in lights {
+        let place_of = |source: &Source| observer.view_from_world.transform_point3(source.position);
+        let source = source(scene, view, &light.kind).filter(|source| place_of(source).is_finite());
+        let facts = LightFacts { light, is_placed: source.is_some() };
+        if let Some(reason) = into.plan.rules.light(&facts) {
+            into.notes.add(|| EffectUse {
+                effect: Effect::Light(id),
+                name: light.name.clone(),
+                on: None,
+                state: State::exact(reason),
+                pixels: None,
+            });
             continue;
         }
-        let Some(source) = source(scene, view, &light.kind) else {
-            let reason = match &light.kind {
-                LightKind::Spot { owner: SpotOwner::SelectedObject, .. } => "no object",
-                _ => "what it is fixed to is not there",
-            };
-            plan.skip(&light.name, reason);
-            continue;
-        };
-        let lamp = u32::try_from(plan.lamps.len()).expect("fewer than 2^32 lights");
-        let attenuation = light.attenuation;
+        // What is off or nowhere shines black: so it can be computed, too.
+        let shines = light.on && source.is_some();
+        let source = source.unwrap_or_else(|| Source::new(&effects::SPOT));
+        let lamp = u32::try_from(into.plan.lamps.len()).expect("fewer than 2^32 lights");
+        let (position, attenuation) =
+            within_reach(place_of(&source), &light.attenuation, observer.unit);
         let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
-        plan.lamps.push(Lamp {
-            color: light.color.factors(),
-            position: observer.view_from_world.transform_point3(source.position).to_array(),
+        into.plan.lights.push(id);
+        into.plan.lamps.push(Lamp {
+            color: if shines { light.color.factors() } else { [0.0; 3] },
+            position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
-            attenuation: [attenuation.constant, attenuation.linear, attenuation.quadratic],
+            attenuation,
             cos_half_aperture: source.cos_half_aperture,
             exponent: source.exponent,
         });
-        shining.push(Shining { id, name: light.name.clone(), effect: source.effect, lamp });
+        shining.push(Shining { id, name: light.name.clone(), effect: source.effect, lamp, shines });
     }
     shining
 }
 
-/// A light that shines in this frame.
+/// How far off a lamp may be, in units of view space, so that in f32 its distance has a square.
+const REACH: f64 = 1e15;
+
+/// A lamp's place in view space and the coefficients by which it fades there. One that is farther than
+/// [`REACH`] is brought that near, and fades in proportion: seen from a view of some thousand units,
+/// neither its direction nor its light changes by a part in 10^11.
+fn within_reach(place: DVec3, fades: &Attenuation, unit: f64) -> (DVec3, [f64; 3]) {
+    let largest = place.abs().max_element();
+    let nearer = if largest > REACH { largest / REACH } else { 1.0 };
+    // Held to what has a square.
+    let step = (nearer / unit).min(1e150);
+    // What fades to nothing at once fades so at any distance.
+    let held = |coefficient: f64| coefficient.min(f64::MAX);
+    let coefficients =
+        [fades.constant, held(fades.linear * step), held(fades.quadratic * step * step)];
+    (place / nearer, coefficients)
+}
+
+/// A light that is evaluated in this frame.
 #[derive(Clone, Debug)]
 pub(super) struct Shining {
     pub(super) id: LightId,
@@ -52,6 +81,8 @@ pub(super) struct Shining {
     pub(super) effect: &'static Entry,
     /// The place of its light among the lamps of the plan.
     pub(super) lamp: u32,
+    /// Whether it is on, and somewhere.
+    pub(super) shines: bool,
 }
 
 /// Where light comes from, in world space.
@@ -63,27 +94,37 @@ struct Source {
     exponent: f64,
 }
 
+impl Source {
+    /// Light that goes everywhere from the origin.
+    const fn new(effect: &'static Entry) -> Self {
+        Self {
+            effect,
+            position: DVec3::ZERO,
+            direction: DVec3::NEG_Z,
+            cos_half_aperture: -1.0,
+            exponent: 0.0,
+        }
+    }
+}
+
 /// Where a light is now; `None` for a spot whose owner is not there.
 fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
-    let source = |effect, position, direction| Source {
-        effect,
-        position,
-        direction,
-        cos_half_aperture: -1.0,
-        exponent: 0.0,
-    };
     Some(match kind {
-        LightKind::Ambient => source(&effects::AMBIENT, DVec3::ZERO, DVec3::NEG_Z),
-        LightKind::Sun { direction } => source(&effects::SUN, DVec3::ZERO, *direction.now()),
+        LightKind::Ambient => Source::new(&effects::AMBIENT),
+        LightKind::Sun { direction } => {
+            Source { direction: *direction.now(), ..Source::new(&effects::SUN) }
+        }
         LightKind::Bulb { position, orbit } => {
-            source(&effects::BULB, orbit.at(*position.now(), view.time), DVec3::NEG_Z)
+            Source { position: orbit.at(*position.now(), view.time), ..Source::new(&effects::BULB) }
         }
         LightKind::Spot { owner, half_aperture, exponent } => {
             let (position, direction) = owner_aim(scene, view, owner)?;
             Source {
+                position,
+                direction,
                 cos_half_aperture: libm::cos(half_aperture.to_radians()),
                 exponent: *exponent,
-                ..source(&effects::SPOT, position, direction)
+                ..Source::new(&effects::SPOT)
             }
         }
     })

@@ -1,12 +1,25 @@
 //! What a frame needs, and why: decides, and touches no pixel.
 //!
 //! A [`FramePlan`] holds a snapshot of everything that drawing reads, already in the observer's
-//! terms. What the scene does not call for is not in it, and [`FramePlan::skipped`] says why.
+//! terms. What the scene does not call for is not in it; [`FramePlan::explained`] says what that is,
+//! and why. What only a part of the picture does without is decided when its depths are known, tile by
+//! tile (`TilePlan`).
 
+mod bounded;
+mod count;
 mod draw;
+mod features;
 mod lamps;
 mod observer;
 mod planner;
+pub mod rules;
+mod surfaces;
+mod tile;
+mod turning;
+mod uses;
+mod without;
+
+use std::sync::Arc;
 
 use glam::DMat4;
 
@@ -14,10 +27,17 @@ pub(super) use self::draw::{Back, Draw, Lines, Pipeline, Shaded, Stage};
 use self::lamps::lamps;
 pub(super) use self::observer::ObserverSpace;
 use self::planner::Planner;
+use self::rules::Rules;
+pub(super) use self::tile::TilePlan;
+pub use self::turning::Turning;
+use self::uses::Notes;
+pub use self::uses::{Class, Effect, EffectUse, State, Thing};
 use super::effects::Lamp;
 use crate::base::color::Color;
 use crate::base::image::Size;
-use crate::scene::{Arithmetic, Filter, LightAt, Projection, Scene, Settings, View};
+use crate::scene::{
+    Arithmetic, Filter, LeaveOut, LightAt, LightId, Projection, Scene, Settings, View,
+};
 
 /// Everything that a frame needs.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,17 +54,24 @@ pub struct FramePlan {
     pub(in crate::render) light_at: LightAt,
     /// What textures give between their texels.
     pub(in crate::render) filter: Filter,
+    /// Where the observer is and which way they look.
+    pub(in crate::render) view_from_world: DMat4,
     /// `clip_from_view`.
     pub(in crate::render) clip_from_view: DMat4,
     /// Width of lines in pixels: 1 or 2.
     pub(in crate::render) line_width: i32,
-    /// The lights that shine, in the order of the scene.
+    /// The lights that shine, the oldest first.
     pub(in crate::render) lamps: Vec<Lamp>,
+    /// Whose they are.
+    pub(in crate::render) lights: Vec<LightId>,
     /// What is drawn, in the order that decides between equal depths.
     pub(in crate::render) draws: Vec<Draw>,
     /// The different ways in which surfaces are drawn.
     pub(in crate::render) pipelines: Vec<Pipeline>,
-    skipped: Vec<Skipped>,
+    /// What may be left out of a tile.
+    pub(in crate::render) leave_out: LeaveOut,
+    /// By what rules.
+    pub(in crate::render) rules: Arc<Rules>,
 }
 
 /// Where directions to the observer go.
@@ -56,21 +83,55 @@ pub(in crate::render) enum Eye {
     Parallel,
 }
 
-/// An effect that a frame does without, and why.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Skipped {
-    /// What is left out: a light, an object, a texture.
-    pub effect: String,
-    /// Why nothing of the picture changes by it.
-    pub reason: String,
+/// A plan while it is made.
+#[derive(Debug)]
+struct Planning {
+    plan: FramePlan,
+    notes: Notes,
 }
 
 impl FramePlan {
     /// Plans the picture of a scene: `size` in pixels, at least 1 x 1.
     #[must_use]
     pub fn new(scene: &Scene, view: &View, settings: &Settings, size: Size) -> Self {
+        Self::by(Rules::sound(), scene, view, settings, size)
+    }
+
+    /// The same by rules of one's own.
+    #[must_use]
+    pub fn by(
+        rules: Arc<Rules>,
+        scene: &Scene,
+        view: &View,
+        settings: &Settings,
+        size: Size,
+    ) -> Self {
+        Self::planned(rules, Notes::default(), scene, view, settings, size).plan
+    }
+
+    /// The same plan as [`Self::new`], with every effect that it has and does without.
+    #[must_use]
+    pub fn explained(
+        scene: &Scene,
+        view: &View,
+        settings: &Settings,
+        size: Size,
+    ) -> (Self, Vec<EffectUse>) {
+        let Planning { plan, notes } =
+            Self::planned(Rules::sound(), Notes::wanted(), scene, view, settings, size);
+        (plan, notes.into_uses())
+    }
+
+    fn planned(
+        rules: Arc<Rules>,
+        notes: Notes,
+        scene: &Scene,
+        view: &View,
+        settings: &Settings,
+        size: Size,
+    ) -> Planning {
         let observer = ObserverSpace::new(scene, view, size);
-        let mut plan = Self {
+        let plan = Self {
             size,
             background: scene.background,
             eye: match view.projection {
@@ -80,27 +141,32 @@ impl FramePlan {
             arithmetic: settings.arithmetic,
             light_at: settings.light,
             filter: settings.filter,
+            view_from_world: observer.view_from_world,
             clip_from_view: observer.clip_from_view,
             line_width: if view.wide_lines { 2 } else { 1 },
             lamps: Vec::new(),
+            lights: Vec::new(),
             draws: Vec::new(),
             pipelines: Vec::new(),
-            skipped: Vec::new(),
+            leave_out: settings.leave_out,
+            rules,
         };
-        let shining = lamps(&mut plan, scene, view, &observer);
+        let mut into = Planning { plan, notes };
+        let shining = lamps(&mut into, scene, view, &observer);
         let planner = Planner { scene, view, settings, observer, shining };
-        planner.add_objects(&mut plan);
+        planner.add_objects(&mut into);
         if view.marks {
-            planner.add_marks(&mut plan);
+            planner.add_marks(&mut into);
+        } else {
+            into.notes.add(|| EffectUse {
+                effect: Effect::Marks,
+                name: Effect::Marks.label().to_owned(),
+                on: None,
+                state: State::exact("switched off"),
+                pixels: None,
+            });
         }
-        plan.skipped.dedup();
-        plan
-    }
-
-    /// What the frame does without.
-    #[must_use]
-    pub fn skipped(&self) -> &[Skipped] {
-        &self.skipped
+        into
     }
 
     /// Pixels.
@@ -109,11 +175,11 @@ impl FramePlan {
         self.size
     }
 
-    fn skip(&mut self, effect: impl Into<String>, reason: impl Into<String>) {
-        let skipped = Skipped { effect: effect.into(), reason: reason.into() };
-        if !self.skipped.contains(&skipped) {
-            self.skipped.push(skipped);
-        }
+    /// The names of the effects that each way of drawing a surface is made of, in order: two frames
+    /// with the same keys do the same work for each pixel.
+    #[must_use]
+    pub fn keys(&self) -> Vec<String> {
+        self.pipelines.iter().map(Pipeline::key).collect()
     }
 
     /// The place of a pipeline among those of the frame.

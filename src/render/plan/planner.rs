@@ -4,15 +4,19 @@ use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::draw::Form;
+use super::features::presence;
 use super::lamps::Shining;
-use super::{Back, Draw, FramePlan, Lines, ObserverSpace, Pipeline, Shaded, Stage};
+use super::rules::Thing;
+use super::surfaces::Ground;
+use super::turning::Turning;
+use super::uses::{self, EffectUse, State};
+use super::{Back, Draw, Lines, ObserverSpace, Pipeline, Planning};
 use crate::base::{Shared, color::Color, math};
-use crate::render::effects::Matter;
 use crate::render::marks;
+use crate::render::region::Region;
 use crate::scene::{
-    Arithmetic, Fill, ItemId, LightId, LightKind, Model, NormalLength, NormalSource, Object,
-    Observer, PartLook, Scene, Settings, SpecularForm, Surface, Texture, View,
+    Fill, ItemId, LightAt, LightId, LightKind, Model, NormalLength, NormalSource, Object, ObjectId,
+    Observer, Scene, Settings, View,
 };
 
 /// What planning reads.
@@ -26,32 +30,31 @@ pub(super) struct Planner<'a> {
 
 impl Planner<'_> {
     /// Objects, the oldest first.
-    pub(super) fn add_objects(&self, plan: &mut FramePlan) {
+    pub(super) fn add_objects(&self, into: &mut Planning) {
         let mut objects: Vec<_> = self.scene.objects.iter().collect();
         objects.sort_by_key(|(id, _)| *id);
         for (id, object) in objects {
-            let selected = self.view.object == Some(id);
-            let alone = self.view.only_selected || self.view.polygons.is_some();
-            if !object.visible {
-                plan.skip(&object.name, "hidden");
-            } else if alone && !selected {
-                plan.skip(&object.name, "only the selected object is shown");
-            } else {
-                self.add_object(plan, ItemId::Object(id), object, selected);
+            match self.not_asked_for(id, object) {
+                Some(reason) => left_out(into, ItemId::Object(id), &object.name, reason),
+                None => self.add_object(into, ItemId::Object(id), object),
             }
         }
     }
 
-    fn add_object(&self, plan: &mut FramePlan, item: ItemId, object: &Object, selected: bool) {
-        let placement = object.world_from_object(self.view.time);
-        let part_pipelines = (0..object.model.mesh.parts().len())
-            .map(|part| {
-                let part = u32::try_from(part).expect("parts are numbered by 32 bits");
-                (!object.hidden_parts.contains(&part))
-                    .then(|| self.object_pipeline(plan, object, part))
-                    .flatten()
-            })
-            .collect();
+    /// Why the user does not want to see an object.
+    fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
+        let alone = self.view.only_selected || self.view.polygons.is_some();
+        if !object.visible {
+            Some("hidden")
+        } else if alone && self.view.object != Some(id) {
+            Some("only the selected object is shown")
+        } else {
+            None
+        }
+    }
+
+    fn add_object(&self, into: &mut Planning, item: ItemId, object: &Object) {
+        let selected = self.view.object.map(ItemId::Object) == Some(item);
         let polygons = self.view.polygons.as_ref().filter(|_| selected).map(|mode| {
             if self.view.polygons_stay {
                 mode.shown.clone()
@@ -71,12 +74,11 @@ impl Planner<'_> {
             } else {
                 NormalSource::Computed
             },
-            part_pipelines,
             polygons,
             lines: self.lines(&object.model, object.edge_color),
-            ..self.draw(item, &object.model, placement)
+            ..self.draw(item, &object.model, object.world_from_object(self.view.time))
         };
-        self.add(plan, &object.name, draw);
+        self.add(into, object, draw);
     }
 
     /// A draw of a mesh at a place, with everything about its surface still to be said.
@@ -106,26 +108,62 @@ impl Planner<'_> {
         }
     }
 
-    /// Puts a draw into the plan, unless nothing of it can be seen.
-    fn add(&self, plan: &mut FramePlan, name: &str, mut draw: Draw) {
+    /// Puts the draw of an object, or of a mark made into one, into the plan, unless nothing of it can
+    /// be seen.
+    fn add(&self, into: &mut Planning, object: &Object, mut draw: Draw) {
+        let item = draw.item;
+        let mesh = &object.model.mesh;
+        let Some(bounds) = mesh.bounds() else {
+            return left_out(into, item, &object.name, "has no vertices");
+        };
+        let thing = Thing { observer: &self.observer, draw: &draw, bounds };
+        let rules = into.plan.rules.clone();
+        let reason = if mesh.polygon_count() == 0 {
+            Some("has no faces")
+        } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
+            Some("its placement is flat: it has no inside and no outside")
+        } else {
+            rules.thing(&thing)
+        };
+        if let Some(reason) = reason {
+            return left_out(into, item, &object.name, reason);
+        }
+        if draw.part_pipelines.is_empty() {
+            let seen = rules.surfaces(&thing).is_none();
+            let (region, tiled) = self.region(&draw, bounds.corners());
+            let turning = Turning::of(&draw, self.settings.light);
+            let ground = Ground { item, object, region, turning, tiled, seen };
+            draw.part_pipelines = self.part_pipelines(into, &ground);
+        }
         let first = draw.part_pipelines.first().copied().flatten();
         let alike = draw.part_pipelines.iter().all(|pipeline| *pipeline == first);
         draw.uniform = first.filter(|_| alike);
-        let linear = DMat3::from_mat4(draw.view_from_object);
-        let Some(bounds) = draw.model.mesh.bounds() else {
-            return plan.skip(name, "has no vertices");
-        };
-        let drawn_normals =
-            draw.lines.face_normals.is_some() || draw.lines.vertex_normals.is_some();
-        if draw.model.mesh.polygon_count() == 0 {
-            plan.skip(name, "has no faces");
-        } else if !math::has_full_rank(linear) {
-            plan.skip(name, "its placement is flat: it has no inside and no outside");
-        } else if !drawn_normals && self.observer.misses(draw.clip_from_object, bounds.corners()) {
-            plan.skip(name, "outside the view");
-        } else {
-            plan.draws.push(draw);
+        self.note_features(into, object, &draw);
+        into.plan.draws.push(draw);
+    }
+
+    /// The pipeline of each part; `None` for what is hidden or not opaque enough.
+    fn part_pipelines(&self, into: &mut Planning, ground: &Ground<'_>) -> Vec<Option<u32>> {
+        let shown = |part: &u32| !ground.object.hidden_parts.contains(part);
+        (0..ground.object.model.mesh.parts().len())
+            .map(|part| u32::try_from(part).expect("parts are numbered by 32 bits"))
+            .map(|part| Some(part).filter(shown))
+            .map(|part| part.and_then(|part| self.pipeline_of_part(into, ground, part)))
+            .collect()
+    }
+
+    /// Where an object is lit, where that is known, and whether nothing of it is cut.
+    fn region(&self, draw: &Draw, corners: [DVec3; 8]) -> (Option<Region>, bool) {
+        if self.settings.light != LightAt::Pixel {
+            // At its own vertices and faces, wherever the planes of the view are.
+            let exact = Region::placed(draw.view_from_object, corners, 0.0);
+            let error = 2e-6 * exact.reach();
+            return (Some(Region::placed(draw.view_from_object, corners, error)), false);
         }
+        if !self.observer.holds(draw.clip_from_object, corners) {
+            return (None, false);
+        }
+        (Some(self.observer.seen_region(draw.view_from_object, corners)), true)
     }
 
     fn lines(&self, model: &Model, color: Color) -> Lines {
@@ -143,89 +181,19 @@ impl Planner<'_> {
         }
     }
 
-    /// How one part of an object is drawn; `None` where its opacity leaves nothing.
-    fn object_pipeline(&self, plan: &mut FramePlan, object: &Object, part: u32) -> Option<u32> {
-        let look = object.part_look(part);
-        let texture = look.texture.filter(|_| !object.model.mesh.uvs().is_empty());
-        if object.surface != Surface::Material && texture.is_none() {
-            plan.skip(format!("texture of {}", object.name), "there is none");
-        }
-        let opaque = |texture: &Shared<Texture>| {
-            let mut texels = texture.picture.pixels().iter();
-            texels.all(|texel| f64::from(texel[3]) / 255.0 * look.opacity >= 0.5)
-        };
-        let cutout = texture.filter(|texture| !opaque(texture)).map(|_| look.opacity);
-        if look.opacity < 0.5 {
-            let name = object.model.mesh.parts().get(part as usize).map_or("", |part| &part.name);
-            plan.skip(format!("{} of {}", name, object.name), "its opacity is below one half");
-            return None;
-        }
-        let colored = object.surface != Surface::Material;
-        let shaded = Shaded {
-            vertex_colors: colored && !object.model.mesh.colors().is_empty(),
-            tint: if colored { object.tint.factors() } else { [1.0; 3] },
-            texture: texture.cloned(),
-            cutout,
-            ..self.lit(plan, &object.name, &look, object.surface != Surface::Texture)
-        };
-        Some(plan.pipeline(Pipeline::Shaded(shaded)))
-    }
-
-    /// The light of a material.
-    fn lit(&self, plan: &mut FramePlan, name: &str, look: &PartLook<'_>, lit: bool) -> Shaded {
-        let material = look.material;
-        let mut matter = Matter {
-            ambient: material.ambient,
-            diffuse: material.diffuse,
-            specular: material.specular,
-            exponent: material.exponent,
-            ..Matter::default()
-        }
-        .with_floor(-24.0);
-        let light = lit.then(|| self.stages(plan, name, &matter));
-        if !lit {
-            plan.skip(format!("light of {name}"), "only its texture is shown");
-        }
-        if self.settings.arithmetic == Arithmetic::F32 {
-            let stages = light.as_deref().unwrap_or_default();
-            let count = stages.iter().filter(|stage| stage.highlight != Form::Plain).count();
-            let count = u32::try_from(count.max(1)).unwrap_or(u32::MAX);
-            // 2^-10 shared out among the highlights, so that all that is left out stays below a
-            // quarter of a byte step.
-            matter = matter.with_floor(-10.0 - libm::log2(f64::from(count)));
-        }
-        let (vertex_colors, tint) = (false, [1.0; 3]);
-        Shaded { matter, light, vertex_colors, tint, texture: None, cutout: None }
-    }
-
-    /// The lights that a material needs, in the order of the scene.
-    fn stages(&self, plan: &mut FramePlan, name: &str, matter: &Matter) -> Vec<Stage> {
-        let mut stages = Vec::new();
-        for Shining { name: light, effect, lamp, .. } in &self.shining {
-            let source = plan.lamps[*lamp as usize];
-            if let Some(reason) = (effect.needless)(&source, matter) {
-                plan.skip(format!("{light} on {name}"), reason);
-                continue;
-            }
-            let mirrored =
-                matter.specular.iter().zip(source.color).any(|(ks, color)| ks * color != 0.0);
-            let highlight = match self.settings.specular {
-                _ if !mirrored => Form::Plain,
-                SpecularForm::Reflection => Form::Reflection,
-                SpecularForm::HalfVector => Form::HalfVector,
-            };
-            stages.push(Stage { effect, lamp: *lamp, highlight });
-        }
-        stages
-    }
-
     /// Cameras that do not look, and bulbs that shine.
-    pub(super) fn add_marks(&self, plan: &mut FramePlan) {
+    pub(super) fn add_marks(&self, into: &mut Planning) {
         let object_looks = self.view.observer == Observer::Object
             && self.view.object.is_some_and(|id| self.scene.objects.get(id).is_some());
         for (id, camera) in self.scene.cameras.iter() {
             let looks = !object_looks && self.view.camera == id;
-            if looks || !camera.visible {
+            let reason = match (looks, camera.visible) {
+                (true, _) => Some("it looks"),
+                (false, false) => Some("hidden"),
+                (false, true) => None,
+            };
+            if let Some(reason) = reason {
+                left_out(into, ItemId::Camera(id), &camera.name, reason);
                 continue;
             }
             let mark = Object {
@@ -233,30 +201,29 @@ impl Planner<'_> {
                 ..Object::new(camera.model.clone(), camera.material.clone())
             };
             let placement = marks::world_from_mark(camera);
-            let pipelines = (0..mark.model.mesh.parts().len()).map(|part| {
-                let part = u32::try_from(part).expect("parts are numbered by 32 bits");
-                self.object_pipeline(plan, &mark, part)
-            });
-            let part_pipelines = pipelines.collect();
             let draw = Draw {
                 back: if self.view.back_faces { Back::Red } else { Back::Left },
-                part_pipelines,
                 lines: self.lines(&mark.model, mark.edge_color),
                 ..self.draw(ItemId::Camera(id), &mark.model, placement)
             };
-            self.add(plan, &camera.name, draw);
+            self.add(into, &mark, draw);
         }
-        for (id, position) in self.shining.iter().filter_map(|light| self.bulb_place(light.id)) {
+        let on = self.scene.lights.iter().filter(|(_, light)| light.on);
+        for (id, position) in on.filter_map(|(id, _)| self.bulb_place(id)) {
             let Some(placement) = marks::world_from_diamond(&self.observer, position) else {
                 continue;
             };
-            let pipeline = plan.pipeline(Pipeline::Flat(marks::YELLOW));
+            let pipeline = into.plan.pipeline(Pipeline::Flat(marks::YELLOW));
             let draw = Draw {
                 part_pipelines: vec![Some(pipeline)],
                 filled: true,
                 ..self.draw(ItemId::Light(id), marks::diamond(), placement)
             };
-            self.add(plan, "mark of the bulb", draw);
+            let name =
+                self.scene.lights.get(id).map_or_else(String::new, |light| light.name.clone());
+            let model = draw.model.clone();
+            let mark = Object { name, ..Object::new(model, crate::scene::MaterialChoice::File) };
+            self.add(into, &mark, draw);
         }
     }
 
@@ -268,4 +235,15 @@ impl Planner<'_> {
             _ => None,
         }
     }
+}
+
+/// Notes that nothing of a thing is drawn.
+fn left_out(into: &mut Planning, item: ItemId, name: &str, reason: &'static str) {
+    into.notes.add(|| EffectUse {
+        effect: presence(item),
+        name: presence(item).label().to_owned(),
+        on: Some(uses::Thing { item, name: name.to_owned() }),
+        state: State::exact(reason),
+        pixels: None,
+    });
 }

@@ -1,0 +1,198 @@
+//! What the laboratory is asked: to measure, to judge, to keep to a budget, to compare, to explain.
+
+use egui::{ProgressBar, RichText, ScrollArea, Ui};
+
+use crate::app::ask::Ask;
+use crate::app::comparison::{Compare, in_words};
+use crate::app::laboratory::LabAsk;
+use crate::app::panels::controls::{Choice, Switch, choices, row};
+use crate::app::panels::number::Number;
+use crate::app::state::State;
+use crate::app::theme;
+use crate::lab::candidates::Thoroughness;
+use crate::lab::error::Measure;
+use crate::lab::report::{Budgets, Report, brief};
+
+/// Shows it; what is asked for is added to `asks`.
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let area = ScrollArea::vertical().id_salt("what the laboratory is asked").auto_shrink(false);
+    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
+        measure_ui(ui, state, asks);
+        judge_ui(ui, state, asks);
+        budgets_ui(ui, state, asks);
+        ui.add_space(theme::GAP);
+        compare_ui(ui, state, asks);
+        pixel_ui(ui, state, asks);
+        if let Some(report) = &state.lab.report {
+            command_ui(ui, report);
+        }
+    });
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
+fn measure_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let lab = &state.lab;
+    ui.horizontal(|ui| match lab.running {
+        Some(fraction) => {
+            let width = ui.available_width() - 70.0;
+            ui.add(ProgressBar::new(fraction as f32).desired_width(width).show_percentage());
+            if ui.button("Cancel").on_hover_text("Gives up measuring").clicked() {
+                asks.push(Ask::Lab(LabAsk::Cancel));
+            }
+        }
+        None => {
+            let quick = ui.button("Measure").on_hover_text(
+                "Times every choice against the default, and judges its picture against the exact one: \
+                 some 20 seconds for the first scene",
+            );
+            let whole = ui.button("Thoroughly").on_hover_text(
+                "The same with more pairs of pictures and more combinations: some minutes",
+            );
+            for (clicked, thoroughness) in
+                [(quick.clicked(), Thoroughness::QUICK), (whole.clicked(), Thoroughness::WHOLE)]
+            {
+                if clicked {
+                    asks.push(Ask::Lab(LabAsk::Measure(thoroughness)));
+                }
+            }
+        }
+    });
+    if let Some(why) = &lab.failed {
+        ui.colored_label(theme::error(ui.visuals()), format!("Not measured: {why}."));
+    }
+    if lab.report.is_some() && lab.is_stale(state) {
+        ui.weak("What is shown has changed since: measure again.");
+    }
+}
+
+fn judge_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let now = state.lab.measure;
+    let all: Vec<Choice<'_>> = Measure::ALL
+        .iter()
+        .zip([
+            ("RMSE", "The root of the mean square of the differences, in byte steps of 255"),
+            ("Largest", "The largest difference of a byte, in steps of 255"),
+            ("Bytes", "The part of the bytes that differ at all, however little"),
+            ("FLIP", "How different the pictures look when one flips between them, from 0 to 1"),
+        ])
+        .map(|(measure, (label, hint))| Choice::new("Error as", label, *measure == now, hint))
+        .collect();
+    if let Some(clicked) = row(ui, "Error as", |ui| choices(ui, &all)) {
+        asks.push(Ask::Lab(LabAsk::Judge(Measure::ALL[clicked])));
+    }
+}
+
+fn budgets_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let (budgets, report) = (state.lab.budgets, state.lab.report.as_ref());
+    let error = Budget {
+        label: "Error up to",
+        name: "Largest error that is borne",
+        hint: "Names the fastest choice whose error is at most this",
+        suffix: "",
+        value: budgets.error,
+        found: report.and_then(Report::fastest),
+    };
+    if let Some(error) = budget_ui(ui, &error, report, asks) {
+        asks.push(Ask::Lab(LabAsk::Budgets(Budgets { error, ..budgets })));
+    }
+    let ms = Budget {
+        label: "Time up to",
+        name: "Longest time of a picture",
+        hint: "Names the most exact choice that takes at most this",
+        suffix: " ms",
+        value: budgets.ms,
+        found: report.and_then(Report::most_exact),
+    };
+    if let Some(ms) = budget_ui(ui, &ms, report, asks) {
+        asks.push(Ask::Lab(LabAsk::Budgets(Budgets { ms, ..budgets })));
+    }
+}
+
+struct Budget {
+    label: &'static str,
+    name: &'static str,
+    hint: &'static str,
+    suffix: &'static str,
+    value: Option<f64>,
+    /// The point that keeps to it; none where there is no budget, or nothing keeps to it.
+    found: Option<Option<usize>>,
+}
+
+/// A budget, and what it comes to: a click makes that live. Gives the budget that it should become.
+fn budget_ui(
+    ui: &mut Ui,
+    budget: &Budget,
+    report: Option<&Report>,
+    asks: &mut Vec<Ask>,
+) -> Option<Option<f64>> {
+    let mut changed = None;
+    row(ui, budget.label, |ui| {
+        let field = Number::new(budget.name, budget.hint)
+            .suffix(budget.suffix)
+            .speed(0.05)
+            .range(0.0..=1e6);
+        if let Some((value, _)) = field.ui(ui, 64.0, budget.value.unwrap_or(0.0)) {
+            changed = Some((value > 0.0).then_some(value));
+        }
+        match (budget.found, report) {
+            (Some(Some(point)), Some(report)) => {
+                let point = &report.findings.points[point];
+                let text = format!("{}, {} ms", point.name, brief(point.ms));
+                let button = egui::Button::new(text).truncate();
+                if ui.add(button).on_hover_text("Draws the picture so").clicked() {
+                    asks.push(Ask::Settings(point.settings));
+                }
+            }
+            (Some(None), _) => {
+                ui.weak("none");
+            }
+            _ => {
+                ui.weak(if report.is_some() { "0: no budget" } else { "" });
+            }
+        }
+    });
+    changed
+}
+
+fn compare_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let now = state.lab.compare;
+    let is_split = matches!(now, Compare::Split(_));
+    let all = [
+        ("Off", now == Compare::Off, "The picture alone", Compare::Off),
+        ("Split", is_split, "The exact picture at the left of a slider", Compare::Split(0.5)),
+        ("x1", now == Compare::Error(1), "The error as it is", Compare::Error(1)),
+        ("x16", now == Compare::Error(16), "The error, 16 times as large", Compare::Error(16)),
+        ("x256", now == Compare::Error(256), "The error, 256 times as large", Compare::Error(256)),
+    ];
+    let shown: Vec<Choice<'_>> =
+        all.iter().map(|(label, on, hint, _)| Choice::new("Compare", label, *on, hint)).collect();
+    if let Some(clicked) = row(ui, "Compare", |ui| choices(ui, &shown)) {
+        asks.push(Ask::Lab(LabAsk::Compare(all[clicked].3)));
+    }
+    if let (Some(judged), true) = (&state.lab.judged, now != Compare::Off) {
+        ui.label(RichText::new(format!("Error: {}", in_words(&judged.error))).small());
+    }
+}
+
+fn pixel_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let switch = Switch::new("Explain a pixel: click on it", state.lab.picking).ui(ui);
+    let switch =
+        switch.on_hover_text("Says for one pixel how far it is off, and which axis is to blame");
+    if switch.clicked() {
+        asks.push(Ask::Lab(LabAsk::Pick(!state.lab.picking)));
+    }
+    for line in state.lab.blame.iter().flatten() {
+        ui.add(egui::Label::new(RichText::new(line).monospace()).wrap());
+    }
+}
+
+fn command_ui(ui: &mut Ui, report: &Report) {
+    ui.horizontal(|ui| {
+        if ui.button("Copy command").on_hover_text("What measures this without a window").clicked()
+        {
+            ui.ctx().copy_text(report.command.clone());
+        }
+        let command = egui::Label::new(RichText::new(&report.command).monospace()).truncate();
+        ui.add(command).on_hover_text(&report.command);
+    });
+}

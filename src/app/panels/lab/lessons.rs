@@ -1,0 +1,45 @@
+//! What each axis of accuracy teaches: three sentences, its choices, and a scene that shows it.
+
+use egui::{RichText, ScrollArea, Ui};
+
+use crate::app::ask::Ask;
+use crate::app::laboratory::LabAsk;
+use crate::app::panels::view_switches::axis_ui;
+use crate::app::state::State;
+use crate::app::theme;
+use crate::scene::{AXES, AxisKind};
+
+/// Shows it; what is asked for is added to `asks`.
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let area = ScrollArea::vertical().id_salt("lessons").auto_shrink(false);
+    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
+        let axis = state.lab.lesson;
+        ui.horizontal_wrapped(|ui| {
+            for other in AXES {
+                let button = egui::Button::selectable(other.key == axis.key, other.name);
+                if ui.add(button).clicked() {
+                    asks.push(Ask::Lab(LabAsk::Lesson(other.key)));
+                }
+            }
+        });
+        ui.add_space(theme::GAP);
+        ui.horizontal(|ui| {
+            let hint = "Opens a small scene in which the difference is plain to see";
+            if ui.button("Show me").on_hover_text(hint).clicked() {
+                asks.push(Ask::Lab(LabAsk::ShowLesson(axis.key)));
+            }
+            axis_ui(ui, axis, state, asks);
+        });
+        let coarse = match axis.kind {
+            AxisKind::Scored => "When it is coarse",
+            AxisKind::Model => "Which is right",
+        };
+        let lesson = &axis.lesson;
+        for (title, sentence) in
+            [("What it is", lesson.what), (coarse, lesson.coarse), ("Where it shows", lesson.shows)]
+        {
+            ui.label(RichText::new(title).small().strong());
+            ui.add(egui::Label::new(sentence).wrap());
+        }
+    });
+}

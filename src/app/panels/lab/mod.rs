@@ -1,0 +1,68 @@
+//! The laboratory: time against error, the table behind it, and what each axis teaches.
+//!
+//! At the left what is asked, in the middle the scatter, at the right the table or the lessons. A click
+//! on a mark or on a row of the table draws the picture so.
+
+mod controls_ui;
+mod lessons;
+mod scatter;
+mod table;
+
+use egui::{Id, Layout, Rect, Ui, UiBuilder, vec2};
+
+use super::controls::{Choice, choices};
+use crate::app::ask::Ask;
+use crate::app::state::State;
+use crate::app::theme;
+
+/// How wide what is asked is.
+const ASKED: f32 = 264.0;
+
+/// What is shown at the right.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Side {
+    #[default]
+    Table,
+    Lessons,
+}
+
+/// Shows it; what is asked for is added to `asks`.
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let whole = ui.available_rect_before_wrap();
+    let all = whole.shrink2(vec2(0.0, 2.0));
+    let gap = f32::from(theme::MARGIN);
+    let asked = all.with_max_x(all.left() + ASKED);
+    let rest = all.with_min_x(asked.right() + gap);
+    let middle = rest.with_max_x(rest.left() + (rest.width() * 0.42).round());
+    let right = rest.with_min_x(middle.right() + gap);
+    within(ui, asked, |ui| controls_ui::show(ui, state, asks));
+    within(ui, middle, |ui| scatter::show(ui, state, asks));
+    within(ui, right, |ui| right_ui(ui, state, asks));
+    // All of it, else the panel would shrink from frame to frame.
+    ui.allocate_rect(whole, egui::Sense::hover());
+}
+
+fn within(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
+    let layout = Layout::top_down(egui::Align::Min);
+    // A child of its own, so that what it holds does not make the panel larger.
+    let mut child = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
+    child.set_clip_rect(rect.expand(2.0).intersect(ui.clip_rect()));
+    add(&mut child);
+}
+
+fn right_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let id = Id::unique("side of the laboratory");
+    let side: Side = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let all = [
+        Choice::new("Laboratory", "Table", side == Side::Table, "Every choice with its figures"),
+        Choice::new("Laboratory", "Lessons", side == Side::Lessons, "What each axis teaches"),
+    ];
+    if let Some(clicked) = choices(ui, &all) {
+        let side = [Side::Table, Side::Lessons][clicked];
+        ui.data_mut(|data| data.insert_temp(id, side));
+    }
+    match side {
+        Side::Table => table::show(ui, state, asks),
+        Side::Lessons => lessons::show(ui, state, asks),
+    }
+}

@@ -1,0 +1,167 @@
+//! Time against error: each mark is a choice that a click makes live.
+
+use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
+use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, Span};
+
+use crate::app::ask::Ask;
+use crate::app::panels::controls;
+use crate::app::state::State;
+use crate::app::theme;
+use crate::lab::report::{Chart, Mark, MarkKind, Report, brief};
+
+/// Shows it; what is asked for is added to `asks`.
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let Some(report) = &state.lab.report else {
+        return empty_ui(ui, state);
+    };
+    let chart = Chart::new(report);
+    let transform = plot_ui(ui, &chart);
+    // What is drawn now and what is on the front lies above the rest.
+    let mut marks: Vec<&Mark> = chart.marks.iter().collect();
+    let is_now = |mark: &Mark| report.findings.points[mark.point].settings == state.settings;
+    marks.sort_by_key(|mark| (is_now(mark), mark.on_front));
+    for mark in marks {
+        let at = transform.position_from_point(&PlotPoint::new(mark.at[0], mark.at[1]));
+        if mark_ui(ui, at, mark, is_now(mark), report).clicked() {
+            asks.push(Ask::Settings(report.findings.points[mark.point].settings));
+        }
+    }
+}
+
+fn empty_ui(ui: &mut Ui, state: &State) {
+    let text = match state.lab.running {
+        Some(_) => {
+            "The default is measured against itself first: how much it differs is the noise."
+        }
+        None => {
+            "What does accuracy cost? Measure draws this picture with every choice, and shows here how \
+             long each takes and how far it is from the exact picture."
+        }
+    };
+    ui.add_space(ui.available_height() * 0.35);
+    ui.vertical_centered(|ui| ui.add(egui::Label::new(text).wrap()));
+}
+
+fn plot_ui(ui: &mut Ui, chart: &Chart) -> egui_plot::PlotTransform {
+    let marks = |ticks: &[(f64, String)]| -> Vec<GridMark> {
+        ticks.iter().map(|(value, _)| GridMark { value: *value, step_size: 1.0 }).collect()
+    };
+    let label = |ticks: &[(f64, String)], at: f64| {
+        let tick = ticks.iter().find(|(value, _)| (value - at).abs() < 1e-9);
+        tick.map(|(_, label)| label.clone()).unwrap_or_default()
+    };
+    let (accent, noise) = (theme::accent(ui.visuals()), ui.visuals().weak_text_color());
+    let [left, right] = chart.x.range;
+    let [low, high] = chart.y.range;
+    let plot = Plot::new("time against error")
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .show_crosshair(false)
+        .sense(Sense::hover())
+        .default_x_bounds(left, right)
+        .default_y_bounds(low, high)
+        .auto_bounds(false)
+        .set_margin_fraction(egui::Vec2::ZERO)
+        .x_axis_label(chart.x.label.clone())
+        .y_axis_label(chart.y.label.clone())
+        .label_formatter(|_| None)
+        .x_grid_spacer(|_| marks(&chart.x.ticks))
+        .y_grid_spacer(|_| marks(&chart.y.ticks))
+        .x_axis_formatter(|mark, _| label(&chart.x.ticks, mark.value))
+        .y_axis_formatter(|mark, _| label(&chart.y.ticks, mark.value));
+    let front: Vec<[f64; 2]> = steps(chart);
+    let shown = plot.show(ui, |plot| {
+        plot.set_plot_bounds_x(left..=right);
+        plot.set_plot_bounds_y(low..=high);
+        let [from, to] = chart.floor;
+        let band = Span::new("noise", from..=to).fill(noise.gamma_multiply(0.25));
+        plot.span(band.border_width(0.0));
+        let line = Line::new("nothing is both faster and more exact", PlotPoints::from(front));
+        plot.line(line.color(accent).width(1.5).allow_hover(false));
+    });
+    shown.transform
+}
+
+/// The front as steps: between two points nothing was measured.
+fn steps(chart: &Chart) -> Vec<[f64; 2]> {
+    let mut line: Vec<[f64; 2]> = Vec::new();
+    for [x, y] in chart.front.iter().map(|mark| chart.marks[*mark].at) {
+        line.extend(line.last().map(|[_, before]| [x, *before]));
+        line.push([x, y]);
+    }
+    line
+}
+
+fn mark_ui(ui: &Ui, at: Pos2, mark: &Mark, is_now: bool, report: &Report) -> Response {
+    let rect = Rect::from_center_size(at, vec2(14.0, 14.0));
+    let id = ui.scope_id().with(("mark", mark.point));
+    let response = ui.interact(rect, id, Sense::click());
+    let name = format!("Draw with {}", mark.name);
+    response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, is_now, &name));
+    let visuals = ui.visuals();
+    let ink = if mark.on_front { theme::accent(visuals) } else { visuals.weak_text_color() };
+    let ink = if response.hovered() { visuals.strong_text_color() } else { ink };
+    let painter = ui.painter();
+    match mark.kind {
+        MarkKind::Default => {
+            painter.add(diamond(at, 7.0, ink));
+        }
+        MarkKind::Preset => {
+            let square = Rect::from_center_size(at, vec2(9.0, 9.0));
+            painter.rect_filled(square, 1.0, ink);
+        }
+        MarkKind::Axis => {
+            painter.circle_filled(at, 4.5, ink);
+        }
+        MarkKind::Combination => {
+            painter.circle_filled(at, 2.5, ink);
+        }
+        MarkKind::Model => {
+            painter.circle_stroke(at, 4.5, Stroke::new(1.0, ink));
+        }
+    }
+    if is_now {
+        painter.circle_stroke(at, 10.0, Stroke::new(2.0, visuals.strong_text_color()));
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        let below = at + vec2(0.0, 12.0);
+        painter.text(below, egui::Align2::CENTER_TOP, "now", font, visuals.strong_text_color());
+    }
+    controls::focus_ring(ui, rect.expand(3.0), &response);
+    response.on_hover_ui(|ui| tip_ui(ui, mark, report))
+}
+
+fn diamond(at: Pos2, size: f32, ink: Color32) -> Shape {
+    let corner = |x: f32, y: f32| at + vec2(x, y) * size;
+    let corners = vec![corner(0.0, -1.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(-1.0, 0.0)];
+    Shape::convex_polygon(corners, ink, Stroke::NONE)
+}
+
+/// What is known of a choice.
+fn tip_ui(ui: &mut Ui, mark: &Mark, report: &Report) {
+    let point = &report.findings.points[mark.point];
+    let quartiles = &point.ratio.quartiles;
+    ui.strong(&mark.name);
+    ui.label(format!(
+        "{} ms: {:.3} times the default, half of {} pairs from {:.3} to {:.3}",
+        brief(point.ms),
+        quartiles.median,
+        point.ratio.pairs,
+        quartiles.lower,
+        quartiles.upper
+    ));
+    ui.label(format!(
+        "Error: {}; FLIP {}",
+        crate::app::comparison::in_words(&point.error),
+        brief(point.error.flip)
+    ));
+    if mark.on_front {
+        ui.label("Nothing else is both faster and more exact.");
+    }
+    if mark.kind == MarkKind::Model {
+        ui.label("Another model: judged against its own exact picture, and not scored.");
+    }
+    ui.weak("Click to draw the picture so.");
+}

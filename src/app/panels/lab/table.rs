@@ -1,0 +1,209 @@
+//! The table: every choice with its figures; a click on a row draws the picture so.
+
+use egui::{Color32, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
+
+use crate::app::ask::Ask;
+use crate::app::panels::controls::{focus_ring, put_text, text};
+use crate::app::state::State;
+use crate::app::theme;
+use crate::lab::report::{Report, brief, heading};
+use crate::lab::sweep::{Measured, Row, Verdict};
+
+/// A column: its heading, what it tells, and its share of the width.
+struct Column {
+    heading: &'static str,
+    hint: &'static str,
+    share: f32,
+    value: fn(&Measured) -> String,
+}
+
+/// What of the width the names have.
+const NAMES: f32 = 0.30;
+
+const COLUMNS: [Column; 7] = [
+    Column {
+        heading: "time",
+        hint: "Times the default's: the median of the pairs' ratios",
+        share: 0.11,
+        value: |point| format!("{:.2}", point.ratio.quartiles.median),
+    },
+    Column {
+        heading: "half of pairs",
+        hint: "The middle half of the pairs' ratios",
+        share: 0.17,
+        value: |point| {
+            let quartiles = &point.ratio.quartiles;
+            format!("{:.2} - {:.2}", quartiles.lower, quartiles.upper)
+        },
+    },
+    Column {
+        heading: "ms",
+        hint: "Milliseconds of a picture",
+        share: 0.09,
+        value: |point| brief(point.ms),
+    },
+    Column {
+        heading: "largest",
+        hint: "The largest difference of a byte",
+        share: 0.09,
+        value: |point| point.error.largest.to_string(),
+    },
+    Column {
+        heading: "RMSE",
+        hint: "The root of the mean square difference, in byte steps",
+        share: 0.09,
+        value: |point| brief(point.error.rmse),
+    },
+    Column {
+        heading: "bytes",
+        hint: "The part of the bytes that differ, in per cent",
+        share: 0.08,
+        value: |point| format!("{} %", brief(point.error.differing * 100.0)),
+    },
+    Column {
+        heading: "FLIP",
+        hint: "How different it looks, from 0 to 1",
+        share: 0.07,
+        value: |point| brief(point.error.flip),
+    },
+];
+
+/// Shows it; what is asked for is added to `asks`.
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+    let Some(report) = &state.lab.report else {
+        ui.weak("Nothing is measured yet.");
+        return;
+    };
+    head_ui(ui);
+    let area = ScrollArea::vertical().id_salt("table of the laboratory").auto_shrink(false);
+    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let mut last = String::new();
+        let front = report.front();
+        for row in report.rows() {
+            let heading = heading(row);
+            if heading != last {
+                ui.add_space(theme::GAP);
+                ui.label(RichText::new(&heading).small().strong());
+                last = heading;
+            }
+            row_ui(ui, state, report, row, front.contains(&row.point), asks);
+        }
+        foot_ui(ui, report);
+    });
+}
+
+/// Where a column is in a row.
+fn cell(row: Rect, column: usize) -> Rect {
+    let before: f32 = COLUMNS[..column].iter().map(|column| column.share).sum();
+    let left = row.left() + (NAMES + before) * row.width();
+    Rect::from_min_max(
+        egui::pos2(left, row.top()),
+        egui::pos2(left + COLUMNS[column].share * row.width() - 4.0, row.bottom()),
+    )
+}
+
+fn head_ui(ui: &mut Ui) {
+    let size = vec2(ui.available_width() - f32::from(theme::MARGIN), theme::ROW);
+    let (row, _) = ui.allocate_exact_size(size, Sense::hover());
+    for (i, column) in COLUMNS.iter().enumerate() {
+        let rect = cell(row, i);
+        right_text(ui, rect, column.heading, ui.visuals().weak_text_color());
+        ui.interact(rect, ui.scope_id().with(("column", i)), Sense::hover())
+            .on_hover_text(column.hint);
+    }
+}
+
+fn row_ui(
+    ui: &mut Ui,
+    state: &State,
+    report: &Report,
+    row: &Row,
+    on_front: bool,
+    asks: &mut Vec<Ask>,
+) {
+    let point = &report.findings.points[row.point];
+    let now = point.settings == state.settings;
+    let size = vec2(ui.available_width(), theme::ROW - 3.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let name = format!("{}: {}", heading(row), row.name);
+    response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, now, &name));
+    let visuals = ui.visuals();
+    let (fill, ink) = match (now, response.hovered()) {
+        (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),
+        (false, true) => (visuals.widgets.hovered.bg_fill, visuals.text_color()),
+        (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
+    };
+    ui.painter().rect_filled(rect, 3.0, fill);
+    // What is worth choosing has a bar, as it has a line in the scatter.
+    if on_front {
+        let bar = Rect::from_min_size(rect.min + vec2(1.0, 3.0), vec2(2.0, rect.height() - 6.0));
+        ui.painter().rect_filled(bar, 1.0, theme::accent(ui.visuals()));
+    }
+    let star = if row.point == 0 { " *" } else { "" };
+    let left = rect.with_min_x(rect.left() + 8.0).with_max_x(rect.left() + NAMES * rect.width());
+    let label = text(ui, format!("{}{star}", row.name), TextStyle::Body, left.width());
+    put_text(ui, left, label, ink);
+    for (i, column) in COLUMNS.iter().enumerate() {
+        let noise = i < 3 && point.verdict == Verdict::Alike && row.point != 0 && !now;
+        let ink = if noise { ui.visuals().weak_text_color() } else { ink };
+        right_text(ui, cell(rect, i), &(column.value)(point), ink);
+    }
+    focus_ring(ui, rect, &response);
+    let verdict = match point.verdict {
+        Verdict::Faster => "faster than the default",
+        Verdict::Slower => "slower than the default",
+        Verdict::Alike => "no difference in time beyond the noise",
+    };
+    let hint = format!(
+        "{verdict}, {} pairs, {} thrown away; {} pixels show another triangle",
+        point.ratio.pairs, point.ratio.thrown, point.error.coverage
+    );
+    if response.on_hover_text(hint).clicked() {
+        asks.push(Ask::Settings(point.settings));
+    }
+}
+
+fn right_text(ui: &Ui, rect: Rect, value: &str, ink: Color32) {
+    let galley = text(ui, value, TextStyle::Small, rect.width());
+    let at = egui::pos2(rect.right() - galley.size().x, rect.center().y - galley.size().y / 2.0);
+    ui.painter().galley_with_override_text_color(at, galley, ink);
+}
+
+/// What the figures rest on, and what was not measured.
+fn foot_ui(ui: &mut Ui, report: &Report) {
+    let findings = &report.findings;
+    let [width, height] = findings.size;
+    ui.add_space(theme::GAP);
+    ui.label(RichText::new("measured with").small().strong());
+    let small = |ui: &mut Ui, text: String| {
+        ui.add(egui::Label::new(RichText::new(text).small()).wrap());
+    };
+    small(
+        ui,
+        format!(
+            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself it differed \
+             by {:.1} % in {} pairs: less than that means nothing. * is the default; a bar marks what \
+             nothing beats in both.",
+            findings.threads,
+            findings.instructions,
+            brief(findings.control.a_ms),
+            findings.floor * 100.0,
+            findings.control.pairs
+        ),
+    );
+    for left_out in &findings.left_out {
+        small(ui, format!("Not measured: {}: {}.", left_out.what, left_out.reason));
+    }
+    for kernel in &findings.kernels {
+        small(
+            ui,
+            format!(
+                "{}: SIMD takes {:.2} of the plain loop's time, {}.",
+                kernel.name,
+                kernel.ratio.quartiles.median,
+                if kernel.equal { "results equal" } else { "OTHER RESULTS" }
+            ),
+        );
+    }
+}

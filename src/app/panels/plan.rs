@@ -1,0 +1,330 @@
+//! What the picture is made of: each effect, on or left out, why, and what it costs.
+//!
+//! An effect has a line, with what it is on under it where that differs from thing to thing. What is on
+//! is told by a full disk and by full text, so that the eye runs down the disks; costs are numbers with
+//! bars, so that the eye finds the largest.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use egui::{
+    Align2, Color32, Frame, Id, Margin, Panel, Rect, RichText, ScrollArea, Sense, TextStyle, Ui,
+    WidgetInfo, pos2, vec2,
+};
+
+use super::controls;
+use super::icons::Icon;
+use crate::app::action::Action;
+use crate::app::ask::Ask;
+use crate::app::material_dialog::grouped;
+use crate::app::state::{Measured, State as Editing};
+use crate::app::theme;
+use crate::lab::cost::{Explained, Group};
+use crate::render::{Effect, EffectUse};
+
+/// Shows it; what is asked for is added to `asks`.
+pub(super) fn show(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>) {
+    let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
+    let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
+    let height = ui.available_height();
+    Panel::bottom("plan")
+        .frame(frame)
+        .resizable(true)
+        .default_size((height * 0.34).round())
+        .size_range(90.0..=(height * 0.7).max(90.0))
+        .show(ui, |ui| {
+            let Some(explained) = state.plan.explained.clone() else {
+                ui.weak("The next picture says what it is made of.");
+                return;
+            };
+            header_ui(ui, state, asks, &explained);
+            table_ui(ui, state, &explained);
+        });
+}
+
+/// What is said of all together, and the button that measures.
+fn header_ui(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>, explained: &Explained) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW);
+        ui.label(RichText::new("Plan").strong());
+        ui.add_space(theme::GAP);
+        let label = ui.add(egui::Label::new(RichText::new(summary(explained)).weak()).truncate());
+        label.on_hover_text(
+            "What is left out by class E changes no bit of the picture. By class B, which \"Leave out \
+            faint light\" allows, a byte is one step off at most.",
+        );
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.add_space(f32::from(theme::MARGIN));
+            let label = if state.plan.measuring { "Stop" } else { "Measure" };
+            let button = ui.add(egui::Button::new(label).min_size(vec2(70.0, theme::ROW)));
+            if Action::MeasurePlan.explain(button, state).clicked() {
+                asks.push(Action::MeasurePlan.into());
+            }
+            if state.plan.measuring {
+                ui.add(egui::Spinner::new().size(14.0));
+            } else if let Some(measured) = &state.plan.costs {
+                times_ui(ui, measured, is_of_now(measured, state));
+            }
+        });
+    });
+    ui.add_space(2.0);
+}
+
+fn times_ui(ui: &mut Ui, measured: &Measured, now: bool) {
+    let costs = &measured.costs;
+    let text = if now {
+        format!("{:.2} ms a frame, noise {:.2} ms", costs.frame, costs.noise)
+    } else {
+        "measured before the last change".to_owned()
+    };
+    ui.weak(text).on_hover_text(
+        "Milliseconds are medians of pairs of frames, with an effect and without it in turn. What two \
+        equal frames seem to differ by is noise.",
+    );
+}
+
+fn summary(explained: &Explained) -> String {
+    let on = explained.uses.iter().filter(|one| one.state.is_on()).count();
+    let left_out = explained.uses.len() - on;
+    let changes = if explained.off_by > 0.0 {
+        format!("changes a channel by at most {:.2} of a step", explained.off_by)
+    } else {
+        "changes no bit".to_owned()
+    };
+    format!("{on} on; {left_out} left out, which {changes}")
+}
+
+/// Whether what was measured is what is shown.
+fn is_of_now(measured: &Measured, state: &Editing) -> bool {
+    measured.settings == state.settings
+        && measured.view == state.view
+        && measured.scene == state.scene
+}
+
+/// Where the columns begin, and how wide they are.
+struct Columns {
+    name: Rect,
+    on: Rect,
+    why: Rect,
+    pixels: Rect,
+    time: Rect,
+}
+
+impl Columns {
+    fn of(row: Rect) -> Self {
+        let number = 92.0;
+        let right = row.right() - 4.0;
+        let text = (right - 2.0 * number - row.left()).max(120.0);
+        let (name, on) = ((text * 0.26).min(220.0), (text * 0.28).min(220.0));
+        let column = |left: f32, width: f32| {
+            Rect::from_min_max(pos2(left, row.top()), pos2(left + width - 8.0, row.bottom()))
+        };
+        let left = row.left();
+        Self {
+            name: column(left, name),
+            on: column(left + name, on),
+            why: column(left + name + on, text - name - on),
+            pixels: column(right - 2.0 * number, number),
+            time: column(right - number, number + 8.0),
+        }
+    }
+}
+
+fn table_ui(ui: &mut Ui, state: &Editing, explained: &Explained) {
+    let (head, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
+    let columns = Columns::of(head.with_max_x(head.right() - f32::from(theme::MARGIN)));
+    let titles = [
+        (columns.name, "Effect"),
+        (columns.on, "Of"),
+        (columns.why, "Why"),
+        (columns.pixels, "Pixels"),
+        (columns.time, "Milliseconds"),
+    ];
+    let weak = ui.visuals().weak_text_color();
+    for (i, (rect, title)) in titles.into_iter().enumerate() {
+        let title = controls::text(ui, title, TextStyle::Small, rect.width());
+        let left = if i < 3 { rect.left() } else { rect.right() - title.size().x };
+        controls::put_text(ui, rect.with_min_x(left), title, weak);
+    }
+    let line = egui::Stroke::new(1.0, theme::line(ui.visuals()));
+    ui.painter().hline(head.x_range(), head.bottom(), line);
+
+    let id = Id::unique("plan: unfolded");
+    let mut open: BTreeSet<Effect> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let most = explained.groups().filter_map(|group| group.pixels()).max().unwrap_or(0);
+    let times = state.plan.costs.as_ref().filter(|measured| is_of_now(measured, state));
+    let area = ScrollArea::vertical().id_salt("plan").auto_shrink(false);
+    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for group in explained.groups() {
+            let is_open = open.contains(&group.effect);
+            if group_ui(ui, most, times, &group, is_open) {
+                if is_open {
+                    open.remove(&group.effect);
+                } else {
+                    open.insert(group.effect);
+                }
+            }
+            if is_open && !group.is_alike() {
+                for one in group.uses {
+                    use_ui(ui, most, one);
+                }
+            }
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, open));
+}
+
+/// The line of an effect. Says whether it was clicked.
+fn group_ui(
+    ui: &mut Ui,
+    most: u64,
+    times: Option<&Arc<Measured>>,
+    group: &Group<'_>,
+    is_open: bool,
+) -> bool {
+    let first = &group.uses[0];
+    let folds = !group.is_alike();
+    let things = group.of();
+    let why = if folds { String::new() } else { first.state.to_string() };
+    let row = Row {
+        name: &first.name,
+        indent: 0.0,
+        chevron: folds.then_some(is_open),
+        on: group.on() > 0,
+        things: &things,
+        why: &why,
+        pixels: group.pixels(),
+        most,
+    };
+    let (rect, response) = row.ui(ui);
+    if let Some((measured, cost)) =
+        times.and_then(|measured| Some((measured, measured.costs.of(group.effect)?)))
+    {
+        let column = Columns::of(rect).time;
+        if measured.costs.is_clear(cost) {
+            let part = cost.milliseconds / measured.costs.frame;
+            number_ui(ui, column, &format!("{:.2}", cost.milliseconds), part, true);
+        } else {
+            number_ui(ui, column, "noise", 0.0, false);
+        }
+    }
+    folds && response.clicked()
+}
+
+fn use_ui(ui: &mut Ui, most: u64, one: &EffectUse) {
+    let row = Row {
+        name: "",
+        indent: 16.0,
+        chevron: None,
+        on: one.state.is_on(),
+        things: one.on.as_ref().map_or("the frame", |thing| &thing.name),
+        why: &one.state.to_string(),
+        pixels: one.pixels,
+        most,
+    };
+    row.ui(ui);
+}
+
+/// A line of the table.
+struct Row<'a> {
+    name: &'a str,
+    indent: f32,
+    /// Whether it is unfolded, where it can be.
+    chevron: Option<bool>,
+    on: bool,
+    things: &'a str,
+    why: &'a str,
+    pixels: Option<u64>,
+    /// The largest number of pixels that stands in the table.
+    most: u64,
+}
+
+impl Row<'_> {
+    fn ui(&self, ui: &mut Ui) -> (Rect, egui::Response) {
+        let sense = if self.chevron.is_some() { Sense::click() } else { Sense::hover() };
+        let size = vec2(ui.available_width(), theme::ROW - 2.0);
+        let (rect, response) = ui.allocate_exact_size(size, sense);
+        let spoken = self.spoken();
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Row, true, &spoken));
+        if !ui.is_rect_visible(rect) {
+            return (rect, response);
+        }
+        if response.hovered() {
+            ui.painter().rect_filled(rect, 3.0, ui.visuals().widgets.inactive.bg_fill);
+        }
+        let visuals = ui.visuals();
+        let color = if self.on { visuals.text_color() } else { visuals.weak_text_color() };
+        let columns = Columns::of(rect);
+        let middle = rect.center().y;
+        let mark = columns.name.left() + 12.0;
+        if let Some(is_open) = self.chevron {
+            let icon = if is_open { Icon::Down } else { Icon::Right };
+            let at =
+                Rect::from_center_size(pos2(columns.name.left() + 4.0, middle), vec2(8.0, 8.0));
+            icon.paint(ui.painter(), at, 8.0, color);
+        }
+        let disk = if self.name.is_empty() { columns.on.left() + 5.0 } else { mark + 6.0 };
+        disk_ui(ui, pos2(disk, middle), self.on);
+        let put = |rect: Rect, left: f32, text: &str, color: Color32| {
+            let rect = rect.with_min_x(left);
+            controls::put_text(
+                ui,
+                rect,
+                controls::text(ui, text, TextStyle::Body, rect.width()),
+                color,
+            );
+        };
+        put(columns.name, mark + 16.0, self.name, color);
+        put(columns.on, columns.on.left() + self.indent, self.things, color);
+        put(columns.why, columns.why.left(), self.why, ui.visuals().weak_text_color());
+        if let Some(pixels) = self.pixels.filter(|_| self.on) {
+            #[expect(clippy::cast_precision_loss, reason = "for the eye")]
+            let part = pixels as f64 / self.most.max(1) as f64;
+            let text = grouped(usize::try_from(pixels).unwrap_or(usize::MAX));
+            number_ui(ui, columns.pixels, &text, part, true);
+        }
+        controls::focus_ring(ui, rect, &response);
+        let tip = if self.why.is_empty() { self.things } else { self.why };
+        (rect, response.on_hover_text_at_pointer(tip))
+    }
+
+    fn spoken(&self) -> String {
+        let state = if self.on { "on" } else { "left out" };
+        let mut spoken = format!("{} {state}, {}", self.name, self.things);
+        if !self.why.is_empty() {
+            spoken += &format!(": {}", self.why);
+        }
+        spoken.trim_start().to_owned()
+    }
+}
+
+/// Full where something is on, empty where it is left out.
+fn disk_ui(ui: &Ui, at: egui::Pos2, on: bool) {
+    let visuals = ui.visuals();
+    if on {
+        ui.painter().circle_filled(at, 4.0, theme::accent(visuals));
+    } else {
+        let line = egui::Stroke::new(1.0, visuals.weak_text_color());
+        ui.painter().circle_stroke(at, 3.5, line);
+    }
+}
+
+/// A number at the right of its column, over a bar as long as its part of the whole.
+fn number_ui(ui: &Ui, column: Rect, text: &str, part: f64, strong: bool) {
+    let visuals = ui.visuals();
+    let color = if strong { visuals.text_color() } else { visuals.weak_text_color() };
+    #[expect(clippy::cast_possible_truncation, reason = "for the eye")]
+    let part = part.clamp(0.0, 1.0) as f32;
+    if part > 0.0 {
+        let right = column.right();
+        let bar = Rect::from_min_max(
+            pos2(right - column.width() * part, column.bottom() - 3.0),
+            pos2(right, column.bottom() - 1.0),
+        );
+        ui.painter().rect_filled(bar, 1.0, theme::accent(visuals).gamma_multiply(0.8));
+    }
+    let font = TextStyle::Body.resolve(ui.style());
+    let at = pos2(column.right(), column.center().y - 1.0);
+    ui.painter().text(at, Align2::RIGHT_CENTER, text, font, color);
+}

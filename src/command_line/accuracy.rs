@@ -1,0 +1,73 @@
+//! How exactly a picture is drawn: an option for each axis of accuracy, made from their table.
+
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use marraztu::scene::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, Settings};
+
+/// What was chosen; everything else stays as it is.
+#[derive(Debug, Default)]
+pub(crate) struct Accuracy {
+    preset: Option<&'static AccuracyPreset>,
+    choices: Vec<&'static Choice>,
+}
+
+const PRESET: &str = "preset";
+
+impl Accuracy {
+    /// The settings with these choices made: first the preset, then single axes.
+    pub(crate) fn of(&self, settings: &Settings) -> Settings {
+        let settings = self.preset.map_or(*settings, |preset| preset.of(settings));
+        self.choices.iter().fold(settings, |settings, choice| choice.of(&settings))
+    }
+}
+
+impl Args for Accuracy {
+    fn augment_args(command: Command) -> Command {
+        let presets: Vec<&str> = ACCURACY_PRESETS.iter().map(|preset| preset.word).collect();
+        let help = format!("A named point of accuracy, before single axes: {}", presets.join(", "));
+        let command = command.next_help_heading("Accuracy").arg(option(PRESET, presets, help));
+        AXES.iter().fold(command, |command, axis| {
+            let words = axis.choices.iter().map(|choice| choice.word).collect();
+            command.arg(option(axis.key, words, help_of(axis)))
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+fn option(name: &'static str, words: Vec<&'static str>, help: String) -> Arg {
+    Arg::new(name)
+        .long(name)
+        .value_name("CHOICE")
+        .hide_possible_values(true)
+        .value_parser(PossibleValuesParser::new(words))
+        .help(help)
+}
+
+/// "Where light is evaluated: face, vertex, pixel*"
+fn help_of(axis: &Axis) -> String {
+    let star = |choice: &Choice| {
+        let star = if choice.word == axis.default_choice().word { "*" } else { "" };
+        format!("{}{star}", choice.word)
+    };
+    let words: Vec<String> = axis.choices.iter().map(star).collect();
+    format!("{}: {}", axis.what, words.join(", "))
+}
+
+impl FromArgMatches for Accuracy {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut accuracy = Self::default();
+        accuracy.update_from_arg_matches(matches)?;
+        Ok(accuracy)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        let word = |name: &str| matches.get_one::<String>(name).map(String::as_str);
+        self.preset = word(PRESET).and_then(AccuracyPreset::named);
+        let chosen = |axis: &Axis| word(axis.key).and_then(|word| axis.choice(word));
+        self.choices = AXES.iter().filter_map(chosen).collect();
+        Ok(())
+    }
+}

@@ -1,0 +1,43 @@
+//! The small scenes that teach what accuracy is: each shows one fault as large as it can be.
+//!
+//! They are scene files like any other, carried by the program; what is on them the program carries too.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use super::progress::Progress;
+use super::scene_file::{Opened, SceneFileError, open_text};
+
+/// The scenes, by the names that [`crate::scene::Lesson::scene`] has.
+const LESSONS: &[(&str, &str)] = &[
+    ("ball", include_str!("../../assets/lessons/ball.marraztu")),
+    ("plate", include_str!("../../assets/lessons/plate.marraztu")),
+];
+
+/// The scene of a lesson.
+///
+/// # Errors
+/// Where there is none of this name.
+pub fn lesson_scene(name: &str) -> Result<Opened, SceneFileError> {
+    let found = LESSONS.iter().find(|(other, _)| *other == name);
+    let Some((_, text)) = found else {
+        let reason = "the program has no lesson of this name".to_owned();
+        return Err(SceneFileError::File { file: name.to_owned(), reason });
+    };
+    open_text(text, name, PathBuf::new(), &BTreeMap::new(), &Progress::new())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::AXES;
+
+    #[test]
+    fn every_axis_has_a_scene_in_which_it_means_something() {
+        for axis in AXES {
+            let Opened { scene, view, .. } = lesson_scene(axis.lesson.scene).unwrap();
+            assert_eq!((axis.sense)(&scene, &view), Ok(()), "{}", axis.key);
+        }
+        assert!(lesson_scene("nothing").is_err());
+    }
+}

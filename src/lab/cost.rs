@@ -1,0 +1,239 @@
+//! What each effect of a frame costs: pixels counted, milliseconds measured.
+//!
+//! A time is measured in pairs of frames, one with the effect and one without, in turn, after some that
+//! are not measured; what is given is the median of the differences, and half of their interquartile
+//! range as how sure that is. The same is done with pairs of equal frames first: what comes out of
+//! those is noise, and a time inside it is none.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use crate::base::image::Size;
+use crate::render::{Effect, EffectUse, FramePlan, Renderer};
+use crate::scene::{Scene, Settings, View};
+
+/// Pairs that are measured of each effect at the least, where there is time.
+const PAIRS: usize = 7;
+
+/// And at the most.
+const MOST_PAIRS: usize = 31;
+
+/// A frame, explained.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explained {
+    /// What it uses and what it does without, sorted by effect.
+    pub uses: Vec<EffectUse>,
+    /// By how many steps of a byte a channel may be off, before rounding, by what was left out.
+    pub off_by: f64,
+    /// The picture's.
+    pub size: Size,
+}
+
+/// The uses of one effect, of which there is one at least.
+#[derive(Clone, Copy, Debug)]
+pub struct Group<'a> {
+    /// The effect.
+    pub effect: Effect,
+    /// What it is on, and what it is left out of.
+    pub uses: &'a [EffectUse],
+}
+
+impl Explained {
+    /// The uses by effect.
+    pub fn groups(&self) -> impl Iterator<Item = Group<'_>> {
+        let groups = self.uses.chunk_by(|a, b| a.effect == b.effect);
+        groups.map(|uses| Group { effect: uses[0].effect, uses })
+    }
+}
+
+impl Group<'_> {
+    /// On how many things it is on.
+    #[must_use]
+    pub fn on(&self) -> usize {
+        self.uses.iter().filter(|one| one.state.is_on()).count()
+    }
+
+    /// Whether all that is to be said of one is to be said of all.
+    #[must_use]
+    pub fn is_alike(&self) -> bool {
+        self.uses.iter().all(|one| one.state == self.uses[0].state)
+    }
+
+    /// How many pixels all of them take part in.
+    #[must_use]
+    pub fn pixels(&self) -> Option<u64> {
+        let counted = self.uses.iter().filter_map(|one| one.pixels);
+        counted.reduce(|sum, pixels| sum + pixels)
+    }
+
+    /// What it is on, in words.
+    #[must_use]
+    pub fn of(&self) -> String {
+        let (on, all) = (self.on(), self.uses.len());
+        match &self.uses[0].on {
+            None => "the frame".to_owned(),
+            Some(thing) if all == 1 => thing.name.clone(),
+            Some(_) if self.is_alike() => format!("all {all} objects"),
+            Some(_) => format!("{on} of {all} objects"),
+        }
+    }
+}
+
+/// What an effect costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// The effect.
+    pub effect: Effect,
+    /// Milliseconds that a frame is longer with it.
+    pub milliseconds: f64,
+    /// Half of the interquartile range of that.
+    pub spread: f64,
+}
+
+/// What was measured of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Costs {
+    /// The frame, in milliseconds.
+    pub frame: f64,
+    /// What two equal frames seem to differ by, in milliseconds.
+    pub noise: f64,
+    /// Of each effect that is on and can be taken out.
+    pub effects: Vec<Cost>,
+}
+
+impl Costs {
+    /// What an effect costs, where it was measured.
+    #[must_use]
+    pub fn of(&self, effect: Effect) -> Option<&Cost> {
+        self.effects.iter().find(|cost| cost.effect == effect)
+    }
+
+    /// Whether a cost is more than noise.
+    #[must_use]
+    pub fn is_clear(&self, cost: &Cost) -> bool {
+        cost.milliseconds.abs() > self.noise + cost.spread
+    }
+}
+
+/// What a picture is made of.
+pub type Of<'a> = (&'a Scene, &'a View, &'a Settings, Size);
+
+/// Plans and draws a picture, and counts the pixels of each of its effects.
+#[must_use]
+pub fn explain((scene, view, settings, size): Of<'_>) -> Explained {
+    let mut renderer = Renderer::default();
+    renderer.render(&FramePlan::new(scene, view, settings, size));
+    explain_with(&mut renderer, (scene, view, settings, size))
+}
+
+/// The same of the picture that `renderer` drew last.
+#[must_use]
+pub fn explain_with(renderer: &mut Renderer, (scene, view, settings, size): Of<'_>) -> Explained {
+    let (_, mut uses) = FramePlan::explained(scene, view, settings, size);
+    let off_by = renderer.count(&mut uses);
+    Explained { uses, off_by, size }
+}
+
+/// Measures what the effects of a picture cost, within some `budget` of time. Stops where `stopped` says
+/// so, and gives what was measured till then.
+#[must_use]
+pub fn measure(
+    (scene, view, settings, size): Of<'_>,
+    budget: Duration,
+    stopped: impl Fn() -> bool,
+) -> Costs {
+    let (plan, uses) = FramePlan::explained(scene, view, settings, size);
+    let mut effects: Vec<Effect> =
+        uses.iter().filter(|one| one.state.is_on()).map(|one| one.effect).collect();
+    effects.dedup();
+    let without: Vec<(Effect, FramePlan)> =
+        effects.iter().filter_map(|effect| Some((*effect, plan.without(*effect)?))).collect();
+    let share = budget / u32::try_from(without.len() + 1).unwrap_or(u32::MAX);
+
+    let mut bench = Bench::default();
+    for _ in 0..3 {
+        bench.time(&plan);
+    }
+    let control = bench.pairs(&plan, &plan, share, &stopped);
+    let noise = median(&control.differences).abs() + spread(&control.differences);
+    let mut costs = Costs { frame: median(&control.frames), noise, effects: Vec::new() };
+    for (effect, without) in &without {
+        if stopped() {
+            break;
+        }
+        let pairs = bench.pairs(&plan, without, share, &stopped);
+        let (milliseconds, spread) = (median(&pairs.differences), spread(&pairs.differences));
+        costs.effects.push(Cost { effect: *effect, milliseconds, spread });
+    }
+    costs
+}
+
+#[derive(Default)]
+struct Bench {
+    renderer: Renderer,
+}
+
+/// Milliseconds of frames, and by how much the first of each pair was longer.
+#[derive(Default)]
+struct Pairs {
+    frames: Vec<f64>,
+    differences: Vec<f64>,
+}
+
+impl Bench {
+    fn time(&mut self, plan: &FramePlan) -> f64 {
+        let begun = Instant::now();
+        black_box(self.renderer.render(plan));
+        begun.elapsed().as_secs_f64() * 1e3
+    }
+
+    /// In turn: with, without, without, with.
+    fn pairs(
+        &mut self,
+        with: &FramePlan,
+        without: &FramePlan,
+        share: Duration,
+        stopped: &impl Fn() -> bool,
+    ) -> Pairs {
+        let begun = Instant::now();
+        let mut pairs = Pairs::default();
+        // One that is not counted: memory has to be found for it.
+        self.time(without);
+        while pairs.differences.len() < MOST_PAIRS
+            && (pairs.differences.len() < PAIRS || begun.elapsed() < share)
+            && !stopped()
+        {
+            let (a, b) = if pairs.differences.len().is_multiple_of(2) {
+                let a = self.time(with);
+                (a, self.time(without))
+            } else {
+                let b = self.time(without);
+                (self.time(with), b)
+            };
+            pairs.frames.push(a);
+            pairs.differences.push(a - b);
+        }
+        pairs
+    }
+}
+
+fn quantile(some: &[f64], part: f64) -> f64 {
+    let mut sorted = some.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        clippy::cast_sign_loss,
+        reason = "a place in a short list"
+    )]
+    let at = (part * sorted.len().saturating_sub(1) as f64).round() as usize;
+    sorted.get(at).copied().unwrap_or(0.0)
+}
+
+fn median(some: &[f64]) -> f64 {
+    quantile(some, 0.5)
+}
+
+fn spread(some: &[f64]) -> f64 {
+    (quantile(some, 0.75) - quantile(some, 0.25)) / 2.0
+}

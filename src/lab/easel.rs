@@ -1,0 +1,104 @@
+//! What pictures are drawn on, so that they can be timed and judged.
+
+use fearless_simd::Level;
+
+use super::error::Shot;
+use crate::base::image::{Picture, Size};
+use crate::render::{FramePlan, Renderer};
+use crate::scene::{Scene, Settings, View};
+
+/// Draws one scene, seen one way, in one size, with any settings.
+pub trait Easel {
+    /// Draws the picture, as wholly as if it were the first.
+    fn draw(&mut self, settings: &Settings);
+    /// The picture that was drawn last.
+    fn picture(&self) -> &Picture;
+    /// Which primitive each pixel of it shows.
+    fn primitives(&mut self) -> Vec<u32>;
+
+    /// The picture of these settings, with what is needed to judge it.
+    fn shot(&mut self, settings: &Settings) -> Shot {
+        self.draw(settings);
+        let primitives = self.primitives();
+        Shot::new(self.picture().clone(), primitives)
+    }
+}
+
+/// The renderer, with what it draws.
+#[derive(Debug)]
+pub struct Studio {
+    scene: Scene,
+    view: View,
+    size: Size,
+    renderer: Renderer,
+}
+
+impl Studio {
+    /// Draws this scene.
+    #[must_use]
+    pub fn new(scene: Scene, view: View, size: Size) -> Self {
+        Self { scene, view, size, renderer: Renderer::default() }
+    }
+
+    /// What is drawn.
+    #[must_use]
+    pub const fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// How it is looked at.
+    #[must_use]
+    pub const fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// How large.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        self.size
+    }
+
+    /// What is seen at a pixel of the last picture: the name of the item, and the polygon.
+    #[must_use]
+    pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<(String, u32)> {
+        use crate::scene::ItemId;
+        let hit = self.renderer.hit(x, y)?;
+        let name = match hit.item {
+            ItemId::Object(id) => self.scene.objects.get(id).map(|object| &object.name),
+            ItemId::Camera(id) => self.scene.cameras.get(id).map(|camera| &camera.name),
+            ItemId::Light(id) => self.scene.lights.get(id).map(|light| &light.name),
+        };
+        Some((name?.clone(), hit.polygon))
+    }
+}
+
+impl Easel for Studio {
+    fn draw(&mut self, settings: &Settings) {
+        let plan = FramePlan::new(&self.scene, &self.view, settings, self.size);
+        self.renderer.render(&plan);
+    }
+
+    fn picture(&self) -> &Picture {
+        self.renderer.picture()
+    }
+
+    fn primitives(&mut self) -> Vec<u32> {
+        self.renderer.primitives()
+    }
+}
+
+/// The set of instructions that pictures are drawn with: "Avx2".
+#[must_use]
+pub fn instructions() -> String {
+    let level = format!("{:?}", Level::new());
+    level.split(['(', ' ', '{']).next().unwrap_or_default().to_owned()
+}
+
+/// A number for a picture, the same for the same bytes on every machine: FNV-1a of Fowler, Noll and
+/// Vo, over words of 32 bits, one a pixel.
+#[must_use]
+pub fn hash(picture: &Picture) -> u64 {
+    picture.pixels().iter().fold(0xcbf2_9ce4_8422_2325, |hash, pixel| {
+        (hash ^ u64::from(u32::from_le_bytes(*pixel))).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}

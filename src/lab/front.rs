@@ -1,0 +1,74 @@
+//! What is worth choosing: the points that no other beats in both time and error.
+//!
+//! A point is on the front (Pareto's) where no other is at least as good in both and better in one.
+
+/// A choice, as what it costs and what it loses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Of any unit.
+    pub time: f64,
+    /// Of any unit; 0 is exact.
+    pub error: f64,
+}
+
+/// The places of the points on the front, from the fastest to the most exact. Of points that are the
+/// same in both, all are on it.
+#[must_use]
+pub fn front(points: &[Point]) -> Vec<usize> {
+    let beats = |a: &Point, b: &Point| {
+        a.time <= b.time && a.error <= b.error && (a.time < b.time || a.error < b.error)
+    };
+    let mut best: Vec<usize> = (0..points.len())
+        .filter(|i| !points.iter().any(|other| beats(other, &points[*i])))
+        .collect();
+    best.sort_by(|a, b| points[*a].time.total_cmp(&points[*b].time).then(a.cmp(b)));
+    best
+}
+
+/// The fastest of the points whose error is at most `most`.
+#[must_use]
+pub fn fastest_within(points: &[Point], most: f64) -> Option<usize> {
+    let within = (0..points.len()).filter(|i| points[*i].error <= most);
+    within.min_by(|a, b| {
+        let (a, b) = (points[*a], points[*b]);
+        a.time.total_cmp(&b.time).then(a.error.total_cmp(&b.error))
+    })
+}
+
+/// The most exact of the points that take at most `most` of time.
+#[must_use]
+pub fn most_exact_within(points: &[Point], most: f64) -> Option<usize> {
+    let within = (0..points.len()).filter(|i| points[*i].time <= most);
+    within.min_by(|a, b| {
+        let (a, b) = (points[*a], points[*b]);
+        a.error.total_cmp(&b.error).then(a.time.total_cmp(&b.time))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(all: &[(f64, f64)]) -> Vec<Point> {
+        all.iter().map(|(time, error)| Point { time: *time, error: *error }).collect()
+    }
+
+    #[test]
+    fn the_front_leaves_out_what_another_beats_in_both() {
+        let all = points(&[(1.0, 9.0), (2.0, 4.0), (3.0, 4.0), (2.5, 5.0), (9.0, 0.0), (1.0, 9.5)]);
+        assert_eq!(front(&all), [0, 1, 4]);
+        assert_eq!(front(&points(&[(1.0, 1.0), (1.0, 1.0)])), [0, 1]);
+        assert_eq!(front(&[]), [0; 0]);
+    }
+
+    #[test]
+    fn budgets_are_kept_from_both_sides_and_refused_where_nothing_keeps_them() {
+        let all = points(&[(1.0, 9.0), (2.0, 4.0), (5.0, 4.0), (9.0, 0.0)]);
+        assert_eq!(fastest_within(&all, 4.0), Some(1));
+        assert_eq!(fastest_within(&all, 3.9), Some(3));
+        assert_eq!(fastest_within(&all, -1.0), None);
+        assert_eq!(most_exact_within(&all, 8.9), Some(1));
+        assert_eq!(most_exact_within(&all, 9.0), Some(3));
+        assert_eq!(most_exact_within(&all, 0.5), None);
+    }
+}

@@ -1,0 +1,244 @@
+//! The table of a sweep, for the eye and for other programs.
+
+use std::fmt::Write as _;
+
+use super::Report;
+use crate::lab::candidates::Group;
+use crate::lab::sweep::{Measured, Row};
+use crate::scene::{AXES, Axis, AxisKind};
+
+/// A number with three digits that count: "0", "0.0123", "4.57", "137", "1.2e-5".
+#[must_use]
+pub fn brief(number: f64) -> String {
+    let size = number.abs();
+    if size == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e5).contains(&size) {
+        return format!("{number:.1e}");
+    }
+    let text = match size {
+        100.0.. => format!("{number:.0}"),
+        10.0.. => format!("{number:.1}"),
+        1.0.. => format!("{number:.2}"),
+        0.1.. => format!("{number:.3}"),
+        0.01.. => format!("{number:.4}"),
+        _ => format!("{number:.5}"),
+    };
+    if !text.contains('.') {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The heading under which a row stands.
+#[must_use]
+pub fn heading(row: &Row) -> String {
+    match row.group {
+        Group::Preset => "presets".to_owned(),
+        Group::Axis(key) => {
+            let Some(axis) = Axis::named(key) else { return key.to_owned() };
+            let scored = match axis.kind {
+                AxisKind::Scored => "",
+                AxisKind::Model => " (a model: not scored)",
+            };
+            format!("{}{scored}, --{key}", axis.name)
+        }
+        Group::Current => "now".to_owned(),
+        Group::Combination => "combinations".to_owned(),
+    }
+}
+
+/// The table as text, with what was measured above it and what the marks mean below.
+#[must_use]
+pub fn text(report: &Report) -> String {
+    let mut text = head(report);
+    let _ = writeln!(
+        text,
+        "\n  {:30} {:>8} {:>15} {:>8} {:>5} {:7} {:>7} {:>8} {:>7} {:>7} {:>8} {:>8}",
+        "",
+        "time",
+        "middle half",
+        "ms",
+        "pairs",
+        "",
+        "largest",
+        "RMSE",
+        "PSNR",
+        "bytes",
+        "coverage",
+        "FLIP"
+    );
+    let (front, current) = (report.front(), report.current());
+    let mut last = String::new();
+    for row in report.rows() {
+        let heading = heading(row);
+        if heading != last {
+            let _ = writeln!(text, "{heading}");
+            last = heading;
+        }
+        let marks = [
+            if row.point == 0 { '*' } else { ' ' },
+            if current == Some(row.point) { '>' } else { ' ' },
+            if front.contains(&row.point) { '+' } else { ' ' },
+        ];
+        let marks: String = marks.iter().collect();
+        let name = format!("{marks} {}", row.name);
+        let _ = writeln!(text, "  {name:30} {}", figures(&report.findings.points[row.point]));
+    }
+    let _ =
+        writeln!(text, "\n* the default  > now  + no other choice is both faster and more exact");
+    foot(&mut text, report);
+    text
+}
+
+fn head(report: &Report) -> String {
+    let findings = &report.findings;
+    let [width, height] = findings.size;
+    let quartiles = &findings.control.quartiles;
+    let threads = if findings.threads == 1 { "thread" } else { "threads" };
+    let mut text = format!(
+        "{}: {width} x {height} pixels, {} {threads}, {}, {}\n",
+        report.scene, findings.threads, findings.instructions, findings.thoroughness
+    );
+    let _ = writeln!(
+        text,
+        "The default takes {} ms. Against itself it took {:.3} times as long, half of {} pairs\nbetween \
+         {:.3} and {:.3}: a difference of less than {:.1} % means nothing.",
+        brief(findings.control.a_ms),
+        quartiles.median,
+        findings.control.pairs,
+        quartiles.lower,
+        quartiles.upper,
+        findings.floor * 100.0
+    );
+    text
+}
+
+fn figures(point: &Measured) -> String {
+    let (ratio, error) = (&point.ratio, &point.error);
+    let quartiles = &ratio.quartiles;
+    let psnr = error.psnr.map_or_else(|| "exact".to_owned(), |psnr| format!("{psnr:.1}"));
+    format!(
+        "{:>7.3}x {:>15} {:>8} {:>5} {:7} {:>7} {:>8} {:>7} {:>6}% {:>8} {:>8}",
+        quartiles.median,
+        format!("{:.3} - {:.3}", quartiles.lower, quartiles.upper),
+        brief(point.ms),
+        ratio.pairs,
+        point.verdict.word(),
+        error.largest,
+        brief(error.rmse),
+        psnr,
+        brief(error.differing * 100.0),
+        error.coverage,
+        brief(error.flip)
+    )
+}
+
+fn foot(text: &mut String, report: &Report) {
+    for left_out in &report.findings.left_out {
+        let _ = writeln!(text, "not measured: {}: {}", left_out.what, left_out.reason);
+    }
+    if !report.findings.kernels.is_empty() {
+        let _ = writeln!(text, "\narithmetic on one thread: SIMD against the plain loop");
+    }
+    for kernel in &report.findings.kernels {
+        let quartiles = &kernel.ratio.quartiles;
+        let middle = format!("{:.3} - {:.3}", quartiles.lower, quartiles.upper);
+        let _ = writeln!(
+            text,
+            "      {:26} {:>7.3}x {middle:>15} {:>8} {:>5} {}",
+            kernel.name,
+            quartiles.median,
+            brief(kernel.ratio.a_ms * quartiles.median),
+            kernel.ratio.pairs,
+            if kernel.equal { "equal results" } else { "OTHER RESULTS" }
+        );
+    }
+    let answers = report.answers();
+    if !answers.is_empty() {
+        let _ = writeln!(text);
+    }
+    for answer in answers {
+        let _ = writeln!(text, "{answer}");
+    }
+    let _ = writeln!(text, "\nagain: {}", report.command);
+}
+
+/// The table as comma-separated values: a row each, with what every axis is set to.
+#[must_use]
+pub fn csv(report: &Report) -> String {
+    let mut text = String::from("group,name");
+    for axis in AXES {
+        let _ = write!(text, ",{}", axis.key);
+    }
+    text += ",ms,ratio,ratio_lower,ratio_upper,pairs,thrown_away,verdict,largest,rmse,psnr,differing,\
+        coverage,flip,hash,front,current\n";
+    let (front, current) = (report.front(), report.current());
+    for row in &report.findings.rows {
+        let Measured { settings, ms, ratio, verdict, error, hash, .. } =
+            &report.findings.points[row.point];
+        let _ = write!(text, "{},{}", quoted(&heading(row)), quoted(&row.name));
+        for axis in AXES {
+            let _ = write!(text, ",{}", axis.chosen(settings).word);
+        }
+        let quartiles = &ratio.quartiles;
+        let psnr = error.psnr.map_or_else(|| "inf".to_owned(), |psnr| psnr.to_string());
+        let _ = writeln!(
+            text,
+            ",{ms},{},{},{},{},{},{},{},{},{psnr},{},{},{},{hash},{},{}",
+            quartiles.median,
+            quartiles.lower,
+            quartiles.upper,
+            ratio.pairs,
+            ratio.thrown,
+            verdict.word(),
+            error.largest,
+            error.rmse,
+            error.differing,
+            error.coverage,
+            error.flip,
+            front.contains(&row.point),
+            current == Some(row.point)
+        );
+    }
+    text
+}
+
+/// A field that may hold commas (RFC 4180).
+fn quoted(field: &str) -> String {
+    if field.contains([',', '"', '\n']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_the_three_digits_that_count() {
+        let pairs = [
+            (0.0, "0"),
+            (1.0, "1"),
+            (0.012_345, "0.0123"),
+            (4.567, "4.57"),
+            (136.6, "137"),
+            (0.000_012, "1.2e-5"),
+            (0.5, "0.5"),
+            (1200.0, "1200"),
+            (0.1, "0.1"),
+        ];
+        for (number, text) in pairs {
+            assert_eq!(brief(number), text);
+        }
+    }
+
+    #[test]
+    fn a_field_with_a_comma_is_quoted() {
+        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+        assert_eq!(quoted("a b"), "a b");
+    }
+}

@@ -1,0 +1,57 @@
+//! Medians and quartiles of a few measurements.
+//!
+//! Quantiles are those of Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996, type 7:
+//! between the two neighbours of (n - 1) p, linearly.
+
+use serde::Serialize;
+
+/// Where the middle half of some numbers lies.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Quartiles {
+    /// A quarter of them is less.
+    pub lower: f64,
+    /// Half of them is less.
+    pub median: f64,
+    /// A quarter of them is more.
+    pub upper: f64,
+}
+
+impl Quartiles {
+    /// The quartiles of these numbers, none of which is NaN; `None` where there are none.
+    #[must_use]
+    pub fn of(numbers: &[f64]) -> Option<Self> {
+        let mut sorted = numbers.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let quantile = |p: f64| quantile(&sorted, p);
+        Some(Self { lower: quantile(0.25)?, median: quantile(0.5)?, upper: quantile(0.75)? })
+    }
+}
+
+/// The quantile of sorted numbers.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "few numbers"
+)]
+fn quantile(sorted: &[f64], p: f64) -> Option<f64> {
+    let place = (sorted.len().checked_sub(1)? as f64) * p;
+    let (below, part) = (place as usize, place.fract());
+    let upper = sorted.get(below + 1).unwrap_or(&sorted[below]);
+    Some(sorted[below] + (upper - sorted[below]) * part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `quantile(c(9, 1, 4, 2), c(.25, .5, .75))` in R: 1.75, 3, 5.25.
+    #[test]
+    fn quartiles_are_those_of_r() {
+        let quartiles = Quartiles::of(&[9.0, 1.0, 4.0, 2.0]).unwrap();
+        assert_eq!(quartiles, Quartiles { lower: 1.75, median: 3.0, upper: 5.25 });
+        let one = Quartiles::of(&[7.0]).unwrap();
+        assert_eq!(one, Quartiles { lower: 7.0, median: 7.0, upper: 7.0 });
+        assert_eq!(Quartiles::of(&[]), None);
+    }
+}

@@ -1,0 +1,290 @@
+//! What accuracy costs in time: every choice of every axis against the default.
+//!
+//! The reference is drawn once and all errors are taken against it. The default is first measured
+//! against itself; the spread of that control is the floor under which no difference means anything.
+//! Then every candidate is measured against the default, in the same process, in turn with it.
+
+use serde::Serialize;
+
+use super::candidates::{Candidate, Candidates, Group, LeftOut, Thoroughness, candidates};
+use super::clock::Clock;
+use super::easel::{Easel, Studio, hash, instructions};
+use super::error::{Error, Shot};
+use super::kernels::{self, Kernel};
+use super::pairs::{Ratio, Unmeasured, Watch, measure};
+use super::statistics::Quartiles;
+use crate::base::image::Size;
+use crate::scene::{Axis, Settings};
+
+/// What is to be found out.
+#[derive(Clone, Debug)]
+pub struct Question {
+    /// What the picture is drawn with now.
+    pub current: Settings,
+    /// Which axes are looked at.
+    pub axes: Vec<&'static Axis>,
+    /// How thoroughly.
+    pub thoroughness: Thoroughness,
+}
+
+/// What was found out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Findings {
+    /// The picture's width and height.
+    pub size: [usize; 2],
+    /// How many threads drew it.
+    pub threads: usize,
+    /// With which set of instructions.
+    pub instructions: String,
+    /// How thoroughly was measured.
+    pub thoroughness: &'static str,
+    /// The default against itself.
+    pub control: Ratio,
+    /// Within so much of 1 a ratio means nothing.
+    pub floor: f64,
+    /// What the picture is drawn with now.
+    pub current: Settings,
+    /// Every settings that was measured, once; the first is the default.
+    pub points: Vec<Measured>,
+    /// What the points are in the table.
+    pub rows: Vec<Row>,
+    /// What was not measured, and why.
+    pub left_out: Vec<LeftOut>,
+    /// Small pieces of arithmetic, plain and with SIMD.
+    pub kernels: Vec<Kernel>,
+}
+
+/// Settings with what they cost and what they lose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measured {
+    /// What they are called: the first name under which they were measured.
+    pub name: String,
+    /// The settings.
+    pub settings: Settings,
+    /// Milliseconds of a picture: the default's median times the ratio.
+    pub ms: f64,
+    /// How many times as long as the default they take.
+    pub ratio: Ratio,
+    /// Whether that means anything.
+    pub verdict: Verdict,
+    /// Whether their model is the one that is drawn now: only then can they stand in for it.
+    pub scored: bool,
+    /// How far the picture is from the reference of its own model.
+    pub error: Error,
+    /// The picture's hash, as 16 hexadecimal digits.
+    pub hash: String,
+}
+
+/// Whether a ratio means anything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Than the default, beyond the noise.
+    Faster,
+    /// Than the default, beyond the noise.
+    Slower,
+    /// Within the noise: nothing can be said.
+    Alike,
+}
+
+/// A row of the table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Under which heading it stands.
+    #[serde(flatten)]
+    pub group: Group,
+    /// What it is called there.
+    pub name: String,
+    /// Its place among the points.
+    pub point: usize,
+}
+
+impl Verdict {
+    /// What a ratio means where differences up to `floor` mean nothing: the median has to be beyond it,
+    /// and so has the half of the pairs that lies towards 1.
+    #[must_use]
+    pub fn of(ratio: &Quartiles, floor: f64) -> Self {
+        if ratio.median < 1.0 - floor && ratio.upper < 1.0 {
+            Self::Faster
+        } else if ratio.median > 1.0 + floor && ratio.lower > 1.0 {
+            Self::Slower
+        } else {
+            Self::Alike
+        }
+    }
+
+    /// In a word.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Faster => "faster",
+            Self::Slower => "slower",
+            Self::Alike => "alike",
+        }
+    }
+}
+
+/// Measures a scene with the machine's own clock. `tell` is shown what there is after every choice.
+///
+/// # Errors
+/// Where it was cancelled or disturbed, or a picture could not be repeated.
+pub fn sweep(
+    studio: &mut Studio,
+    question: &Question,
+    clock: &mut dyn Clock,
+    watch: &Watch,
+    tell: &mut dyn FnMut(&Findings),
+) -> Result<Findings, Unmeasured> {
+    let combinations = question.thoroughness.combinations;
+    let (scene, view, size) = (studio.scene(), studio.view(), studio.size());
+    let candidates = candidates(scene, view, &question.current, &question.axes, combinations);
+    let mut bench = Bench { clock, easel: studio, watch, question, size };
+    bench.run(candidates, tell)
+}
+
+/// Everything that a sweep works with.
+pub struct Bench<'a> {
+    /// What tells the time.
+    pub clock: &'a mut dyn Clock,
+    /// What draws.
+    pub easel: &'a mut dyn Easel,
+    /// Who waits for it.
+    pub watch: &'a Watch,
+    /// What is to be found out.
+    pub question: &'a Question,
+    /// The picture's size.
+    pub size: Size,
+}
+
+impl std::fmt::Debug for Bench<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Bench").field("question", self.question).finish_non_exhaustive()
+    }
+}
+
+impl Bench<'_> {
+    /// Measures these candidates, of which the first is the default.
+    ///
+    /// # Errors
+    /// As [`sweep`].
+    pub fn run(
+        &mut self,
+        candidates: Candidates,
+        tell: &mut dyn FnMut(&Findings),
+    ) -> Result<Findings, Unmeasured> {
+        let begun = self.clock.now();
+        let thoroughness = self.question.thoroughness;
+        let Candidates { all, left_out } = candidates;
+        let base = all.first().expect("the default is always measured").settings;
+        let reference = (base.reference(), self.easel.shot(&base.reference()));
+        let control = self.measured(&base, &base)?;
+        let mut findings = self.begin(control, left_out);
+        // Each piece of arithmetic counts as a choice.
+        let steps = all.len() + kernels::COUNT;
+        let mut late = 0;
+        for (i, candidate) in all.into_iter().enumerate() {
+            self.watch.progress.reached(i, steps)?;
+            let is_late = self.clock.now().saturating_sub(begun) >= thoroughness.time;
+            if candidate.group == Group::Combination && is_late {
+                late += 1;
+                continue;
+            }
+            self.add(&mut findings, &base, candidate, &reference)?;
+            tell(&findings);
+        }
+        if late > 0 {
+            findings.left_out.push(LeftOut {
+                what: format!("{late} combinations"),
+                reason: "the time was up".to_owned(),
+            });
+        }
+        for i in 0..kernels::COUNT {
+            self.watch.progress.reached(steps - kernels::COUNT + i, steps)?;
+            let limits = &thoroughness.limits;
+            findings.kernels.push(kernels::measure(i, self.clock, limits, self.watch)?);
+        }
+        Ok(findings)
+    }
+
+    fn begin(&self, control: Ratio, left_out: Vec<LeftOut>) -> Findings {
+        let Quartiles { lower, median, upper } = control.quartiles;
+        let floor =
+            [lower, median, upper].iter().fold(0.0, |most: f64, x| most.max((x - 1.0).abs()));
+        Findings {
+            size: [self.size.width, self.size.height],
+            threads: rayon::current_num_threads(),
+            instructions: instructions(),
+            thoroughness: self.question.thoroughness.word,
+            control,
+            floor,
+            current: self.question.current,
+            points: Vec::new(),
+            rows: Vec::new(),
+            left_out,
+            kernels: Vec::new(),
+        }
+    }
+
+    fn measured(&mut self, a: &Settings, b: &Settings) -> Result<Ratio, Unmeasured> {
+        measure(self.clock, self.easel, [a, b], &self.question.thoroughness.limits, self.watch)
+    }
+
+    /// Measures a candidate, unless its settings were measured under another name.
+    fn add(
+        &mut self,
+        findings: &mut Findings,
+        base: &Settings,
+        candidate: Candidate,
+        reference: &(Settings, Shot),
+    ) -> Result<(), Unmeasured> {
+        let Candidate { group, name, settings } = candidate;
+        let known = findings.points.iter().position(|point| point.settings == settings);
+        let point = match known {
+            Some(point) => point,
+            None => {
+                let point = self.point(findings, base, settings, reference)?;
+                findings.points.push(point);
+                findings.points.len() - 1
+            }
+        };
+        // What is drawn now has a row of its own only where no other row shows it.
+        if group != Group::Current || known.is_none() {
+            findings.rows.push(Row { group, name, point });
+        }
+        Ok(())
+    }
+
+    fn point(
+        &mut self,
+        findings: &Findings,
+        base: &Settings,
+        settings: Settings,
+        (exact, reference): &(Settings, Shot),
+    ) -> Result<Measured, Unmeasured> {
+        let a_ms = findings.control.a_ms;
+        // The default is what all times are told in, and its ratio is the control's.
+        let (ratio, ms) = if settings == *base {
+            (findings.control.clone(), a_ms)
+        } else {
+            let ratio = self.measured(base, &settings)?;
+            let ms = a_ms * ratio.quartiles.median;
+            (ratio, ms)
+        };
+        let shot = self.easel.shot(&settings);
+        let scored = settings.reference() == *exact;
+        let error = match scored {
+            true => shot.error(reference),
+            false => shot.error(&self.easel.shot(&settings.reference())),
+        };
+        Ok(Measured {
+            name: settings.in_words(),
+            settings,
+            ms,
+            verdict: Verdict::of(&ratio.quartiles, findings.floor),
+            ratio,
+            scored,
+            error,
+            hash: format!("{:016x}", hash(shot.picture())),
+        })
+    }
+}

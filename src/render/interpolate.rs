@@ -1,0 +1,446 @@
+//! From pixels and the triangles that they show to what is there: place, normal, light.
+//!
+//! First where in its triangle each pixel lies, linear on the screen, from whole numbers; then the
+//! same with perspective; then what the corners carry, mixed. A value that all corners share comes
+//! out as it went in, bit for bit, since only differences are weighted.
+//!
+//! The place of a pixel in space is the point of its ray at its depth, so that the direction to the
+//! observer is exact whatever the triangle.
+//!
+//! Perspective: Heckbert and Moreton, "Interpolation for Polygon Texture Mapping and Shading", 1991.
+
+use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
+use glam::{DMat3, DVec3};
+
+use super::coverage::Triangle;
+use super::effects::{BATCH, Batch, Rows, set, store};
+use super::faces::{Faced, Faces, barycentric, cut_w, cut_weights};
+use super::items::Items;
+use super::pick::{SLOTS, pick};
+use super::plan::{Draw, Eye, FramePlan};
+use super::real::{Kernel, Machine, Number, Sixteen, Triple};
+
+/// Where the pixels of a list lie in their triangles.
+#[derive(Debug)]
+pub struct Located<T> {
+    /// The second and third barycentric coordinate, linear on the screen.
+    linear: [[T; BATCH]; 2],
+    /// The same with perspective.
+    weights: [[T; BATCH]; 2],
+    /// The distance along the observer's axis.
+    w: [T; BATCH],
+}
+
+impl<T: Number> Default for Located<T> {
+    fn default() -> Self {
+        let row = [T::default(); BATCH];
+        Self { linear: [row; 2], weights: [row; 2], w: row }
+    }
+}
+
+/// Numbers that are interpolated.
+pub trait Interpolated: Faced {
+    /// Finds where every pixel lies, where the triangles allow it to be done sixteen pixels at a time;
+    /// says whether they do.
+    fn find(level: Level, items: &Items, faces: &Faces<Self>, to: &mut Located<Self>) -> bool;
+    /// Finds the linear barycentric coordinates, but for those of wide triangles.
+    fn find_linear(level: Level, items: &Items, faces: &Faces<Self>, to: &mut Located<Self>);
+}
+
+/// Does something for as many pages of slots as `count` triangles take.
+macro_rules! paged {
+    ($count:expr, $pages:ident => $what:expr) => {
+        match $count {
+            0..=16 => {
+                const $pages: usize = 1;
+                $what
+            }
+            17..=32 => {
+                const $pages: usize = 2;
+                $what
+            }
+            _ => {
+                const $pages: usize = 4;
+                $what
+            }
+        }
+    };
+}
+
+impl<T: Interpolated> Located<T> {
+    /// Finds where every pixel lies.
+    pub(super) fn find(
+        &mut self,
+        level: Level,
+        items: &Items,
+        faces: &Faces<T>,
+        (plan, draw): (&FramePlan, &Draw),
+    ) {
+        if !T::find(level, items, faces, self) {
+            T::find_linear(level, items, faces, self);
+            self.find_wide(items, faces);
+            let count = faces.count;
+            paged!(count, PAGES => T::run(level, Perspective::<T, PAGES> { items, faces, to: self }));
+            if faces.cut != 0 {
+                self.find_cut(items, faces, plan, draw);
+            }
+        }
+    }
+
+    /// Triangles that were cut are looked at one pixel at a time, in homogeneous coordinates.
+    #[cold]
+    fn find_cut(&mut self, items: &Items, faces: &Faces<T>, plan: &FramePlan, draw: &Draw) {
+        for i in 0..items.len {
+            let slot = items.slots[i].cast_unsigned() as usize;
+            if faces.cut >> slot & 1 == 1 {
+                let number = faces.numbers[slot];
+                let weights = cut_weights(plan, draw, number, [items.x[i], items.y[i]]);
+                self.weights[0][i] = T::from_f64(weights.y);
+                self.weights[1][i] = T::from_f64(weights.z);
+                self.w[i] = T::from_f64(cut_w(plan, draw, number, weights));
+            }
+        }
+    }
+
+    /// The parts that the corners have in pixel `i` of the list.
+    pub(super) fn weights(&self, i: usize) -> DVec3 {
+        let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
+        DVec3::new(1.0 - b - c, b, c)
+    }
+
+    /// Finds the linear coordinates in wide triangles, with whole numbers of 64 bits.
+    fn find_wide(&mut self, items: &Items, faces: &Faces<T>) {
+        let (mut last, mut triangle) = (usize::MAX, None);
+        for i in 0..items.len {
+            let slot = items.slots[i].cast_unsigned() as usize;
+            if faces.wide >> slot & 1 == 0 {
+                continue;
+            }
+            if slot != last {
+                (last, triangle) = (slot, Triangle::new(faces.corners(slot)));
+            }
+            if let Some(triangle) = &triangle {
+                let [second, third] = barycentric(triangle, [items.x[i], items.y[i]]);
+                self.linear[0][i] = T::from_f64(second);
+                self.linear[1][i] = T::from_f64(third);
+            }
+        }
+    }
+}
+
+impl Interpolated for f64 {
+    fn find(_: Level, _: &Items, _: &Faces<Self>, _: &mut Located<Self>) -> bool {
+        false
+    }
+
+    fn find_linear(_: Level, _: &Items, _: &Faces<Self>, _: &mut Located<Self>) {}
+}
+
+impl Interpolated for f32 {
+    fn find(level: Level, items: &Items, faces: &Faces<Self>, to: &mut Located<Self>) -> bool {
+        let wide = faces.count == 1 && faces.wide == 1;
+        if wide && let Some(triangle) = Triangle::new(faces.corners(0)) {
+            dispatch!(level, simd => find_in_one(simd, items, &triangle, faces, to));
+            return true;
+        }
+        if (faces.wide | faces.cut) != 0 {
+            return false;
+        }
+        paged!(faces.count, PAGES => {
+            dispatch!(level, simd => find_narrow::<_, PAGES>(simd, items, faces, to));
+        });
+        true
+    }
+
+    fn find_linear(level: Level, items: &Items, faces: &Faces<Self>, to: &mut Located<Self>) {
+        paged!(faces.count, PAGES => {
+            dispatch!(level, simd => find_narrow::<_, PAGES>(simd, items, faces, to));
+        });
+    }
+}
+
+/// Where pixels lie in narrow triangles.
+#[inline(always)]
+fn find_narrow<S: Simd, const PAGES: usize>(
+    simd: S,
+    items: &Items,
+    faces: &Faces<f32>,
+    to: &mut Located<f32>,
+) {
+    let machine = Sixteen(simd);
+    for at in (0..items.len).step_by(16) {
+        let slots = machine.slots(&items.slots, at);
+        let x = i32x16::from_slice(simd, &items.x[at..at + 16]);
+        let y = i32x16::from_slice(simd, &items.y[at..at + 16]);
+        let per_area = machine.pick::<PAGES>(&faces.per_area, slots);
+        let second = edge::<S, PAGES>(simd, &faces.edges[0], slots, [x, y]) * per_area;
+        let third = edge::<S, PAGES>(simd, &faces.edges[1], slots, [x, y]) * per_area;
+        machine.store(second, &mut to.linear[0], at);
+        machine.store(third, &mut to.linear[1], at);
+        let by_w = picked::<_, PAGES>(machine, &faces.by_w, slots);
+        to.put(machine, at, [second, third], by_w);
+    }
+}
+
+/// The edge functions of narrow triangles are exact in 32 bits, even where products of theirs are
+/// not: what overflows is taken away again.
+#[inline(always)]
+fn edge<S: Simd, const PAGES: usize>(
+    simd: S,
+    [a, b, c]: &[[i32; SLOTS]; 3],
+    slots: i32x16<S>,
+    [x, y]: [i32x16<S>; 2],
+) -> f32x16<S> {
+    let a = pick::<S, PAGES>(simd, a, slots);
+    let b = pick::<S, PAGES>(simd, b, slots);
+    let c = pick::<S, PAGES>(simd, c, slots);
+    (a * x + b * y + c).to_float()
+}
+
+/// Where pixels lie in one triangle whose edge functions need more bits. They are whole numbers that
+/// f64 holds, up to 2^53.
+#[inline(always)]
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "the nearest number is meant"
+)]
+fn find_in_one<S: Simd>(
+    simd: S,
+    items: &Items,
+    triangle: &Triangle,
+    faces: &Faces<f32>,
+    to: &mut Located<f32>,
+) {
+    let machine = Sixteen(simd);
+    let per_area = 1.0 / triangle.doubled_area() as f64;
+    let (left, top) = (items.x[0], items.y[0]);
+    let [_, e, f] = triangle.edges_at(left, top);
+    let (e, f) = (e as f64, f as f64);
+    let [[_, er, fr], [_, ed, fd]] = triangle.steps();
+    let (er, fr, ed, fd) = (er as f64, fr as f64, ed as f64, fd as f64);
+    let [w0, w1, w2] = faces.by_w;
+    let by_w = set(machine, [w0[0], w1[0], w2[0]]);
+    // What the edge functions gain in the columns of a whole block.
+    let columns = COLUMNS.map(|x| [x * er, x * fr]);
+    for at in (0..items.len).step_by(16) {
+        let (mut second, mut third) = ([0.0; 16], [0.0; 16]);
+        if items.is_whole() {
+            let y = f64::from(items.y[at] - top);
+            let (e, f) = ([e + y * ed, e + y * ed + ed], [f + y * fd, f + y * fd + fd]);
+            for lane in 0..16 {
+                let [right_e, right_f] = columns[lane % 8];
+                second[lane] = ((e[lane / 8] + right_e) * per_area) as f32;
+                third[lane] = ((f[lane / 8] + right_f) * per_area) as f32;
+            }
+        } else {
+            for lane in 0..16 {
+                let x = f64::from(items.x[at + lane] - left);
+                let y = f64::from(items.y[at + lane] - top);
+                second[lane] = ((e + y * ed + x * er) * per_area) as f32;
+                third[lane] = ((f + y * fd + x * fr) * per_area) as f32;
+            }
+        }
+        let linear = [machine.load(&second, 0), machine.load(&third, 0)];
+        to.put(machine, at, linear, by_w);
+    }
+}
+
+/// The columns of a block.
+const COLUMNS: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// Linear coordinates get perspective.
+struct Perspective<'a, T, const PAGES: usize> {
+    items: &'a Items,
+    faces: &'a Faces<T>,
+    to: &'a mut Located<T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Perspective<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { items, faces, to } = self;
+        for at in (0..items.len).step_by(M::LANES) {
+            let slots = machine.slots(&items.slots, at);
+            let linear = [machine.load(&to.linear[0], at), machine.load(&to.linear[1], at)];
+            let by_w = picked::<M, PAGES>(machine, &faces.by_w, slots);
+            to.put(machine, at, linear, by_w);
+        }
+    }
+}
+
+impl<T: Number> Located<T> {
+    /// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; the sum is one by the pixel's own
+    /// w.
+    #[inline(always)]
+    fn put<M: Machine<Number = T>>(
+        &mut self,
+        machine: M,
+        at: usize,
+        [second, third]: [M::R; 2],
+        Triple([w0, w1, w2]): Triple<M::R>,
+    ) {
+        let w = machine.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
+        machine.store(w, &mut self.w, at);
+        machine.store(second * w1 * w, &mut self.weights[0], at);
+        machine.store(third * w2 * w, &mut self.weights[1], at);
+    }
+}
+
+/// Three numbers of the triangles that some pixels show.
+#[inline(always)]
+fn picked<M: Machine, const PAGES: usize>(
+    machine: M,
+    [x, y, z]: &[[M::Number; SLOTS]; 3],
+    slots: M::Slots,
+) -> Triple<M::R> {
+    Triple([
+        machine.pick::<PAGES>(x, slots),
+        machine.pick::<PAGES>(y, slots),
+        machine.pick::<PAGES>(z, slots),
+    ])
+}
+
+/// What the corners carry, at some pixels.
+#[inline(always)]
+fn mixed<M: Machine, const PAGES: usize>(
+    machine: M,
+    rows: &[[[M::Number; SLOTS]; 3]; 3],
+    slots: M::Slots,
+    [second, third]: [M::R; 2],
+) -> Triple<M::R> {
+    let a = picked::<M, PAGES>(machine, &rows[0], slots);
+    let b = picked::<M, PAGES>(machine, &rows[1], slots);
+    let c = picked::<M, PAGES>(machine, &rows[2], slots);
+    a.plus(b.times(second)).plus(c.times(third))
+}
+
+/// Where what is mixed goes.
+#[derive(Debug)]
+pub(super) enum Mixed<'a, T> {
+    /// Light.
+    Rows(&'a mut Rows<T>),
+    /// Colours, as pixels.
+    Pixels(&'a mut [u32; BATCH]),
+}
+
+/// Mixes what the corners carry at every pixel.
+pub(super) fn mix<T: Number>(
+    level: Level,
+    items: &Items,
+    faces: &Faces<T>,
+    located: &Located<T>,
+    to: Mixed<'_, T>,
+) {
+    paged!(faces.count, PAGES => T::run(level, Mix::<T, PAGES> { items, faces, located, to }));
+}
+
+struct Mix<'a, T, const PAGES: usize> {
+    items: &'a Items,
+    faces: &'a Faces<T>,
+    located: &'a Located<T>,
+    to: Mixed<'a, T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { items, faces, located, mut to } = self;
+        for at in (0..items.len).step_by(M::LANES) {
+            let slots = machine.slots(&items.slots, at);
+            let weights =
+                [machine.load(&located.weights[0], at), machine.load(&located.weights[1], at)];
+            let value = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
+            match &mut to {
+                Mixed::Rows(rows) => store(machine, value, rows, at),
+                Mixed::Pixels(pixels) => machine.store_pixels(value, &mut pixels[..], at),
+            }
+        }
+    }
+}
+
+/// Place, normal and direction to the observer of every pixel, from normals that the corners carry.
+pub(super) fn surroundings<T: Number>(
+    level: Level,
+    (plan, draw): (&FramePlan, &Draw),
+    items: &Items,
+    faces: &Faces<T>,
+    located: &Located<T>,
+    batch: &mut Batch<T>,
+) {
+    let rays = Rays::new(plan);
+    let normals = matrix(draw.view_from_normal);
+    paged!(faces.count, PAGES => T::run(
+        level,
+        Surroundings::<T, PAGES> { items, faces, located, batch, rays, normals },
+    ));
+}
+
+/// The columns of a matrix.
+fn matrix<T: Number>(m: DMat3) -> [[T; 3]; 3] {
+    [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(T::from_f64))
+}
+
+/// From a pixel to the way on which its surface lies: x = (column a + b), y = (row c + d), each times
+/// w in perspective, where -w is z.
+#[derive(Clone, Copy, Debug)]
+struct Rays<T> {
+    parallel: bool,
+    x: [T; 2],
+    y: [T; 2],
+}
+
+impl<T: Number> Rays<T> {
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn new(plan: &FramePlan) -> Self {
+        let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
+        let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+        Self {
+            parallel: plan.eye == Eye::Parallel,
+            x: [2.0 / width / px, -1.0 / px].map(T::from_f64),
+            y: [-2.0 / height / py, 1.0 / py].map(T::from_f64),
+        }
+    }
+}
+
+struct Surroundings<'a, T, const PAGES: usize> {
+    items: &'a Items,
+    faces: &'a Faces<T>,
+    located: &'a Located<T>,
+    batch: &'a mut Batch<T>,
+    rays: Rays<T>,
+    normals: [[T; 3]; 3],
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Surroundings<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { items, faces, located, batch, rays, normals } = self;
+        let [nx, ny, nz] = normals;
+        let (nx, ny, nz) = (set(machine, nx), set(machine, ny), set(machine, nz));
+        for at in (0..items.len).step_by(M::LANES) {
+            let slots = machine.slots(&items.slots, at);
+            let weights =
+                [machine.load(&located.weights[0], at), machine.load(&located.weights[1], at)];
+            let Triple([x, y, z]) = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
+            let n = nx.times(x).plus(ny.times(y)).plus(nz.times(z)).unit();
+            store(machine, n, &mut batch.normal, at);
+
+            let (one, half) = (machine.lift(1.0), machine.lift(0.5));
+            let (column, row) = (machine.whole(&items.x, at), machine.whole(&items.y, at));
+            let x = (column + half) * machine.set(rays.x[0]) + machine.set(rays.x[1]);
+            let y = (row + half) * machine.set(rays.y[0]) + machine.set(rays.y[1]);
+            if rays.parallel {
+                let Triple([z0, z1, z2]) = picked::<M, PAGES>(machine, &faces.z, slots);
+                let z = z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1];
+                store(machine, Triple([x, y, z]), &mut batch.position, at);
+                let zero = machine.lift(0.0);
+                store(machine, Triple([zero, zero, one]), &mut batch.to_eye, at);
+            } else {
+                let w = machine.load(&located.w, at);
+                store(machine, Triple([x * w, y * w, -w]), &mut batch.position, at);
+                store(machine, Triple([-x, -y, one]).unit(), &mut batch.to_eye, at);
+            }
+        }
+    }
+}

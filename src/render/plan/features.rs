@@ -1,0 +1,149 @@
+//! What is said of an object's surface and lines: one row for each effect that is not a light.
+//!
+//! The rows read the finished draw, so what they say is on is on.
+
+use std::borrow::Cow;
+
+use super::planner::Planner;
+use super::uses::{Effect, EffectUse, State, Thing};
+use super::{Back, Draw, Pipeline, Planning, Shaded};
+use crate::scene::{Filter, ItemId, LightAt, Normals, Object, Settings, Surface};
+
+/// What a row reads.
+struct Facts<'a> {
+    settings: &'a Settings,
+    object: &'a Object,
+    draw: &'a Draw,
+    /// How its parts are coloured, where they are.
+    shaded: Vec<&'a Shaded>,
+}
+
+/// A row of the table.
+struct Feature(Effect, fn(&Facts<'_>) -> State);
+
+/// The table. An effect of surfaces or lines is a line here.
+const FEATURES: &[Feature] = &[
+    Feature(Effect::Surfaces, surfaces),
+    Feature(Effect::Normals, normals),
+    Feature(Effect::Texture, texture),
+    Feature(Effect::Holes, holes),
+    Feature(Effect::VertexColors, vertex_colors),
+    Feature(Effect::BackFaces, back_faces),
+    Feature(Effect::Edges, |it| switched(it.draw.lines.edges)),
+    Feature(Effect::FaceNormals, |it| switched(it.draw.lines.face_normals.is_some())),
+    Feature(Effect::VertexNormals, |it| switched(it.draw.lines.vertex_normals.is_some())),
+];
+
+/// What a thing's being seen is called.
+pub(super) const fn presence(item: ItemId) -> Effect {
+    match item {
+        ItemId::Object(_) => Effect::Surfaces,
+        ItemId::Camera(_) | ItemId::Light(_) => Effect::Marks,
+    }
+}
+
+impl Planner<'_> {
+    /// Notes what a draw has of everything that is not a light.
+    pub(super) fn note_features(&self, into: &mut Planning, object: &Object, draw: &Draw) {
+        let Planning { plan, notes } = into;
+        let facts = || {
+            let pipelines = draw.part_pipelines.iter().flatten();
+            let pipelines = pipelines.map(|pipeline| &plan.pipelines[*pipeline as usize]);
+            let shaded = pipelines.filter_map(|pipeline| match pipeline {
+                Pipeline::Shaded(shaded) => Some(shaded),
+                Pipeline::Flat(_) => None,
+            });
+            Facts { settings: self.settings, object, draw, shaded: shaded.collect() }
+        };
+        let note = |effect: Effect, state: State| EffectUse {
+            effect,
+            name: effect.label().to_owned(),
+            on: Some(Thing { item: draw.item, name: object.name.clone() }),
+            state,
+            pixels: None,
+        };
+        let presence = presence(draw.item);
+        if presence == Effect::Marks {
+            return notes.add(|| note(presence, State::ON));
+        }
+        for Feature(effect, state) in FEATURES {
+            notes.add(|| note(*effect, state(&facts())));
+        }
+    }
+}
+
+fn switched(on: bool) -> State {
+    if on { State::ON } else { State::exact("switched off") }
+}
+
+fn surfaces(it: &Facts<'_>) -> State {
+    if !it.draw.filled {
+        State::exact("edges only")
+    } else if it.draw.part_pipelines.iter().all(Option::is_none) {
+        State::exact("every part is hidden, or its opacity is below one half")
+    } else {
+        State::ON
+    }
+}
+
+/// On where any part of the object says so.
+fn any(it: &Facts<'_>, is: impl Fn(&Shaded) -> bool, word: Cow<'static, str>) -> Option<State> {
+    it.shaded.iter().any(|shaded| is(shaded)).then_some(State::On(word))
+}
+
+fn normals(it: &Facts<'_>) -> State {
+    let whose = match it.draw.normals {
+        Normals::Vertex => "of vertices, interpolated",
+        Normals::Face => "of faces",
+    };
+    let left_out = match it.settings.light {
+        _ if !it.draw.filled => "edges only",
+        LightAt::Face => "light is evaluated at faces",
+        LightAt::Vertex => "light is evaluated at vertices",
+        LightAt::Pixel => "no light reads them",
+    };
+    let per_pixel = it.settings.light == LightAt::Pixel;
+    any(it, |shaded| per_pixel && shaded.places, whose.into()).unwrap_or(State::exact(left_out))
+}
+
+fn texture(it: &Facts<'_>) -> State {
+    let filter = match it.settings.filter {
+        Filter::Nearest => "nearest texel",
+        Filter::Bilinear => "bilinear",
+    };
+    let left_out = if !it.draw.filled {
+        "edges only"
+    } else if it.object.surface == Surface::Material {
+        "only the material is shown"
+    } else if it.object.model.mesh.uvs().is_empty() {
+        "the file places none"
+    } else {
+        "there is none"
+    };
+    any(it, |shaded| shaded.texture.is_some(), filter.into()).unwrap_or(State::exact(left_out))
+}
+
+fn holes(it: &Facts<'_>) -> State {
+    let textured = it.shaded.iter().any(|shaded| shaded.texture.is_some());
+    let left_out = if textured { "every texel is opaque" } else { "no texture" };
+    any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(State::exact(left_out))
+}
+
+fn vertex_colors(it: &Facts<'_>) -> State {
+    let left_out = if !it.draw.filled {
+        "edges only"
+    } else if it.object.surface == Surface::Material {
+        "only the material is shown"
+    } else {
+        "the file has none"
+    };
+    any(it, |shaded| shaded.vertex_colors, "".into()).unwrap_or(State::exact(left_out))
+}
+
+fn back_faces(it: &Facts<'_>) -> State {
+    match it.draw.back {
+        Back::Left => State::exact("switched off"),
+        Back::Red => State::On("red, not lit".into()),
+        Back::Lit => State::On("lit from both sides".into()),
+    }
+}

@@ -1,0 +1,257 @@
+//! How surfaces are coloured: from materials, textures and lights to pipelines.
+
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+use super::draw::Form;
+use super::lamps::Shining;
+use super::planner::Planner;
+use super::rules::{Covering, Meeting, Reading};
+use super::turning::Turning;
+use super::uses::{self, Class, Effect, EffectUse, State};
+use super::{Pipeline, Planning, Shaded, Stage, bounded};
+use crate::base::image::{Picture, Size};
+use crate::base::{Shared, color::Color};
+use crate::render::effects::Matter;
+use crate::render::region::Region;
+use crate::scene::{
+    Arithmetic, ItemId, LeaveOut, Object, PartLook, SpecularForm, Surface, Texture, Wrap,
+};
+
+/// What the surfaces of an object have in common.
+#[derive(Debug)]
+pub(super) struct Ground<'a> {
+    pub(super) item: ItemId,
+    pub(super) object: &'a Object,
+    /// Where they are lit, where that is known.
+    pub(super) region: Option<Region>,
+    /// How they are turned, where that is known.
+    pub(super) turning: Option<Turning>,
+    /// See [`Shaded::tiled`].
+    pub(super) tiled: bool,
+    /// Whether their colours are seen at all.
+    pub(super) seen: bool,
+}
+
+impl Ground<'_> {
+    fn thing(&self) -> Option<uses::Thing> {
+        Some(uses::Thing { item: self.item, name: self.object.name.clone() })
+    }
+}
+
+/// What leaves a surface as it is.
+static WHITE: LazyLock<Shared<Texture>> = LazyLock::new(|| {
+    Shared::new(Texture {
+        source: PathBuf::new(),
+        picture: Picture::filled(Size::new(1, 1), [255; 4]),
+        wrap: Wrap::Repeat,
+        offset: [0.0; 2],
+        scale: [1.0; 2],
+    })
+});
+
+impl Planner<'_> {
+    /// How one part of an object is drawn; `None` where its opacity leaves nothing.
+    pub(super) fn pipeline_of_part(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        part: u32,
+    ) -> Option<u32> {
+        let object = ground.object;
+        let look = object.part_look(part);
+        if look.opacity < 0.5 {
+            return None;
+        }
+        if !ground.seen {
+            return Some(into.plan.pipeline(Pipeline::Flat(Color([0; 3]))));
+        }
+        let mesh = &object.model.mesh;
+        let rules = into.plan.rules.clone();
+        let texture = look.texture.filter(|_| !mesh.uvs().is_empty());
+        let texture = match rules.texture(texture.map(|texture| &**texture)) {
+            Some(_) => None,
+            None => texture.or_else(|| Some(&*WHITE).filter(|_| !mesh.uvs().is_empty())),
+        };
+        let has_holes = |texture: &&Shared<Texture>| {
+            rules.holes(&Covering { texture, opacity: look.opacity }).is_none()
+        };
+        let colored = object.surface != Surface::Material;
+        let shaded = Shaded {
+            vertex_colors: colored && !mesh.colors().is_empty(),
+            tint: if colored { object.tint.factors() } else { [1.0; 3] },
+            texture: texture.cloned(),
+            cutout: texture.filter(has_holes).map(|_| look.opacity),
+            ..self.lit(into, ground, &look)
+        };
+        Some(into.plan.pipeline(Pipeline::Shaded(shaded)))
+    }
+
+    /// The light of a material.
+    fn lit(&self, into: &mut Planning, ground: &Ground<'_>, look: &PartLook<'_>) -> Shaded {
+        let matter = coefficients(look);
+        let mut matter = matter.with_floor(self.floor(into, &matter));
+        let mut shaded = Shaded {
+            matter,
+            light: None,
+            places: false,
+            tiled: false,
+            dropped: 0.0,
+            cut_off: 0.0,
+            vertex_colors: false,
+            tint: [1.0; 3],
+            texture: None,
+            cutout: None,
+        };
+        if ground.object.surface == Surface::Texture {
+            return shaded;
+        }
+        let mut stages = self.stages(into, ground, &matter);
+        if self.settings.leave_out == LeaveOut::HalfStep {
+            shaded.dropped = self.thin(into, ground, &matter, &mut stages);
+            (matter, shaded.cut_off) = self.cut(into, ground, matter, &mut stages);
+        }
+        shaded.matter = matter;
+        shaded.places = into.plan.rules.places(&Reading::of(stages.iter())).is_none();
+        // Tile by tile where some light shines on a part of space only, or is too faint in some.
+        shaded.tiled = ground.tiled
+            && (self.settings.leave_out == LeaveOut::HalfStep
+                || stages.iter().any(|stage| stage.effect.has_reach));
+        shaded.light = Some(stages);
+        shaded
+    }
+
+    /// The power of 2 below which powers of highlights count as 0.
+    fn floor(&self, into: &Planning, matter: &Matter) -> f64 {
+        if self.settings.arithmetic == Arithmetic::F64 {
+            return -24.0;
+        }
+        // By what the scene says, and not by what is left of it after leaving out.
+        let with_highlight = |shining: &&Shining| {
+            let lamp = &into.plan.lamps[shining.lamp as usize];
+            shining.shines
+                && matter.mirrors(lamp)
+                && (shining.effect.needless)(lamp, matter).is_none()
+        };
+        let count = self.shining.iter().filter(with_highlight).count().max(1);
+        let count = u32::try_from(count).unwrap_or(u32::MAX);
+        // 2^-10 shared out among the highlights, so that all that is left out stays below a quarter of
+        // a byte step.
+        -10.0 - libm::log2(f64::from(count))
+    }
+
+    /// The lights that a material needs, in the order of the scene.
+    fn stages(&self, into: &mut Planning, ground: &Ground<'_>, matter: &Matter) -> Vec<Stage> {
+        let mut stages = Vec::new();
+        let mut no_highlight = Some("no light is on it");
+        for Shining { id, name, effect, lamp, .. } in &self.shining {
+            let source = into.plan.lamps[*lamp as usize];
+            let (region, turning) = (ground.region.as_ref(), ground.turning.as_ref());
+            let meeting = Meeting { effect, lamp: &source, matter, region, turning };
+            let rules = &into.plan.rules;
+            let reason = rules.reflection(&meeting).or_else(|| rules.object(&meeting));
+            into.notes.add(|| EffectUse {
+                effect: Effect::Light(*id),
+                name: name.clone(),
+                on: ground.thing(),
+                state: reason.map_or(State::ON, State::exact),
+                pixels: None,
+            });
+            if reason.is_some() {
+                continue;
+            }
+            let plain = into.plan.rules.highlight(&meeting);
+            if effect.reads_places {
+                no_highlight = no_highlight.and(plain);
+            }
+            let highlight = match self.settings.specular {
+                _ if plain.is_some() => Form::Plain,
+                SpecularForm::Reflection => Form::Reflection,
+                SpecularForm::HalfVector => Form::HalfVector,
+            };
+            stages.push(Stage { effect, lamp: *lamp, highlight });
+        }
+        into.notes.add(|| self.note_highlights(ground, no_highlight.map(State::exact)));
+        stages
+    }
+
+    fn note_highlights(&self, ground: &Ground<'_>, left_out: Option<State>) -> EffectUse {
+        let form = match self.settings.specular {
+            SpecularForm::Reflection => "(R.V)^Ns",
+            SpecularForm::HalfVector => "(N.H)^Ns",
+        };
+        EffectUse {
+            effect: Effect::Highlights,
+            name: Effect::Highlights.label().to_owned(),
+            on: ground.thing(),
+            state: left_out.unwrap_or(State::On(form.into())),
+            pixels: None,
+        }
+    }
+
+    /// Takes out lights that add too little. Gives what they add, in steps of a byte.
+    fn thin(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        matter: &Matter,
+        stages: &mut Vec<Stage>,
+    ) -> f64 {
+        let Planning { plan, notes } = into;
+        let tell = |stage: &Stage, bound: f64| {
+            let shining = self.shining.iter().find(|shining| shining.lamp == stage.lamp);
+            let Some(Shining { id, name, .. }) = shining else { return };
+            notes.replace(|| EffectUse {
+                effect: Effect::Light(*id),
+                name: name.clone(),
+                on: ground.thing(),
+                state: State::LeftOut { reason: "too faint".into(), class: Class::Bounded(bound) },
+                pixels: None,
+            });
+        };
+        let region = ground.region.as_ref();
+        let most =
+            |stage: &Stage| bounded::most(stage, &plan.lamps[stage.lamp as usize], matter, region);
+        bounded::thin(stages, most, bounded::LIGHTS, tell)
+    }
+
+    /// Cuts off the foot of highlights. Gives what that takes away, in steps of a byte.
+    fn cut(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        matter: Matter,
+        stages: &mut [Stage],
+    ) -> (Matter, f64) {
+        let lit = (&into.plan.lamps[..], &matter);
+        let region = ground.region.as_ref();
+        let Some(power) = bounded::least_power(stages, lit, region) else { return (matter, 0.0) };
+        let floor = libm::log2(power);
+        if floor <= matter.floor {
+            return (matter, 0.0);
+        }
+        let cut_off = bounded::cut_off(stages, lit, region, power.min(1.0));
+        if power < 1.0 {
+            return (matter.with_floor(floor), cut_off);
+        }
+        for stage in stages {
+            stage.highlight = Form::Plain;
+        }
+        let class = Class::Bounded(cut_off);
+        let faint = State::LeftOut { reason: "too faint".into(), class };
+        into.notes.replace(|| self.note_highlights(ground, Some(faint)));
+        (matter, cut_off)
+    }
+}
+
+/// What a part reflects.
+fn coefficients(look: &PartLook<'_>) -> Matter {
+    let material = look.material;
+    Matter {
+        ambient: material.ambient,
+        diffuse: material.diffuse,
+        specular: material.specular,
+        exponent: material.exponent,
+        ..Matter::default()
+    }
+}

@@ -1,0 +1,163 @@
+//! What a tile of the picture does without, once its depths are known and before it is coloured.
+//!
+//! The pixels of a tile and the nearest and farthest of its depths are a piece of the view's pyramid,
+//! and all that the tile shows lies in it. A light that misses the piece is taken out of the lists of
+//! stages that the tile is coloured by; so no pixel asks.
+
+use glam::DVec3;
+
+use super::rules::{Meeting, Reading};
+use super::{Eye, FramePlan, Pipeline, Shaded, Stage, bounded};
+use crate::render::coverage::PixelBox;
+use crate::render::region::Region;
+use crate::render::tile::Visibility;
+use crate::scene::LeaveOut;
+
+/// What interpolating a depth, or one by w, in 32 bits may be wrong by, as a part of the largest.
+const ROUNDING: f64 = 2e-6;
+
+/// The stages of a tile. Each thread has its own, and keeps its memory.
+#[derive(Debug, Default)]
+pub(in crate::render) struct TilePlan {
+    /// Where everything is that the tile shows, where it matters.
+    region: Option<Region>,
+    /// By pipeline: what was decided, if it was in this tile.
+    decided: Vec<Option<Decided>>,
+    /// The places of the stages that are kept, list behind list.
+    kept: Vec<u32>,
+    /// Those of the list that is being made.
+    own: Vec<u32>,
+}
+
+/// What was decided about a pipeline in a tile.
+#[derive(Clone, Copy, Debug)]
+struct Decided {
+    from: usize,
+    to: usize,
+    places: bool,
+    dropped: f64,
+}
+
+/// The lights that a tile is coloured by, with one pipeline.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::render) struct TileLight<'a> {
+    /// All of the pipeline's, in the order of the scene.
+    pub(in crate::render) stages: &'a [Stage],
+    /// The places of those that are evaluated, where not all are.
+    pub(in crate::render) kept: Option<&'a [u32]>,
+    /// Whether any of them looks at places and normals.
+    pub(in crate::render) places: bool,
+    /// What the lights that were left out add at most, in steps of a byte.
+    pub(in crate::render) dropped: f64,
+}
+
+impl TilePlan {
+    /// Turns to a tile whose visibility is known.
+    pub(in crate::render) fn begin(
+        &mut self,
+        plan: &FramePlan,
+        visibility: &Visibility,
+        bounds: PixelBox,
+    ) {
+        self.decided.clear();
+        self.kept.clear();
+        let tiled =
+            |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
+        let depths = plan.pipelines.iter().any(tiled).then(|| visibility.depths());
+        self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));
+        if self.region.is_some() {
+            self.decided.resize(plan.pipelines.len(), None);
+        }
+    }
+
+    /// The lights of a surface in this tile.
+    pub(in crate::render) fn light<'a>(
+        &'a mut self,
+        plan: &FramePlan,
+        pipeline: u32,
+        shaded: &'a Shaded,
+    ) -> TileLight<'a> {
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let Shaded { places, dropped, .. } = *shaded;
+        let whole = TileLight { stages, kept: None, places, dropped };
+        let Some(region) = self.region.filter(|_| shaded.tiled) else { return whole };
+        let at = pipeline as usize;
+        let decided = match self.decided[at] {
+            Some(decided) => decided,
+            None => self.decide(plan, shaded, stages, &region),
+        };
+        self.decided[at] = Some(decided);
+        let Decided { from, to, places, dropped } = decided;
+        TileLight { stages, kept: Some(&self.kept[from..to]), places, dropped }
+    }
+
+    fn decide(
+        &mut self,
+        plan: &FramePlan,
+        shaded: &Shaded,
+        stages: &[Stage],
+        region: &Region,
+    ) -> Decided {
+        let matter = &shaded.matter;
+        let lamp = |place: u32| &plan.lamps[stages[place as usize].lamp as usize];
+        let reaches = |place: &u32| {
+            let effect = stages[*place as usize].effect;
+            let (lamp, region, turning) = (lamp(*place), Some(region), None);
+            plan.rules.tile(&Meeting { effect, lamp, matter, region, turning }).is_none()
+        };
+        self.own.clear();
+        let count = u32::try_from(stages.len()).expect("fewer than 2^32 lights");
+        self.own.extend((0..count).filter(reaches));
+        let mut dropped = shaded.dropped;
+        if plan.leave_out == LeaveOut::HalfStep {
+            let budget = bounded::LIGHTS - dropped;
+            let most = |place: &u32| {
+                bounded::most(&stages[*place as usize], lamp(*place), matter, Some(region))
+            };
+            dropped += bounded::thin(&mut self.own, most, budget, |_, _| {});
+        }
+        let kept = self.own.iter().map(|place| &stages[*place as usize]);
+        let places = plan.rules.places(&Reading::of(kept)).is_none();
+        let from = self.kept.len();
+        self.kept.extend_from_slice(&self.own);
+        Decided { from, to: self.kept.len(), places, dropped }
+    }
+}
+
+/// The piece of view space whose pixels and depths these are.
+fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
+    let m = &plan.clip_from_view;
+    let (zz, zw) = (m.z_axis.z, m.w_axis.z);
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+    let ray = |x: i32, y: i32| {
+        let (x, y) = (f64::from(x) * 2.0 / width - 1.0, 1.0 - f64::from(y) * 2.0 / height);
+        [x / m.x_axis.x, y / m.y_axis.y]
+    };
+    let rays = [
+        ray(bounds.left, bounds.top),
+        ray(bounds.right, bounds.top),
+        ray(bounds.left, bounds.bottom),
+        ray(bounds.right, bounds.bottom),
+    ];
+    let place: [fn([f64; 2], f64) -> DVec3; 2] =
+        [|[x, y], w| DVec3::new(x * w, y * w, -w), |[x, y], z| DVec3::new(x, y, z)];
+    let (ends, place) = match plan.eye {
+        // The depth is zw / w - zz, and 1/w is at most that of the near plane, where it is 1.
+        Eye::Point => {
+            let inverse = |depth: f64| (depth + zz) / zw;
+            let error = ROUNDING * inverse(1.0);
+            let farthest = inverse(0.0);
+            let w = |inverse_w: f64| 1.0 / inverse_w.max(farthest * (1.0 - ROUNDING));
+            ([w(inverse(low) - error), w(inverse(high) + error)], place[0])
+        }
+        // The depth is zz z + zw.
+        Eye::Parallel => {
+            let z = |depth: f64| (depth - zw) / zz;
+            let error = ROUNDING * (z(0.0).abs() + z(1.0).abs() + (z(1.0) - z(0.0)).abs());
+            ([z(low) - error, z(high) + error], place[1])
+        }
+    };
+    let corner = |i: usize| place(rays[i / 2], ends[i % 2]);
+    Region::new(std::array::from_fn(corner), 0.0)
+}

@@ -1,0 +1,66 @@
+//! Which way the faces of a small mesh are turned: a wall, a floor, a leaf, of which all may be turned
+//! away from the observer or from a lamp. A closed shape never is, so larger meshes are not asked.
+
+use glam::DVec3;
+
+use super::{Back, Draw};
+use crate::base::image::Size;
+use crate::base::math;
+use crate::render::clip::{Screen, ScreenVertex};
+use crate::render::coverage::doubled_area;
+use crate::scene::{LightAt, Normals, dvec3};
+
+/// As many triangles or normals at most.
+const FEW: usize = 64;
+
+/// The normals by which a small mesh is lit, in view space, of length 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turning(Vec<DVec3>);
+
+impl Turning {
+    /// Those of a draw; `None` where they are many, where backs are lit, or where placing stretches some
+    /// so much more than others that their mixtures are not sure.
+    pub(super) fn of(draw: &Draw, light_at: LightAt) -> Option<Self> {
+        let mesh = &draw.model.mesh;
+        let normals = match (light_at, draw.normals) {
+            (LightAt::Face, _) | (_, Normals::Face) => mesh.polygon_normals(),
+            (_, Normals::Vertex) => &mesh.draw_order().points(draw.normal_source).normals,
+        };
+        if normals.len() > FEW || draw.back == Back::Lit {
+            return None;
+        }
+        let placed: Vec<DVec3> =
+            normals.iter().map(|normal| draw.view_from_normal * dvec3(*normal)).collect();
+        let lengths = || placed.iter().map(|normal| normal.length());
+        let (least, most) =
+            (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
+        if least * 10.0 < most {
+            return None;
+        }
+        placed.into_iter().map(math::unit).collect::<Option<_>>().map(Self)
+    }
+
+    /// Whether this is so of all normals.
+    pub(in crate::render) fn all(&self, is: impl Fn(DVec3) -> bool) -> bool {
+        self.0.iter().all(|normal| is(*normal))
+    }
+}
+
+/// Whether no triangle of a small mesh is drawn because all are turned away, as their corners are
+/// snapped.
+pub(super) fn is_turned_away(draw: &Draw, size: Size) -> bool {
+    let order = draw.model.mesh.draw_order();
+    if draw.back != Back::Left || order.triangles.len() > FEW {
+        return false;
+    }
+    let screen = Screen::new(draw.clip_from_object, size);
+    order.triangles.iter().all(|triangle| {
+        let place = |vertex: u32| screen.vertex(screen.clip(order.position(vertex)));
+        let corners = triangle.vertices.map(place);
+        // What is cut is not sure.
+        corners.iter().all(ScreenVertex::is_inside) && {
+            let area = doubled_area(corners.map(|corner| corner.at()));
+            if draw.mirrored { area <= 0 } else { area >= 0 }
+        }
+    })
+}

@@ -1,0 +1,60 @@
+//! A plan with one effect taken out, so that it can be measured what the effect costs.
+
+use super::draw::Form;
+use super::rules::Reading;
+use super::{Back, Effect, FramePlan, Pipeline, Shaded};
+use crate::scene::ItemId;
+
+impl FramePlan {
+    /// The plan without an effect: another picture, and less work. `None` where it has nothing of it,
+    /// or where nothing can be drawn without it.
+    #[must_use]
+    pub fn without(&self, effect: Effect) -> Option<Self> {
+        let mut plan = self.clone();
+        match effect {
+            Effect::Light(id) => {
+                let lamp = self.lights.iter().position(|light| *light == id)?;
+                plan.for_each_light(|stages| stages.retain(|stage| stage.lamp as usize != lamp));
+            }
+            Effect::Highlights => plan.for_each_light(|stages| {
+                stages.iter_mut().for_each(|stage| stage.highlight = Form::Plain);
+            }),
+            Effect::Texture => plan.for_each_shaded(|shaded| {
+                shaded.texture = None;
+                shaded.cutout = None;
+            }),
+            Effect::Holes => plan.for_each_shaded(|shaded| shaded.cutout = None),
+            Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
+            Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Left),
+            Effect::Edges => plan.draws.iter_mut().for_each(|draw| draw.lines.edges = false),
+            Effect::FaceNormals => {
+                plan.draws.iter_mut().for_each(|draw| draw.lines.face_normals = None);
+            }
+            Effect::VertexNormals => {
+                plan.draws.iter_mut().for_each(|draw| draw.lines.vertex_normals = None);
+            }
+            Effect::Marks => plan.draws.retain(|draw| matches!(draw.item, ItemId::Object(_))),
+            Effect::Surfaces => plan.draws.iter_mut().for_each(|draw| draw.filled = false),
+            Effect::Normals => return None,
+        }
+        (plan != *self).then_some(plan)
+    }
+
+    fn for_each_shaded(&mut self, change: impl Fn(&mut Shaded)) {
+        for pipeline in &mut self.pipelines {
+            if let Pipeline::Shaded(shaded) = pipeline {
+                change(shaded);
+            }
+        }
+    }
+
+    fn for_each_light(&mut self, change: impl Fn(&mut Vec<super::Stage>)) {
+        let rules = self.rules.clone();
+        self.for_each_shaded(|shaded| {
+            if let Some(stages) = &mut shaded.light {
+                change(stages);
+                shaded.places = rules.places(&Reading::of(stages.iter())).is_none();
+            }
+        });
+    }
+}

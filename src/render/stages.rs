@@ -1,0 +1,34 @@
+//! Where the time of a frame went.
+
+use std::time::{Duration, Instant};
+
+/// How long each stage of a frame took, from beginning to end, on all threads together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stages {
+    /// Vertices to the screen.
+    pub vertices: Duration,
+    /// Triangles to the tiles, the small ones to pixels.
+    pub set_up: Duration,
+    /// Lines to the tiles, the short ones to pixels.
+    pub lines: Duration,
+    /// Light at faces and vertices.
+    pub light: Duration,
+    /// What is seen in each tile, its colours, and the copy into the picture.
+    pub tiles: Duration,
+}
+
+/// Measures one stage after the other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Laps(Instant);
+
+impl Laps {
+    pub(super) fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    /// The time since the last lap.
+    pub(super) fn lap(&mut self) -> Duration {
+        let now = Instant::now();
+        now - std::mem::replace(&mut self.0, now)
+    }
+}

@@ -1,0 +1,141 @@
+//! The hard cases by their numbers, and that each of them is tested.
+
+use marraztu::lab::prove::{PROOFS, Proof, Tally};
+
+/// A hard case.
+pub(crate) struct Case {
+    pub(crate) number: u8,
+    pub(crate) group: &'static str,
+    /// What it is judged by: Z whole numbers or fractions, D twice the digits or f64 along another
+    /// way, I something that always holds, R two runs that must agree.
+    pub(crate) oracle: &'static str,
+    /// What goes wrong where nobody cared.
+    pub(crate) wrong: &'static str,
+}
+
+const fn case(number: u8, group: &'static str, oracle: &'static str, wrong: &'static str) -> Case {
+    Case { number, group, oracle, wrong }
+}
+
+const GEOMETRY: &str = "Geometry";
+const CLIPPING: &str = "Clipping";
+const COVERAGE: &str = "Coverage";
+const DEPTH: &str = "Depth";
+const INTERPOLATION: &str = "Interpolation";
+const LIGHT: &str = "Light";
+const COLOUR: &str = "Colour";
+const CAMERA: &str = "Camera";
+const UNDO: &str = "Undo";
+const FILES: &str = "Files and scale";
+
+/// Looks at the part of a claim that every run looks at: `marraztu prove` looks at the whole of it.
+#[track_caller]
+pub(crate) fn look(name: &str) -> Tally {
+    let proof = Proof::named(name).unwrap();
+    match proof.run(0..proof.lots(proof.tested), &|_| {}) {
+        Ok(tally) => tally,
+        Err(counterexample) => panic!("{}: {counterexample}", proof.claim),
+    }
+}
+
+/// All of them.
+#[rustfmt::skip]
+pub(crate) static CASES: &[Case] = &[
+    case(1, GEOMETRY, "D", "the normal of a small face far from the origin is noise"),
+    case(2, GEOMETRY, "Z", "a b - c d loses all its digits, and its sign"),
+    case(3, GEOMETRY, "D", "what is far from the origin trembles on the screen"),
+    case(4, GEOMETRY, "D", "normals of a stretched object lean over"),
+    case(5, GEOMETRY, "I", "an object made smaller often enough is lost for good"),
+    case(6, GEOMETRY, "R", "a mirrored object is inside out, or lit from the wrong side"),
+    case(7, GEOMETRY, "I", "a flat object has no inverse: numbers that are none spread from it"),
+    case(8, GEOMETRY, "D", "the length of a long vector is infinite, of a short one 0"),
+    case(9, GEOMETRY, "I", "a face without area is drawn, or divides by its area"),
+    case(10, GEOMETRY, "I", "normals that cancel out have no direction"),
+    case(11, CLIPPING, "I", "a corner in the observer's plane divides by 0"),
+    case(12, CLIPPING, "Z", "a line through the observer's plane comes out on the other side"),
+    case(13, CLIPPING, "R", "two faces cut at a plane part along the edge that they share"),
+    case(14, CLIPPING, "Z", "a corner on a plane is cut off, or cut twice"),
+    case(15, CLIPPING, "Z", "what reaches beyond all six planes folds over"),
+    case(16, CLIPPING, "Z", "corners a million pixels off overflow, or lose their last bits"),
+    case(17, CLIPPING, "Z", "edge functions of 32 bits overflow in large triangles"),
+    case(18, CLIPPING, "I", "what is behind the observer is drawn upside down"),
+    case(19, CLIPPING, "D", "colours and textures jump where a face was cut"),
+    case(20, COVERAGE, "Z", "centres on an edge are taken twice, or not at all"),
+    case(21, COVERAGE, "Z", "fans have cracks, and pixels that are drawn twice"),
+    case(22, COVERAGE, "Z", "snapping turns slivers round, and unsigned counts go wrong"),
+    case(23, COVERAGE, "I", "a closed body is open at its outline"),
+    case(24, COVERAGE, "I", "an edge that another face's corner splits leaks, and nobody says so"),
+    case(25, COVERAGE, "R", "a picture changes when it is moved by whole pixels"),
+    case(26, COVERAGE, "R", "left and right, or rows and columns, are not treated alike"),
+    case(27, COVERAGE, "R", "threads, tiles and instructions show in the picture"),
+    case(28, COVERAGE, "Z", "corners snapped too coarsely cover the wrong pixels"),
+    case(29, COVERAGE, "Z", "points set every 0.1 unit leave holes near by and are wasted far off"),
+    case(30, DEPTH, "Z", "what is a little nearer, a kilometre off, is not in front"),
+    case(31, DEPTH, "Z", "surfaces a thousandth apart flicker"),
+    case(32, DEPTH, "R", "which of two equal surfaces is seen depends on how they were cut up"),
+    case(33, DEPTH, "Z", "the plane equation of a sliver gives depths from far away"),
+    case(34, DEPTH, "D", "the line where two faces meet is ragged"),
+    case(35, DEPTH, "I", "16 bits of depth in parallel projection merge what lies close"),
+    case(36, DEPTH, "R", "the order of drawing shows among equal depths"),
+    case(37, INTERPOLATION, "D", "a texture swims on a wall that runs away from the observer"),
+    case(38, INTERPOLATION, "I", "colours beyond those of the corners"),
+    case(39, INTERPOLATION, "I", "places on the texture beyond it read past its end"),
+    case(40, INTERPOLATION, "I", "one colour at all corners comes out as another"),
+    case(41, INTERPOLATION, "Z", "nobody says along which diagonal a quad is cut"),
+    case(42, LIGHT, "D", "a reciprocal root of 12 bits spoils highlights"),
+    case(43, LIGHT, "I", "a unit vector's product with itself is above 1, and acos gives no number"),
+    case(44, LIGHT, "D", "acos of almost 1 has lost the angle"),
+    case(45, LIGHT, "I", "a negative number to a broken power is none; 0 to 0 is anything"),
+    case(46, LIGHT, "I", "subnormal powers cost four times the time and show nothing"),
+    case(47, LIGHT, "R", "a lamp on a surface divides by its distance, 0"),
+    case(48, LIGHT, "I", "a lamp behind a surface gives it a highlight"),
+    case(49, LIGHT, "I", "the border of a cone flickers; cones of 0 and 90 degrees are special"),
+    case(50, LIGHT, "R", "the order of lights shows in the last bit"),
+    case(51, LIGHT, "I", "light clamped before the texture is too dark"),
+    case(52, COLOUR, "Z", "bytes cut off instead of rounded are too dark by half a step"),
+    case(53, COLOUR, "Z", "many lights rounded one by one drift from their sum"),
+    case(54, COLOUR, "I", "a number that is none becomes any byte"),
+    case(55, COLOUR, "I", "a byte does not survive the way to a factor and back"),
+    case(56, CAMERA, "I", "looking straight down, or at one's own eye, has no up"),
+    case(57, CAMERA, "D", "turning again and again shears and shrinks"),
+    case(58, CAMERA, "D", "large angles lose their digits"),
+    case(59, CAMERA, "I", "an orbit over the pole flips over"),
+    case(60, CAMERA, "D", "an orbit drifts away from its centre"),
+    case(61, CAMERA, "D", "steps of a tenth do not add up"),
+    case(62, UNDO, "Z", "undoing by an inverse comes back to almost where it was"),
+    case(63, UNDO, "Z", "what was saved, deleted or dragged is not what comes back"),
+    case(64, FILES, "Z", "odd numbers in files are read as 0, or stop the program"),
+    case(65, FILES, "Z", "odd faces in files read past the end, or are filled wrongly"),
+    case(66, FILES, "R", "a scene in millimetres looks other than one in kilometres"),
+    case(67, FILES, "I", "nothing at all, and very much, are not drawn"),
+];
+
+/// The sources of all cases.
+fn sources() -> String {
+    let tests = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    let mut sources = String::new();
+    for folder in ["hard_cases", "plan"] {
+        for entry in std::fs::read_dir(tests.join(folder)).unwrap() {
+            sources += &std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        }
+    }
+    sources
+}
+
+#[test]
+fn every_claim_is_looked_at_by_a_case() {
+    for proof in PROOFS {
+        let calls = [format!("look(\"{}\")", proof.name), format!("prove(\"{}\",", proof.name)];
+        assert!(calls.iter().any(|call| sources().contains(call)), "{}", proof.name);
+    }
+}
+
+#[test]
+fn every_case_has_a_row_and_a_test_with_its_number() {
+    let sources = sources();
+    for (number, row) in (1..=67).zip(CASES) {
+        assert_eq!(row.number, number);
+        assert!(sources.contains(&format!("fn case_{number}_")), "case {number} has no test");
+    }
+    assert_eq!(CASES.len(), 67);
+}

@@ -1,0 +1,558 @@
+//! Light, against the page's equation along rays.
+
+use glam::{DMat4, DVec3};
+use marraztu::base::image::{Picture, Size};
+use marraztu::edit::{Stroke, place};
+use marraztu::lab::prove::dice::Dice;
+use marraztu::lab::prove::pictures::levels;
+use marraztu::render::real::{Power, Real as _};
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{
+    Aim, Arithmetic, Command, ItemId, Light, LightAt, LightId, LightKind, List, Material,
+    MaterialChoice, MeshSource, NONE, ObjectId, Orbit, Part, Placed, Scene, Settings, SourceCorner,
+    SpotOwner, View,
+};
+
+use super::common::{at, ball, draw, edit, model_of, scene, square};
+use super::figures::Figure;
+use super::oracle::{self, Eye, Lamp, Matter, meet, unit};
+
+const SIDE: usize = 96;
+
+/// White lights of these kinds and no other.
+fn with_lamps(scene: &mut Scene, lamps: &[Lamp]) {
+    let kind = |lamp: &Lamp| match *lamp {
+        Lamp::Ambient => LightKind::Ambient,
+        Lamp::Sun(direction) => LightKind::Sun { direction: Placed::new(direction) },
+        Lamp::Bulb(at) => LightKind::Bulb { position: Placed::new(at), orbit: Orbit::default() },
+        Lamp::Spot(position, direction, half_aperture, exponent) => {
+            let aim = Placed::new(Aim { position, direction });
+            LightKind::Spot { owner: SpotOwner::Fixed(aim), half_aperture, exponent }
+        }
+    };
+    let light = |(lamp, id)| (LightId(id), Light::new("light", id, kind(lamp)));
+    scene.lights = lamps.iter().zip(1..).map(light).collect();
+}
+
+/// Grey stuff.
+fn stuff(matter: &Matter) -> MaterialChoice {
+    MaterialChoice::Own(Material {
+        ambient: [matter.ambient; 3],
+        diffuse: [matter.diffuse; 3],
+        specular: [matter.specular; 3],
+        exponent: matter.exponent,
+    })
+}
+
+/// A triangle over the whole view, each corner with a normal of its own: a bent mirror.
+struct Bent {
+    corners: [DVec3; 3],
+    normals: [DVec3; 3],
+    matter: Matter,
+    lamps: Vec<Lamp>,
+}
+
+impl Bent {
+    fn random(dice: &mut Dice) -> Self {
+        // In front of the eye at (0, 0, 400); the numbers are those of f32.
+        let mut leaning = || dice.real(-60.0, 60.0);
+        let corners = [
+            DVec3::new(-600.0, -500.0, leaning()),
+            DVec3::new(700.0, -400.0, leaning()),
+            DVec3::new(10.0, 800.0, leaning()),
+        ]
+        .map(|c| c.as_vec3().as_dvec3());
+        let normals = [0, 1, 2]
+            .map(|_| unit(DVec3::Z + dice.vector(0.7)).as_vec3().as_dvec3())
+            .map(|n| unit(n).as_vec3().as_dvec3());
+        let mut about = |size: f64| DVec3::Z * 150.0 + dice.vector(size);
+        let spot = about(140.0);
+        let lamps = vec![
+            Lamp::Ambient,
+            Lamp::Sun(unit(DVec3::new(0.3, -0.5, -1.0))),
+            Lamp::Bulb(about(140.0)),
+            Lamp::Spot(spot, unit(DVec3::new(10.0, 5.0, 0.0) - spot), 60.0, 5.0),
+        ];
+        let exponent = dice.one_of(&[1.0, 9.846_15, 27.8974, 76.8, 89.6, 128.0]);
+        let matter = Matter { ambient: 0.05, diffuse: 0.25, specular: 0.2, exponent };
+        Self { corners, normals, matter, lamps }
+    }
+
+    fn scene(&self, matter: &Matter) -> (Scene, View) {
+        let source = MeshSource {
+            positions: self.corners.map(|c| c.as_vec3().to_array()).to_vec(),
+            normals: self.normals.map(|n| n.as_vec3().to_array()).to_vec(),
+            corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: NONE, normal: i }).to_vec(),
+            arities: vec![3],
+            polygon_parts: vec![0],
+            parts: vec![Part { name: "bent".to_owned(), material: None }],
+            ..MeshSource::default()
+        };
+        let (mut scene, view) = scene(&[(model_of("bent", source), DMat4::IDENTITY)]);
+        edit(&mut scene, ObjectId(10), |object| object.material = stuff(matter));
+        with_lamps(&mut scene, &self.lamps);
+        (scene, View { marks: false, light: None, ..view })
+    }
+
+    /// Light at the middle of a pixel, along its ray.
+    fn exact(&self, x: usize, y: usize, power: &dyn Fn(f64, f64) -> f64) -> f64 {
+        let eye = Eye::first(SIDE);
+        let ray = eye.ray(x, y);
+        let (t, parts) = meet(eye.at, ray, self.corners).expect("it is everywhere");
+        let n = (0..3).fold(DVec3::ZERO, |n, i| n + self.normals[i] * parts[i]);
+        oracle::light(&self.lamps, &self.matter, [eye.at + ray * t, unit(n), unit(-ray)], power)
+    }
+
+    fn draw(&self, matter: &Matter, arithmetic: Arithmetic) -> Picture {
+        let (scene, view) = self.scene(matter);
+        draw(&scene, &view, &Settings { arithmetic, ..Settings::default() }, SIDE)
+    }
+
+    /// Light at every pixel before it is rounded, in byte steps and to 1/64 of one: read off the bytes
+    /// of pictures that are each a little brighter than the one before. Where the byte turns over, the
+    /// light has come half-way to the next.
+    fn before_rounding(&self, arithmetic: Arithmetic) -> Vec<f64> {
+        const PARTS: u32 = 64;
+        let picture = |part: u32| {
+            let more = f64::from(part) / f64::from(PARTS) / 255.0;
+            let matter = Matter { ambient: self.matter.ambient + more, ..self.matter };
+            let picture = self.draw(&matter, arithmetic);
+            picture.pixels().iter().map(|pixel| pixel[0]).collect::<Vec<u8>>()
+        };
+        let first = picture(0);
+        let mut turned: Vec<Option<u32>> = vec![None; first.len()];
+        for part in 1..=PARTS {
+            for (turned, (before, now)) in turned.iter_mut().zip(first.iter().zip(picture(part))) {
+                if now > *before {
+                    turned.get_or_insert(part);
+                }
+            }
+        }
+        let light = |(byte, turned): (&u8, Option<u32>)| {
+            // Between this part and the one before.
+            let part = f64::from(turned.unwrap_or(PARTS)) - 0.5;
+            f64::from(*byte) + 0.5 - part / f64::from(PARTS)
+        };
+        first.iter().zip(turned).map(light).collect()
+    }
+}
+
+#[test]
+fn case_42_a_reciprocal_root_of_twelve_bits_is_what_highlights_are_spared() {
+    // The editor's own light, before it is rounded, and that of a table of 256 powers and of normals
+    // brought to length 1 by a root of 12 bits.
+    let mut dice = Dice::new(42);
+    let table = |x: f64, n: f64| ((x * 255.0).floor() / 255.0).powf(n);
+    // A relative error of 1.5 2^-12, as rsqrtps may have, squares in N.L and N.V of R.V.
+    let rough = |x: f64, n: f64| (x * (1.0 - 2.0 * 1.5 / 4096.0)).powf(n);
+    let exact = |x: f64, n: f64| x.powf(n);
+    let (mut ours, mut reference, mut by_table, mut by_root) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+    let (mut bytes, mut differing, mut fast_differing, mut steps) = (0_u32, 0_u32, 0_u32, 0_u8);
+    for i in 0..6 {
+        let bent = Bent::random(&mut dice);
+        let light = bent.before_rounding(Arithmetic::F32);
+        let fast = bent.draw(&bent.matter, Arithmetic::F32);
+        let slow = bent.draw(&bent.matter, Arithmetic::F64);
+        let in_f64 = (i < 2).then(|| bent.before_rounding(Arithmetic::F64));
+        for (j, light) in light.iter().enumerate() {
+            let (x, y) = (j % SIDE, j / SIDE);
+            let right = bent.exact(x, y, &exact) * 255.0;
+            // Half of a 64th is not seen.
+            let off = |light: f64| ((light - right).abs() - 0.5 / 64.0).max(0.0);
+            ours = ours.max(off(*light));
+            if let Some(light) = &in_f64 {
+                reference = reference.max(off(light[j]));
+            }
+            by_table = by_table.max((bent.exact(x, y, &table) * 255.0 - right).abs());
+            by_root = by_root.max((bent.exact(x, y, &rough) * 255.0 - right).abs());
+            let byte = (right + 0.5).floor().clamp(0.0, 255.0) as u8;
+            bytes += 1;
+            steps = steps.max(slow.pixel(x, y)[0].abs_diff(byte));
+            differing += u32::from(slow.pixel(x, y)[0] != byte);
+            fast_differing += u32::from(fast.pixel(x, y)[0] != byte);
+        }
+    }
+    let percent = |count: u32| 100.0 * f64::from(count) / f64::from(bytes);
+    println!("bytes that differ: f64 {}%, f32 {}%", percent(differing), percent(fast_differing));
+    for (what, how, naive) in [
+        ("light of the editor before rounding, against a table", "a table of 256 powers", by_table),
+        ("light of the editor before rounding, against rsqrt", "rsqrt alone, by number", by_root),
+    ] {
+        Figure { case: 42, what, naive: Some((how, naive)), ours, bound: 0.25, unit: "byte steps" }
+            .hold();
+    }
+    for (what, ours, bound, unit) in [
+        ("light in f64 before rounding", reference, 0.02, "byte steps"),
+        ("largest difference of a byte in f64", f64::from(steps), 1.0, "byte steps"),
+        ("bytes in f64 that are not those of the equation", percent(differing), 0.05, "percent"),
+    ] {
+        Figure { case: 42, what, naive: None, ours, bound, unit }.hold();
+    }
+}
+
+#[test]
+fn case_43_a_cosine_above_one_does_no_harm() {
+    let mut dice = Dice::new(43);
+    let above = (0..10_000).filter(|_| {
+        let v = dice.vector(1.0).as_vec3();
+        let v = v / v.dot(v).sqrt();
+        v.dot(v).acos().is_nan()
+    });
+    let naive = above.count();
+    // A spot from the eye straight at a square, and its highlight: both cosines are 1, or a little
+    // more.
+    let mut dark = 0;
+    let mut pixels = 0;
+    for i in 0..40 {
+        let turn = DMat4::from_rotation_y(f64::from(i) * 0.02) * DMat4::from_rotation_x(0.013);
+        let place = turn * at(90.0, 0.0, 0.0, 0.0);
+        let (mut scene, view) = scene(&[(square(), place)]);
+        let matter = Matter { ambient: 0.0, diffuse: 0.0, specular: 1.0, exponent: 1.0 };
+        edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
+        let normal = unit(turn.transform_vector3(DVec3::Z));
+        let lamp = Lamp::Spot(normal * 300.0, -normal, 1.0, 1000.0);
+        with_lamps(&mut scene, &[lamp]);
+        // The eye is where the lamp is, so that R.V is 1 where the axis meets the square.
+        let mut camera = scene.selected_camera(&view).clone();
+        camera.pose = Placed::new(marraztu::scene::Pose {
+            eye: normal * 300.0,
+            axes: glam::DMat3::from_mat4(turn),
+            mode: marraztu::scene::CameraMode::Fly,
+        });
+        scene.cameras = List::from_iter([(view.camera, camera)]);
+        let view = View { marks: false, light: None, ..view };
+        for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+            let settings = Settings { arithmetic, ..Settings::default() };
+            let middle = draw(&scene, &view, &settings, 33).pixel(16, 16)[0];
+            // 1 / (1 + 5e-6 300 + 5e-6 300^2) = 0.689 of 255 is 175.7.
+            dark += usize::from(!(170..=178).contains(&middle));
+            pixels += 1;
+        }
+    }
+    assert_eq!(pixels, 80);
+    Figure {
+        case: 43,
+        what: "pixels where a lamp shines straight at them that are wrongly lit, of 80",
+        naive: Some(("acos(v.v) in f32: no number, of 10,000", naive as f64)),
+        ours: dark as f64,
+        bound: 0.0,
+        unit: "times",
+    }
+    .hold();
+}
+
+#[test]
+fn case_44_small_angles_are_shown_as_they_were_typed() {
+    let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
+    for exponent in 1..=9 {
+        let degrees = 1.234_567_8 * 10.0_f64.powi(-exponent);
+        let (scene, view) = marraztu::io::default_scene();
+        let id = view.object.unwrap();
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let mut scene = scene.clone();
+            let typed = axis * degrees;
+            let command = place::object_turn(&scene, &view, id, typed, Stroke::First).unwrap();
+            command.apply(&mut scene).unwrap();
+            let m = *scene.objects.get(id).unwrap().placement.now();
+            let shown = place::turn_degrees(&m).dot(axis);
+            ours = ours.max((shown - degrees).abs() / (degrees * f64::EPSILON));
+            // By the trace: cos of the angle is (trace - 1) / 2.
+            let by_trace = ((m.x_axis.x + m.y_axis.y + m.z_axis.z - 1.0) / 2.0).acos().to_degrees();
+            naive = naive.max((by_trace - degrees).abs() / (degrees * f64::EPSILON));
+        }
+    }
+    Figure {
+        case: 44,
+        what: "angles of 0.1 to 1e-9 degrees, typed and shown",
+        naive: Some(("acos of the trace", naive)),
+        ours,
+        bound: 4.0,
+        unit: "ulp",
+    }
+    .hold();
+}
+
+#[test]
+fn case_45_powers_of_what_has_none_are_nothing() {
+    let mut wrong = 0;
+    for exponent in [0.0, 0.5, 5.0, 76.8, 1000.0] {
+        for x in [0.0_f32, -0.0, -1e-45, -0.5, -1.0, f32::NAN, f32::NEG_INFINITY] {
+            wrong += usize::from(x.power(&Power::new(exponent, -24.0)) != 0.0);
+            // The reference is clamped after it: NaN is no light.
+            wrong += usize::from(f64::from(x).power(&Power::new(exponent, -24.0)).max(0.0) != 0.0);
+        }
+    }
+    // In a picture: Ns of 0 is a highlight of one strength wherever R.V is above 0, and none where a
+    // lamp is behind.
+    let (mut scene, view) = scene(&[(square(), at(90.0, 0.0, 0.0, 0.0))]);
+    let matter = Matter { ambient: 0.0, diffuse: 0.0, specular: 0.5, exponent: 0.0 };
+    edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
+    let view = View { marks: false, light: None, ..view };
+    for (direction, want) in
+        [(DVec3::NEG_Z, 128), (unit(DVec3::new(0.3, 0.0, -1.0)), 128), (DVec3::Z, 0)]
+    {
+        with_lamps(&mut scene, &[Lamp::Sun(direction)]);
+        for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+            let settings = Settings { arithmetic, ..Settings::default() };
+            let middle = draw(&scene, &view, &settings, 33).pixel(16, 16)[0];
+            wrong += usize::from(middle != want);
+        }
+    }
+    Figure {
+        case: 45,
+        what: "wrong powers of 0, negative numbers and NaN, with exponents from 0",
+        naive: Some(("powf(-0.5, 0.5)", f64::from((-0.5_f32).powf(0.5)))),
+        ours: wrong as f64,
+        bound: 0.0,
+        unit: "times",
+    }
+    .hold();
+}
+
+#[test]
+fn case_46_no_power_is_subnormal() {
+    let (mut small, mut naive) = (0, 0);
+    for exponent in [5.0, 76.8, 128.0, 1000.0] {
+        for i in 0..=20_000_u16 {
+            let x = f32::from(i) / 20_000.0;
+            let power = x.power(&Power::new(exponent, -10.0));
+            // 0, or above the floor but for rounding.
+            small += usize::from(power != 0.0 && power < 0.999 * 2.0_f32.powi(-10));
+            naive += usize::from(x.powf(exponent as f32).is_subnormal());
+        }
+    }
+    Figure {
+        case: 46,
+        what: "powers below the floor of 2^-10, of 80,000",
+        naive: Some(("powf in f32: subnormal numbers", naive as f64)),
+        ours: small as f64,
+        bound: 0.0,
+        unit: "times",
+    }
+    .hold();
+}
+
+/// A lit square over the view, with these lamps.
+fn lit_square(lamps: &[Lamp]) -> (Scene, View) {
+    let (mut scene, view) = scene(&[(square(), at(170.0, 0.0, 0.0, 0.0))]);
+    let matter = Matter { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 20.0 };
+    edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
+    with_lamps(&mut scene, lamps);
+    (scene, View { marks: false, light: None, ..view })
+}
+
+#[test]
+fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothing() {
+    // On the surface, at the very middle of a pixel, and a hair above and below it.
+    let eye = Eye::first(65);
+    let ray = eye.ray(32, 32);
+    let touching = eye.at + ray * 400.0;
+    let (mut differ, mut black) = (0, 0);
+    for above in [0.0, 1e-300, 1e-30, 1e-12, -1e-12, 1e-5, -1e-5] {
+        let at = touching + DVec3::Z * above;
+        for lamp in [Lamp::Bulb(at), Lamp::Spot(at, DVec3::NEG_Z, 90.0, 5.0)] {
+            let (scene, view) = lit_square(&[Lamp::Ambient, lamp]);
+            for light in [LightAt::Pixel, LightAt::Vertex, LightAt::Face] {
+                let settings = Settings { light, ..Settings::default() };
+                let plan = FramePlan::new(&scene, &view, &settings, Size::new(65, 65));
+                let pictures: Vec<Picture> = levels()
+                    .into_iter()
+                    .map(|level| Renderer::new(level).render(&plan).clone())
+                    .collect();
+                differ += pictures.windows(2).filter(|pair| pair[0] != pair[1]).count();
+                // Ambient light is everywhere: 0.1 is 26 steps.
+                let dark = |pixel: &&[u8; 4]| pixel[0] < 25 && **pixel != [0, 0, 179, 255];
+                black += pictures[0].pixels().iter().filter(dark).count();
+            }
+        }
+    }
+    Figure {
+        case: 47,
+        what: "pictures that differ and pixels that are dark with a lamp on a surface",
+        naive: Some(("the way to the lamp by its length", (DVec3::ZERO / DVec3::ZERO.length()).x)),
+        ours: (differ + black) as f64,
+        bound: 0.0,
+        unit: "times",
+    }
+    .hold();
+}
+
+/// A wide highlight, which reaches where a narrow one does not.
+fn soften(scene: &mut Scene) {
+    let matter = Matter { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 2.0 };
+    edit(scene, ObjectId(10), |object| object.material = stuff(&matter));
+}
+
+#[test]
+fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
+    let dark = {
+        let (mut scene, view) = lit_square(&[Lamp::Ambient]);
+        soften(&mut scene);
+        draw(&scene, &view, &Settings::default(), SIDE)
+    };
+    let mut dice = Dice::new(48);
+    let (mut differ, mut naive) = (0, 0);
+    for _ in 0..60 {
+        let behind =
+            DVec3::new(dice.real(-90.0, 90.0), dice.real(-90.0, 90.0), dice.real(-200.0, -1.0));
+        let direction =
+            unit(DVec3::new(dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(0.01, 1.0)));
+        let lamps = [
+            Lamp::Ambient,
+            Lamp::Bulb(behind),
+            Lamp::Sun(direction),
+            Lamp::Spot(behind, DVec3::Z, 80.0, 1.0),
+        ];
+        let (mut scene, view) = lit_square(&lamps);
+        soften(&mut scene);
+        let picture = draw(&scene, &view, &Settings::default(), SIDE);
+        differ += picture.pixels().iter().zip(dark.pixels()).filter(|(a, b)| a != b).count();
+        // Without the condition on N.L: R.V of a lamp behind may well be positive.
+        let eye = Eye::first(SIDE);
+        for i in 0..SIDE * SIDE {
+            let v = unit(-eye.ray(i % SIDE, i / SIDE));
+            let to_light = -direction;
+            let mirrored = DVec3::Z * (2.0 * to_light.z) - to_light;
+            naive += usize::from(
+                to_light.z < 0.0 && 0.5 * mirrored.dot(v).max(0.0).powi(2) > 1.0 / 255.0,
+            );
+        }
+    }
+    Figure {
+        case: 48,
+        what: "pixels that lamps behind a surface change",
+        naive: Some(("a highlight wherever R.V is above 0", naive as f64)),
+        ours: differ as f64,
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
+#[test]
+fn case_49_a_wider_cone_lights_no_pixel_less() {
+    let from = DVec3::new(30.0, 40.0, 120.0);
+    let axis = unit(DVec3::new(-0.2, -0.1, -1.0));
+    let mut before: Option<Picture> = None;
+    let (mut less, mut lit_by_none, mut wrong) = (0, 0, 0);
+    for half_aperture in (0..=90).map(f64::from) {
+        let lamps = [Lamp::Spot(from, axis, half_aperture, 5.0)];
+        let (scene, view) = lit_square(&lamps);
+        let picture = draw(&scene, &view, &Settings::default(), SIDE);
+        if let Some(before) = &before {
+            let pairs = before.pixels().iter().zip(picture.pixels());
+            less += pairs.filter(|(a, b)| b[0] < a[0]).count();
+        } else {
+            lit_by_none =
+                picture.pixels().iter().filter(|pixel| pixel[0] > 0 && pixel[2] != 179).count();
+        }
+        // The border is where the equation has it, but for a hundredth of a degree.
+        let eye = Eye::first(SIDE);
+        for i in 0..SIDE * SIDE {
+            let ray = eye.ray(i % SIDE, i / SIDE);
+            let place = eye.at + ray * 400.0;
+            if place.x.abs().max(place.y.abs()) > 169.0 {
+                continue;
+            }
+            let angle = oracle::angle(place - from, axis).to_degrees();
+            let lit = picture.pixels()[i][0] > 0;
+            wrong += usize::from(angle < half_aperture - 0.01 && angle < 60.0 && !lit);
+            wrong += usize::from(angle > half_aperture + 0.01 && lit);
+        }
+        before = Some(picture);
+    }
+    assert_eq!((less, lit_by_none), (0, 0), "a wider cone darkens, or one of 0 degrees lights");
+    Figure {
+        case: 49,
+        what: "pixels on the wrong side of a cone's border, for 0 to 90 degrees",
+        naive: None,
+        ours: wrong as f64,
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
+#[test]
+fn case_50_the_order_of_lights_does_not_show() {
+    let mut dice = Dice::new(50);
+    let mut lamps = vec![Lamp::Ambient];
+    for _ in 0..9 {
+        lamps.push(Lamp::Bulb(DVec3::Z * 150.0 + dice.vector(120.0)));
+    }
+    let (mut scene, view) = scene(&[(ball(16), at(120.0, 0.0, 0.0, 0.0))]);
+    let matter = Matter { ambient: 0.03, diffuse: 0.11, specular: 0.07, exponent: 9.0 };
+    edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
+    with_lamps(&mut scene, &lamps);
+    let view = View { marks: false, light: None, ..view };
+    let first = draw(&scene, &view, &Settings::default(), 256);
+    let mut differ = 0;
+    for _ in 0..30 {
+        let id = ItemId::Light(LightId(1 + dice.below(10) as u32));
+        Command::Reorder { id, to: dice.index(10) }.apply(&mut scene).unwrap();
+        let now = draw(&scene, &view, &Settings::default(), 256);
+        differ += first.pixels().iter().zip(now.pixels()).filter(|(a, b)| a != b).count();
+    }
+    // Sums of ten numbers of f32, in two orders.
+    let sums = (0..10_000).filter(|_| {
+        let parts: Vec<f32> = (0..10).map(|_| dice.part() as f32).collect();
+        parts.iter().sum::<f32>() != parts.iter().rev().sum::<f32>()
+    });
+    Figure {
+        case: 50,
+        what: "pixels that change in 30 shuffles of ten lights",
+        naive: Some((
+            "sums of ten in f32 that their order changes, of 10,000",
+            sums.count() as f64,
+        )),
+        ours: differ as f64,
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
+#[test]
+fn case_51_light_is_held_to_full_once_and_after_the_texture() {
+    // Two suns at 1 each on a surface of 1, under a tint of a half: 2 times 1/2 is full.
+    let (mut scene, view) = lit_square(&[Lamp::Sun(DVec3::NEG_Z), Lamp::Sun(DVec3::NEG_Z)]);
+    let matter = Matter { ambient: 0.0, diffuse: 1.0, specular: 0.0, exponent: 1.0 };
+    let texture = super::clipping::ruler(1.0);
+    let source = MeshSource {
+        positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
+        uvs: vec![[0.502, 0.5]],
+        corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: 0, normal: NONE }).to_vec(),
+        arities: vec![3],
+        polygon_parts: vec![0],
+        parts: vec![Part { name: "half".to_owned(), material: None }],
+        ..MeshSource::default()
+    };
+    edit(&mut scene, ObjectId(10), |object| {
+        object.material = stuff(&matter);
+        object.model = model_of("half", source);
+        object.texture = Some(texture);
+    });
+    let mut off = 0.0_f64;
+    for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+        for light in [LightAt::Pixel, LightAt::Vertex, LightAt::Face] {
+            let settings = Settings {
+                arithmetic,
+                light,
+                filter: marraztu::scene::Filter::Nearest,
+                ..Settings::default()
+            };
+            let middle = draw(&scene, &view, &settings, 33).pixel(16, 18)[0];
+            // The texel is 128.
+            off = off.max((f64::from(middle) - 2.0 * 128.0_f64.min(127.5)).abs());
+        }
+    }
+    Figure {
+        case: 51,
+        what: "twice full light on a texture of a half",
+        naive: Some(("light held to full before the texture", 127.0)),
+        ours: off,
+        bound: 0.5,
+        unit: "byte steps",
+    }
+    .hold();
+}

@@ -1,0 +1,121 @@
+//! What a picture should show, by rays and by the page on light, in f64 and with none of our code.
+
+use glam::DVec3;
+
+/// Pixels to a side, and the tangent of the half-angle that is seen.
+#[derive(Clone, Copy)]
+pub(crate) struct Eye {
+    pub(crate) side: usize,
+    pub(crate) at: DVec3,
+    pub(crate) tangent: f64,
+}
+
+impl Eye {
+    /// The eye of the scenes of `common`: at (0, 0, 400), looking along -Z.
+    pub(crate) fn first(side: usize) -> Self {
+        Self { side, at: DVec3::Z * 400.0, tangent: (2.0_f64.sqrt() - 1.0) }
+    }
+
+    /// The way from the eye through the middle of a pixel.
+    pub(crate) fn ray(&self, x: usize, y: usize) -> DVec3 {
+        let across = |i: usize| ((i as f64 + 0.5) * 2.0 / self.side as f64 - 1.0) * self.tangent;
+        DVec3::new(across(x), -across(y), -1.0)
+    }
+
+    /// Where a place of the world is in the picture, in pixels.
+    pub(crate) fn pixel(&self, place: DVec3) -> [f64; 2] {
+        let p = place - self.at;
+        let half = self.side as f64 / 2.0;
+        let scale = half / self.tangent / -p.z;
+        [half + p.x * scale, half - p.y * scale]
+    }
+}
+
+/// How far along a ray a triangle is met, and the parts that its corners have there.
+///
+/// Cramer's rule: Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+pub(crate) fn meet(origin: DVec3, ray: DVec3, [a, b, c]: [DVec3; 3]) -> Option<(f64, [f64; 3])> {
+    let (e, f) = (b - a, c - a);
+    let p = ray.cross(f);
+    let determinant = e.dot(p);
+    let from = origin - a;
+    let q = from.cross(e);
+    let [v, w] = [from.dot(p) / determinant, ray.dot(q) / determinant];
+    let t = f.dot(q) / determinant;
+    let parts = [1.0 - v - w, v, w];
+    (parts.iter().all(|part| *part >= 0.0) && t > 0.0).then_some((t, parts))
+}
+
+/// How far a ray's meeting with a triangle is from its nearest side, as a part of the triangle.
+pub(crate) fn inside_by(parts: [f64; 3]) -> f64 {
+    parts.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// A lamp.
+#[derive(Clone, Copy)]
+pub(crate) enum Lamp {
+    Ambient,
+    /// The way its light goes.
+    Sun(DVec3),
+    Bulb(DVec3),
+    /// Place, axis, half-aperture in degrees, exponent.
+    Spot(DVec3, DVec3, f64, f64),
+}
+
+/// What reflects.
+#[derive(Clone, Copy)]
+pub(crate) struct Matter {
+    pub(crate) ambient: f64,
+    pub(crate) diffuse: f64,
+    pub(crate) specular: f64,
+    pub(crate) exponent: f64,
+}
+
+/// The light of white lamps from a place with the normal `n` towards `v`, not clamped; `power` raises
+/// cosines, so that ways of doing it can be compared.
+pub(crate) fn light(
+    lamps: &[Lamp],
+    matter: &Matter,
+    [place, n, v]: [DVec3; 3],
+    power: &dyn Fn(f64, f64) -> f64,
+) -> f64 {
+    let mut sum = 0.0;
+    for lamp in lamps {
+        let (to_light, strength) = match *lamp {
+            Lamp::Ambient => {
+                sum += matter.ambient;
+                continue;
+            }
+            Lamp::Sun(direction) => (-direction, 1.0),
+            Lamp::Bulb(at) | Lamp::Spot(at, ..) => {
+                let d = (at - place).length();
+                ((at - place) / d, 1.0 / (1.0 + 5e-6 * d + 5e-6 * d * d))
+            }
+        };
+        let gathered = match *lamp {
+            Lamp::Spot(_, axis, half_aperture, exponent) => {
+                let c = axis.dot(-to_light).min(1.0);
+                if c > half_aperture.to_radians().cos() { c.powf(exponent) } else { 0.0 }
+            }
+            _ => 1.0,
+        };
+        let n_l = n.dot(to_light);
+        let mirrored = n * (2.0 * n_l) - to_light;
+        let mut reflected = matter.diffuse * n_l.max(0.0);
+        if n_l > 0.0 && mirrored.dot(v) > 0.0 {
+            reflected += matter.specular * power(mirrored.dot(v).min(1.0), matter.exponent);
+        }
+        sum += strength * gathered * reflected;
+    }
+    sum
+}
+
+/// At length 1; for vectors of ordinary length.
+pub(crate) fn unit(v: DVec3) -> DVec3 {
+    v / v.length()
+}
+
+/// The angle between two directions, right for small ones too.
+pub(crate) fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b))
+}

@@ -1,0 +1,118 @@
+//! A false clock and a false easel, in which slowdowns and errors are planted.
+
+use std::time::Duration;
+
+use marraztu::base::image::{Picture, Size};
+use marraztu::io;
+use marraztu::lab::candidates::{Thoroughness, all_axes, candidates};
+use marraztu::lab::clock::{Clock, Work};
+use marraztu::lab::easel::Easel;
+use marraztu::lab::pairs::{Limits, Watch};
+use marraztu::lab::sweep::{Bench, Findings, Question};
+use marraztu::scene::{AXES, Axis, Choice, Settings};
+
+/// A choice in which something is planted.
+pub(crate) type Planted = Option<(&'static Axis, &'static Choice)>;
+
+/// Every choice that is not the default.
+pub(crate) fn plantable() -> impl Iterator<Item = (&'static Axis, &'static Choice)> {
+    let all = AXES.iter().flat_map(|axis| axis.choices.iter().map(move |choice| (axis, choice)));
+    all.filter(|(axis, choice)| choice.word != axis.default_choice().word)
+}
+
+/// A clock that takes a millisecond for every picture, and three where the planted choice is made.
+pub(crate) struct FalseClock {
+    pub(crate) slow: Planted,
+    now: Duration,
+}
+
+impl FalseClock {
+    pub(crate) fn new(slow: Planted) -> Self {
+        Self { slow, now: Duration::ZERO }
+    }
+}
+
+impl Clock for FalseClock {
+    fn time(&mut self, work: Work<'_>, todo: &mut dyn FnMut()) -> Duration {
+        todo();
+        let slow = match work {
+            Work::Picture(settings) => self.slow.is_some_and(|(_, choice)| choice.is(settings)),
+            Work::Kernel(_) => false,
+        };
+        let time = Duration::from_millis(if slow { 3 } else { 1 });
+        self.now += time;
+        time
+    }
+
+    fn now(&self) -> Duration {
+        self.now
+    }
+}
+
+/// An easel whose picture is grey, but for a pixel that is 9 steps lighter where the planted choice is
+/// made, and covered by another triangle where `coverage` is.
+pub(crate) struct FalseEasel {
+    pub(crate) wrong: Planted,
+    pub(crate) coverage: Planted,
+    picture: Picture,
+    primitives: Vec<u32>,
+}
+
+pub(crate) const SIZE: Size = Size::new(8, 8);
+
+impl FalseEasel {
+    pub(crate) fn new(wrong: Planted, coverage: Planted) -> Self {
+        let picture = Picture::filled(SIZE, [100, 100, 100, 255]);
+        Self { wrong, coverage, picture, primitives: vec![1; SIZE.area()] }
+    }
+}
+
+impl Easel for FalseEasel {
+    fn draw(&mut self, settings: &Settings) {
+        let made = |planted: Planted| planted.is_some_and(|(_, choice)| choice.is(settings));
+        let light = if made(self.wrong) { 109 } else { 100 };
+        self.picture.pixels_mut()[27] = [light, 100, 100, 255];
+        self.primitives[3] = if made(self.coverage) { 2 } else { 1 };
+    }
+
+    fn picture(&self) -> &Picture {
+        &self.picture
+    }
+
+    fn primitives(&mut self) -> Vec<u32> {
+        self.primitives.clone()
+    }
+}
+
+/// What a sweep over all axes finds; all of them make sense.
+pub(crate) fn found(clock: &mut FalseClock, easel: &mut FalseEasel) -> Findings {
+    let limits = Limits { pairs: 3, least: 3, time: Duration::from_secs(1) };
+    let thoroughness =
+        Thoroughness { word: "test", limits, combinations: 20, time: Duration::from_secs(9) };
+    let current = Settings::default();
+    let question = Question { current, axes: all_axes(), thoroughness };
+    let (scene, view) = textured_scene();
+    let candidates = candidates(&scene, &view, &current, &question.axes, 20);
+    assert_eq!(candidates.left_out.iter().find(|left_out| !left_out.what.contains(" of ")), None);
+    let watch = Watch::default();
+    let mut bench = Bench { clock, easel, watch: &watch, question: &question, size: SIZE };
+    bench.run(candidates, &mut |_| {}).unwrap()
+}
+
+/// The first scene with a triangle that has a texture.
+fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
+    use marraztu::base::Shared;
+    use marraztu::scene::*;
+    let (mut scene, view) = io::default_scene();
+    let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    let options = LoadOptions::default();
+    let loaded = io::parse(text, "triangle.obj", None, &options, &io::Progress::new()).unwrap();
+    let mut object = Object::new(Shared::new(loaded.model), MaterialChoice::File);
+    let picture = Picture::filled(Size::new(1, 1), [255; 4]);
+    let (wrap, source) = (Wrap::default(), std::path::PathBuf::new());
+    let texture = Texture { source, picture, wrap, offset: [0.0; 2], scale: [1.0; 2] };
+    object.texture = Some(Shared::new(texture));
+    let item = Item::Object(ObjectId(100), Box::new(object));
+    Command::Insert { at: 0, item }.apply(&mut scene).unwrap();
+    (scene, view)
+}

@@ -1,0 +1,105 @@
+//! `marraztu lab` from outside, on the first scene, small.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use marraztu::io;
+use marraztu::scene::AXES;
+
+#[track_caller]
+fn lab(status: i32, folder: &Path, arguments: &[&str]) -> (String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_marraztu"));
+    command.current_dir(folder).args(arguments).stdin(Stdio::null());
+    let output = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let (out, err) = (text(output.stdout), text(output.stderr));
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}\n{out}\n{err}");
+    assert!(!err.contains("panicked"), "{err}");
+    (out, err)
+}
+
+#[test]
+fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "lab",
+        "--quick",
+        "--size",
+        "48x36",
+        "--out",
+        "found",
+        "--shading",
+        "face",
+        "--max-error",
+        "255",
+        "--budget-ms",
+        "1e6",
+    ];
+    let (out, _) = lab(0, folder.path(), &arguments);
+    for part in [
+        "the first scene: 48 x 36 pixels",
+        "presets",
+        "means nothing",
+        "combinations",
+        "not measured: texture filter: nothing that is shown has a texture",
+        "the fastest with RMSE in byte steps at most 255: ",
+        "the most exact within",
+        "equal results",
+        "again: marraztu lab --quick --size 48x36 --out found --shading face",
+    ] {
+        assert!(out.contains(part), "{part}\n{out}");
+    }
+    // What is drawn now is marked, and is no row of its own where it is a choice of an axis.
+    assert!(out.lines().any(|line| line.contains('>') && line.contains("Face")), "{out}");
+    let found = folder.path().join("found");
+    let read = |name: &str| std::fs::read_to_string(found.join(name)).unwrap();
+    assert_eq!(read("table.txt"), out);
+    assert!(read("table.csv").starts_with("group,name,"));
+    assert!(read("report.json").contains("\"floor\""));
+    assert!(read("scatter.svg").contains("<svg"));
+    assert!(io::load_picture(&found.join("scatter.png")).is_ok());
+    let [exact, x1, x256] = ["exact", "error-x1", "error-x256"]
+        .map(|name| io::load_picture(&found.join(format!("{name}.png"))).unwrap());
+    assert_eq!((exact.size().width, exact.size().height), (48, 36));
+    let sum = |picture: &marraztu::base::image::Picture| -> u64 {
+        picture.pixels().iter().flat_map(|p| &p[..3]).map(|byte| u64::from(*byte)).sum()
+    };
+    assert!(0 < sum(&x1) && sum(&x1) < sum(&x256));
+}
+
+#[test]
+fn axes_are_chosen_by_their_keys() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, _) =
+        lab(0, folder.path(), &["lab", "--quick", "--size", "32x24", "--axes", "arithmetic"]);
+    assert!(out.contains("arithmetic of light, --arithmetic"), "{out}");
+    assert!(!out.contains("--shading"), "{out}");
+    let (_, err) = lab(2, folder.path(), &["lab", "--axes", "beauty"]);
+    assert!(AXES.iter().all(|axis| err.contains(axis.key)), "{err}");
+}
+
+#[test]
+fn a_pixel_is_blamed_and_one_outside_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["lab", "--size", "64x64", "--preset", "draft", "--shading", "face"];
+    let (out, _) = lab(0, folder.path(), &[&arguments[..], &["--pixel", "0,0"]].concat());
+    assert!(out.contains("shows  the background") && out.contains("0 byte steps off"), "{out}");
+    assert!(out.contains("shading pixel instead of face"), "{out}");
+    assert!(out.contains("filter bilinear instead of nearest"), "{out}");
+    let (_, err) = lab(1, folder.path(), &[&arguments[..], &["--pixel", "64,0"]].concat());
+    assert!(err.contains("there is no 64,0"), "{err}");
+}
+
+#[test]
+fn a_preset_is_drawn_as_its_points_and_gives_way_to_single_axes() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |arguments: &[&str]| {
+        let fixed = ["render", "--size", "64x64", "--out", "p.png"];
+        lab(0, folder.path(), &[&fixed[..], arguments].concat());
+        io::load_picture(&folder.path().join("p.png")).unwrap()
+    };
+    let draft = drawn(&["--preset", "draft"]);
+    assert!(draft == drawn(&["--shading", "vertex", "--filter", "nearest"]));
+    assert!(draft != drawn(&[]));
+    assert!(drawn(&["--preset", "draft", "--shading", "pixel"]) == drawn(&[]));
+}

@@ -1,0 +1,120 @@
+//! Tables, data and plots hold every choice.
+
+use marraztu::lab::candidates::Group;
+use marraztu::lab::error::Measure;
+use marraztu::lab::report::{Budgets, Chart, MarkKind, Report, csv, png, svg, text};
+use marraztu::scene::{AXES, Axis};
+
+use crate::bench::{FalseClock, FalseEasel, found};
+
+/// A report in which 32 bits are wrong and 64 bits are slow.
+fn report() -> Report {
+    let arithmetic = Axis::named("arithmetic").unwrap();
+    let planted = |word: &str| arithmetic.choice(word).map(|choice| (arithmetic, choice));
+    let mut easel = FalseEasel::new(planted("f32"), None);
+    let findings = found(&mut FalseClock::new(planted("f64")), &mut easel);
+    Report {
+        scene: "a scene".to_owned(),
+        command: "marraztu lab".to_owned(),
+        measure: Measure::Rmse,
+        budgets: Budgets { error: Some(0.0), ms: Some(0.5) },
+        findings,
+    }
+}
+
+#[test]
+fn the_table_has_a_row_for_every_choice_of_every_axis() {
+    let report = report();
+    let (text, csv) = (text(&report), csv(&report));
+    for axis in AXES {
+        assert!(text.contains(&format!("--{}", axis.key)), "{text}");
+        for choice in axis.choices {
+            let rows = report.findings.rows.iter();
+            let row =
+                rows.clone().find(|r| r.group == Group::Axis(axis.key) && r.name == choice.label);
+            assert!(row.is_some(), "{} {}", axis.key, choice.word);
+            assert!(text.contains(choice.label), "{text}");
+        }
+    }
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines.len(), report.findings.rows.len() + 1);
+    let columns = lines[0].split(',').count();
+    for line in lines {
+        let quotes = line.split('"').step_by(2).map(|plain| plain.matches(',').count());
+        assert_eq!(quotes.sum::<usize>() + 1, columns, "{line}");
+    }
+}
+
+#[test]
+fn json_holds_what_the_table_holds() {
+    let report = report();
+    let value: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
+    assert_eq!(value["points"].as_array().unwrap().len(), report.findings.points.len());
+    assert_eq!(value["rows"].as_array().unwrap().len(), report.findings.rows.len());
+    assert_eq!(value["points"][0]["ratio"]["quartiles"]["median"], 1.0);
+    assert_eq!(value["points"][0]["settings"]["shading"], "Pixel");
+    assert_eq!(value["kernels"].as_array().unwrap().len(), 4);
+    assert_eq!(value["command"], "marraztu lab");
+}
+
+#[test]
+fn budgets_are_answered_or_said_to_be_too_small() {
+    let mut report = report();
+    // Nothing takes half a millisecond, and 64 bits are exact.
+    let exact = report.findings.points.iter().position(|point| point.name == "Exact");
+    assert_eq!((report.fastest().flatten(), report.most_exact()), (exact, Some(None)));
+    let answers = report.answers();
+    assert!(answers[0].contains("at most 0: Exact: 3 ms, 0"), "{answers:?}");
+    assert!(answers[1].contains("none that was measured"), "{answers:?}");
+    report.budgets = Budgets::default();
+    assert_eq!(report.answers(), [""; 0]);
+}
+
+#[test]
+fn a_chart_puts_an_error_of_0_under_all_others_and_slow_right_of_fast() {
+    let chart = Chart::new(&report());
+    let mark = |name: &str| chart.marks.iter().find(|mark| mark.name == name).unwrap();
+    let (default, slow, model) =
+        (mark("Default"), mark("Exact"), mark("Default, specular half-vector"));
+    assert_eq!((default.kind, slow.kind), (MarkKind::Default, MarkKind::Preset));
+    assert!(default.on_front && default.current && slow.on_front && !slow.current);
+    // A model takes no part.
+    assert!(model.kind == MarkKind::Model && !model.on_front);
+    assert!(default.at[1] > slow.at[1] + 0.9);
+    assert!((slow.at[0] - default.at[0] - libm::log10(3.0)).abs() < 1e-9);
+    let zero = chart.y.ticks.iter().find(|(_, label)| label == "0").unwrap();
+    assert_eq!(zero.0, slow.at[1]);
+    for mark in &chart.marks {
+        for (scale, at) in [(&chart.x, mark.at[0]), (&chart.y, mark.at[1])] {
+            assert!(scale.range[0] < at && at < scale.range[1], "{}", mark.name);
+        }
+    }
+}
+
+#[test]
+fn the_plot_names_every_point_in_svg_and_draws_them_in_png() {
+    let report = report();
+    let svg = svg(&report).unwrap();
+    for point in &report.findings.points {
+        assert!(svg.contains(&point.name), "{} is not in the plot", point.name);
+    }
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    let png = png(&report).unwrap();
+    let of = |color: [u8; 4]| png.pixels().iter().filter(|pixel| **pixel == color).count();
+    // The front's green, a preset's blue, and letters. The marks of the axes all lie under others here.
+    for color in [[0, 158, 115, 255], [0, 114, 178, 255], [34, 34, 40, 255]] {
+        assert!(of(color) > 10, "{color:?} is seen {} times", of(color));
+    }
+}
+
+#[test]
+fn every_axis_has_three_sentences_to_teach() {
+    for axis in AXES {
+        let lesson = &Axis::named(axis.key).unwrap().lesson;
+        for sentence in [lesson.what, lesson.coarse, lesson.shows] {
+            assert!(sentence.ends_with('.') && sentence.len() > 20, "{}: {sentence}", axis.key);
+        }
+        let hints = axis.choices.iter().flat_map(|choice| [choice.what, choice.error]);
+        assert!(hints.into_iter().all(|text| !text.is_empty()), "{}", axis.key);
+    }
+}

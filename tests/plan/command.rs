@@ -1,0 +1,71 @@
+//! `marraztu plan` and `marraztu prove`, from outside.
+
+use std::process::{Command, Output};
+
+fn run(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_marraztu"));
+    let Output { status, stdout, stderr } = command.args(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code(), text(stdout), text(stderr))
+}
+
+fn plan(arguments: &[&str]) -> String {
+    let all = [&["plan", "--size", "160x120"], arguments].concat();
+    let (status, out, err) = run(&all);
+    assert_eq!(status, Some(0), "{err}");
+    out
+}
+
+#[test]
+fn the_plan_takes_the_options_of_a_picture_and_says_what_they_leave_out() {
+    let whole = plan(&[]);
+    let line = |text: &str, name: &str| {
+        let found = text.lines().find(|line| line.starts_with(name));
+        found.unwrap_or_else(|| panic!("{name} in\n{text}")).to_owned()
+    };
+    assert!(line(&whole, "sun").contains(" on "));
+    assert!(whole.contains("changes no bit"));
+    let dark = plan(&["--lights", "0"]);
+    assert!(line(&dark, "sun").contains("switched off"));
+    assert!(dark.contains("no light reads them"), "{dark}");
+    assert!(plan(&["--edges"]).contains("edges only"));
+    assert!(line(&plan(&["--helpers", "none"]), "Marks").contains("switched off"));
+}
+
+#[test]
+fn every_line_for_machines_has_every_cell() {
+    let csv = plan(&["--format", "csv", "--measure", "--seconds", "0.1"]);
+    let mut lines = csv.lines();
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let at = |name: &str| head.iter().position(|cell| *cell == name).unwrap();
+    let mut measured = 0;
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        // A reason may hold a comma, and then stands in quotes.
+        assert!(cells.len() == head.len() || line.contains('"'), "{line}");
+        if cells.len() == head.len() {
+            assert_eq!(cells[at("state")] == "on", !cells[at("pixels")].is_empty(), "{line}");
+            measured += usize::from(!cells[at("milliseconds")].is_empty());
+        }
+    }
+    assert!(measured > 5, "{csv}");
+    let json = plan(&["--format", "json"]);
+    assert_eq!(json.matches('{').count(), csv.lines().count());
+    assert_eq!(json.matches('{').count(), json.matches('}').count());
+}
+
+#[test]
+fn proofs_are_listed_tried_and_refused_where_there_is_none() {
+    let (status, out, _) = run(&["prove", "--list"]);
+    assert_eq!(status, Some(0));
+    for name in ["plan", "faint", "absent", "rules", "instructions"] {
+        assert!(out.lines().any(|line| line.split_whitespace().next() == Some(name)), "{out}");
+    }
+    for name in ["plan", "absent"] {
+        let (status, out, err) = run(&["prove", name, "--count", "64"]);
+        assert_eq!(status, Some(0), "{out} {err}");
+    }
+    let (status, _, err) = run(&["prove", "everything"]);
+    assert_eq!(status, Some(1));
+    assert!(err.contains("there is no claim"), "{err}");
+}

@@ -1,0 +1,110 @@
+//! What is said of a frame is what the frame does.
+
+use marraztu::base::image::Size;
+use marraztu::io;
+use marraztu::lab::cost;
+use marraztu::lab::prove::plan::samples;
+use marraztu::render::{Class, Effect, FramePlan, Renderer, State};
+use marraztu::scene::{Fill, ItemId, LeaveOut, LightKind, Scene, Settings, View};
+
+const SIZE: Size = Size::new(160, 120);
+
+fn first() -> (Scene, View) {
+    let (scene, view) = io::default_scene();
+    (scene, View { marks: false, ..view })
+}
+
+#[test]
+fn every_pixel_that_shows_something_is_counted_once_under_surfaces() {
+    for seed in 0..300 {
+        let it = samples::sample(seed);
+        // Lines are counted elsewhere, and on black ground nothing black would be seen.
+        let view = View { marks: true, fill: Fill::Filled, ..it.view.clone() };
+        let explained = cost::explain((&it.scene, &view, &it.settings, it.size));
+        let present = |effect: Effect| matches!(effect, Effect::Surfaces | Effect::Marks);
+        let uses = explained.uses.iter().filter(|one| present(one.effect));
+        let counted: u64 = uses.filter_map(|one| one.pixels).sum();
+        let plan = FramePlan::new(&it.scene, &view, &it.settings, it.size);
+        let mut renderer = Renderer::default();
+        renderer.render(&plan);
+        let lines = view.edges_over_fill || view.face_normals || view.vertex_normals;
+        let items = it.scene.objects.ids().map(ItemId::Object);
+        let items = items.chain(it.scene.cameras.ids().map(ItemId::Camera));
+        let items = items.chain(it.scene.lights.ids().map(ItemId::Light));
+        let seen: usize =
+            items.map(|item| renderer.pixels_of(item).into_iter().filter(|own| *own).count()).sum();
+        if lines {
+            assert!(counted <= seen as u64, "scene {seed}");
+        } else {
+            assert_eq!(counted, seen as u64, "scene {seed}");
+        }
+    }
+}
+
+#[test]
+fn taking_out_what_is_left_out_changes_no_byte_and_what_is_on_is_there_to_be_taken_out() {
+    let (scene, view) = first();
+    let settings = Settings::default();
+    let (plan, uses) = FramePlan::explained(&scene, &view, &settings, SIZE);
+    let on = |effect: Effect| uses.iter().any(|one| one.effect == effect && one.state.is_on());
+    for one in &uses {
+        let without = plan.without(one.effect);
+        match one.effect {
+            Effect::Normals => assert!(without.is_none()),
+            effect => assert_eq!(without.is_some(), on(effect), "{effect:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_light_that_reaches_one_object_of_three_is_on_there_and_nowhere_else() {
+    let (scene, view) = first();
+    // The spot of the selected object shines along -Z: past the one beside it.
+    let uses = cost::explain((&scene, &view, &Settings::default(), SIZE)).uses;
+    let spot = scene.lights.iter().find_map(|(id, light)| {
+        (light.name == "object spot" && matches!(light.kind, LightKind::Spot { .. })).then_some(id)
+    });
+    let spot = spot.unwrap();
+    let of_spot: Vec<_> = uses.iter().filter(|one| one.effect == Effect::Light(spot)).collect();
+    assert_eq!(of_spot.len(), 3);
+    let reasons: Vec<&str> =
+        of_spot.iter().filter(|one| !one.state.is_on()).map(|one| one.state.why()).collect();
+    assert!(reasons.contains(&"nothing is within its cone"), "{of_spot:?}");
+}
+
+#[test]
+fn what_is_left_out_as_too_faint_is_said_with_its_bound() {
+    let (mut scene, view) = first();
+    for (id, light) in scene.clone().lights.iter() {
+        if let LightKind::Bulb { .. } = light.kind {
+            let mut faint = light.clone();
+            faint.attenuation.quadratic = 100.0;
+            let item = marraztu::scene::Item::Light(id, Box::new(faint));
+            marraztu::scene::Command::Replace(item).apply(&mut scene).unwrap();
+        }
+    }
+    let settings = Settings { leave_out: LeaveOut::HalfStep, ..Settings::default() };
+    let explained = cost::explain((&scene, &view, &settings, SIZE));
+    let bulbs = explained.uses.iter().filter(|one| one.name == "bulb");
+    for one in bulbs {
+        let State::LeftOut { reason, class: Class::Bounded(steps) } = &one.state else {
+            panic!("{one:?}");
+        };
+        assert_eq!(reason, "too faint");
+        assert!(*steps > 0.0 && *steps < 0.25);
+    }
+    assert!(explained.off_by > 0.0 && explained.off_by < 0.5);
+    let exact = cost::explain((&scene, &view, &Settings::default(), SIZE));
+    assert_eq!(exact.off_by, 0.0);
+}
+
+#[test]
+fn in_edges_alone_no_surface_is_lit() {
+    let (scene, view) = first();
+    let view = View { fill: Fill::Edges, ..view };
+    let (plan, uses) = FramePlan::explained(&scene, &view, &Settings::default(), SIZE);
+    assert_eq!(plan.keys(), ["flat"]);
+    assert!(uses.iter().all(|one| one.effect != Effect::Highlights));
+    let surfaces: Vec<_> = uses.iter().filter(|one| one.effect == Effect::Surfaces).collect();
+    assert!(surfaces.iter().all(|one| one.state.why() == "edges only"));
+}

@@ -1,0 +1,191 @@
+//! The panel of the laboratory: measured, chosen from, compared, explained, taught.
+//!
+//! Catches: a measurement that blocks the window or is of another scene, a mark or a row that draws
+//! otherwise than it says, a comparison of two different moments, a click for a pixel that selects.
+
+use std::time::Duration;
+
+use egui::PointerButton;
+use egui::accesskit::Role;
+use egui_kittest::kittest::{By, Queryable as _};
+use marraztu::app::action::Action;
+use marraztu::app::ask::Ask;
+use marraztu::app::comparison::Compare;
+use marraztu::app::laboratory::Laboratory;
+use marraztu::scene::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
+
+use crate::editor::Editor;
+use crate::panels::{click, control};
+
+fn editor() -> Editor {
+    let mut editor = Editor::of_size(1300.0, 760.0);
+    editor.perform_all(&[Action::ToggleLaboratory, Action::ToggleProperties]);
+    editor
+}
+
+fn lab(editor: &Editor) -> &Laboratory {
+    &editor.state().lab
+}
+
+/// Lets the window rest and be drawn by turns until it is so.
+#[track_caller]
+fn until(editor: &mut Editor, what: &str, done: impl Fn(&Editor) -> bool) {
+    for _ in 0..600 {
+        if done(editor) {
+            return editor.settle();
+        }
+        std::thread::sleep(Duration::from_millis(200));
+        editor.harness.step();
+    }
+    panic!("{what} never came");
+}
+
+fn measured() -> Editor {
+    let mut editor = editor();
+    click(&mut editor, Role::Button, "Measure");
+    assert!(lab(&editor).running.is_some());
+    until(&mut editor, "the end of measuring", |e| lab(e).running.is_none());
+    assert_eq!(lab(&editor).failed, None);
+    editor
+}
+
+#[test]
+fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
+    let mut editor = measured();
+    let report = lab(&editor).report.clone().unwrap();
+    assert_eq!(report.findings.size, {
+        let size = editor.state().statistics.size;
+        [size.width, size.height]
+    });
+    assert!(!lab(&editor).is_stale(editor.state()));
+    for point in &report.findings.points {
+        let mark = format!("Draw with {}", point.name);
+        // Marks may lie over one another.
+        control(&editor, Role::RadioButton, &mark).click_accesskit();
+        editor.settle();
+        assert_eq!(editor.state().settings, point.settings, "{mark}");
+    }
+    click(&mut editor, Role::RadioButton, "light evaluated, --shading: Face");
+    assert_eq!(editor.state().settings.light, LightAt::Face);
+    click(&mut editor, Role::RadioButton, "presets: Default");
+    assert_eq!(editor.state().settings, Settings::default());
+    assert_eq!(editor.steps(), 0, "accuracy is no step");
+    // Another scene has another picture.
+    editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
+    assert!(lab(&editor).is_stale(editor.state()));
+    assert!(editor.shows("What is shown has changed since"));
+}
+
+#[test]
+fn measuring_can_be_given_up_and_ends_with_its_scene() {
+    let mut editor = editor();
+    for gives_up in [true, false] {
+        click(&mut editor, Role::Button, "Thoroughly");
+        assert!(lab(&editor).running.is_some());
+        if gives_up {
+            click(&mut editor, Role::Button, "Cancel");
+            until(&mut editor, "the end of measuring", |e| lab(e).running.is_none());
+            let message = editor.state().message.clone().unwrap();
+            assert_eq!(message.text, "Measuring was cancelled");
+        } else {
+            editor.perform(Action::New);
+            assert!(lab(&editor).running.is_none() && lab(&editor).report.is_none());
+        }
+    }
+}
+
+#[test]
+fn the_picture_is_compared_with_the_exact_one_of_the_same_moment() {
+    let mut editor = editor();
+    assert!(editor.harness.query_by_label("Split between exact and drawn").is_none());
+    click(&mut editor, Role::RadioButton, "Compare: Split");
+    until(&mut editor, "the comparison", |e| lab(e).judged.is_some());
+    let judged = lab(&editor).judged.unwrap();
+    assert!(judged.error.largest <= 1 && judged.error.coverage == 0, "{judged:?}");
+    let at = control(&editor, Role::Slider, "Split between exact and drawn").rect().center();
+    editor.drag(PointerButton::Primary, &[at, at + egui::vec2(-60.0, 0.0)]);
+    let Compare::Split(part) = lab(&editor).compare else { panic!("it is no split any more") };
+    assert!(part < 0.47, "{part}");
+    assert_eq!(editor.steps(), 0, "the slider is no drag of the view");
+    let face = Settings { light: LightAt::Face, ..Settings::default() };
+    editor.ask(Ask::Settings(face));
+    until(&mut editor, "another comparison", |e| {
+        lab(e).judged.is_some_and(|judged| judged.settings.light == LightAt::Face)
+    });
+    assert!(lab(&editor).judged.unwrap().error.largest > 1);
+    click(&mut editor, Role::RadioButton, "Compare: x16");
+    assert!(editor.shows("Error: largest"));
+    click(&mut editor, Role::RadioButton, "Compare: Off");
+    assert_eq!(lab(&editor).compare, Compare::Off);
+}
+
+#[test]
+fn a_pixel_is_explained_by_a_click_that_selects_nothing() {
+    let mut editor = editor();
+    editor.ask(Ask::Settings(Settings { light: LightAt::Face, ..Settings::default() }));
+    let selected = editor.view().object;
+    click(&mut editor, Role::CheckBox, "Explain a pixel: click on it");
+    let middle = editor.at(0.3, 0.5);
+    editor.click(middle, PointerButton::Primary);
+    until(&mut editor, "the explanation", |e| lab(e).blame.is_some());
+    let lines = lab(&editor).blame.clone().unwrap();
+    assert!(lines.iter().any(|line| line.contains("shading pixel instead of face")), "{lines:?}");
+    assert_eq!((lab(&editor).picking, editor.view().object), (false, selected));
+}
+
+#[test]
+fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
+    let mut editor = editor();
+    click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
+    for axis in AXES {
+        click(&mut editor, Role::Button, axis.name);
+        for sentence in [axis.lesson.what, axis.lesson.coarse, axis.lesson.shows] {
+            assert!(editor.shows(sentence), "{sentence}");
+        }
+        click(&mut editor, Role::Button, "Show me");
+        assert!(axis.choices[0].is(&editor.state().settings), "{}", axis.key);
+        assert_eq!((axis.sense)(&editor.scene(), &editor.view()), Ok(()));
+        until(&mut editor, "the comparison", |e| lab(e).judged.is_some());
+        let error = lab(&editor).judged.unwrap().error;
+        // Numbers of 32 bits are off by a step at most; all else is plain to see.
+        let least = match axis.key {
+            "arithmetic" | "faint" | "specular" => 0,
+            _ => 40,
+        };
+        assert!(error.largest >= least, "{}: {error:?}", axis.key);
+    }
+}
+
+#[test]
+fn the_scene_of_a_lesson_takes_no_unsaved_work_with_it() {
+    let mut editor = editor();
+    editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
+    let before = editor.scene();
+    click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
+    click(&mut editor, Role::Button, "texture filter");
+    click(&mut editor, Role::Button, "Show me");
+    assert!(editor.scene() == before);
+    click(&mut editor, Role::Button, "Cancel");
+    assert!(editor.scene() == before);
+    click(&mut editor, Role::Button, "Show me");
+    click(&mut editor, Role::Button, "Discard");
+    assert_eq!(editor.state().settings.filter, Filter::Nearest);
+    assert!(editor.shows("plate"));
+}
+
+#[test]
+fn every_axis_and_every_preset_is_a_choice_among_the_switches_of_the_view() {
+    let mut editor = Editor::tall();
+    for axis in AXES {
+        for choice in axis.choices.iter().chain(&axis.choices[..1]) {
+            let label = format!("{}: {}", axis.label, choice.label);
+            click(&mut editor, Role::RadioButton, &label);
+            assert_eq!(Axis::chosen(axis, &editor.state().settings).word, choice.word, "{label}");
+        }
+    }
+    editor.ask(Ask::Settings(Settings::default()));
+    click(&mut editor, Role::RadioButton, "Accuracy: Exact");
+    assert_eq!(editor.state().settings.arithmetic, Arithmetic::F64);
+    let found = editor.harness.query_all(By::new().role(Role::RadioButton)).count();
+    assert!(found > AXES.len());
+}

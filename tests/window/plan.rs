@@ -1,0 +1,127 @@
+//! The panel that says what the picture is made of, and that nothing is drawn while nothing changes.
+//!
+//! Catches: a panel that lags behind the scene, a list of another picture, an effect without a line, a
+//! window that repaints or draws by itself.
+
+use egui::accesskit::Role;
+use marraztu::app::action::Action;
+use marraztu::app::ask::Ask;
+use marraztu::app::chord::Chord::Lower;
+use marraztu::render::Effect;
+use marraztu::scene::{LeaveOut, Settings};
+
+use crate::editor::Editor;
+use crate::panels::{click, control};
+
+fn effects(editor: &Editor) -> Vec<Effect> {
+    let explained = editor.state().plan.explained.clone().expect("the panel is shown");
+    let mut effects: Vec<Effect> = explained.uses.iter().map(|one| one.effect).collect();
+    effects.dedup();
+    effects
+}
+
+#[test]
+fn the_plan_follows_the_scene_while_it_is_shown() {
+    let mut editor = Editor::of_size(1400.0, 1400.0);
+    assert!(editor.state().plan.explained.is_none(), "nobody has asked");
+    editor.perform(Action::TogglePlan);
+    assert!(editor.shows("sun on, all 3"));
+    let lights = |editor: &Editor| {
+        effects(editor).into_iter().filter(|effect| matches!(effect, Effect::Light(_))).count()
+    };
+    assert_eq!(lights(&editor), 5);
+    editor.press(Lower(egui::Key::Num1));
+    assert!(editor.shows("sun left out, the frame: switched off"));
+    editor.perform(Action::Undo);
+    assert!(editor.shows("sun on, all 3"));
+    editor.perform(Action::TogglePlan);
+    assert!(!editor.shows("sun on, all 3"));
+}
+
+/// Clicks a line, which may have to be scrolled to.
+fn unfold(editor: &mut Editor, line: &str) {
+    control(editor, Role::Row, line).click_accesskit();
+    editor.settle();
+}
+
+#[test]
+fn every_effect_has_a_line_and_what_differs_is_folded_out() {
+    let mut editor = Editor::of_size(1400.0, 1400.0);
+    editor.perform(Action::TogglePlan);
+    for one in editor.state().plan.explained.clone().unwrap().uses.iter() {
+        assert!(editor.shows(&format!("{} ", one.name)), "{}", one.name);
+    }
+    let spot = "object spot on, 2 of 3 objects";
+    assert!(!editor.shows("left out, x_wing: nothing is within its cone"));
+    unfold(&mut editor, spot);
+    assert!(editor.shows("left out, x_wing: nothing is within its cone"));
+    unfold(&mut editor, spot);
+    assert!(!editor.shows("left out, x_wing: nothing is within its cone"));
+}
+
+#[test]
+fn what_is_measured_is_shown_until_something_changes() {
+    let mut editor = Editor::of_size(900.0, 500.0);
+    editor.perform(Action::MeasurePlan);
+    assert!(editor.state().shown.plan && editor.state().plan.measuring);
+    for _ in 0..3000 {
+        if !editor.state().plan.measuring {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        editor.harness.step();
+    }
+    editor.settle();
+    let costs = editor.state().plan.costs.clone().expect("it was measured");
+    assert!(costs.costs.frame > 0.0 && costs.costs.effects.len() > 4);
+    assert!(editor.shows("ms a frame"));
+    editor.press(Lower(egui::Key::Num1));
+    assert!(editor.shows("measured before the last change"));
+}
+
+#[test]
+fn measuring_can_be_given_up() {
+    let mut editor = Editor::small();
+    editor.perform(Action::MeasurePlan);
+    editor.perform(Action::MeasurePlan);
+    for _ in 0..3000 {
+        if !editor.state().plan.measuring {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        editor.harness.step();
+    }
+    assert!(!editor.state().plan.measuring && editor.state().plan.costs.is_none());
+}
+
+#[test]
+fn faint_light_is_left_out_by_the_switch_and_by_the_setting_alike() {
+    let mut editor = Editor::tall();
+    click(&mut editor, Role::CheckBox, "Leave out faint light");
+    assert_eq!(editor.state().settings.leave_out, LeaveOut::HalfStep);
+    assert_eq!(Action::ToggleLeaveOut.is_on(editor.state()), Some(true));
+    editor.ask(Ask::Settings(Settings::default()));
+    assert_eq!(Action::ToggleLeaveOut.is_on(editor.state()), Some(false));
+}
+
+#[test]
+fn an_idle_editor_draws_nothing_and_asks_for_no_frame() {
+    for plan in [false, true] {
+        let mut editor = Editor::new();
+        if plan {
+            editor.perform(Action::TogglePlan);
+        }
+        // What fades in has faded.
+        for _ in 0..60 {
+            editor.settle();
+        }
+        let pictures = editor.state().statistics.pictures;
+        let ctx = editor.harness.ctx.clone();
+        for frame in 0..200 {
+            editor.harness.step();
+            assert!(!ctx.has_requested_repaint(), "frame {frame}, plan {plan}");
+        }
+        editor.settle();
+        assert_eq!(editor.state().statistics.pictures, pictures);
+    }
+}
