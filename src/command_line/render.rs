@@ -20,6 +20,9 @@ use super::stage::{Stage, usage};
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     let stage = stage(&arguments.shot)?;
     let bar = Bar::unmeasured("drawing");
+    for (_, object) in stage.scene.objects.iter() {
+        object.model.mesh.draw_as_filed();
+    }
     let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.shot.size);
     let mut renderer = Renderer::default();
     let picture = renderer.render(&plan);

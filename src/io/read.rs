@@ -7,53 +7,46 @@ use std::path::Path;
 use super::error::{LoadError, short_name};
 use super::progress::Progress;
 
-/// The most bytes of a text that describes shapes.
-pub(super) const MOST_SHAPES: usize = 4 << 30;
-
 /// The most bytes of a text that describes materials or a scene.
 pub(super) const MOST_WORDS: usize = 64 << 20;
 
 /// How much is read between two looks at the progress.
 const PIECE: usize = 8 << 20;
 
-/// Reads a file in pieces, so that it can be watched and cancelled. `sound` looks at the first piece,
-/// and says what is wrong with it where the rest is of no use.
+/// Opens a file of at most so many bytes; says how many it has, where that is known before.
 ///
 /// # Errors
-/// Where it cannot be read, has more than `most` bytes, or is not sound; and where `progress` is
-/// cancelled.
-pub(super) fn read(
-    path: &Path,
-    most: usize,
-    sound: impl FnOnce(&[u8]) -> Option<String>,
-    progress: &Progress,
-) -> Result<Vec<u8>, LoadError> {
+/// Where it cannot be opened, is a folder, or has more.
+pub(super) fn open(path: &Path, most: usize) -> Result<(File, usize), LoadError> {
     let file = short_name(path);
     let system = |error: std::io::Error| LoadError::system(&file, &error);
-    let too_large = || LoadError::file(&file, format!("it is larger than {} MB", most >> 20));
-    let mut handle = File::open(path).map_err(system)?;
+    let handle = File::open(path).map_err(system)?;
     let metadata = handle.metadata().map_err(system)?;
     if metadata.is_dir() {
         return Err(LoadError::file(&file, "this is a folder, not a file"));
     }
     let size = usize::try_from(metadata.len()).unwrap_or(usize::MAX);
-    if size > most {
-        return Err(too_large());
-    }
+    if size > most { Err(LoadError::too_large(&file, most)) } else { Ok((handle, size)) }
+}
+
+/// Reads a file in pieces, so that it can be watched and cancelled.
+///
+/// # Errors
+/// Where it cannot be read or has more than `most` bytes; and where `progress` is cancelled.
+pub(super) fn read(path: &Path, most: usize, progress: &Progress) -> Result<Vec<u8>, LoadError> {
+    let file = short_name(path);
+    let (mut handle, size) = open(path, most)?;
     let mut bytes = Vec::new();
     bytes
         .try_reserve(size + 1)
         .map_err(|_full| LoadError::file(&file, "there is not enough memory for it"))?;
-    let mut sound = Some(sound);
     loop {
         let limit = u64::try_from(PIECE).unwrap_or(u64::MAX);
-        let piece = handle.by_ref().take(limit).read_to_end(&mut bytes).map_err(system)?;
-        if let Some(reason) = sound.take().and_then(|sound| sound(&bytes)) {
-            return Err(LoadError::file(&file, reason));
-        }
+        let piece = handle.by_ref().take(limit).read_to_end(&mut bytes);
+        let piece = piece.map_err(|error| LoadError::system(&file, &error))?;
         // What is no file on a disk does not say how large it is.
         if bytes.len() > most {
-            return Err(too_large());
+            return Err(LoadError::too_large(&file, most));
         }
         progress.reached(bytes.len(), size)?;
         if piece == 0 {
@@ -71,7 +64,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a");
         std::fs::write(&path, vec![b' '; 3 << 20]).unwrap();
-        let read = |most| read(&path, most, |_| None, &Progress::new());
+        let read = |most| read(&path, most, &Progress::new());
         assert_eq!(read(3 << 20).unwrap().len(), 3 << 20);
         let refusal = "a: it is larger than 2 MB";
         assert_eq!(read((3 << 20) - 1).unwrap_err().to_string(), refusal);
@@ -80,10 +73,7 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn what_has_no_end_is_read_no_farther_than_that() {
-        let read = |sound: fn(&[u8]) -> Option<String>| {
-            read(Path::new("/dev/zero"), 1 << 20, sound, &Progress::new()).unwrap_err().to_string()
-        };
-        assert_eq!(read(|_| None), "zero: it is larger than 1 MB");
-        assert_eq!(read(|_| Some("no".to_owned())), "zero: no");
+        let refusal = read(Path::new("/dev/zero"), 1 << 20, &Progress::new()).unwrap_err();
+        assert_eq!(refusal.to_string(), "zero: it is larger than 1 MB");
     }
 }

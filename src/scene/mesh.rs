@@ -4,14 +4,15 @@
 //! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
 //! polygon names the point it has with computed normals and the one it has with the file's.
 //!
+//! What not every picture needs is found when it is first asked for (`mesh_found`).
+//!
 //! The fields are private and the constructor checks them, so that no index is ever out of range.
-
-use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::mesh_edges::{Edge, Edges};
-use super::{Bounds, DrawOrder, EdgeOrder};
+use super::Bounds;
+use super::mesh_found::Found;
+use super::mesh_points::CornerPoints;
 
 /// In place of an index: there is none.
 pub const NONE: u32 = u32::MAX;
@@ -94,20 +95,14 @@ pub struct Mesh {
     pub(super) colors: Vec<[f32; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) points: Vec<Point>,
-    pub(super) corners: Vec<Corner>,
+    pub(super) corners: CornerPoints,
     pub(super) starts: Vec<u32>,
     pub(super) polygon_parts: Vec<u32>,
-    pub(super) polygon_normals: Vec<[f32; 3]>,
     pub(super) without_area: Vec<u32>,
-    pub(super) triangles: Vec<Triangle>,
     pub(super) parts: Vec<Part>,
-    pub(super) has_file_normals: bool,
     pub(super) bounds: Option<Bounds>,
     pub(super) mean: DVec3,
-    pub(super) edges: OnceLock<Edges>,
-    pub(super) order: OnceLock<DrawOrder>,
-    pub(super) edge_order: OnceLock<EdgeOrder>,
-    pub(super) centres: OnceLock<Vec<[f32; 3]>>,
+    pub(super) found: Found,
 }
 
 /// What is worked out when it is first asked for is left out: it is no part of what a mesh is.
@@ -115,7 +110,7 @@ impl std::fmt::Debug for Mesh {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Mesh")
             .field("positions", &self.positions)
-            .field("corners", &self.corners)
+            .field("corners", &self.corners.vertices)
             .field("starts", &self.starts)
             .field("parts", &self.parts)
             .finish_non_exhaustive()
@@ -148,7 +143,7 @@ impl PartialEq for Mesh {
             && self.colors == other.colors
             && self.uvs == other.uvs
             && self.points == other.points
-            && self.corners == other.corners
+            && self.corners() == other.corners()
             && self.starts == other.starts
             && self.polygon_parts == other.polygon_parts
             && self.parts == other.parts
@@ -181,12 +176,6 @@ impl Mesh {
         &self.points
     }
 
-    /// The corners of all polygons, one after the other.
-    #[must_use]
-    pub fn corners(&self) -> &[Corner] {
-        &self.corners
-    }
-
     /// How many polygons there are.
     #[must_use]
     pub fn polygon_count(&self) -> usize {
@@ -196,7 +185,7 @@ impl Mesh {
     /// The corners of one polygon.
     #[must_use]
     pub fn polygon(&self, polygon: u32) -> &[Corner] {
-        &self.corners[self.corners_of(polygon)]
+        &self.corners()[self.corners_of(polygon)]
     }
 
     /// Where the corners of one polygon stand in [`Self::corners`].
@@ -211,12 +200,6 @@ impl Mesh {
         &self.polygon_parts
     }
 
-    /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
-    #[must_use]
-    pub fn polygon_normals(&self) -> &[[f32; 3]] {
-        &self.polygon_normals
-    }
-
     /// The polygons without area, which have no normal of their own; ascending.
     #[must_use]
     pub fn without_area(&self) -> &[u32] {
@@ -226,23 +209,7 @@ impl Mesh {
     /// The mean of a polygon's corners.
     #[must_use]
     pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
-        let corners = self.polygon(polygon).iter();
-        mean(corners.map(|corner| dvec3(self.positions[corner.position as usize])))
-    }
-
-    /// The means of the corners of all polygons. Found when first asked for.
-    #[must_use]
-    pub fn polygon_centres(&self) -> &[[f32; 3]] {
-        self.centres.get_or_init(|| {
-            let polygons = 0..index(self.polygon_count());
-            polygons.map(|polygon| self.polygon_centre(polygon).as_vec3().to_array()).collect()
-        })
-    }
-
-    /// The triangles of all polygons, in the order of the polygons.
-    #[must_use]
-    pub fn triangles(&self) -> &[Triangle] {
-        &self.triangles
+        mean(self.outlines().of(polygon as usize))
     }
 
     /// Where the triangles of one polygon stand in [`Self::triangles`].
@@ -263,7 +230,7 @@ impl Mesh {
     /// Whether any polygon has normals of the file's own.
     #[must_use]
     pub const fn has_file_normals(&self) -> bool {
-        self.has_file_normals
+        !self.corners.filed.is_empty()
     }
 
     /// The extent of the vertices; `None` where there are none.
@@ -277,46 +244,6 @@ impl Mesh {
     pub const fn mean(&self) -> DVec3 {
         self.mean
     }
-
-    /// The triangles and vertices in the order in which they are drawn fastest. Found when first
-    /// asked for.
-    #[must_use]
-    pub fn draw_order(&self) -> &DrawOrder {
-        found_once(&self.order, || DrawOrder::new(self))
-    }
-
-    /// The edges in the order in which they are drawn fastest. Found when first asked for.
-    #[must_use]
-    pub fn edge_order(&self) -> &EdgeOrder {
-        found_once(&self.edge_order, || EdgeOrder::new(self))
-    }
-
-    /// The sides of all polygons, each once. Found when first asked for.
-    #[must_use]
-    pub fn edges(&self) -> &[Edge] {
-        self.edge_table().edges()
-    }
-
-    /// The polygons that have this edge as a side.
-    #[must_use]
-    pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
-        self.edge_table().polygons(edge)
-    }
-
-    fn edge_table(&self) -> &Edges {
-        found_once(&self.edges, || Edges::of(self))
-    }
-}
-
-/// What a cell holds, found where it holds nothing yet.
-///
-/// It is found outside of the cell: a thread that waits for others in the middle of it may take up
-/// work that needs the same thing, and would wait for itself. Rather is it found twice.
-fn found_once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> T) -> &T {
-    cell.get().unwrap_or_else(|| {
-        let found = find();
-        cell.get_or_init(|| found)
-    })
 }
 
 /// The normal of a polygon, as long as twice its area.

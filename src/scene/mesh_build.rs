@@ -3,12 +3,11 @@
 //! Everything that is long is made by all threads, each its own stretch of it, and is the same
 //! whatever their number.
 
-use std::sync::OnceLock;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::mesh::{index, mean};
+use super::mesh_found::Found;
 use super::mesh_points::{Normals, points_and_corners};
 use super::triangulate::Triangulator;
 use super::{Bounds, Mesh, MeshError, MeshSource, NONE, SourceCorner, Triangle, dvec3, newell};
@@ -62,7 +61,7 @@ impl Mesh {
             uvs: list(|corner| corner.uv),
             normals: list(|corner| corner.normal),
         };
-        Self::from_lists(source, &corners)
+        Self::from_lists(source, corners)
     }
 
     /// As [`Self::new`], of corners in lists, which take less room; those of `source` are passed
@@ -70,62 +69,60 @@ impl Mesh {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn from_lists(source: MeshSource, corners: &CornerLists) -> Result<Self, MeshError> {
-        check(&source, corners)?;
+    pub fn from_lists(source: MeshSource, corners: CornerLists) -> Result<Self, MeshError> {
+        check(&source, &corners)?;
         let starts = running_sum(&source.arities);
-        let outlines = Outlines { places: &source.positions, corners: &corners.positions, starts };
+        let outlines =
+            Outlines { places: &source.positions, corners: &corners.positions, starts: &starts };
         let normals = Normals::of(&outlines, source.positions.len());
-        let triangles = triangles(&outlines);
-        let starts = outlines.starts;
         let positions = || source.positions.iter().copied().map(dvec3);
         // Two sums that have to be taken in their order, beside what is not summed.
         let ((points, corners), (bounds, mean)) = rayon::join(
             || points_and_corners(&source, corners, &starts, &normals),
             || (Bounds::of(positions()), mean(positions())),
         );
-        let Normals { polygons, without_area, .. } = normals;
         Ok(Self {
             bounds,
             mean,
-            polygon_normals: polygons,
-            without_area,
+            without_area: normals.without_area,
             positions: source.positions,
             colors: source.colors,
             uvs: source.uvs,
-            has_file_normals: corners.par_iter().any(|corner| corner.filed != corner.smooth),
             points,
             corners,
             starts,
             polygon_parts: source.polygon_parts,
-            triangles,
             parts: source.parts,
-            edges: OnceLock::new(),
-            order: OnceLock::new(),
-            edge_order: OnceLock::new(),
-            centres: OnceLock::new(),
+            found: Found::default(),
         })
     }
 }
 
 /// The outlines of all polygons.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Outlines<'a> {
-    places: &'a [[f32; 3]],
+    pub(super) places: &'a [[f32; 3]],
     /// The vertices of all corners.
     pub(super) corners: &'a [u32],
     /// Where each polygon's corners begin, and where the last one's end.
-    pub(super) starts: Vec<u32>,
+    pub(super) starts: &'a [u32],
 }
 
-impl Outlines<'_> {
+impl<'a> Outlines<'a> {
     /// The vertices of a polygon's corners.
-    pub(super) fn vertices(&self, polygon: usize) -> &[u32] {
+    pub(super) fn vertices(&self, polygon: usize) -> &'a [u32] {
         &self.corners[self.starts[polygon] as usize..self.starts[polygon + 1] as usize]
     }
 
     /// Where a polygon's corners are.
-    pub(super) fn of(&self, polygon: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone {
-        self.vertices(polygon).iter().map(|vertex| dvec3(self.places[*vertex as usize]))
+    pub(super) fn of(&self, polygon: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone + 'a {
+        let places = self.places;
+        self.vertices(polygon).iter().map(|vertex| dvec3(places[*vertex as usize]))
+    }
+
+    /// The normal of a polygon by Newell's method, of length 1; `None` for one without area.
+    pub(super) fn normal(&self, polygon: usize) -> Option<DVec3> {
+        math::unit(newell(self.of(polygon)))
     }
 }
 
@@ -142,7 +139,7 @@ fn running_sum(counts: &[u32]) -> Vec<u32> {
 }
 
 /// The triangles of all polygons, in their order.
-fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
+pub(super) fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
     let count = outlines.starts.len() - 1;
     if outlines.corners.len() == 3 * count {
         let own = |polygon: usize| {
@@ -157,7 +154,7 @@ fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
         for polygon in share * SHARE..count.min((share + 1) * SHARE) {
             let begin = outlines.starts[polygon];
             // With all its digits: where a polygon is cut depends on them.
-            let normal = math::unit(newell(outlines.of(polygon))).unwrap_or(DVec3::Z);
+            let normal = outlines.normal(polygon).unwrap_or(DVec3::Z);
             let cut = triangulator.cut(outlines.of(polygon), normal);
             let polygon = index(polygon);
             let own = |own: &[u32; 3]| Triangle { corners: own.map(|i| begin + i), polygon };

@@ -24,13 +24,14 @@ pub(super) struct Edges {
 impl Edges {
     pub(super) fn of(mesh: &Mesh) -> Self {
         // Sides as (ends, polygon), sorted so that those with equal ends stand together.
-        let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(mesh.corners().len());
-        for polygon in 0..index(mesh.polygon_count()) {
-            let corners = mesh.polygon(polygon);
-            for (i, corner) in corners.iter().enumerate() {
-                let (a, b) = (corner.position, corners[(i + 1) % corners.len()].position);
+        let outlines = mesh.outlines();
+        let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(outlines.corners.len());
+        for polygon in 0..mesh.polygon_count() {
+            let corners = outlines.vertices(polygon);
+            for (i, &a) in corners.iter().enumerate() {
+                let b = corners[(i + 1) % corners.len()];
                 if a != b {
-                    sides.push(([a.min(b), a.max(b)], polygon));
+                    sides.push(([a.min(b), a.max(b)], index(polygon)));
                 }
             }
         }

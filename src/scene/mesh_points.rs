@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::mesh::index;
 use super::mesh_build::Outlines;
-use super::{Corner, CornerLists, MeshSource, NONE, Point, dvec3, newell};
+use super::{CornerLists, MeshSource, NONE, Point, dvec3};
 use crate::base::math;
 
 /// Unit normals that cancel out leave only their rounding errors, which are less.
@@ -17,11 +17,9 @@ const LONGEST: usize = 64;
 /// Polygons whose normals are held with all their digits at a time: few enough to stay in a cache.
 const BLOCK: usize = 1 << 15;
 
-/// The normals of all polygons, and what they are around each vertex.
+/// What the normals of polygons are around each vertex.
 #[derive(Debug)]
 pub(super) struct Normals {
-    /// Of length 1; (0, 0, 1) for a polygon without area.
-    pub(super) polygons: Vec<[f32; 3]>,
     /// The polygons without area; ascending.
     pub(super) without_area: Vec<u32>,
     /// For each vertex the sum of the unit normals of the polygons around it; a polygon that names
@@ -32,19 +30,13 @@ pub(super) struct Normals {
 impl Normals {
     pub(super) fn of(outlines: &Outlines<'_>, vertices: usize) -> Self {
         let count = outlines.starts.len() - 1;
-        let mut normals = Self {
-            polygons: Vec::with_capacity(count),
-            without_area: Vec::new(),
-            sums: vec![DVec3::ZERO; vertices],
-        };
+        let mut normals = Self { without_area: Vec::new(), sums: vec![DVec3::ZERO; vertices] };
         let mut last_polygon = vec![NONE; vertices];
         let mut block: Vec<Option<DVec3>> = Vec::new();
         for first in (0..count).step_by(BLOCK) {
             let own = first..count.min(first + BLOCK);
-            let normal = |polygon: usize| math::unit(newell(outlines.of(polygon)));
+            let normal = |polygon: usize| outlines.normal(polygon);
             own.clone().into_par_iter().map(normal).collect_into_vec(&mut block);
-            let shown = |normal: &Option<DVec3>| narrow(normal.unwrap_or(DVec3::Z));
-            normals.polygons.extend(block.iter().map(shown));
             let without = own.zip(&block).filter(|(_, normal)| normal.is_none());
             normals.without_area.extend(without.map(|(polygon, _)| index(polygon)));
             normals.add(outlines, first, &block, &mut last_polygon);
@@ -80,68 +72,115 @@ impl Normals {
     }
 }
 
+/// The points of a mesh's corners, as a list for each thing that they name.
+#[derive(Debug, Default)]
+pub(super) struct CornerPoints {
+    /// The vertex of each corner.
+    pub(super) vertices: Vec<u32>,
+    /// Its place on the texture, or [`NONE`]; empty where no corner has one.
+    pub(super) uvs: Vec<u32>,
+    /// Its point with the computed normal; empty where each has its vertex's.
+    smooth: Vec<u32>,
+    /// Its point with the file's normal; empty where no corner has one.
+    pub(super) filed: Vec<u32>,
+}
+
+impl CornerPoints {
+    /// The point of a corner with the computed normal.
+    pub(super) fn smooth(&self, corner: usize) -> u32 {
+        let list = if self.smooth.is_empty() { &self.vertices } else { &self.smooth };
+        list[corner]
+    }
+
+    /// Its point with the file's normal, or else with the computed one.
+    pub(super) fn filed(&self, corner: usize) -> u32 {
+        if self.filed.is_empty() { self.smooth(corner) } else { self.filed[corner] }
+    }
+
+    /// Whether the points of all corners with computed normals are numbered as the vertices.
+    pub(super) const fn are_vertices(&self) -> bool {
+        self.smooth.is_empty()
+    }
+}
+
 /// The points of a mesh, and its corners, which name them.
 pub(super) fn points_and_corners(
     source: &MeshSource,
-    lists: &CornerLists,
+    lists: CornerLists,
     starts: &[u32],
     normals: &Normals,
-) -> (Vec<Point>, Vec<Corner>) {
-    let sums = &normals.sums;
-    let has_normal = |vertex: u32| sums[vertex as usize].length() > CANCELLED;
+) -> (Vec<Point>, CornerPoints) {
+    let CornerLists { positions: vertices, uvs, normals: filed } = lists;
+    let mut corners = CornerPoints { vertices, uvs, ..CornerPoints::default() };
     let smooth = |vertex: u32| {
-        let sum = sums[vertex as usize];
-        let normal = if sum.length() > CANCELLED { math::unit(sum) } else { None };
-        Point { position: vertex, normal: narrow(normal.unwrap_or(DVec3::Z)) }
+        let sum = normals.sums[vertex as usize];
+        let normal = if cancels(sum) { None } else { math::unit(sum) };
+        Point { position: vertex, normal: shown_normal(normal) }
     };
-    let mut points: Vec<Point> = (0..index(sums.len())).into_par_iter().map(smooth).collect();
-    let corner = |i: usize| {
-        let position = lists.positions[i];
-        Corner { position, uv: lists.uv(i), smooth: position, filed: position }
-    };
-    let mut corners: Vec<Corner> = (0..lists.positions.len()).into_par_iter().map(corner).collect();
-
-    // Where the normals around a vertex cancel out, each corner has its polygon's.
-    let alone = |i: &u32| !has_normal(lists.positions[*i as usize]);
-    let alone: Vec<u32> = (0..index(corners.len())).into_par_iter().filter(alone).collect();
-    for i in alone {
-        let polygon = starts.partition_point(|start| *start <= i) - 1;
-        if normals.without_area.binary_search(&index(polygon)).is_err() {
-            let corner = &mut corners[i as usize];
-            corner.smooth = index(points.len());
-            corner.filed = corner.smooth;
-            points.push(Point { position: corner.position, normal: normals.polygons[polygon] });
-        }
+    let vertices = 0..index(normals.sums.len());
+    let mut points: Vec<Point> = vertices.into_par_iter().map(smooth).collect();
+    if normals.sums.par_iter().any(|sum| cancels(*sum)) {
+        let outlines = Outlines { places: &source.positions, corners: &corners.vertices, starts };
+        corners.smooth = alone(&outlines, normals, &mut points);
     }
-    if !lists.normals.is_empty() {
-        add_filed(source, lists, starts, &mut points, &mut corners);
+    if !filed.is_empty() {
+        corners.filed = filed_points(source, &filed, starts, &corners, &mut points);
     }
     (points, corners)
 }
 
-/// Gives corners the file's normals, where every corner of the polygon has one.
-fn add_filed(
+/// Whether the unit normals whose sum this is cancel out.
+fn cancels(sum: DVec3) -> bool {
+    sum.length() <= CANCELLED
+}
+
+/// Gives each corner its polygon's normal where those around its vertex cancel out; empty where none
+/// do around any vertex of a polygon that has a normal.
+fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) -> Vec<u32> {
+    let cancelled: Vec<bool> = normals.sums.par_iter().map(|sum| cancels(*sum)).collect();
+    let vertices = outlines.corners;
+    let alone = |i: &u32| cancelled[vertices[*i as usize] as usize];
+    let alone: Vec<u32> = (0..index(vertices.len())).into_par_iter().filter(alone).collect();
+    let mut smooth = Vec::new();
+    for i in alone {
+        let polygon = outlines.starts.partition_point(|start| *start <= i) - 1;
+        if let Some(normal) = outlines.normal(polygon) {
+            if smooth.is_empty() {
+                smooth = vertices.to_vec();
+            }
+            smooth[i as usize] = index(points.len());
+            points.push(Point { position: vertices[i as usize], normal: narrow(normal) });
+        }
+    }
+    smooth
+}
+
+/// Gives corners the file's normals, where every corner of the polygon has one; empty where that is
+/// so of none.
+fn filed_points(
     source: &MeshSource,
-    lists: &CornerLists,
+    normals: &[u32],
     starts: &[u32],
+    corners: &CornerPoints,
     points: &mut Vec<Point>,
-    corners: &mut [Corner],
-) {
+) -> Vec<u32> {
     let unit = |normal: &[f32; 3]| math::unit(dvec3(*normal)).map(narrow);
     let units: Vec<Option<[f32; 3]>> = source.normals.par_iter().map(unit).collect();
-    let unit = |i: usize| *units.get(lists.normal(i) as usize)?;
+    let unit = |i: usize| *units.get(normals[i] as usize)?;
     // The points of a vertex that have normals of the file are a chain: the last one, and for each
     // the one before.
     let mut last = vec![NONE; source.positions.len()];
     let mut chained: Vec<(u32, u32)> = Vec::new();
     let first = points.len();
+    let mut filed: Vec<u32> =
+        (0..corners.vertices.len()).into_par_iter().map(|i| corners.smooth(i)).collect();
     for polygon in starts.windows(2) {
         let own = polygon[0] as usize..polygon[1] as usize;
         if !own.clone().all(|i| unit(i).is_some()) {
             continue;
         }
         for i in own {
-            let (vertex, normal) = (lists.positions[i], lists.normal(i));
+            let (vertex, normal) = (corners.vertices[i], normals[i]);
             let mut at = last[vertex as usize];
             let mut looked_at = 0;
             while at != NONE && chained[at as usize].0 != normal {
@@ -154,9 +193,15 @@ fn add_filed(
                 let normal = unit(i).expect("every normal of this polygon has been looked at");
                 points.push(Point { position: vertex, normal });
             }
-            corners[i].filed = index(first + at as usize);
+            filed[i] = index(first + at as usize);
         }
     }
+    if chained.is_empty() { Vec::new() } else { filed }
+}
+
+/// A normal as it is shown: (0, 0, 1) where there is none.
+pub(super) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
+    narrow(normal.unwrap_or(DVec3::Z))
 }
 
 fn narrow(v: DVec3) -> [f32; 3] {

@@ -13,6 +13,7 @@ mod material;
 mod mesh;
 mod mesh_build;
 mod mesh_edges;
+mod mesh_found;
 mod mesh_points;
 mod mesh_splits;
 mod model;

@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use super::{Bounds, Corner, Mesh, NONE, dvec3};
+use super::{Bounds, Mesh, NONE, dvec3};
 use crate::base::lists::sorted_by_keys;
 
 /// A triangle as it is drawn.
@@ -40,7 +40,8 @@ pub struct DrawOrder {
     pub z: Vec<f32>,
     /// The triangles.
     pub triangles: Vec<DrawTriangle>,
-    /// For each triangle of the mesh its place in [`Self::triangles`].
+    /// For each triangle of the mesh its place in [`Self::triangles`]; empty where that is its
+    /// number.
     places: Vec<u32>,
     smooth: Points,
     /// Empty where no polygon has normals of the file's own.
@@ -78,41 +79,48 @@ impl Points {
 }
 
 impl DrawOrder {
-    /// The order for a mesh.
-    pub(super) fn new(mesh: &Mesh) -> Self {
+    /// Along a Morton curve.
+    pub(super) fn along_curve(mesh: &Mesh) -> Self {
         let Some(bounds) = mesh.bounds() else { return Self::default() };
-        let vertices = |number: usize| {
-            mesh.triangles()[number].corners.map(|c| mesh.corners()[c as usize].position)
-        };
-        let count = mesh.triangles().len();
-        let keys = (0..count).into_par_iter().map(|number| morton(mesh, bounds, vertices(number)));
-        let numbers = sorted_by_keys(keys.collect(), 30);
-
-        let triangle = |number| DrawTriangle { vertices: vertices(number as usize), number };
-        let mut triangles: Vec<DrawTriangle> = numbers.into_par_iter().map(triangle).collect();
-
-        // Vertices by their first use.
-        let mut vertex_places = vec![NONE; mesh.positions().len()];
-        let mut used = Vec::with_capacity(vertex_places.len());
+        let count = mesh.triangle_count();
+        let key = |number: usize| morton(mesh, bounds, vertices(mesh, number));
+        let numbers = sorted_by_keys((0..count).into_par_iter().map(key).collect(), 30);
         let mut places = vec![0; count];
-        for (place, triangle) in (0..).zip(&mut triangles) {
-            places[triangle.number as usize] = place;
-            for vertex in &mut triangle.vertices {
-                let place = &mut vertex_places[*vertex as usize];
-                if *place == NONE {
-                    *place = index(used.len());
-                    used.push(*vertex);
-                }
-                *vertex = *place;
-            }
+        for (place, number) in (0..).zip(&numbers) {
+            places[*number as usize] = place;
         }
+        let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
+        let triangles = numbers.into_par_iter().map(triangle).collect();
+        Self { places, ..Self::of(mesh, triangles) }
+    }
+
+    /// As the mesh has them.
+    pub(super) fn as_filed(mesh: &Mesh) -> Self {
+        let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
+        let numbers = (0..index(mesh.triangle_count())).into_par_iter();
+        Self::of(mesh, numbers.map(triangle).collect())
+    }
+
+    /// Triangles in this order, which name vertices of the mesh.
+    fn of(mesh: &Mesh, mut triangles: Vec<DrawTriangle>) -> Self {
+        // Vertices by their first use.
+        let mut places = vec![NONE; mesh.positions().len()];
+        let mut used = Vec::with_capacity(places.len());
+        for vertex in triangles.iter_mut().flat_map(|triangle| &mut triangle.vertices) {
+            let place = &mut places[*vertex as usize];
+            if *place == NONE {
+                *place = index(used.len());
+                used.push(*vertex);
+            }
+            *vertex = *place;
+        }
+        drop(places);
         let coordinate = |axis: usize| -> Vec<f32> {
             used.par_iter().map(|vertex| mesh.positions()[*vertex as usize][axis]).collect()
         };
         let [x, y, z] = [0, 1, 2].map(coordinate);
-        let mut order = Self { x, y, z, triangles, places, ..Self::default() };
-        order.smooth = if mesh.points().len() == mesh.positions().len() {
-            // Every vertex has one point, with its number.
+        let mut order = Self { x, y, z, triangles, ..Self::default() };
+        order.smooth = if mesh.corners.are_vertices() {
             let normal = |vertex: &u32| mesh.points()[*vertex as usize].normal;
             Points {
                 of: Vec::new(),
@@ -120,10 +128,10 @@ impl DrawOrder {
                 vertices: (0..index(used.len())).collect(),
             }
         } else {
-            order.points_of(mesh, |corner| corner.smooth)
+            order.points_of(mesh, |corner| mesh.corners.smooth(corner))
         };
         if mesh.has_file_normals() {
-            order.filed = order.points_of(mesh, |corner| corner.filed);
+            order.filed = order.points_of(mesh, |corner| mesh.corners.filed(corner));
         }
         order
     }
@@ -139,7 +147,7 @@ impl DrawOrder {
     #[inline(always)]
     #[must_use]
     pub fn place(&self, number: u32) -> u32 {
-        self.places[number as usize]
+        if self.places.is_empty() { number } else { self.places[number as usize] }
     }
 
     /// The points with one kind of normals.
@@ -151,13 +159,13 @@ impl DrawOrder {
         }
     }
 
-    fn points_of(&self, mesh: &Mesh, pick: impl Fn(&Corner) -> u32) -> Points {
+    fn points_of(&self, mesh: &Mesh, pick: impl Fn(usize) -> u32) -> Points {
         let mut points = Points::default();
         let mut places = vec![NONE; mesh.points().len()];
         for triangle in &self.triangles {
-            let corners = mesh.triangles()[triangle.number as usize].corners;
+            let corners = mesh.triangle(triangle.number as usize);
             let of = std::array::from_fn(|i| {
-                let point = pick(&mesh.corners()[corners[i] as usize]) as usize;
+                let point = pick(corners[i]) as usize;
                 if places[point] == NONE {
                     places[point] = index(points.normals.len());
                     points.normals.push(mesh.points()[point].normal);
@@ -181,6 +189,11 @@ impl DrawOrder {
         let i = vertex as usize;
         [f64::from(self.x[i]), f64::from(self.y[i]), f64::from(self.z[i])]
     }
+}
+
+/// The vertices of a triangle, as the mesh numbers them.
+fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
+    mesh.triangle(number).map(|corner| mesh.corners.vertices[corner])
 }
 
 /// The place of a triangle's middle on the curve, ten bits for each axis.

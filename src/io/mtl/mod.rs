@@ -61,7 +61,7 @@ impl Library {
             return;
         }
         let mut findings = Findings::new(&short_name(path));
-        match read(path, MOST_WORDS, |_| None, &Progress::new()) {
+        match read(path, MOST_WORDS, &Progress::new()) {
             Ok(bytes) => {
                 let folders = [path.parent().unwrap_or(Path::new("")), model_folder];
                 for statements in read_statements(&bytes, &mut findings) {

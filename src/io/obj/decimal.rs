@@ -58,8 +58,11 @@ fn sign(text: &[u8]) -> (bool, &[u8]) {
 fn digits(before: u64, mut text: &[u8]) -> (u64, &[u8]) {
     let mut number = before;
     while let Some((eight, rest)) = text.split_first_chunk() {
-        let Some(value) = eight_digits(*eight) else { break };
-        number = number.wrapping_mul(100_000_000).wrapping_add(value);
+        let (value, count) = leading_digits(*eight);
+        number = number.wrapping_mul(TENS[count]).wrapping_add(u64::from(value));
+        if count < 8 {
+            return (number, &text[count..]);
+        }
         text = rest;
     }
     while let [digit @ b'0'..=b'9', rest @ ..] = text {
@@ -69,21 +72,28 @@ fn digits(before: u64, mut text: &[u8]) -> (u64, &[u8]) {
     (number, text)
 }
 
-/// Eight digits as their number; `None` where one of the signs is no digit.
+/// The number that the digits are with which eight signs begin, and how many they are.
 #[inline]
-fn eight_digits(text: [u8; 8]) -> Option<u64> {
-    let text = u64::from_le_bytes(text);
-    let values = text.wrapping_sub(0x3030_3030_3030_3030);
-    let beyond = text.wrapping_add(0x4646_4646_4646_4646);
-    if (values | beyond) & 0x8080_8080_8080_8080 != 0 {
-        return None;
+pub(super) fn leading_digits(text: [u8; 8]) -> (u32, usize) {
+    // Digits become their values, all else more than 9.
+    let values = u64::from_le_bytes(text) ^ 0x3030_3030_3030_3030;
+    let beyond = values | values.wrapping_add(0x0606_0606_0606_0606);
+    // A carry spoils only what follows the first sign that is no digit.
+    let count = (beyond & 0xf0f0_f0f0_f0f0_f0f0).trailing_zeros() / 8;
+    if count == 0 {
+        return (0, 0);
     }
-    // Neighbours are joined: to pairs, to fours, to eight.
+    // To the end, behind zeros; then neighbours are joined: to pairs, to fours, to eight.
+    let values = values << (64 - 8 * count);
     let pairs = values.wrapping_mul(10).wrapping_add(values >> 8);
     let even = (pairs & 0x0000_00ff_0000_00ff).wrapping_mul(0x000f_4240_0000_0064);
     let odd = ((pairs >> 16) & 0x0000_00ff_0000_00ff).wrapping_mul(0x0000_2710_0000_0001);
-    Some(even.wrapping_add(odd) >> 32)
+    let value = (even.wrapping_add(odd) >> 32) as u32;
+    (value, count as usize)
 }
+
+/// 10^0 to 10^8.
+const TENS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
 /// `mantissa 10^exponent` as the nearest number of 32 bits, where double precision decides it.
 #[inline]
@@ -151,6 +161,22 @@ mod tests {
         // Longer than can be gathered, larger than can be held, and halfway between two numbers.
         for text in ["12345678901234567890", "1e39", "1e-30", "16777217", "0.50000002980232238"] {
             assert_eq!(decimal(text.as_bytes()), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn digits_end_before_any_other_sign() {
+        for count in 0..=8 {
+            for sign in 0..=u8::MAX {
+                let mut text = *b"98765432";
+                if count < 8 {
+                    text[count] = sign;
+                }
+                let right = text.iter().take_while(|sign| sign.is_ascii_digit());
+                let right =
+                    right.fold((0, 0), |(n, i), sign| (n * 10 + u32::from(sign - b'0'), i + 1));
+                assert_eq!(leading_digits(text), right, "{text:?}");
+            }
         }
     }
 

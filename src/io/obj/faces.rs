@@ -50,13 +50,15 @@ impl Faces {
 
     #[inline]
     pub(super) fn push(&mut self, corner: SourceCorner) {
-        let before = self.corners();
         let CornerLists { positions, uvs, normals } = &mut self.corners;
-        for (list, index) in [(uvs, corner.uv), (normals, corner.normal)] {
-            if index != NONE || !list.is_empty() {
-                // Up to here no corner had one.
-                list.resize(before, NONE);
-                list.push(index);
+        let bare = corner.uv == NONE && corner.normal == NONE;
+        if !(bare && uvs.is_empty() && normals.is_empty()) {
+            for (list, index) in [(uvs, corner.uv), (normals, corner.normal)] {
+                if index != NONE || !list.is_empty() {
+                    // Up to here no corner had one.
+                    list.resize(positions.len(), NONE);
+                    list.push(index);
+                }
             }
         }
         positions.push(corner.position);

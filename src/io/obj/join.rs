@@ -5,23 +5,32 @@
 //! vertices from the beginning, so chunks are read before anyone knows what is before them; those
 //! in which a face counts back are read again when all vertices are counted.
 
+use std::io::Read;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
-use super::chunks::chunks;
+use super::chunks::{Chunks, Sizes};
 use super::lines::{Lines, unmarked};
 use super::parts::{PartNames, Parts};
 use super::scan::{Counts, NO_COLOR, Piece, Rows, Stop};
 use super::sound::{SoundFaces, SoundPiece, Totals};
+use super::{EMPTY, no_obj};
 use crate::base::color::Color;
 use crate::base::lists::concatenated;
 use crate::io::error::LoadError;
 use crate::io::findings::{FindingKind, Findings};
 use crate::io::progress::{Cancelled, Progress};
 
-/// The least and the most bytes of a chunk.
-const CHUNK: [usize; 2] = [1 << 15, 1 << 20];
+/// The most bytes of a text.
+pub(super) const MOST_BYTES: usize = 4 << 30;
+
+/// The most bytes of a statement.
+const MOST_STATEMENT: usize = 256 << 20;
+
+/// The least and the most bytes of a chunk: they stay in a thread's own cache.
+const CHUNK: [usize; 2] = [1 << 15, 1 << 18];
 
 /// The most vertices, and the most corners of faces, of a file: 5 GB of mesh.
 const MOST: usize = 100_000_000;
@@ -43,70 +52,133 @@ pub(super) struct Content {
     pub(super) edge_color: Option<Color>,
 }
 
-/// Reads all statements of a file.
+/// Reads all statements of a text of so many bytes, as far as that is known.
 ///
 /// # Errors
-/// Where a line cannot be taken for what it says it is, or the work should end.
+/// Where it cannot be read, is none of an OBJ file or too long, where a line cannot be taken for what
+/// it says it is, or the work should end.
 pub(super) fn content(
-    bytes: &[u8],
+    text: impl Read + Send,
+    size: usize,
     file: &str,
     findings: &mut Findings,
     progress: &Progress,
 ) -> Result<Content, LoadError> {
     // Several chunks a thread, so that none waits long for the others.
-    let share = bytes.len() / (4 * rayon::current_num_threads());
-    let chunks = chunks(unmarked(bytes), share.clamp(CHUNK[0], CHUNK[1]));
-    let pieces = read(&chunks, &progress.part(0.0, 0.8))?;
-    let content = joined(pieces, file, findings)?;
+    let chunk = (size / (4 * rayon::current_num_threads())).clamp(CHUNK[0], CHUNK[1]);
+    let sizes = Sizes { chunk, statement: MOST_STATEMENT, text: MOST_BYTES };
+    let reading = Reading {
+        chunks: Mutex::new(Chunks::new(text, file, sizes)),
+        file,
+        done: AtomicUsize::new(0),
+        size,
+        progress: progress.part(0.0, 0.8),
+    };
+    let content = joined(reading.pieces()?, file, findings)?;
     progress.reached(1, 1)?;
     Ok(content)
 }
 
-/// Reads every chunk.
-fn read(chunks: &[&[u8]], progress: &Progress) -> Result<Vec<Piece>, Cancelled> {
-    let all = chunks.iter().map(|chunk| chunk.len()).sum();
-    let done = AtomicUsize::new(0);
-    let read = |chunk: &[u8], before: Option<Counts>| {
+/// A text that is being read by all threads.
+struct Reading<'a, R> {
+    chunks: Mutex<Chunks<'a, R>>,
+    file: &'a str,
+    done: AtomicUsize,
+    size: usize,
+    progress: Progress,
+}
+
+impl<'a, R: Read + Send> Reading<'a, R> {
+    /// Every chunk, read.
+    fn pieces(self) -> Result<Vec<Piece>, LoadError> {
+        let threads = (0..rayon::current_num_threads()).into_par_iter();
+        let own = |_| self.own_pieces().inspect_err(|_| self.chunks().stop());
+        let own: Vec<Vec<(usize, Piece)>> = threads.map(own).collect::<Result<_, LoadError>>()?;
+        let mut pieces: Vec<(usize, Piece)> = own.into_iter().flatten().collect();
+        pieces.sort_unstable_by_key(|(number, _)| *number);
+        let mut pieces: Vec<Piece> = pieces.into_iter().map(|(_, piece)| piece).collect();
+        if pieces.is_empty() {
+            return Err(LoadError::file(self.file, EMPTY));
+        }
+        self.count_back(&mut pieces)?;
+        Ok(pieces)
+    }
+
+    /// The chunks that one thread comes to read, with their numbers.
+    fn own_pieces(&self) -> Result<Vec<(usize, Piece)>, LoadError> {
+        let mut own = Vec::new();
+        let mut text = Vec::new();
+        loop {
+            let (number, whole) = {
+                let mut chunks = self.chunks();
+                let Some(number) = chunks.take(&mut text)? else { return Ok(own) };
+                (number, chunks.ended())
+            };
+            let piece = if number == 0 {
+                if let Some(reason) = no_obj(&text, whole) {
+                    return Err(LoadError::file(self.file, reason));
+                }
+                self.piece(unmarked(&text), Some([0; 3]))?
+            } else {
+                self.piece(&text, None)?
+            };
+            match piece.stop {
+                // What follows is of no use.
+                Some(Stop::Wrong(..)) => self.chunks().stop(),
+                Some(Stop::CountsBack) => {
+                    own.push((number, Piece { text: std::mem::take(&mut text), ..piece }));
+                    continue;
+                }
+                None => {}
+            }
+            own.push((number, piece));
+        }
+    }
+
+    /// Reads one chunk, which so many statements are before.
+    fn piece(&self, text: &[u8], before: Option<Counts>) -> Result<Piece, Cancelled> {
         let mut piece = Piece::new(before);
         let mut told = 0;
         let mut reached = |now: usize| {
-            let before = done.fetch_add(now - told, Ordering::Relaxed);
-            progress.reached(before + now - told, all)?;
+            let before = self.done.fetch_add(now - told, Ordering::Relaxed);
+            self.progress.reached(before + now - told, self.size)?;
             told = now;
             Ok(())
         };
         reached(0)?;
-        piece.read(chunk, &mut reached)?;
-        reached(chunk.len())?;
+        piece.read(text, &mut reached)?;
+        reached(text.len())?;
         Ok(piece)
-    };
-    let first = |(i, chunk): (usize, &&[u8])| read(chunk, (i == 0).then_some([0; 3]));
-    let mut pieces: Vec<Piece> =
-        chunks.par_iter().enumerate().map(first).collect::<Result<_, Cancelled>>()?;
-
-    // Those that count back, again.
-    let counts_back = |piece: &Piece| matches!(piece.stop, Some(Stop::CountsBack));
-    if !pieces.iter().any(counts_back) {
-        return Ok(pieces);
     }
-    let count = |(piece, chunk): (&Piece, &&[u8])| match piece.stop {
-        Some(Stop::CountsBack) => counted(chunk),
-        _ => [piece.vertices.count, piece.uvs.count, piece.normals.count],
-    };
-    let counts: Vec<Counts> = pieces.par_iter().zip(chunks).map(count).collect();
-    let before = counts.iter().scan([0_u32; 3], |sum, counts| {
-        let before = *sum;
-        *sum = std::array::from_fn(|i| before[i].saturating_add(counts[i]));
-        Some(before)
-    });
-    let before: Vec<Counts> = before.collect();
-    pieces.par_iter_mut().zip(chunks).zip(before).try_for_each(|((piece, chunk), before)| {
-        if counts_back(piece) {
-            *piece = read(chunk, Some(before))?;
+
+    /// Reads those chunks again that count back.
+    fn count_back(&self, pieces: &mut [Piece]) -> Result<(), Cancelled> {
+        let counts_back = |piece: &Piece| matches!(piece.stop, Some(Stop::CountsBack));
+        if !pieces.iter().any(counts_back) {
+            return Ok(());
         }
-        Ok(())
-    })?;
-    Ok(pieces)
+        let count = |piece: &Piece| match piece.stop {
+            Some(Stop::CountsBack) => counted(&piece.text),
+            _ => [piece.vertices.count, piece.uvs.count, piece.normals.count],
+        };
+        let counts: Vec<Counts> = pieces.par_iter().map(count).collect();
+        let before = counts.iter().scan([0_u32; 3], |sum, counts| {
+            let before = *sum;
+            *sum = std::array::from_fn(|i| before[i].saturating_add(counts[i]));
+            Some(before)
+        });
+        let before: Vec<Counts> = before.collect();
+        pieces.par_iter_mut().zip(before).try_for_each(|(piece, before)| {
+            if counts_back(piece) {
+                *piece = self.piece(&std::mem::take(&mut piece.text), Some(before))?;
+            }
+            Ok(())
+        })
+    }
+
+    fn chunks(&self) -> MutexGuard<'_, Chunks<'a, R>> {
+        self.chunks.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// How many statements of each kind a chunk has.

@@ -23,20 +23,25 @@ mod scan;
 mod sound;
 
 use std::collections::BTreeSet;
+use std::io::Read;
 use std::path::Path;
 
 use rayon::prelude::*;
 
-use self::join::Content;
+use self::join::{Content, MOST_BYTES};
 use self::parts::PartNames;
+use self::sound::FaceRuns;
 use super::error::{LoadError, short_name};
 use super::findings::{Finding, FindingKind, Findings};
 use super::mtl::Library;
 use super::progress::Progress;
-use super::read::{MOST_SHAPES, read};
+use super::read::open;
 use crate::scene::{
-    CornerLists, LoadOptions, Mesh, MeshSource, Model, NONE, Part, UpAxis, Winding, dvec3, newell,
+    CornerLists, LoadOptions, Mesh, MeshSource, Model, Part, UpAxis, Winding, dvec3, newell,
 };
+
+/// Why a file without anything in it is refused.
+const EMPTY: &str = "the file is empty";
 
 /// How many different statements `mtllib` are followed.
 const MOST_LIBRARIES: usize = 1000;
@@ -57,11 +62,9 @@ pub struct Loaded {
 /// which none can be used; and where `progress` is cancelled.
 pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
     let file = short_name(path);
-    let bytes = read(path, MOST_SHAPES, no_obj, &progress.part(0.0, 0.1))?;
+    let (text, size) = open(path, MOST_BYTES)?;
     let mut findings = Findings::new(&file);
-    let content = content(&bytes, &file, &mut findings, &progress.part(0.1, 0.6))?;
-    // The mesh is not to stand beside the text in memory.
-    drop(bytes);
+    let content = content(text, size, &file, &mut findings, &progress.part(0.0, 0.6))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let progress = progress.part(0.6, 1.0);
     let mut loaded = model(content, &file, Some(folder), options, findings, &progress)?;
@@ -83,21 +86,19 @@ pub fn parse(
     progress: &Progress,
 ) -> Result<Loaded, LoadError> {
     let mut findings = Findings::new(file);
-    let content = content(bytes, file, &mut findings, &progress.part(0.0, 0.6))?;
+    let content = content(bytes, bytes.len(), file, &mut findings, &progress.part(0.0, 0.6))?;
     model(content, file, folder, options, findings, &progress.part(0.6, 1.0))
 }
 
-/// What a text says, where it is one of an OBJ file.
+/// What a text says, where it is one of an OBJ file; it has so many bytes, as far as that is known.
 fn content(
-    bytes: &[u8],
+    text: impl Read + Send,
+    size: usize,
     file: &str,
     findings: &mut Findings,
     progress: &Progress,
 ) -> Result<Content, LoadError> {
-    if let Some(reason) = no_obj(bytes) {
-        return Err(LoadError::file(file, reason));
-    }
-    let content = join::content(bytes, file, findings, progress)?;
+    let content = join::content(text, size, file, findings, progress)?;
     refuse_nothing(file, &content)?;
     if content.faces.runs.is_empty() {
         findings.add(FindingKind::NoFaces, "", None);
@@ -119,16 +120,16 @@ fn model(
     let edge_color = content.edge_color;
     progress.reached(1, 10)?;
 
-    let lines: Vec<u32> = content.faces.faces().map(|(_, line)| line).collect();
-    let (source, corners) = source(content, parts, options)
+    let mut content = content;
+    let faces = FaceRuns::of(std::mem::take(&mut content.faces.runs));
+    let (source, corners) = source(content, &faces, parts, options)
         .ok_or_else(|| LoadError::file(file, "its coordinates are too large at this scale"))?;
-    let mesh = Mesh::from_lists(source, &corners);
-    drop(corners);
+    let mesh = Mesh::from_lists(source, corners);
     let mesh = mesh.map_err(|error| LoadError::file(file, error.to_string()))?;
     for polygon in mesh.without_area() {
-        findings.note(FindingKind::FaceNoArea, lines[*polygon as usize]);
+        findings.note(FindingKind::FaceNoArea, faces.line(*polygon));
     }
-    note_crossings(&mesh, &lines, &mut findings);
+    note_crossings(&mesh, &faces, &mut findings);
     progress.reached(1, 1)?;
 
     let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -137,8 +138,9 @@ fn model(
     Ok(Loaded { model, findings: findings.into_list().into_iter().chain(of_materials).collect() })
 }
 
-/// Why these bytes are no text of an OBJ file, where one can tell by their beginning.
-fn no_obj(bytes: &[u8]) -> Option<String> {
+/// Why a text that begins with these bytes is none of an OBJ file, where one can tell by them;
+/// `whole` says that there are no more.
+fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
     let known = [
         (&b"\xFF\xFE"[..], "a text of UTF-16; save it as UTF-8"),
         (b"\xFE\xFF", "a text of UTF-16; save it as UTF-8"),
@@ -154,8 +156,8 @@ fn no_obj(bytes: &[u8]) -> Option<String> {
         (b"solid ", "an STL file"),
         (b"OFF\n", "an OFF file"),
     ];
-    if bytes.trim_ascii().is_empty() {
-        return Some("the file is empty".to_owned());
+    if whole && bytes.trim_ascii().is_empty() {
+        return Some(EMPTY.to_owned());
     }
     for (begin, what) in known {
         if bytes.starts_with(begin) {
@@ -232,17 +234,16 @@ fn named_parts(names: &[PartNames], library: &Library, findings: &mut Findings) 
 /// What the mesh is made of, turned and scaled as asked for; `None` where that is not finite.
 fn source(
     content: Content,
+    faces: &FaceRuns,
     parts: Vec<Part>,
     options: &LoadOptions,
 ) -> Option<(MeshSource, CornerLists)> {
-    let Content { mut positions, uvs, mut normals, colors, faces, .. } = content;
+    let Content { mut positions, uvs, mut normals, colors, .. } = content;
     if *options != LoadOptions::default() {
         place(&mut positions, &mut normals, options);
     }
-    let arities = faces.faces().map(|(corners, _)| u32::try_from(corners).unwrap_or(NONE));
-    let arities: Vec<u32> = arities.collect();
-    let polygon_parts = faces.parts().collect();
-    let mut corners = faces.corners;
+    let (arities, polygon_parts) = (faces.arities(), faces.parts());
+    let mut corners = content.faces.corners;
     if options.winding == Winding::Turned {
         let CornerLists { positions, uvs, normals } = &mut corners;
         for list in [positions, uvs, normals].into_iter().filter(|list| !list.is_empty()) {
@@ -284,15 +285,15 @@ fn place(positions: &mut [[f32; 3]], normals: &mut [[f32; 3]], options: &LoadOpt
 
 /// Notes polygons whose triangles do not all run the polygon's way: they cross
 /// themselves, or were too large to be cut up rightly.
-fn note_crossings(mesh: &Mesh, lines: &[u32], findings: &mut Findings) {
-    if mesh.corners().len() == 3 * mesh.polygon_count() {
+fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
+    if mesh.triangle_count() == mesh.polygon_count() {
         return;
     }
     let crossing = |polygon: &u32| mesh.corners_of(*polygon).len() > 3 && crosses(mesh, *polygon);
     let polygons = 0..u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX);
     for polygon in polygons.into_par_iter().filter(crossing).collect::<Vec<_>>() {
         let corners = mesh.corners_of(polygon).len().to_string();
-        findings.add(FindingKind::PolygonCrosses, &corners, Some(lines[polygon as usize]));
+        findings.add(FindingKind::PolygonCrosses, &corners, Some(faces.line(polygon)));
     }
 }
 

@@ -4,7 +4,7 @@
 //! whole line is of the plain form; else it leaves the line as if it had not looked, to the way
 //! that knows comments, continued lines, odd numbers and every fault.
 
-use super::decimal::decimal;
+use super::decimal::{decimal, leading_digits};
 use super::scan::{Counts, Piece};
 use crate::scene::{NONE, SourceCorner};
 
@@ -116,11 +116,13 @@ fn index(text: &[u8], count: Option<u32>) -> Option<(u32, &[u8])> {
         [b'-', rest @ ..] => (true, rest),
         _ => (false, text),
     };
-    let mut rest = digits;
-    let mut value = 0_u32;
-    while let [digit @ b'0'..=b'9', after @ ..] = rest {
-        value = value.wrapping_mul(10).wrapping_add(u32::from(digit - b'0'));
-        rest = after;
+    let (mut value, first) = digits.first_chunk().map_or((0, 0), |eight| leading_digits(*eight));
+    let mut rest = &digits[first..];
+    if first == 8 || digits.len() < 8 {
+        while let [digit @ b'0'..=b'9', after @ ..] = rest {
+            value = value.wrapping_mul(10).wrapping_add(u32::from(digit - b'0'));
+            rest = after;
+        }
     }
     if value == 0 || digits.len() - rest.len() > 9 {
         return None;

@@ -38,6 +38,8 @@ pub(super) struct Piece {
     pub(super) findings: Findings,
     /// Why the chunk was not read to its end.
     pub(super) stop: Option<Stop>,
+    /// The chunk, where it has to be read again.
+    pub(super) text: Vec<u8>,
 }
 
 /// Why a chunk was not read to its end.
@@ -98,6 +100,7 @@ impl Piece {
             edge_color: None,
             findings: Findings::default(),
             stop: None,
+            text: Vec::new(),
         }
     }
 

@@ -93,10 +93,6 @@ impl SoundPiece {
     fn of_sound(faces: Faces) -> Self {
         let mut piece = Self { faces, ..Self::default() };
         let lists = &piece.faces.corners;
-        let none = |list: &[u32], face: std::ops::Range<usize>| match list.get(face.clone()) {
-            Some(own) => own.iter().filter(|i| **i == NONE).count(),
-            None => face.len(),
-        };
         let mut begin = 0;
         for (corners, line) in faces_of(&piece.faces.runs) {
             let face = begin..begin + corners;
@@ -104,8 +100,21 @@ impl SoundPiece {
             if repeats(&lists.positions[face.clone()]) {
                 piece.findings.note(FindingKind::FaceRepeats, line);
             }
-            piece.without[0].note(none(&lists.uvs, face.clone()), line);
-            piece.without[1].note(none(&lists.normals, face), line);
+            for (without, list) in piece.without.iter_mut().zip([&lists.uvs, &lists.normals]) {
+                if let Some(own) = list.get(face.clone()) {
+                    without.note(own.iter().filter(|i| **i == NONE).count(), line);
+                }
+            }
+        }
+        let all = Without {
+            corners: lists.positions.len(),
+            faces: piece.faces.runs.iter().map(|run| run.faces as usize).sum(),
+            first: piece.faces.runs.first().map_or(0, |run| run.line),
+        };
+        for (without, list) in piece.without.iter_mut().zip([&lists.uvs, &lists.normals]) {
+            if list.is_empty() {
+                *without = all;
+            }
         }
         piece
     }
@@ -208,15 +217,49 @@ impl SoundFaces {
         }
         all
     }
+}
 
-    /// How many corners each face has, and its line, in order.
-    pub(super) fn faces(&self) -> impl Iterator<Item = (usize, u32)> {
-        faces_of(&self.runs)
+/// What faces are, without their corners.
+#[derive(Debug)]
+pub(super) struct FaceRuns {
+    runs: Vec<Run>,
+    /// How many faces there are up to the end of each run.
+    ends: Vec<u32>,
+}
+
+impl FaceRuns {
+    pub(super) fn of(runs: Vec<Run>) -> Self {
+        let ends = runs.iter().scan(0_u32, |end, run| {
+            *end = end.saturating_add(run.faces);
+            Some(*end)
+        });
+        Self { ends: ends.collect(), runs }
+    }
+
+    /// The line of a face.
+    pub(super) fn line(&self, face: u32) -> u32 {
+        let place = self.ends.partition_point(|end| *end <= face);
+        let (run, end) = (self.runs[place], self.ends[place]);
+        run.line.saturating_add(run.faces - (end - face))
+    }
+
+    /// How many corners each face has, in order.
+    pub(super) fn arities(&self) -> Vec<u32> {
+        self.by_face(|run| run.corners)
     }
 
     /// The part of each face, in order.
-    pub(super) fn parts(&self) -> impl Iterator<Item = u32> {
-        self.runs.iter().flat_map(|run| std::iter::repeat_n(run.part, run.faces as usize))
+    pub(super) fn parts(&self) -> Vec<u32> {
+        self.by_face(|run| run.part)
+    }
+
+    fn by_face(&self, number: impl Fn(&Run) -> u32) -> Vec<u32> {
+        let faces = self.ends.last().copied().unwrap_or(0) as usize;
+        let mut numbers = Vec::with_capacity(faces);
+        for run in &self.runs {
+            numbers.resize(numbers.len() + run.faces as usize, number(run));
+        }
+        numbers
     }
 }
 

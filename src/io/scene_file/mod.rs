@@ -130,7 +130,7 @@ pub fn open_with(
 ) -> Result<Opened, SceneFileError> {
     let name = short_name(path);
     let fail = |reason: String| SceneFileError::File { file: name.clone(), reason };
-    let bytes = read(path, MOST_WORDS, |_| None, &Progress::new())?;
+    let bytes = read(path, MOST_WORDS, &Progress::new())?;
     let text =
         String::from_utf8(bytes).map_err(|_bytes| fail("this is no scene file".to_owned()))?;
     open_text(&text, &name, folder_of(path), relocated, progress)
