@@ -35,6 +35,7 @@ mod texture;
 mod tile;
 mod vertices;
 mod watch;
+mod whole;
 
 pub use changes::{Cause, Change, Changes};
 pub use plan::{Class, Effect, EffectUse, FramePlan, State};
