@@ -268,13 +268,12 @@ impl Renderer {
         }
     }
 
-    /// Draws tiles, each thread its own; a band of rows is locked only while a tile is copied.
+    /// Draws tiles, each thread its own.
     fn draw<T: Painted>(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
         let mut laps = Laps::start();
         let Room { shines, lit, painters } = T::room(&mut self.rooms);
         shines.prepare(plan);
-        lit.prepare(plan, shines, self.level);
-        self.stages.light = laps.lap();
+        lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
         let scenery = Scenery { level, plan, frame, lit, shines };
         let Size { width, .. } = plan.size;
@@ -291,20 +290,15 @@ impl Renderer {
         let work = |painter: &mut Painter<T>| {
             painter.begin();
             loop {
-                let tile = next.fetch_add(1, Ordering::Relaxed);
-                if tile >= tiles || !watch.goes_on() {
+                let turn = next.fetch_add(1, Ordering::Relaxed);
+                if turn >= tiles || !watch.goes_on() {
                     return;
                 }
-                if !changes.tiles.contains(tile) {
-                    continue;
-                }
-                let shows = painter.paint(&scenery, tile);
-                let band = bands[tile / columns].lock();
-                let mut band = band.unwrap_or_else(std::sync::PoisonError::into_inner);
-                if shows {
-                    painter.copy(tile, plan.size, &mut band);
-                } else {
-                    Painter::<T>::fill(tile, plan.size, plan.background, &mut band);
+                // Down and then across, so that threads are at work in bands of their own.
+                let (row, column) = (turn % bands.len(), turn / bands.len());
+                let tile = row * columns + column;
+                if changes.tiles.contains(tile) {
+                    painter.paint(&scenery, tile, &bands[row]);
                 }
             }
         };
