@@ -382,6 +382,7 @@ fn block_of(words: &mut [u64; PIXELS], block: usize) -> &mut [u64; BLOCK_PIXELS]
 }
 
 /// The column and row of the tile whose word stands at a place.
+#[expect(clippy::cast_possible_truncation, reason = "a tile has 4096 pixels")]
 pub(super) const fn column_and_row(place: usize) -> [i32; 2] {
     let (block, pixel) = ((place / BLOCK_PIXELS) as i32, (place % BLOCK_PIXELS) as i32);
     [block % BLOCKS * BLOCK + pixel % BLOCK, block / BLOCKS * BLOCK + pixel / BLOCK]
