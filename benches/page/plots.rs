@@ -53,6 +53,7 @@ fn plot(growth: &Growth, measured: &Measured) -> Result<String, Box<dyn Error>> 
     let times = points.iter().map(|point| point.1);
     let least = times.clone().fold(f64::INFINITY, f64::min);
     let most = times.fold(0.0, f64::max);
+    let [low, high] = [least.log10().floor(), most.log10().ceil()].map(|n| 10_f64.powf(n));
     let mut svg = String::new();
     let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
@@ -62,10 +63,7 @@ fn plot(growth: &Growth, measured: &Measured) -> Result<String, Box<dyn Error>> 
         .caption(format!("Milliseconds by {}", growth.title), text(17))
         .x_label_area_size(26)
         .y_label_area_size(46)
-        .build_cartesian_2d(
-            (first.0 * 0.8..last.0 * 1.25).log_scale(),
-            (least * 0.6..most * 1.6).log_scale(),
-        )?;
+        .build_cartesian_2d((first.0 * 0.8..last.0 * 1.25).log_scale(), (low..high).log_scale())?;
     chart
         .configure_mesh()
         .bold_line_style(GRID)
@@ -76,7 +74,7 @@ fn plot(growth: &Growth, measured: &Measured) -> Result<String, Box<dyn Error>> 
         .y_label_formatter(&|y| short(*y))
         .draw()?;
     // What it would be if each cost what each costs at the end.
-    let begin = first.0.max(last.0 * least * 0.6 / last.1);
+    let begin = first.0.max(last.0 * low / last.1);
     let linear = [(begin, last.1 * begin / last.0), last];
     chart.draw_series([PathElement::new(linear, LINEAR.stroke_width(1))])?;
     chart.draw_series([PathElement::new(points.clone(), LINE.stroke_width(2))])?;
