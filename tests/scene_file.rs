@@ -18,8 +18,8 @@ use marraztu::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Fill, Filter, Frame, Item,
     LeaveOut, Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice,
     NormalLength, Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose,
-    PresetId, Projection, Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject,
-    Surface, Texture, Transformation, UpAxis, View, Winding, Wrap,
+    PresetId, Projection, Samples, Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps,
+    Subject, Surface, Texture, Transformation, UpAxis, View, Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -144,6 +144,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     let settings = Settings {
         arithmetic: Arithmetic::F64,
         light: LightAt::Vertex,
+        samples: Samples::Sixteen,
         filter: Filter::Nearest,
         specular: SpecularForm::HalfVector,
         leave_out: LeaveOut::HalfStep,

@@ -240,6 +240,7 @@ mod tests {
         settings: Settings {
             arithmetic: crate::scene::Arithmetic::F32,
             light: LightAt::Pixel,
+            samples: crate::scene::Samples::One,
             filter: Filter::Bilinear,
             specular: crate::scene::SpecularForm::Reflection,
             leave_out: crate::scene::LeaveOut::Unseen,

@@ -142,6 +142,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         eye,
         arithmetic,
         light_at,
+        samples,
         filter,
         view_from_world,
         clip_from_view,
@@ -158,6 +159,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         || !alike_matrices(clip_from_view, &before.clip_from_view);
     let settings = *arithmetic != before.arithmetic
         || *light_at != before.light_at
+        || *samples != before.samples
         || *filter != before.filter
         || *line_width != before.line_width
         || *leave_out != before.leave_out

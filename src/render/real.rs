@@ -15,6 +15,7 @@ use fearless_simd::{
     SimdMask as _, dispatch, f32x16, i32x16, u32x16,
 };
 
+use super::effects::BATCH;
 use super::pick::{SLOTS, pick};
 
 /// A real number, or several of them side by side.
@@ -133,6 +134,9 @@ pub trait Machine: Copy {
     /// Puts colours into a row of pixels: red, green, blue and 255, as bytes in this order, each the
     /// nearest to 255 times the number, as [`Number::byte`] has it.
     fn store_pixels(self, color: Triple<Self::R>, row: &mut [u32], at: usize);
+    /// Puts colours into three rows: red, green and blue as the bytes of [`Self::store_pixels`] before
+    /// they are rounded down, in parts of 2^-16.
+    fn store_parts(self, color: Triple<Self::R>, rows: &mut [[u32; BATCH]; 3], at: usize);
     /// A constant.
     fn lift(self, constant: f64) -> Self::R;
     /// One number for all.
@@ -186,6 +190,14 @@ impl Machine for Exact {
     fn store_pixels(self, color: Triple<f64>, row: &mut [u32], at: usize) {
         let [r, g, b] = color.0.map(Number::byte);
         row[at] = u32::from_le_bytes([r, g, b, 255]);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 2^24")]
+    fn store_parts(self, color: Triple<f64>, rows: &mut [[u32; BATCH]; 3], at: usize) {
+        for (row, number) in rows.iter_mut().zip(color.0) {
+            row[at] = ((number.max(0.0).min(1.0) * 255.0 + 0.5) * PARTS) as u32;
+        }
     }
 
     #[inline(always)]
@@ -263,6 +275,15 @@ impl<S: Simd> Machine for Sixteen<S> {
     }
 
     #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "a power of two")]
+    fn store_parts(self, color: Triple<f32x16<S>>, rows: &mut [[u32; BATCH]; 3], at: usize) {
+        for (row, number) in rows.iter_mut().zip(color.0) {
+            let parts: i32x16<S> = (before_rounding(number) * PARTS as f32).to_int();
+            parts.bitcast::<u32x16<S>>().store_slice(&mut row[at..at + 16]);
+        }
+    }
+
+    #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
     fn lift(self, constant: f64) -> f32x16<S> {
         (constant as f32).simd_into(self.0)
@@ -292,9 +313,18 @@ impl<S: Simd> Machine for Sixteen<S> {
 /// What [`Number::byte`] does to one number.
 #[inline(always)]
 fn lanes_byte<S: Simd>(number: f32x16<S>) -> i32x16<S> {
-    let (zero, one) = (number.lift(0.0), number.lift(1.0));
-    (Real::min(Real::max(number, zero), one) * 255.0 + 0.5).to_int()
+    before_rounding(number).to_int()
 }
+
+/// The byte of a number before it is rounded down.
+#[inline(always)]
+fn before_rounding<S: Simd>(number: f32x16<S>) -> f32x16<S> {
+    let (zero, one) = (number.lift(0.0), number.lift(1.0));
+    Real::min(Real::max(number, zero), one) * 255.0 + 0.5
+}
+
+/// Into how many parts a step of a byte is cut where colours are added up.
+const PARTS: f64 = 65536.0;
 
 /// The numbers that pictures can be computed in.
 pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {

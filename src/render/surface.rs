@@ -8,6 +8,7 @@
 use fearless_simd::Level;
 use glam::DVec3;
 
+use super::colors::{Colors, Form, Sums};
 use super::effects::{BATCH, Batch, Light, Rows, Shine, load, set};
 use super::faces::{Faces, weights};
 use super::frame::Frame;
@@ -15,6 +16,7 @@ use super::interpolate::{Located, Mixed, mix, surroundings};
 use super::items::Items;
 use super::light::Lit;
 use super::pick::SLOTS;
+use super::places::FOUR;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage, TilePlan};
 use super::real::{Kernel, Machine, Number, Triple};
 use super::texture;
@@ -60,12 +62,21 @@ impl<T: Number> Shines<T> {
 pub(super) struct Shader<T> {
     /// The lights of the tile that is coloured.
     pub(super) tile: TilePlan,
-    items: Items,
+    pub(super) items: Items,
     faces: Faces<T>,
     located: Located<T>,
     batch: Batch<T>,
     texels: Rows<T>,
-    colors: [u32; BATCH],
+    colors: Colors,
+}
+
+/// Where colours of a block go.
+#[derive(Debug)]
+pub(super) enum Out<'a> {
+    /// Into the rows of a tile, from a place on.
+    Tile(&'a mut [[u8; 4]], usize),
+    /// To what other samples show.
+    Sums(&'a mut Sums),
 }
 
 /// Pixels that are coloured together.
@@ -87,7 +98,7 @@ impl<T: Light> Default for Shader<T> {
             located: Located::default(),
             batch: Batch::default(),
             texels: [[T::default(); BATCH]; 3],
-            colors: [0; BATCH],
+            colors: Colors::default(),
         }
     }
 }
@@ -105,8 +116,7 @@ impl<T: Light> Shader<T> {
         scenery: &Scenery<'_, T>,
         words: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
-        tile: &mut [[u8; 4]],
-        at: usize,
+        (tile, at): (&mut [[u8; 4]], usize),
     ) -> bool {
         let shown = self.items.list(scenery.level, words, corner);
         let mut lines = shown.lines;
@@ -117,16 +127,24 @@ impl<T: Light> Shader<T> {
                 tile[at + place(i)] = scenery.frame.line_color(scenery.plan, line);
             }
         }
-        if shown.triangles == 0 {
-            return shown.lines != 0;
+        if shown.triangles != 0 {
+            self.color_items(scenery, corner, &mut Out::Tile(tile, at));
         }
+        (shown.triangles | shown.lines) != 0
+    }
+
+    /// Colours the pixels of the list.
+    pub(super) fn color_items(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        corner: [i32; 2],
+        out: &mut Out<'_>,
+    ) {
         if let Some(group) = one_group(scenery, &self.items) {
-            self.group(scenery, &group);
-            self.copy(tile, at);
+            self.color_group(scenery, &group, out);
         } else {
-            self.groups(scenery, corner, tile, at);
+            self.color_groups(scenery, corner, out);
         }
-        true
     }
 
     /// Colours the pixels of a block that one triangle covers as a whole.
@@ -135,23 +153,32 @@ impl<T: Light> Shader<T> {
         scenery: &Scenery<'_, T>,
         number: u32,
         corner: [i32; 2],
-        tile: &mut [[u8; 4]],
-        at: usize,
+        out: &mut Out<'_>,
     ) {
         self.items.list_whole(number, corner);
-        self.group(scenery, &group_of(scenery, number));
-        self.copy(tile, at);
+        self.items.shares = [FOUR as i32; BLOCK_PIXELS];
+        self.color_group(scenery, &group_of(scenery, number), out);
+    }
+
+    /// Colours pixels that are coloured together.
+    fn color_group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, out: &mut Out<'_>) {
+        self.colors.form = match out {
+            Out::Tile(..) => Form::Pixels,
+            Out::Sums(_) => Form::Parts,
+        };
+        self.group(scenery, group);
+        match out {
+            Out::Tile(tile, at) => self.copy(tile, *at),
+            Out::Sums(sums) => {
+                let Items { len, places, shares, .. } = &self.items;
+                sums.add_all(&self.colors, &places[..*len], &shares[..*len]);
+            }
+        }
     }
 
     /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
     /// ways.
-    fn groups(
-        &mut self,
-        scenery: &Scenery<'_, T>,
-        corner: [i32; 2],
-        tile: &mut [[u8; 4]],
-        at: usize,
-    ) {
+    fn color_groups(&mut self, scenery: &Scenery<'_, T>, corner: [i32; 2], out: &mut Out<'_>) {
         let mut done = [false; SLOTS];
         let all = std::mem::take(&mut self.items);
         for slot in 0..all.count {
@@ -167,8 +194,7 @@ impl<T: Light> Shader<T> {
                 done[other] |= keep[other];
             }
             self.items.take_from(&all, &keep, corner);
-            self.group(scenery, &group);
-            self.copy(tile, at);
+            self.color_group(scenery, &group, out);
         }
         self.items = all;
     }
@@ -176,7 +202,7 @@ impl<T: Light> Shader<T> {
     /// Copies the colours into the rows of the tile.
     fn copy(&self, tile: &mut [[u8; 4]], at: usize) {
         if self.items.is_whole() {
-            let rows = self.colors.chunks_exact(BLOCK as usize);
+            let rows = self.colors.pixels.chunks_exact(BLOCK as usize);
             for (to, from) in tile[at..].chunks_mut(TILE_SIDE).zip(rows) {
                 for (to, from) in to[..BLOCK as usize].iter_mut().zip(from) {
                     *to = from.to_le_bytes();
@@ -184,7 +210,7 @@ impl<T: Light> Shader<T> {
             }
         } else {
             let places = &self.items.places[..self.items.len];
-            for (i, color) in places.iter().zip(&self.colors) {
+            for (i, color) in places.iter().zip(&self.colors.pixels) {
                 tile[at + place(usize::from(*i))] = color.to_le_bytes();
             }
         }
@@ -192,7 +218,7 @@ impl<T: Light> Shader<T> {
 
     fn group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>) {
         match &scenery.plan.pipelines[group.pipeline as usize] {
-            Pipeline::Flat(color) => self.colors.fill(u32::from_le_bytes(color.opaque())),
+            Pipeline::Flat(color) => self.colors.fill(color.opaque()),
             Pipeline::Shaded(shaded) => {
                 self.shaded(scenery, group, shaded);
                 if group.draw.back == Back::Red {
@@ -204,9 +230,9 @@ impl<T: Light> Shader<T> {
 
     /// Backs that are red are red.
     fn redden(&mut self) {
-        for (color, slot) in self.colors[..self.items.len].iter_mut().zip(&self.items.slots) {
+        for (i, slot) in self.items.slots[..self.items.len].iter().enumerate() {
             if self.faces.back >> slot & 1 == 1 {
-                *color = u32::from_le_bytes(Color::BACK_FACE.opaque());
+                self.colors.set(i, Color::BACK_FACE.opaque());
             }
         }
     }
@@ -244,7 +270,7 @@ impl<T: Light> Shader<T> {
             if textured { Own::Texels(texels) } else { Own::Tint(shaded.tint.map(T::from_f64)) };
         T::run(level, Finish { batch, lit: light.is_some(), own, colors });
         if !places {
-            self.hand_out_colors();
+            self.colors.hand_out(&self.items.slots);
         }
     }
 
@@ -292,7 +318,7 @@ impl<T: Light> Shader<T> {
             faces.spread(level);
         }
         if front.is_colored() {
-            mix(level, items, faces, located, Mixed::Pixels(colors));
+            mix(level, items, faces, located, Mixed::Colors(colors));
             return true;
         }
         mix(level, items, faces, located, Mixed::Rows(&mut batch.diffuse));
@@ -324,14 +350,6 @@ impl<T: Light> Shader<T> {
                 }
             }
             batch.len = items.len;
-        }
-    }
-
-    /// From colours of faces to colours of pixels.
-    fn hand_out_colors(&mut self) {
-        let of_faces = self.colors;
-        for (color, slot) in self.colors.iter_mut().zip(&self.items.slots) {
-            *color = of_faces[slot.cast_unsigned() as usize % SLOTS];
         }
     }
 
@@ -409,7 +427,7 @@ struct Finish<'a, T> {
     batch: &'a Batch<T>,
     lit: bool,
     own: Own<'a, T>,
-    colors: &'a mut [u32; BATCH],
+    colors: &'a mut Colors,
 }
 
 impl<T: Light> Kernel<T> for Finish<'_, T> {
@@ -424,7 +442,7 @@ impl<T: Light> Kernel<T> for Finish<'_, T> {
                 let specular = load(machine, &batch.specular, at);
                 color = Triple([tr * r, tg * g, tb * b]).plus(specular);
             }
-            machine.store_pixels(color, colors, at);
+            colors.store(machine, color, at);
         }
     }
 }
@@ -468,8 +486,14 @@ fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
     (a + (b - a) * weights.y + (c - a) * weights.z).to_array()
 }
 
-/// Whether a triangle with a texture that leaves pixels out is drawn at one of them.
-pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i32; 2]) -> bool {
+/// Whether a triangle with a texture that leaves some of it out is drawn in a place of a pixel, shifted
+/// by so many parts of a pixel from its middle.
+pub(super) fn is_opaque(
+    plan: &FramePlan,
+    frame: &Frame,
+    number: u32,
+    place: ([i32; 2], [i32; 2]),
+) -> bool {
     let (index, start) = frame.draw_of(number);
     let draw = &plan.draws[index as usize];
     let number = number - start.number;
@@ -477,7 +501,7 @@ pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i3
         return true;
     };
     let (Some(opacity), Some(texture)) = (shaded.cutout, &shaded.texture) else { return true };
-    let weights = weights(plan, draw, frame.vertices_of(plan, index), number, pixel);
+    let weights = weights(plan, draw, frame.vertices_of(plan, index), number, place);
     let Some(uv) = uv(draw, number, weights) else { return true };
     texture::sample::<f64>(texture, uv, plan.filter)[3] * opacity >= 0.5
 }

@@ -35,7 +35,7 @@ pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Windin
 pub use object::{Object, PartLook, Spin, Surface};
 pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;
-pub use settings::{Arithmetic, Filter, LeaveOut, LightAt, Settings, SpecularForm};
+pub use settings::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm};
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,
     Transformation, View,

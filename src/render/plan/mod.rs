@@ -36,7 +36,7 @@ use super::effects::Lamp;
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::scene::{
-    Arithmetic, Filter, LeaveOut, LightAt, LightId, Projection, Scene, Settings, View,
+    Arithmetic, Filter, LeaveOut, LightAt, LightId, Projection, Samples, Scene, Settings, View,
 };
 
 /// Everything that a frame needs.
@@ -52,6 +52,8 @@ pub struct FramePlan {
     pub(in crate::render) arithmetic: Arithmetic,
     /// Where light is evaluated.
     pub(in crate::render) light_at: LightAt,
+    /// In how many places of a pixel it is asked what is seen.
+    pub(in crate::render) samples: Samples,
     /// What textures give between their texels.
     pub(in crate::render) filter: Filter,
     /// Where the observer is and which way they look.
@@ -140,6 +142,7 @@ impl FramePlan {
             },
             arithmetic: settings.arithmetic,
             light_at: settings.light,
+            samples: settings.samples,
             filter: settings.filter,
             view_from_world: observer.view_from_world,
             clip_from_view: observer.clip_from_view,

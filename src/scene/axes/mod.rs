@@ -22,6 +22,7 @@ macro_rules! choice {
 
 mod light;
 mod presets;
+mod sampling;
 mod sense;
 mod texture;
 
@@ -55,6 +56,9 @@ pub struct Axis {
 pub enum AxisKind {
     /// The last choice is the most exact, and the others have an error against it.
     Scored,
+    /// The same, but the exact choice shows so much else that the references of all other axes leave
+    /// this one as it is.
+    ScoredApart,
     /// The choices are different models of the world: none is an error of another.
     Model,
 }
@@ -88,8 +92,14 @@ pub struct Lesson {
 }
 
 /// Every axis, in the order in which they are shown.
-pub const AXES: &[Axis] =
-    &[light::SHADING, light::ARITHMETIC, light::FAINT, texture::FILTER, light::SPECULAR];
+pub const AXES: &[Axis] = &[
+    light::SHADING,
+    light::ARITHMETIC,
+    light::FAINT,
+    sampling::SAMPLES,
+    texture::FILTER,
+    light::SPECULAR,
+];
 
 impl Axis {
     /// The axis of this key.
@@ -121,7 +131,7 @@ impl Axis {
     #[must_use]
     pub fn most_exact(&self, settings: &Settings) -> &'static Choice {
         match (self.kind, self.choices.last()) {
-            (AxisKind::Scored, Some(last)) => last,
+            (AxisKind::Scored | AxisKind::ScoredApart, Some(last)) => last,
             _ => self.chosen(settings),
         }
     }
