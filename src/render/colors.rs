@@ -140,6 +140,7 @@ impl Sums {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "below 2^24")]
 mod tests {
     use fearless_simd::{Level, dispatch};
 

@@ -4,8 +4,8 @@
 //! carry would leave its range there: a colour below black, a place beyond the triangle. So such a pixel
 //! is looked at in the point of the triangle that is nearest to its middle, and lit there.
 //!
-//! That point lies on one of the edges whose functions are negative at the middle; of two such edges at
-//! most one has it within, else it is the corner between them.
+//! That point lies on one of the edges whose functions are negative at the middle: of two such edges on
+//! the one, if any, on which the point nearest to the middle is not the corner between them.
 
 use fearless_simd::Level;
 
@@ -15,7 +15,7 @@ use super::faces::Faces;
 use super::interpolate::{Interpolated, Located};
 use super::items::Items;
 use super::pick::SLOTS;
-use super::places::FOUR;
+use super::places::ALL;
 use super::real::{Kernel, Machine, Number, Real};
 use super::tile::BLOCK;
 
@@ -32,11 +32,11 @@ impl<T: Interpolated> Located<T> {
         let mut corners = [[T::default(); SLOTS]; 6];
         for slot in 0..faces.count {
             let [a, b, c] = faces.corners(slot).map(|at| [f64::from(at.x), f64::from(at.y)]);
-            for axis in 0..2 {
-                let first = f64::from(origin[axis]) * f64::from(SUBPIXELS);
-                corners[axis][slot] = T::from_f64(a[axis] - first);
-                corners[2 + axis][slot] = T::from_f64(b[axis] - a[axis]);
-                corners[4 + axis][slot] = T::from_f64(c[axis] - a[axis]);
+            let first = origin.map(|pixel| f64::from(pixel) * f64::from(SUBPIXELS));
+            let ways = [a[0] - first[0], a[1] - first[1]];
+            let ways = [ways, [b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]];
+            for (row, way) in corners.iter_mut().zip(ways.as_flattened()) {
+                row[slot] = T::from_f64(*way);
             }
         }
         T::run(level, Hold { items, origin, corners: &corners, to: self });
@@ -64,7 +64,7 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
             let outside = Real::max(Real::max(-first, -second), -third);
             // What all samples show covers the middle, whatever rounding says.
             let shares = machine.whole(&items.shares, at);
-            let outside = machine.lift(FOUR as f64).if_more(shares, outside, zero);
+            let outside = machine.lift(f64::from(ALL)).if_more(shares, outside, zero);
             let mut place = [x, y];
             if machine.any_more(outside, zero) {
                 let slots = machine.slots(&items.slots, at);
@@ -102,15 +102,14 @@ fn nearest<R: Real>(d: [R; 2], u: [R; 2], v: [R; 2], [first, second, third]: [R;
     let on_v = along(d, v);
     let on_g = along(from_second, g);
     let held = |t: R| Real::min(Real::max(t, zero), one);
-    // A side is taken if the point lies beyond it, and in place of another if it has the point within.
-    let (s, t) = (held(on_u), zero);
-    let within = |t: R| t * (one - t);
-    let beyond_u = -third;
-    let take_v = beyond_u.if_more(zero, within(on_v), one);
-    let take_v = (-second).if_more(zero, take_v, zero);
-    let (s, t) = (take_v.if_more(zero, zero, s), take_v.if_more(zero, held(on_v), t));
-    let beyond_one = Real::max(beyond_u, -second);
-    let take_g = beyond_one.if_more(zero, within(on_g), one);
+    let (beyond_u, beyond_v) = (-third, -second);
+    // A side is taken if the point lies beyond it; if it lies beyond one before it too, then only if its
+    // nearest point is another than the corner between the two.
+    let take_v = beyond_u.if_more(zero, on_v, one);
+    let take_v = beyond_v.if_more(zero, take_v, zero);
+    let end = held(on_v);
+    let (s, t) = (take_v.if_more(zero, zero, held(on_u)), take_v.if_more(zero, end, zero));
+    let take_g = beyond_u.if_more(zero, on_g, beyond_v.if_more(zero, one - on_g, one));
     let take_g = (-first).if_more(zero, take_g, zero);
     let end = held(on_g);
     [take_g.if_more(zero, one - end, s), take_g.if_more(zero, end, t)]

@@ -7,7 +7,7 @@ use super::bins::tiles_of;
 use super::colors::Sums;
 use super::coverage::PixelBox;
 use super::effects::Light;
-use super::places::FOUR;
+use super::places::{ALL, FOUR};
 use super::resolve::Samples;
 use super::surface::{Out, Scenery, Shader};
 use super::tile::{BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
@@ -126,7 +126,7 @@ impl<T: Light> Painter<T> {
     /// Adds the colours of four samples of a tile to those of others, block by block.
     pub(super) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &mut [Sums]) {
         let Scenery { level, plan, frame, .. } = *scenery;
-        let (background, all) = (plan.background.opaque(), FOUR as i32);
+        let (background, all) = (plan.background.opaque(), ALL);
         if frame.is_empty(tile) {
             return to.iter_mut().for_each(|sums| sums.add_everywhere(background, all));
         }

@@ -13,6 +13,9 @@ use crate::scene::Samples;
 /// How many samples a pass looks at, where it does not look at the middle alone.
 pub(super) const FOUR: usize = 4;
 
+/// The share of what all samples of a pass show.
+pub(super) const ALL: i32 = 4;
+
 /// What one pass looks at in every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Places {

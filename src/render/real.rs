@@ -196,7 +196,8 @@ impl Machine for Exact {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 2^24")]
     fn store_parts(self, color: Triple<f64>, rows: &mut [[u32; BATCH]; 3], at: usize) {
         for (row, number) in rows.iter_mut().zip(color.0) {
-            row[at] = ((number.max(0.0).min(1.0) * 255.0 + 0.5) * PARTS) as u32;
+            let held = Real::min(Real::max(number, 0.0), 1.0);
+            row[at] = ((held * 255.0 + 0.5) * PARTS) as u32;
         }
     }
 

@@ -139,6 +139,7 @@ fn add_other<T>(scenery: &Scenery<'_, T>, number: u32, place: usize, share: i32,
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
 mod tests {
     use super::*;
 

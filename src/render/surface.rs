@@ -16,7 +16,7 @@ use super::interpolate::{Located, Mixed, mix, surroundings};
 use super::items::Items;
 use super::light::Lit;
 use super::pick::SLOTS;
-use super::places::FOUR;
+use super::places::ALL;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage, TilePlan};
 use super::real::{Kernel, Machine, Number, Triple};
 use super::texture;
@@ -156,7 +156,7 @@ impl<T: Light> Shader<T> {
         out: &mut Out<'_>,
     ) {
         self.items.list_whole(number, corner);
-        self.items.shares = [FOUR as i32; BLOCK_PIXELS];
+        self.items.shares = [ALL; BLOCK_PIXELS];
         self.color_group(scenery, &group_of(scenery, number), out);
     }
 

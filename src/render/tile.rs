@@ -460,6 +460,7 @@ const fn within(x: i32, y: i32) -> usize {
 
 /// Where the words of sixteen pixels stand in the tile, for one of `N` samples.
 #[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 pub(super) fn lanes_place<S: Simd, const N: usize>(
     x: i32x16<S>,
     y: i32x16<S>,
