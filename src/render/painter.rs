@@ -4,9 +4,12 @@
 //! for its tiles. A tile that showed nothing but the background and still does is not touched.
 
 use super::bins::tiles_of;
+use super::colors::Sums;
 use super::coverage::PixelBox;
 use super::effects::Light;
-use super::surface::{Scenery, Shader};
+use super::places::FOUR;
+use super::resolve::Samples;
+use super::surface::{Out, Scenery, Shader};
 use super::tile::{BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
 use crate::base::color::Color;
 use crate::base::image::Size;
@@ -37,11 +40,25 @@ fn place_of([x, y]: [i32; 2], bounds: PixelBox) -> usize {
     y * TILE_SIDE + x
 }
 
+/// Puts the means of 2^`log2` samples into the rows of a tile, from `at` on.
+fn put_means(sums: &Sums, log2: u32, tile: &mut [[u8; 4]], at: usize) {
+    for (i, mean) in sums.means(log2).enumerate() {
+        tile[at + i / BLOCK_SIDE * TILE_SIDE + i % BLOCK_SIDE] = mean;
+    }
+}
+
+/// Pixels to a side of a block.
+const BLOCK_SIDE: usize = 8;
+
+/// Blocks of a tile.
+pub(super) const BLOCKS: usize = TILE_SIDE * TILE_SIDE / BLOCK_PIXELS;
+
 /// Draws one tile after another.
 #[derive(Debug)]
 pub(super) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
+    samples: Samples,
     pixels: Box<[[u8; 4]; TILE_SIDE * TILE_SIDE]>,
 }
 
@@ -50,6 +67,7 @@ impl<T: Light> Default for Painter<T> {
         Self {
             shader: Shader::default(),
             visibility: Visibility::default(),
+            samples: Samples::default(),
             pixels: Box::new([[0; 4]; TILE_SIDE * TILE_SIDE]),
         }
     }
@@ -72,21 +90,72 @@ impl<T: Light> Painter<T> {
         self.shader.tile.begin(plan, &self.visibility, bounds);
         self.pixels.fill(plan.background.opaque());
         let mut shows = false;
-        for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {
+        for block in 0..BLOCKS {
             if !self.visibility.shows(block) {
                 continue;
             }
             let corner = self.visibility.corner(block);
             let (tile, at) = (&mut self.pixels[..], place_of(corner, bounds));
             if let Some(number) = self.visibility.whole(block) {
-                self.shader.whole_block(scenery, number, corner, tile, at);
+                self.shader.whole_block(scenery, number, corner, &mut Out::Tile(tile, at));
                 shows = true;
+            } else if frame.places().are_many() {
+                shows |= self.paint_samples(scenery, block, at);
             } else {
                 let words = self.visibility.block(block);
-                shows |= self.shader.block(scenery, words, corner, tile, at);
+                shows |= self.shader.block(scenery, words, corner, (tile, at));
             }
         }
         shows
+    }
+
+    /// Paints a block whose pixels have four samples.
+    fn paint_samples(&mut self, scenery: &Scenery<'_, T>, block: usize, at: usize) -> bool {
+        let Self { shader, visibility, samples, pixels, .. } = self;
+        let (planes, corner) = (visibility.planes(block), visibility.corner(block));
+        let tile = &mut pixels[..];
+        if samples.compare(scenery.level, planes) {
+            return shader.block(scenery, &planes[0], corner, (tile, at));
+        }
+        let mut sums = Sums::default();
+        let shows = shader.add_samples(scenery, (samples, planes), corner, &mut sums);
+        put_means(&sums, FOUR.ilog2(), tile, at);
+        shows
+    }
+
+    /// Adds the colours of four samples of a tile to those of others, block by block.
+    pub(super) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &mut [Sums]) {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let (background, all) = (plan.background.opaque(), FOUR as i32);
+        if frame.is_empty(tile) {
+            return to.iter_mut().for_each(|sums| sums.add_everywhere(background, all));
+        }
+        let bounds = bounds_of(tile, plan.size);
+        let Self { shader, visibility, samples, .. } = self;
+        visibility.draw(level, plan, frame, (tile, bounds));
+        shader.tile.begin(plan, visibility, bounds);
+        for (block, to) in to.iter_mut().enumerate() {
+            if !visibility.shows(block) {
+                to.add_everywhere(background, all);
+                continue;
+            }
+            let corner = visibility.corner(block);
+            if let Some(number) = visibility.whole(block) {
+                shader.whole_block(scenery, number, corner, &mut Out::Sums(to));
+            } else {
+                let planes = visibility.planes(block);
+                samples.compare(level, planes);
+                shader.add_samples(scenery, (samples, planes), corner, to);
+            }
+        }
+    }
+
+    /// Takes the means of all samples of a tile for its pixels.
+    pub(super) fn take_means(&mut self, of: &[Sums], samples: u32) {
+        for (block, sums) in of.iter().enumerate() {
+            let (x, y) = (block % 8 * 8, block / 8 * 8);
+            put_means(sums, samples.ilog2(), &mut self.pixels[..], y * TILE_SIDE + x);
+        }
     }
 
     /// Copies what was painted into its band of the picture.
