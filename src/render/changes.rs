@@ -144,6 +144,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         light_at,
         samples,
         filter,
+        ways,
         view_from_world,
         clip_from_view,
         line_width,
@@ -161,6 +162,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         || *light_at != before.light_at
         || *samples != before.samples
         || *filter != before.filter
+        || *ways != before.ways
         || *line_width != before.line_width
         || *leave_out != before.leave_out
         || *rules != before.rules;

@@ -44,7 +44,22 @@ impl Colors {
     pub(super) fn store<M: Machine>(&mut self, machine: M, color: Triple<M::R>, at: usize) {
         match self.form {
             Form::Pixels => machine.store_pixels(color, &mut self.pixels, at),
-            Form::Parts => machine.store_parts(color, &mut self.parts, at),
+            Form::Parts => machine.store_parts(color, machine.lift(0.5), &mut self.parts, at),
+        }
+    }
+
+    /// The same, with a threshold for each in the place of one half, from where on it is rounded up.
+    #[inline(always)]
+    pub(super) fn store_by<M: Machine>(
+        &mut self,
+        machine: M,
+        color: Triple<M::R>,
+        threshold: M::R,
+        at: usize,
+    ) {
+        match self.form {
+            Form::Pixels => machine.store_pixels_by(color, threshold, &mut self.pixels, at),
+            Form::Parts => machine.store_parts(color, threshold, &mut self.parts, at),
         }
     }
 

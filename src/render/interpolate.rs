@@ -27,9 +27,9 @@ pub struct Located<T> {
     /// The second and third barycentric coordinate, linear on the screen.
     pub(super) linear: [[T; BATCH]; 2],
     /// The same with perspective.
-    weights: [[T; BATCH]; 2],
+    pub(super) weights: [[T; BATCH]; 2],
     /// The distance along the observer's axis.
-    w: [T; BATCH],
+    pub(super) w: [T; BATCH],
     /// Where they are looked at, in pixels; where they [share](Items::shared) their pixels only.
     pub(super) places: [[T; BATCH]; 2],
 }
@@ -383,16 +383,25 @@ pub(super) fn surroundings<T: Number>(
 ) {
     let rays = Rays::new(plan);
     let normals = matrix(draw.view_from_normal);
-    if items.shared {
-        paged!(faces.count, PAGES => T::run(
+    let way = plan.ways.rare_roots();
+    match (items.shared, way) {
+        (true, Some(_)) => {
+            let kernel = Surroundings::<T, 4, true> { items, faces, located, batch, rays, normals };
+            T::run_by(level, way, kernel);
+        }
+        (false, Some(_)) => {
+            let kernel =
+                Surroundings::<T, 4, false> { items, faces, located, batch, rays, normals };
+            T::run_by(level, way, kernel);
+        }
+        (true, None) => paged!(faces.count, PAGES => T::run(
             level,
             Surroundings::<T, PAGES, true> { items, faces, located, batch, rays, normals },
-        ));
-    } else {
-        paged!(faces.count, PAGES => T::run(
+        )),
+        (false, None) => paged!(faces.count, PAGES => T::run(
             level,
             Surroundings::<T, PAGES, false> { items, faces, located, batch, rays, normals },
-        ));
+        )),
     }
 }
 

@@ -8,8 +8,9 @@ use super::effects::{BATCH, Batch, Light, Rows, load, set, store};
 use super::faces::Faces;
 use super::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded};
 use super::real::{Kernel, Machine, Number, Real, Triple};
-use super::surface::{Shines, run};
-use crate::scene::{LightAt, Normals, dvec3};
+use super::shines::Shines;
+use super::surface::run;
+use crate::scene::{LightAt, Normalising, Normals, dvec3};
 
 /// Places that a thread takes at a time.
 const CHUNK: usize = 16 * BATCH;
@@ -101,7 +102,8 @@ impl<T: Light> Lit<T> {
                 if faces.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
             put(batch, slot, centres[polygon], normals[polygon].map(|x| x * turn));
         }
-        T::run(level, Place { batch, to_view: self.to_view[index as usize] });
+        let to_view = self.to_view[index as usize];
+        T::run_by(level, to_view.way, Place { batch, to_view });
     }
 }
 
@@ -154,7 +156,7 @@ impl<T: Light> Table<T> {
                     let (position, normal) = place(first + i * BATCH + lane);
                     put(&mut batch, lane, position, normal);
                 }
-                T::run(level, Place { batch: &mut batch, to_view });
+                T::run_by(level, to_view.way, Place { batch: &mut batch, to_view });
                 batch.darken();
                 run(stages, shines, level, &mut batch);
                 if colored {
@@ -225,6 +227,8 @@ struct ToView<T> {
     linear: [[T; 3]; 3],
     normals: [[T; 3]; 3],
     eye: Eye,
+    /// By which rare way, where it is one.
+    way: Option<Normalising>,
 }
 
 impl<T: Number> ToView<T> {
@@ -241,6 +245,7 @@ impl<T: Number> ToView<T> {
             linear: columns(DMat3::from_mat4(draw.view_from_object)),
             normals: columns(draw.view_from_normal),
             eye: plan.eye,
+            way: plan.ways.rare_roots(),
         }
     }
 

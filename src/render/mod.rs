@@ -31,14 +31,17 @@ pub mod region;
 mod renderer;
 mod resolve;
 mod setup;
+mod shines;
 mod single;
 mod small;
 mod stages;
 mod surface;
+mod texels;
 mod texture;
 mod tile;
 mod vertices;
 mod watch;
+mod ways;
 
 pub use changes::{Cause, Change, Changes};
 pub use plan::{Class, Effect, EffectUse, FramePlan, State};

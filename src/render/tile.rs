@@ -25,7 +25,7 @@ use super::large::Large;
 use super::lines::{self, LineNumber};
 use super::places::{FOUR, Places};
 use super::plan::FramePlan;
-use super::surface;
+use super::texels;
 use crate::base::math::each;
 
 /// Pixels to a side of a tile.
@@ -72,7 +72,12 @@ pub(super) const fn seen_number(number: u32) -> Seen {
 
 /// The depth that a word says.
 pub(super) const fn depth(word: u64) -> f32 {
-    f32::from_bits((word >> 32) as u32)
+    f32::from_bits(key(word))
+}
+
+/// What a word says of the depth: its bits, where it is kept as mostly.
+pub(super) const fn key(word: u64) -> u32 {
+    (word >> 32) as u32
 }
 
 #[inline(always)]
@@ -130,6 +135,9 @@ impl Visibility {
         (tile, bounds): (usize, PixelBox),
     ) {
         self.clear(bounds, frame.places());
+        if plan.ways.draws_one_by_one() {
+            return self.draw_one_by_one(plan, frame, (tile, bounds));
+        }
         if self.places.are_many() {
             self.draw_in::<FOUR>(level, plan, frame, tile);
         } else {
@@ -157,6 +165,32 @@ impl Visibility {
                 }
             }
             dispatch!(level, simd => self.draw_lines::<_, N>(simd, bins, plan.line_width, tile));
+        }
+    }
+
+    /// Draws everything by a rare way, pixel by pixel.
+    fn draw_one_by_one(
+        &mut self,
+        plan: &FramePlan,
+        frame: &Frame,
+        (tile, bounds): (usize, PixelBox),
+    ) {
+        self.words.fill(0);
+        self.written = u64::MAX;
+        let (places, count) = (self.places, self.places.count());
+        for sample in 0..count {
+            let shift = if count == 1 { [0; 2] } else { places.shift::<FOUR>(sample) };
+            plan.ways.paint(
+                plan,
+                frame,
+                (tile, bounds),
+                (sample, shift),
+                &mut |[x, y], key, number| {
+                    let plane = (block_at(x, y) * count + sample) * BLOCK_PIXELS;
+                    let word = &mut self.words[plane + within(x, y)];
+                    *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
+                },
+            );
         }
     }
 
@@ -342,7 +376,7 @@ impl Visibility {
             let Some(triangle) = Triangle::new(corners) else { return };
             let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
             triangle.covered(self.bounds, |Covered { x, y, edges }| {
-                if surface::is_opaque(plan, frame, large.number, ([x, y], shift)) {
+                if texels::is_opaque(plan, frame, large.number, ([x, y], shift)) {
                     let (at, depth) = ((x, y, sample), seen.depth(edges));
                     dispatch!(level, simd => self.put::<_, N>(simd, at, depth, large.number));
                 }
@@ -450,6 +484,15 @@ impl Visibility {
 #[inline(always)]
 const fn block_at(x: i32, y: i32) -> usize {
     (y / BLOCK * BLOCKS + x / BLOCK) as usize
+}
+
+/// The column and row of the tile, and the sample, whose word stands at a place where pixels have so many
+/// samples.
+pub(super) const fn pixel_at(place: usize, samples: usize) -> ([i32; 2], usize) {
+    let (plane, pixel) = (place / BLOCK_PIXELS, (place % BLOCK_PIXELS) as i32);
+    let (block, sample) = ((plane / samples) as i32, plane % samples);
+    let at = [block % BLOCKS * BLOCK + pixel % BLOCK, block / BLOCKS * BLOCK + pixel / BLOCK];
+    (at, sample)
 }
 
 /// Where a pixel stands in its block.

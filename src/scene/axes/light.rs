@@ -1,8 +1,8 @@
 //! Axes of light.
 
-use super::sense::{if_any, is_lit, is_mirroring};
+use super::sense::{has_even_power, if_any, is_lit, is_mirroring};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::scene::{Arithmetic, LeaveOut, LightAt, SpecularForm};
+use crate::scene::{Arithmetic, LeaveOut, LightAt, Normalising, SpecularForm, SpecularPower};
 
 pub(super) const SHADING: Axis = Axis {
     name: "light evaluated",
@@ -52,6 +52,73 @@ pub(super) const ARITHMETIC: Axis = Axis {
         coarse: "The digits that are lost almost never reach the eye: a byte changes only \
             where the exact value lies next to the border between two steps.",
         shows: "Nowhere without help: look at the picture of the error, amplified 256 times.",
+        scene: "ball",
+    },
+};
+
+pub(super) const POWER: Axis = Axis {
+    name: "specular power",
+    key: "power",
+    label: "Power",
+    what: "How the power of a highlight is taken",
+    kind: AxisKind::Scored,
+    choices: &[
+        choice!("schlick" "Schlick" power = SpecularPower::Schlick,
+            "Schlick's curve x / (n - n x + x): a model of its own, without any power.",
+            "51 byte steps at Ns 76.8: it is another curve"),
+        choice!("table-256" "256" power = SpecularPower::Table256,
+            "The nearest of 256 powers in a table.",
+            "35 byte steps at Ns 76.8"),
+        choice!("table-1024" "1024" power = SpecularPower::Table1024,
+            "A line between two of 1024 powers in a table.",
+            "0.17 of a byte step at Ns 76.8"),
+        choice!("polynomial" "Own" power = SpecularPower::Polynomial,
+            "Whole exponents to 64 by squaring, others by a polynomial: sixteen at once.",
+            "0.001 of a byte step"),
+        choice!("squaring" "2^k" power = SpecularPower::Squaring,
+            "Exponents that are a power of two by squaring alone.",
+            "rounding alone; other exponents as Own",
+            |scene, view| if_any(scene, view, has_even_power,
+                "no exponent that is shown is a power of two")),
+        choice!("library" "libm" power = SpecularPower::Library,
+            "The power of the library libm, one at a time: the reference.",
+            "none"),
+    ],
+    sense: |scene, view| if_any(scene, view, is_mirroring, "nothing that is shown mirrors light"),
+    lesson: Lesson {
+        what: "A highlight is a cosine taken to a power, and no processor has an instruction for \
+            that: it is computed, or looked up.",
+        coarse: "A table of 256 has steps where the power is steep, which show as rings; Schlick's \
+            curve has no power in it and a wider foot.",
+        shows: "On the bright spot of the ball: compare 256 and Own, then Schlick.",
+        scene: "ball",
+    },
+};
+
+pub(super) const NORMALISING: Axis = Axis {
+    name: "normalising",
+    key: "normalising",
+    label: "Unit length",
+    what: "How vectors are brought to length 1",
+    kind: AxisKind::Scored,
+    choices: &[
+        choice!("rsqrt" "rsqrt" normalising = Normalising::Rsqrt,
+            "By the processor's estimate of one by the root. Differs between CPUs.",
+            "8 byte steps at Ns 76.8 with AVX2; another number on another CPU"),
+        choice!("newton" "+ Newton" normalising = Normalising::Newton,
+            "By the estimate and one step of Newton's. Differs between CPUs.",
+            "0.01 of a byte step at Ns 76.8"),
+        choice!("root" "1/sqrt" normalising = Normalising::Root,
+            "By one by the root, as exact as the numbers of light are.",
+            "none"),
+    ],
+    sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
+    lesson: Lesson {
+        what: "Directions are brought to length 1 by one by a root; processors have a quick \
+            instruction that knows 11 or 14 of its digits.",
+        coarse: "With the instruction alone vectors are a little too long or too short, and a \
+            power makes much of that: highlights get grainy, on each make of CPU in its own way.",
+        shows: "On the bright spot of the ball, in the picture of the error, amplified 16 times.",
         scene: "ball",
     },
 };

@@ -9,6 +9,12 @@
 /// A choice that sets one field of the settings to one value.
 macro_rules! choice {
     ($word:literal $label:literal $field:ident = $value:expr, $what:literal, $error:literal) => {
+        choice!($word $label $field = $value, $what, $error, |_, _| Ok(()))
+    };
+    (
+        $word:literal $label:literal $field:ident = $value:expr, $what:literal, $error:literal,
+        $sense:expr
+    ) => {
         Choice {
             word: $word,
             label: $label,
@@ -16,11 +22,14 @@ macro_rules! choice {
             error: $error,
             set: |settings| settings.$field = $value,
             is: |settings| settings.$field == $value,
+            sense: $sense,
         }
     };
 }
 
+mod geometry;
 mod light;
+mod picture;
 mod presets;
 mod sampling;
 mod sense;
@@ -74,6 +83,8 @@ pub struct Choice {
     pub what: &'static str,
     /// The error to expect of it, in words.
     pub error: &'static str,
+    /// Whether it is anything of its own in a scene that is seen so, and why not.
+    pub sense: fn(&Scene, &View) -> Result<(), &'static str>,
     set: fn(&mut Settings),
     is: fn(&Settings) -> bool,
 }
@@ -95,9 +106,18 @@ pub struct Lesson {
 pub const AXES: &[Axis] = &[
     light::SHADING,
     light::ARITHMETIC,
+    light::POWER,
+    light::NORMALISING,
     light::FAINT,
+    geometry::VERTICES,
+    geometry::SUBPIXELS,
+    geometry::COVERAGE,
+    picture::DEPTH,
     sampling::SAMPLES,
+    geometry::INTERPOLATION,
+    geometry::STRETCHED,
     texture::FILTER,
+    picture::ROUNDING,
     light::SPECULAR,
 ];
 

@@ -14,27 +14,78 @@ pub struct Preset {
     pub what: &'static str,
     /// Where it differs from the default: keys of axes, with words of their choices.
     pub points: &'static [(&'static str, &'static str)],
+    /// What is wrong with it, where that is what it is for.
+    pub faults: &'static [&'static str],
 }
 
-/// Named points, from the fast to the exact.
+/// Named points, from the fast to the exact; then two of history.
 pub const ACCURACY_PRESETS: &[Preset] = &[
     Preset {
         word: "draft",
         label: "Draft",
         what: "Quick: light at vertices, the nearest texel.",
         points: &[("shading", "vertex"), ("filter", "nearest")],
+        faults: &[],
     },
     Preset {
         word: "default",
         label: "Default",
         what: "What the editor begins with: at most a quarter of a byte step of light is lost.",
         points: &[],
+        faults: &[],
     },
     Preset {
         word: "exact",
         label: "Exact",
         what: "At most one byte step from the reference on every pixel.",
-        points: &[("arithmetic", "f64")],
+        points: &[("arithmetic", "f64"), ("power", "library")],
+        faults: &[],
+    },
+    Preset {
+        word: "ancestor-a",
+        label: "A",
+        what: "As ancestor A drew: points every 0.1 unit, lit at vertices, in 32 bits.",
+        points: &[
+            ("shading", "vertex"),
+            ("power", "library"),
+            ("stretched", "as-it-is"),
+            ("vertices", "f32"),
+            ("coverage", "points"),
+            ("depth", "bits-24"),
+            ("filter", "nearest"),
+            ("rounding", "truncated"),
+        ],
+        faults: &[
+            "holes in what is nearer than 97 units",
+            "17 writes a pixel at a distance of 400, 100 at 966",
+            "highlights smaller than a polygon dim or vanish",
+            "normals lean with what is stretched",
+            "vertices up to 2.5 pixels off, far from the origin",
+            "surfaces nearer to each other than 0.06 unit at 1000 show through",
+            "every colour half a step too dark",
+        ],
+    },
+    Preset {
+        word: "ancestor-b",
+        label: "B",
+        what: "As ancestor B drew: rows of pixels, textures without perspective.",
+        points: &[
+            ("shading", "vertex"),
+            ("vertices", "f32"),
+            ("coverage", "scan-lines"),
+            ("interpolation", "affine"),
+            ("depth", "f32"),
+            ("filter", "nearest"),
+            ("rounding", "truncated"),
+        ],
+        faults: &[
+            "textures bend along the diagonal of every square",
+            "outlines a pixel too wide, and seams written twice",
+            "highlights smaller than a polygon dim or vanish",
+            "vertices up to 2.5 pixels off, far from the origin",
+            "surfaces nearer to each other than 0.06 unit at 1000 show through",
+            "every colour half a step too dark",
+        ],
     },
 ];
 
@@ -52,6 +103,17 @@ impl Preset {
             let choice = Axis::named(point.0).and_then(|axis| axis.choice(point.1));
             choice.expect("presets name axes and choices of the table").of(&settings)
         })
+    }
+}
+
+impl Preset {
+    /// What it is for, and what is wrong with it.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        match self.faults {
+            [] => self.what.to_owned(),
+            faults => format!("{} Its faults: {}.", self.what, faults.join("; ")),
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{Arithmetic, Filter, LeaveOut, LightAt, SpecularForm};
+use crate::scene::{Arithmetic, Filter, LeaveOut, LightAt, SpecularForm, SpecularPower};
 
 #[test]
 fn each_choice_is_read_back_as_it_was_set_and_touches_no_other_axis() {
@@ -26,7 +26,8 @@ fn the_reference_is_exact_in_everything_and_keeps_the_models() {
     let reference = chosen.reference();
     assert_eq!(reference.arithmetic, Arithmetic::F64);
     assert_eq!(reference.light, LightAt::Pixel);
-    assert_eq!(reference.filter, Filter::Bilinear);
+    assert_eq!(reference.filter, Filter::Trilinear);
+    assert_eq!(reference.power, SpecularPower::Library);
     assert_eq!(reference.leave_out, LeaveOut::Unseen);
     assert_eq!(reference.specular, SpecularForm::HalfVector);
 }
@@ -37,12 +38,20 @@ fn presets_are_the_points_that_their_names_promise() {
     let draft = Settings { light: LightAt::Vertex, filter: Filter::Nearest, ..of("default") };
     assert_eq!(of("draft"), draft);
     assert_eq!(of("default"), Settings::default());
-    assert_eq!(of("exact"), Settings { arithmetic: Arithmetic::F64, ..Settings::default() });
+    let exact = Settings {
+        arithmetic: Arithmetic::F64,
+        power: SpecularPower::Library,
+        ..Settings::default()
+    };
+    assert_eq!(of("exact"), exact);
     assert_eq!(draft.in_words(), "Draft");
     let other = Settings { specular: SpecularForm::HalfVector, ..of("exact") };
     assert_eq!(other.in_words(), "Exact, specular half-vector");
     let other = Settings { light: LightAt::Face, ..other };
-    assert_eq!(other.in_words(), "shading face, arithmetic f64, specular half-vector");
+    assert_eq!(
+        other.in_words(),
+        "shading face, arithmetic f64, power library, specular half-vector"
+    );
 }
 
 #[test]
