@@ -1,7 +1,7 @@
 //! What becomes of OBJ files as people and programs write them.
 //!
-//! Each test is a small file. Those of the first part are read wrongly, or not at all, by `tobj`
-//! alone; breaking the pass over the bytes that stands before it makes them fail.
+//! Each test is a small file. Those of the first part are read wrongly, or not at all, by `tobj`,
+//! which reads most files rightly: for those `tests/models.rs` holds the program against it.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -406,6 +406,145 @@ fn work_is_watched_and_cancelled() {
     assert_eq!(error, LoadError::Cancelled);
 }
 
+// However a file is cut into chunks that are read apart, and whichever way its lines are read.
+
+/// A file of many chunks with something of everything: a strip of squares, of which some count
+/// back, with places on the texture and normals here and there, parts and faults.
+fn long(lines: u32) -> String {
+    let mut text = String::new();
+    let mut vertices = 0;
+    for i in 0..lines {
+        text += &match i % 11 {
+            0 | 2 | 4 | 6 => {
+                vertices += 1;
+                let color = if i % 7 == 0 { " 0.5 0.25 1" } else { "" };
+                format!("v {}.{i:03} {:e} {}{color}\n", i % 97, f64::from(i) * 1e-3, i % 3)
+            }
+            1 => format!("vt 0.{i} 1.{i}\n"),
+            3 => format!("vn 0 {} 1\n", i % 5),
+            5 if i % 13 == 0 => format!("o object {}\n", i % 4),
+            5 if i % 5 == 0 => format!("g group {}\n", i % 3),
+            5 => format!("usemtl {}\n", i % 2),
+            7 if i % 3 == 0 => format!("f -4 -3 -2/-1 -1//-1 # {i}\n"),
+            7 => format!("f {} \\\n{}/{} {}\n", i / 11 + 1, i / 11 + 2, i / 11 + 1, i / 11 + 3),
+            8 if i % 3 == 0 => format!("f {0}/1/1 {0}/1/1 1/1/1\n", i / 11 + 1),
+            8 if i % 101 == 0 => format!("f 1 2 {vertices}000\n\n"),
+            8 => format!("f {} {} 1 2\r\n", vertices - 1, vertices),
+            9 if i % 17 == 0 => "v nan 0 0\n".to_owned(),
+            9 => format!("odd{} 1\n", i % 3),
+            _ => "\n".to_owned(),
+        };
+    }
+    text
+}
+
+fn described(text: &str) -> (Mesh, Vec<Finding>) {
+    let loaded = read(text);
+    (loaded.model.mesh, loaded.findings)
+}
+
+#[test]
+fn a_file_says_the_same_however_many_threads_read_it() {
+    let text = long(40_000);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| described(&text))
+    };
+    let one = with(1);
+    assert!(one.0.polygon_count() > 6000 && one.0.parts().len() > 10);
+    assert!(one.1.len() > 8, "{:?}", one.1);
+    for threads in [2, 7] {
+        assert!(
+            with(threads) == one,
+            "with {threads} threads: {:?} for {:?}",
+            with(threads).1,
+            one.1
+        );
+    }
+}
+
+#[test]
+fn the_quick_way_through_a_line_says_what_the_other_way_says() {
+    let text = long(4000);
+    // A blank at the beginning of a line is not for the quick way.
+    let slow: String = text.split_inclusive('\n').map(|line| format!(" {line}")).collect();
+    let (quick, slow) = (described(&text), described(&slow));
+    assert_eq!(quick.1, slow.1);
+    assert!(quick.0 == slow.0);
+}
+
+#[test]
+fn a_line_that_cannot_be_read_is_named_by_its_number_wherever_it_stands() {
+    let mut text = long(20_000);
+    let lines = text.lines().count();
+    text += "v 1 2 x\nv 3 4 y\n";
+    text += &long(20_000);
+    assert_eq!(refusal(&text), format!("a.obj, line {}: \"x\" is no number", lines + 1));
+}
+
+// What files claim, and nobody has the memory or the time for.
+
+#[test]
+fn an_index_promises_nothing() {
+    let loaded =
+        read(&triangle_and("f 1 2 3\nf 1 2 1000000000\nf 1 2 -1000000000\nf 1 2 99999999999\n"));
+    assert_eq!(loaded.model.mesh.polygon_count(), 1);
+    let text =
+        "3 faces name vertices that the file does not have, and are left out (first: line 6)";
+    assert_eq!(only(&loaded), (FindingKind::FaceRange, text));
+}
+
+#[test]
+fn a_face_of_a_million_corners_is_cut_up() {
+    // A comb: every other corner is a tooth.
+    let corners = 1_000_000_u32;
+    let mut text = String::from("v 0 -1 0\nv 1000000 -1 0\n");
+    for i in (2..corners).rev() {
+        text += &format!("v {i} {} 0\n", if i % 2 == 0 { 1.0 } else { 0.001 });
+    }
+    text += "f";
+    for i in 1..=corners {
+        text += &format!(" {i}");
+    }
+    let (mesh, findings) = described(&text);
+    assert_eq!((mesh.polygon_count(), mesh.triangles().len()), (1, 999_998));
+    assert_eq!(findings, []);
+}
+
+#[test]
+fn a_line_without_end_is_refused_in_a_short_message() {
+    for text in ["x".repeat(5_000_000), format!("v 0 0 {}", "9x".repeat(2_500_000))] {
+        let message = refusal(&text);
+        assert!(message.len() < 200, "{} signs", message.len());
+    }
+    let numbers = format!("v{}\n", " 1".repeat(2_000_000));
+    assert_eq!(kinds(&read(&numbers).findings), [FindingKind::ExtraNumbers, FindingKind::NoFaces]);
+}
+
+#[test]
+fn parts_and_names_without_end_are_read_as_quickly_as_others() {
+    let mut text = String::from(TRIANGLE);
+    for i in 0..100_000 {
+        text += &format!("usemtl {i}\nf 1 2 3\nunknown{i}\n");
+    }
+    let (mesh, findings) = described(&text);
+    assert_eq!(mesh.parts().len(), 100_000);
+    assert!(findings.len() < 300, "{} findings", findings.len());
+}
+
+#[test]
+fn a_vertex_with_a_hundred_thousand_normals_keeps_them_all() {
+    let mut text = String::from(TRIANGLE);
+    for i in 1..=100_000 {
+        text += &format!("vn {i} 1 0\nf 1//{i} 2//{i} 3//{i}\n");
+    }
+    let (mesh, _) = described(&text);
+    let normal = |corner: &marraztu::scene::Corner| mesh.points()[corner.filed as usize].normal;
+    assert_eq!(mesh.points().len(), 300_003);
+    let [x, y, _] = normal(&mesh.polygon(49_999)[0]);
+    assert!((x / y - 50_000.0).abs() < 1.0, "{x} / {y}");
+}
+
 proptest! {
     /// Files of statements, half of them nonsense: refused or loaded, and never a panic.
     #[test]
@@ -435,7 +574,7 @@ proptest! {
         }
     }
 
-    /// Every number of a file comes out of `tobj` as it went in, under the index it had.
+    /// Every number of a file comes out as it went in, under the index it had.
     #[test]
     fn whatever_the_faces_use_everything_keeps_its_number(
         vertices in prop::collection::vec(prop::array::uniform3(-1e3..1e3_f32), 3..30),

@@ -145,6 +145,82 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
     }
 }
 
+/// What `tobj` reads of a file: positions, normals and places on the texture by corner, as bits.
+fn by_tobj(path: &Path) -> Option<Vec<Vec<[Vec<u32>; 3]>>> {
+    let (models, _) = tobj::load_obj(path, &tobj::LoadOptions::default()).ok()?;
+    let bits = |numbers: &[f32], size: usize, index: Option<&u32>| {
+        let begin = *index.unwrap_or(&u32::MAX) as usize * size;
+        let row = numbers.get(begin..begin + size).unwrap_or_default();
+        row.iter().map(|x| x.to_bits()).collect::<Vec<u32>>()
+    };
+    let mut faces = Vec::new();
+    for mesh in models.into_iter().map(|model| model.mesh) {
+        let mut begin = 0;
+        let triangles = vec![3; mesh.indices.len() / 3];
+        let arities = if mesh.face_arities.is_empty() { &triangles } else { &mesh.face_arities };
+        for arity in arities {
+            let end = begin + *arity as usize;
+            let corner = |i: usize| {
+                [
+                    bits(&mesh.positions, 3, mesh.indices.get(i)),
+                    bits(&mesh.normals, 3, mesh.normal_indices.get(i)),
+                    bits(&mesh.texcoords, 2, mesh.texcoord_indices.get(i)),
+                ]
+            };
+            faces.push((begin..end).map(corner).collect());
+            begin = end;
+        }
+    }
+    Some(faces)
+}
+
+#[test]
+fn what_tobj_reads_of_a_model_is_read_alike_bit_for_bit() {
+    let Some(models) = models() else { return };
+    let mut compared = 0;
+    for row in table(&models) {
+        let path = models.join(&row.file);
+        let text = String::from_utf8_lossy(&std::fs::read(&path).unwrap()).into_owned();
+        // It draws lines and points as faces, and counts corners wrongly where only some have all.
+        let statement = |word: &str| text.lines().any(|line| line.starts_with(word));
+        let loaded = load(&path, &LoadOptions::default(), &Progress::new());
+        let (Ok(loaded), false) = (loaded, statement("l ") || statement("p ")) else { continue };
+        // It gives the first place on the texture to faces of which none names any.
+        let named = text.lines().any(|line| line.starts_with('f') && line.contains('/'));
+        let count = |kind| count(&loaded.findings, kind);
+        let mixed = count(FindingKind::UvMixed) + count(FindingKind::NormalMixed);
+        let short = count(FindingKind::FaceShort) + count(FindingKind::FaceRange);
+        // It divides by weights, which are here passed over and listed.
+        let other = mixed + short + count(FindingKind::Weight);
+        let Some(theirs) = by_tobj(&path).filter(|_| other == 0) else { continue };
+        let mesh = &loaded.model.mesh;
+        assert_eq!(mesh.polygon_count(), theirs.len(), "faces of {}", row.file);
+        let row_of = |row: Option<&[f32]>| -> Vec<u32> {
+            row.unwrap_or_default().iter().map(|x| x.to_bits()).collect()
+        };
+        for (polygon, theirs) in (0..).zip(theirs) {
+            assert_eq!(mesh.polygon(polygon).len(), theirs.len(), "{}: {polygon}", row.file);
+            for (corner, [position, normal, uv]) in mesh.polygon(polygon).iter().zip(theirs) {
+                let ours = &mesh.positions()[corner.position as usize];
+                assert_eq!(row_of(Some(ours)), position, "{}: {polygon}", row.file);
+                let ours = mesh.uvs().get(corner.uv as usize).map(|row| &row[..]);
+                if named {
+                    assert_eq!(row_of(ours), uv, "{}: {polygon}", row.file);
+                }
+                // Ours are brought to length 1, theirs are as they stand in the file.
+                let theirs = normal.iter().map(|bits| f64::from(f32::from_bits(*bits)));
+                let theirs = DVec3::from_slice(&theirs.chain([0.0; 3]).collect::<Vec<_>>());
+                if let Some(unit) = math::unit(theirs).filter(|_| corner.filed != corner.smooth) {
+                    let ours = mesh.points()[corner.filed as usize].normal;
+                    assert_eq!(ours, unit.as_vec3().to_array(), "{}: {polygon}", row.file);
+                }
+            }
+        }
+        compared += 1;
+    }
+    assert!(compared > 60, "only {compared} models");
+}
+
 #[test]
 fn no_polygon_is_cut_outside_its_outline_unless_it_crosses_itself() {
     let Some(sweep) = sweep() else { return };

@@ -5,15 +5,16 @@
 
 mod common;
 
-use common::{at, ball, covered, cube, draw, edit, scene, square};
+use common::{at, ball, covered, cube, draw, edit, model, scene, square};
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
+use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::render::{EffectUse, FramePlan, Renderer};
 use marraztu::scene::{
-    Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Normals, ObjectId, PolygonMode,
-    PresetId, Projection, Scene, Settings, SpecularForm, View,
+    Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Model, Normals, ObjectId,
+    PolygonMode, PresetId, Projection, Scene, Settings, SpecularForm, View,
 };
 
 const FIRST: ObjectId = ObjectId(10);
@@ -230,6 +231,36 @@ fn a_renderer_that_has_drawn_other_pictures_draws_the_same() {
         let size = if round < 6 { Size::new(200, 150) } else { Size::new(150, 200) };
         let plan = FramePlan::new(&scene, &without_marks(view), &settings, size);
         assert!(*renderer.render(&plan) == *Renderer::default().render(&plan), "{round}");
+    }
+}
+
+/// Triangles and squares between the points of a small grid: many cut through each other, many fall
+/// together.
+fn heap() -> Shared<Model> {
+    let mut bits = 1_u32;
+    let mut next = |bound: u32| {
+        bits = bits.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (bits >> 16) % bound
+    };
+    let positions: Vec<[f32; 3]> =
+        (0..90).map(|_| [0; 3].map(|_: i32| next(4) as f32 / 1.5 - 1.0)).collect();
+    let polygons: Vec<Vec<u32>> =
+        (0..120).map(|i| (0..3 + i % 2).map(|_| next(90)).collect()).collect();
+    model("heap", &positions, &polygons.iter().map(|own| &own[..]).collect::<Vec<_>>())
+}
+
+#[test]
+fn the_order_in_which_a_mesh_is_drawn_does_not_show() {
+    for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
+        let settings = Settings { light, ..Settings::default() };
+        let [quickest, as_filed] = [heap(), heap()].map(|model| (model, at(60.0, 0.0, 0.0, 0.0)));
+        as_filed.0.mesh.draw_as_filed();
+        assert!(as_filed.0.mesh.draw_order() != quickest.0.mesh.draw_order());
+        let pictures = [quickest, as_filed].map(|placed| {
+            let (scene, view) = scene(&[placed]);
+            draw(&scene, &View { edges_over_fill: true, back_faces: true, ..view }, &settings, 200)
+        });
+        assert!(pictures[0] == pictures[1], "{light:?}");
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn statistics_ui(ui: &Ui, state: &State, rect: Rect) {
         sum(|mesh| mesh.positions().len()),
         sum(crate::scene::Mesh::polygon_count),
         grouped(statistics.triangles),
-        sum(|mesh| mesh.triangles().len()),
+        sum(|mesh| mesh.triangle_count()),
     );
     plate_ui(ui, rect, Align2::LEFT_TOP, text);
 }

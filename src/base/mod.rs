@@ -2,6 +2,7 @@
 
 pub mod color;
 pub mod image;
+pub mod lists;
 pub mod math;
 mod shared;
 

@@ -20,12 +20,18 @@ use super::stage::{Stage, usage};
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     let stage = stage(&arguments.shot)?;
     let bar = Bar::unmeasured("drawing");
+    for (_, object) in stage.scene.objects.iter() {
+        object.model.mesh.draw_as_filed();
+    }
     let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.shot.size);
     let mut renderer = Renderer::default();
     let picture = renderer.render(&plan);
     drop(bar);
     let _bar = Bar::unmeasured(&format!("writing {}", arguments.out.display()));
-    Ok(io::save_picture(&arguments.out, picture)?)
+    io::save_picture(&arguments.out, picture)?;
+    // With this the process ends: to take a million vertices out of memory before only takes time.
+    std::mem::forget((stage, plan, renderer));
+    Ok(())
 }
 
 /// Reads the files and arranges everything as it is asked for. What was found in the files is told.

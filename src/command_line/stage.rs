@@ -49,13 +49,7 @@ impl Stage {
 
     /// The first scene, or its camera and lights alone.
     fn first(with_objects: bool) -> Self {
-        let (mut scene, mut view) = io::default_scene();
-        if !with_objects {
-            let removals = scene.objects.ids().map(marraztu::scene::ItemId::Object);
-            let removals = Command::Batch(removals.map(Command::Remove).collect());
-            removals.apply(&mut scene).expect("what is in a scene can be taken out of it");
-            selection::settle(&scene, &mut view);
-        }
+        let (scene, view) = if with_objects { io::default_scene() } else { io::empty_scene() };
         Self {
             scene,
             view,

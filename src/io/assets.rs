@@ -33,7 +33,11 @@ impl Asset {
             let loaded = parse(self.text, &file, None, &LoadOptions::default(), &Progress::new());
             Shared::new(loaded.expect("the program's own models are sound").model)
         };
-        self.model.get_or_init(read).clone()
+        // Read outside of the cell: whoever waits for it in the middle may be asked for it again.
+        self.model.get().cloned().unwrap_or_else(|| {
+            let model = read();
+            self.model.get_or_init(|| model).clone()
+        })
     }
 }
 
@@ -87,6 +91,16 @@ pub fn default_scene() -> (Scene, View) {
     let cam = object(&CAM, PresetId::OBSIDIAN, DVec3::new(0.0, 0.0, -400.0));
     let x_wing = object(&X_WING, PresetId::EMERALD, DVec3::new(100.0, 0.0, 0.0));
     let r_falke = object(&R_FALKE, PresetId::RUBY, DVec3::new(-100.0, 0.0, 0.0));
+    let (mut scene, _) = empty_scene();
+    scene.objects =
+        List::from_iter([(ObjectId(2), r_falke), (ObjectId(1), x_wing), (ObjectId(0), cam)]);
+    let view = scene.first_view();
+    (scene, view)
+}
+
+/// The scene that the program opens with, without its objects, and how it is seen.
+#[must_use]
+pub fn empty_scene() -> (Scene, View) {
     let camera = Camera {
         name: "camera 1".to_owned(),
         visible: true,
@@ -97,11 +111,7 @@ pub fn default_scene() -> (Scene, View) {
     };
     let lights = Light::five().into_iter().zip(4..).map(|(light, id)| (LightId(id), light));
     let scene = Scene {
-        objects: List::from_iter([
-            (ObjectId(2), r_falke),
-            (ObjectId(1), x_wing),
-            (ObjectId(0), cam),
-        ]),
+        objects: List::default(),
         cameras: List::from_iter([(CameraId(3), camera)]),
         lights: lights.collect(),
         background: Scene::BACKGROUND,

@@ -84,7 +84,7 @@ fn describe_options(model: &Model, text: &mut Text) {
 fn describe_mesh(mesh: &Mesh, text: &mut Text) {
     text.line("vertices", &grouped(mesh.positions().len()));
     text.line("faces", &faces(mesh));
-    text.line("triangles", &grouped(mesh.triangles().len()));
+    text.line("triangles", &grouped(mesh.triangle_count()));
     match mesh.bounds() {
         None => text.line("box", "none"),
         Some(bounds) => {

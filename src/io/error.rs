@@ -45,6 +45,10 @@ impl LoadError {
         Self::Line { file: file.to_owned(), line, reason: reason.into() }
     }
 
+    pub(super) fn too_large(file: &str, most: usize) -> Self {
+        Self::file(file, format!("it is larger than {} MB", most >> 20))
+    }
+
     pub(super) fn system(file: &str, error: &std::io::Error) -> Self {
         Self::file(file, reason(error))
     }

@@ -96,6 +96,8 @@ kinds! {
     NoFaces: "the file has vertices, but no face: it draws nothing", "the file has vertices, but no face: it draws nothing";
     /// An MTL file that is not there.
     MtlMissing: "the material file \"@\" was not found", "the material file \"@\" was not found";
+    /// More MTL files than anyone names.
+    MtlMany: "a statement \"mtllib\" is passed over: a thousand different ones are enough", "# statements \"mtllib\" are passed over: a thousand different ones are enough";
     /// An MTL file that cannot be read.
     MtlUnreadable: "the material file cannot be read: @", "the material file cannot be read: @";
     /// A `usemtl` of a name that no MTL file has.
@@ -128,6 +130,9 @@ kinds! {
     TextureUnreadable: "the texture cannot be read: @", "the texture cannot be read: @";
 }
 
+/// How many signs of a name are shown.
+const LONGEST_NAME: usize = 200;
+
 impl FindingKind {
     /// Whether cases about different names are one finding.
     const fn joins_names(self) -> bool {
@@ -150,6 +155,10 @@ impl FindingKind {
     fn text(self, count: usize, name: &str, line: Option<u32>) -> String {
         let [one, many] = self.words();
         let words = if count == 1 { one } else { many };
+        let name = match name.char_indices().nth(LONGEST_NAME) {
+            Some((end, _)) => &format!("{}...", &name[..end]),
+            None => name,
+        };
         let text = words.replace('#', &count.to_string()).replace('@', name);
         match line {
             None => text,
@@ -159,12 +168,22 @@ impl FindingKind {
     }
 }
 
+/// How many names of a kind are told apart: nobody reads more.
+const MOST_NAMES: usize = 100;
+
+/// No name sorts after it.
+const LAST: &str = "\u{10FFFF}";
+
 /// Findings of one file as they come in.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Findings {
     file: String,
     /// By kind and, where names are told apart, name.
     cases: BTreeMap<(FindingKind, String), Cases>,
+    /// How many names of a kind are told apart.
+    names: BTreeMap<FindingKind, usize>,
+    /// Cases of names beyond those.
+    others: BTreeMap<FindingKind, Cases>,
 }
 
 #[derive(Debug)]
@@ -176,7 +195,7 @@ struct Cases {
 
 impl Findings {
     pub(super) fn new(file: &str) -> Self {
-        Self { file: file.to_owned(), cases: BTreeMap::new() }
+        Self { file: file.to_owned(), ..Self::default() }
     }
 
     /// Notes one case at a line.
@@ -186,22 +205,99 @@ impl Findings {
 
     /// Notes one case that is about a name, at a line where there is one.
     pub(super) fn add(&mut self, kind: FindingKind, name: &str, line: Option<u32>) {
-        let key = if kind.joins_names() { String::new() } else { name.to_owned() };
-        let cases = self.cases.entry((kind, key)).or_insert_with(|| Cases {
-            count: 0,
-            name: name.to_owned(),
-            line,
-        });
-        cases.count += 1;
+        self.add_cases(kind, Cases { count: 1, name: name.to_owned(), line });
+    }
+
+    /// Notes so many cases, the first of them at `line`; none is no finding.
+    pub(super) fn note_all(&mut self, kind: FindingKind, count: usize, line: u32) {
+        if count > 0 {
+            self.add_cases(kind, Cases { count, name: String::new(), line: Some(line) });
+        }
+    }
+
+    /// Takes up what was found in the lines that follow, of which `lines` are before them.
+    pub(super) fn append(&mut self, following: Self, lines: u32) {
+        let placed = |cases: Cases| {
+            let line = cases.line.map(|line| line.saturating_add(lines));
+            Cases { line, ..cases }
+        };
+        for ((kind, _), cases) in following.cases {
+            self.add_cases(kind, placed(cases));
+        }
+        for (kind, cases) in following.others {
+            self.add_others(kind, &placed(cases));
+        }
+    }
+
+    fn add_cases(&mut self, kind: FindingKind, cases: Cases) {
+        let name = if kind.joins_names() { "" } else { &*cases.name };
+        let key = (kind, name.to_owned());
+        if let Some(first) = self.cases.get_mut(&key) {
+            first.count += cases.count;
+            return;
+        }
+        self.cases.insert(key, cases);
+        let names = self.names.entry(kind).or_default();
+        *names += 1;
+        if *names <= MOST_NAMES {
+            return;
+        }
+        *names -= 1;
+        // The last one by name goes: which stay does not depend on the order in which they came.
+        let last = self.cases.range(..(kind, LAST.to_owned())).next_back();
+        if let Some(cases) =
+            last.map(|(key, _)| key.clone()).and_then(|key| self.cases.remove(&key))
+        {
+            self.add_others(kind, &cases);
+        }
+    }
+
+    /// Takes up cases of names that are not told apart.
+    fn add_others(&mut self, kind: FindingKind, cases: &Cases) {
+        let Cases { count, line, .. } = *cases;
+        let none = Cases { count: 0, name: "... and others".to_owned(), line };
+        let others = self.others.entry(kind).or_insert(none);
+        others.count += count;
+        others.line = others.line.min(line);
     }
 
     pub(super) fn into_list(self) -> Vec<Finding> {
-        let Self { file, cases } = self;
+        let Self { file, mut cases, others, .. } = self;
+        cases.extend(others.into_iter().map(|(kind, cases)| ((kind, LAST.to_owned()), cases)));
         let finding = |((kind, _), cases): ((FindingKind, String), Cases)| {
             let Cases { count, name, line } = cases;
             let text = kind.text(count, &name, line);
             Finding { file: file.clone(), line, kind, count, text }
         };
         cases.into_iter().map(finding).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_endless_names_a_hundred_are_told_apart_whatever_order_they_come_in() {
+        let found = |names: &mut dyn Iterator<Item = u32>, share: usize| {
+            let names: Vec<u32> = names.collect();
+            let mut all = Findings::new("a.obj");
+            for names in names.chunks(share) {
+                let mut findings = Findings::default();
+                for name in names {
+                    findings.add(FindingKind::Unknown, &format!("{name:04}"), Some(name + 1));
+                }
+                all.append(findings, 0);
+            }
+            all.into_list()
+        };
+        let forth = found(&mut (0..1000), 1000);
+        assert_eq!(forth.len(), 101);
+        let text = "900 unknown statements \"... and others\" are passed over (first: line 101)";
+        assert_eq!(forth[100].text, text);
+        assert_eq!(forth, found(&mut (0..1000), 7));
+        assert_eq!(forth, found(&mut (0..1000).rev(), 130));
+        let long = FindingKind::TextureMissing.text(1, &"x".repeat(1 << 20), None);
+        assert!(long.len() < 300, "{} signs", long.len());
     }
 }

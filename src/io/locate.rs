@@ -4,20 +4,101 @@
 //! another case. So a name is looked for where it says, then by its last part beside the file that
 //! names it, then without regard to case.
 
+use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// The file that `name` means, seen from `folder`; `None` where there is none.
-pub(super) fn locate(folder: &Path, name: &str) -> Option<PathBuf> {
-    let name = plain(name);
-    if name.is_empty() {
-        return None;
+/// How many words of a line of names are looked at.
+const MOST_WORDS: usize = 1000;
+
+/// Looks for files, and remembers what is in the folders that it has looked into.
+#[derive(Debug, Default)]
+pub(super) struct Locator {
+    /// The names in a folder, by what they are in lower case.
+    listings: BTreeMap<PathBuf, BTreeMap<String, OsString>>,
+}
+
+impl Locator {
+    /// The file that `name` means, seen from `folder`; `None` where there is none.
+    pub(super) fn locate(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
+        let name = plain(name);
+        // No system has longer ones.
+        if name.is_empty() || name.len() > 4096 {
+            return None;
+        }
+        let last = name.rsplit('/').next().unwrap_or(&name);
+        let file = |path: PathBuf| path.is_file().then_some(path);
+        file(folder.join(&name))
+            .or_else(|| file(folder.join(last)))
+            .or_else(|| self.any_case(folder, &name))
+            .or_else(|| self.any_case(folder, last))
     }
-    let last = name.rsplit('/').next().unwrap_or(&name);
-    let file = |path: PathBuf| path.is_file().then_some(path);
-    file(folder.join(&name))
-        .or_else(|| file(folder.join(last)))
-        .or_else(|| any_case(folder, &name))
-        .or_else(|| any_case(folder, last))
+
+    /// Follows a relative name from `folder`, without regard to case.
+    fn any_case(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
+        if name.starts_with('/') {
+            return None;
+        }
+        let mut path = folder.to_owned();
+        for part in name.split('/') {
+            if part == "." || part == ".." {
+                path.push(part);
+                continue;
+            }
+            let name = self.listing(&path).get(&part.to_lowercase())?.clone();
+            path.push(name);
+        }
+        path.is_file().then_some(path)
+    }
+
+    /// What is in a folder; of names that are the same without regard to case the first.
+    fn listing(&mut self, folder: &Path) -> &BTreeMap<String, OsString> {
+        self.listings.entry(folder.to_owned()).or_insert_with(|| {
+            let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+            let entries = std::fs::read_dir(here).into_iter().flatten();
+            let mut names: Vec<_> =
+                entries.filter_map(|entry| Some(entry.ok()?.file_name())).collect();
+            // The order of a folder's entries is no order: the first by name, put there last.
+            names.sort();
+            names.reverse();
+            names.into_iter().map(|name| (name.to_string_lossy().to_lowercase(), name)).collect()
+        })
+    }
+
+    /// The files that a line of names means: names are divided by blanks, and may have blanks inside.
+    ///
+    /// From each word on, the longest run of words that is a file is one name; where none is, a name
+    /// that is not there goes up to the first word with the ending that all of them have.
+    pub(super) fn locate_all(
+        &mut self,
+        folder: &Path,
+        names: &str,
+        ending: &str,
+    ) -> Vec<(String, Option<PathBuf>)> {
+        let whole = self.locate(folder, names);
+        if whole.is_some() {
+            return vec![(names.to_owned(), whole)];
+        }
+        let words: Vec<&str> = names.split_whitespace().take(MOST_WORDS).collect();
+        let mut found = Vec::new();
+        let mut at = 0;
+        while at < words.len() {
+            // Every further word is a look at the disk; no name has as many as this.
+            let longest = words.len().min(at + 16);
+            let run = (at + 1..=longest).rev().find_map(|end| {
+                let name = words[at..end].join(" ");
+                self.locate(folder, &name).map(|path| (end, name, Some(path)))
+            });
+            let ends = |word: &&str| word.to_ascii_lowercase().ends_with(ending);
+            let (end, name, path) = run.unwrap_or_else(|| {
+                let end = words[at..].iter().position(ends).map_or(words.len(), |i| at + i + 1);
+                (end, words[at..end].join(" "), None)
+            });
+            found.push((name, path));
+            at = end;
+        }
+        found
+    }
 }
 
 /// A name with slashes, without the quotation marks that some write about it.
@@ -28,64 +109,4 @@ pub(super) fn plain(name: &str) -> String {
     let lead = if slashes.starts_with('/') { "/" } else { "" };
     let parts: Vec<&str> = slashes.split('/').filter(|part| !part.is_empty()).collect();
     format!("{lead}{}", parts.join("/"))
-}
-
-/// Follows a relative name from `folder`, without regard to case.
-fn any_case(folder: &Path, name: &str) -> Option<PathBuf> {
-    if name.starts_with('/') {
-        return None;
-    }
-    let mut path = folder.to_owned();
-    for part in name.split('/') {
-        if part == "." || part == ".." {
-            path.push(part);
-            continue;
-        }
-        let wanted = part.to_lowercase();
-        let entries =
-            std::fs::read_dir(if path.as_os_str().is_empty() { ".".as_ref() } else { &*path });
-        let mut names: Vec<_> = entries
-            .ok()?
-            .filter_map(|entry| Some(entry.ok()?.file_name()))
-            .filter(|name| name.to_string_lossy().to_lowercase() == wanted)
-            .collect();
-        // The order of a folder's entries is no order: the first by name.
-        names.sort();
-        path.push(names.first()?);
-    }
-    path.is_file().then_some(path)
-}
-
-/// The files that a line of names means: names are divided by blanks, and may have blanks inside.
-///
-/// From each word on, the longest run of words that is a file is one name; where none is, a name
-/// that is not there goes up to the first word with the ending that all of them have.
-pub(super) fn locate_all(
-    folder: &Path,
-    names: &str,
-    ending: &str,
-) -> Vec<(String, Option<PathBuf>)> {
-    let whole = locate(folder, names);
-    if whole.is_some() {
-        return vec![(names.to_owned(), whole)];
-    }
-    let words: Vec<&str> = names.split_whitespace().collect();
-    let mut found = Vec::new();
-    let mut at = 0;
-    while at < words.len() {
-        // Every further word is a look at the disk; no name has as many as this.
-        let longest = words.len().min(at + 16);
-        let run = (at + 1..=longest).rev().find_map(|end| {
-            let name = words[at..end].join(" ");
-            locate(folder, &name).map(|path| (end, name, Some(path)))
-        });
-        let ends = |word: &&str| word.to_ascii_lowercase().ends_with(ending);
-        let (end, name, path) = run.unwrap_or_else(|| {
-            let end = words[at..].iter().position(ends).map_or(words.len(), |i| at + i + 1);
-            (end, words[at..end].join(" "), None)
-        });
-        found.push((name, path));
-        at = end;
-    }
-    found
 }

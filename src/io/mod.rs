@@ -13,11 +13,12 @@ mod mtl;
 mod obj;
 mod picture;
 mod progress;
+mod read;
 mod replace;
 mod scene_file;
 mod texture;
 
-pub use assets::{cam_model, default_scene, own_model, own_texture};
+pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
 pub use describe::describe;
 pub use error::LoadError;
 pub use findings::{Finding, FindingKind};

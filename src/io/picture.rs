@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::replace::{Before, SaveError, replace};
+use super::replace::{SaveError, Worth, replace};
 use crate::base::image::Picture;
 
 /// Saves a picture as PNG or PPM, by the ending of its name.
@@ -21,7 +21,7 @@ pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
         Some("ppm") => ppm(picture),
         _ => return Err(SaveError::new(path, "its name has to end in .png or .ppm")),
     };
-    replace(path, &content, Before::Dropped)
+    replace(path, &content, Worth::Product)
 }
 
 fn png(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
@@ -41,13 +41,16 @@ fn png(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
 
 fn ppm(picture: &Picture) -> Vec<u8> {
     let size = picture.size();
-    let mut content = format!("P6\n{} {}\n255\n", size.width, size.height).into_bytes();
-    content.extend(opaque_bytes(picture));
-    content
+    let head = format!("P6\n{} {}\n255\n", size.width, size.height);
+    [head.as_bytes(), &opaque_bytes(picture)].concat()
 }
 
 fn opaque_bytes(picture: &Picture) -> Vec<u8> {
-    picture.pixels().iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
+    let mut bytes = vec![[0; 3]; picture.size().area()];
+    for (bytes, [r, g, b, _]) in bytes.iter_mut().zip(picture.pixels()) {
+        *bytes = [*r, *g, *b];
+    }
+    bytes.into_flattened()
 }
 
 #[cfg(test)]

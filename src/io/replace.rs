@@ -1,7 +1,8 @@
 //! Writing a file so that nothing is lost, whatever happens on the way.
 //!
-//! The new content is written beside the old one, brought to the disk, and takes its name in one
-//! step: whoever looks finds the old file or the new one, whole.
+//! The new content is written beside the old one and takes its name in one step: whoever looks finds
+//! the old file or the new one, whole. What is somebody's work is brought to the disk before, so that
+//! not even a loss of power takes it.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
@@ -25,17 +26,18 @@ impl SaveError {
     }
 }
 
-/// What becomes of the file that was there.
+/// What a file is worth to whoever saves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Before {
-    /// It goes.
-    Dropped,
-    /// It is kept, with `~` after its name.
-    Kept,
+pub(super) enum Worth {
+    /// It can be made again, and nobody waits until a disk has turned.
+    Product,
+    /// It is somebody's work: it is brought to the disk, and the file that was there is kept, with
+    /// `~` after its name.
+    Work,
 }
 
 /// Makes `content` the content of the file at `path`.
-pub(super) fn replace(path: &Path, content: &[u8], before: Before) -> Result<(), SaveError> {
+pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), SaveError> {
     let fail = |error: std::io::Error| SaveError::new(path, reason(&error));
     // A link goes on pointing where it points: the file behind it is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_new| path.to_owned());
@@ -46,7 +48,7 @@ pub(super) fn replace(path: &Path, content: &[u8], before: Before) -> Result<(),
         return Err(SaveError::new(path, "this is no name for a file"));
     }
     let beside = with_ending(&target, &format!(".{}.new", std::process::id()));
-    let written = write(&beside, &target, content, before);
+    let written = write(&beside, &target, content, worth);
     if written.is_err() {
         // Nothing more can be done where even that fails.
         let _ = fs::remove_file(&beside);
@@ -54,16 +56,19 @@ pub(super) fn replace(path: &Path, content: &[u8], before: Before) -> Result<(),
     written.map_err(fail)
 }
 
-fn write(beside: &Path, target: &Path, content: &[u8], before: Before) -> std::io::Result<()> {
+fn write(beside: &Path, target: &Path, content: &[u8], worth: Worth) -> std::io::Result<()> {
     let mut file = OpenOptions::new().write(true).create(true).truncate(true).open(beside)?;
     file.write_all(content)?;
     if let Ok(old) = fs::metadata(target) {
         // Who may read it is as before, where the disk knows of such things.
         let _ = file.set_permissions(old.permissions());
     }
+    if worth == Worth::Product {
+        return fs::rename(beside, target);
+    }
     file.sync_all()?;
     drop(file);
-    if before == Before::Kept && target.exists() {
+    if target.exists() {
         let kept = with_ending(target, "~");
         let _ = fs::remove_file(&kept);
         if fs::hard_link(target, &kept).is_err() {

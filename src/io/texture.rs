@@ -67,9 +67,13 @@ pub(super) fn own_picture(content: &[u8]) -> Option<Picture> {
 
 fn reason(error: &image::ImageError) -> String {
     use image::ImageError;
+    use image::error::LimitErrorKind;
     match error {
-        ImageError::Limits(_) => {
+        ImageError::Limits(limit) if matches!(limit.kind(), LimitErrorKind::DimensionError) => {
             format!("the picture is larger than {LARGEST_SIDE} x {LARGEST_SIDE}")
+        }
+        ImageError::Limits(_) => {
+            format!("the picture takes more than {} GB of memory", MOST_MEMORY >> 30)
         }
         ImageError::IoError(error) => super::error::reason(error),
         ImageError::Unsupported(_) => "this is no PNG, JPEG, BMP, TGA or GIF".to_owned(),

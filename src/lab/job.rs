@@ -109,7 +109,7 @@ const BACKGROUND: Color = Color([26, 26, 31]);
 /// Where the scene cannot be made of the mesh.
 pub fn run(job: &Job, model: &Model) -> Result<Measured, CommandError> {
     let mesh = prepared(model, job.raw);
-    let triangles = mesh.mesh.triangles().len();
+    let triangles = mesh.mesh.triangle_count();
     let (scene, view, settings) = scene(job, Shared::new(mesh))?;
     let mut renderer = Renderer::default();
     let mut frame = |i: usize| -> Result<f64, CommandError> {

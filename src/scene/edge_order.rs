@@ -33,9 +33,9 @@ impl EdgeOrder {
     pub(super) fn new(mesh: &Mesh) -> Self {
         let mut vertices = vec![NONE; mesh.positions().len()];
         for triangle in &mesh.draw_order().triangles {
-            let corners = mesh.triangles()[triangle.number as usize].corners;
+            let corners = mesh.triangle(triangle.number as usize);
             for (corner, vertex) in corners.into_iter().zip(triangle.vertices) {
-                vertices[mesh.corners()[corner as usize].position as usize] = vertex;
+                vertices[mesh.corners.vertices[corner] as usize] = vertex;
             }
         }
         let edges = mesh.edges().iter().enumerate().map(|(number, edge)| DrawEdge {

@@ -4,16 +4,15 @@
 //! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
 //! polygon names the point it has with computed normals and the one it has with the file's.
 //!
+//! What not every picture needs is found when it is first asked for (`mesh_found`).
+//!
 //! The fields are private and the constructor checks them, so that no index is ever out of range.
-
-use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::mesh_points::{check, points_and_corners};
-use super::triangulate::triangulate;
-use super::{DrawOrder, EdgeOrder};
-use crate::base::math;
+use super::Bounds;
+use super::mesh_found::Found;
+use super::mesh_points::CornerPoints;
 
 /// In place of an index: there is none.
 pub const NONE: u32 = u32::MAX;
@@ -90,52 +89,20 @@ pub struct Triangle {
     pub polygon: u32,
 }
 
-/// A side of one or more polygons.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Edge {
-    /// The vertices at its ends, the smaller index first.
-    pub ends: [u32; 2],
-    /// Where its polygons begin in the list that [`Mesh::edge_polygons`] reads.
-    first: u32,
-    count: u32,
-}
-
-/// The sides of a mesh's polygons, each once, sorted by their ends.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Edges {
-    edges: Vec<Edge>,
-    polygons: Vec<u32>,
-}
-
-/// The extent of a set of points, in object space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// The smallest coordinates.
-    pub min: DVec3,
-    /// The largest coordinates.
-    pub max: DVec3,
-}
-
 /// The shape of a model: polygons over shared vertices, and what follows from them.
 pub struct Mesh {
-    positions: Vec<[f32; 3]>,
-    colors: Vec<[f32; 3]>,
-    uvs: Vec<[f32; 2]>,
-    points: Vec<Point>,
-    corners: Vec<Corner>,
-    starts: Vec<u32>,
-    polygon_parts: Vec<u32>,
-    polygon_normals: Vec<[f32; 3]>,
-    triangles: Vec<Triangle>,
-    triangle_starts: Vec<u32>,
-    parts: Vec<Part>,
-    has_file_normals: bool,
-    bounds: Option<Bounds>,
-    mean: DVec3,
-    edges: OnceLock<Edges>,
-    order: OnceLock<DrawOrder>,
-    edge_order: OnceLock<EdgeOrder>,
-    centres: OnceLock<Vec<[f32; 3]>>,
+    pub(super) positions: Vec<[f32; 3]>,
+    pub(super) colors: Vec<[f32; 3]>,
+    pub(super) uvs: Vec<[f32; 2]>,
+    pub(super) points: Vec<Point>,
+    pub(super) corners: CornerPoints,
+    pub(super) starts: Vec<u32>,
+    pub(super) polygon_parts: Vec<u32>,
+    pub(super) without_area: Vec<u32>,
+    pub(super) parts: Vec<Part>,
+    pub(super) bounds: Option<Bounds>,
+    pub(super) mean: DVec3,
+    pub(super) found: Found,
 }
 
 /// What is worked out when it is first asked for is left out: it is no part of what a mesh is.
@@ -143,7 +110,7 @@ impl std::fmt::Debug for Mesh {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Mesh")
             .field("positions", &self.positions)
-            .field("corners", &self.corners)
+            .field("corners", &self.corners.vertices)
             .field("starts", &self.starts)
             .field("parts", &self.parts)
             .finish_non_exhaustive()
@@ -176,7 +143,7 @@ impl PartialEq for Mesh {
             && self.colors == other.colors
             && self.uvs == other.uvs
             && self.points == other.points
-            && self.corners == other.corners
+            && self.corners() == other.corners()
             && self.starts == other.starts
             && self.polygon_parts == other.polygon_parts
             && self.parts == other.parts
@@ -184,59 +151,6 @@ impl PartialEq for Mesh {
 }
 
 impl Mesh {
-    /// Checks the parts, triangulates the polygons and computes their normals.
-    ///
-    /// # Errors
-    /// Where a number is not finite, an index out of range, or a list of the wrong length.
-    pub fn new(source: MeshSource) -> Result<Self, MeshError> {
-        check(&source)?;
-        let starts = running_sum(&source.arities);
-        let polygon = |i: usize| starts[i] as usize..starts[i + 1] as usize;
-        let polygons = source.arities.len();
-
-        let at = |corner: &SourceCorner| dvec3(source.positions[corner.position as usize]);
-        let normals: Vec<Option<DVec3>> = (0..polygons)
-            .map(|i| math::unit(newell(source.corners[polygon(i)].iter().map(at))))
-            .collect();
-
-        let (points, corners) = points_and_corners(&source, &starts, &normals);
-
-        let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * polygons));
-        let mut triangle_starts = vec![0];
-        for i in 0..polygons {
-            let range = polygon(i);
-            let outline: Vec<DVec3> = source.corners[range.clone()].iter().map(at).collect();
-            for [a, b, c] in triangulate(&outline, normals[i].unwrap_or(DVec3::Z)) {
-                let corners = [a, b, c].map(|corner| starts[i] + corner);
-                triangles.push(Triangle { corners, polygon: index(i) });
-            }
-            triangle_starts.push(index(triangles.len()));
-        }
-
-        let has_file_normals = corners.iter().any(|corner| corner.filed != corner.smooth);
-        let fallback = |normal: &Option<DVec3>| normal.unwrap_or(DVec3::Z).as_vec3().to_array();
-        Ok(Self {
-            bounds: Bounds::of(source.positions.iter().copied().map(dvec3)),
-            mean: mean(source.positions.iter().copied().map(dvec3)),
-            polygon_normals: normals.iter().map(fallback).collect(),
-            positions: source.positions,
-            colors: source.colors,
-            uvs: source.uvs,
-            points,
-            corners,
-            starts,
-            polygon_parts: source.polygon_parts,
-            triangles,
-            triangle_starts,
-            parts: source.parts,
-            has_file_normals,
-            edges: OnceLock::new(),
-            order: OnceLock::new(),
-            edge_order: OnceLock::new(),
-            centres: OnceLock::new(),
-        })
-    }
-
     /// Where the vertices are, in object space.
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
@@ -262,12 +176,6 @@ impl Mesh {
         &self.points
     }
 
-    /// The corners of all polygons, one after the other.
-    #[must_use]
-    pub fn corners(&self) -> &[Corner] {
-        &self.corners
-    }
-
     /// How many polygons there are.
     #[must_use]
     pub fn polygon_count(&self) -> usize {
@@ -277,7 +185,7 @@ impl Mesh {
     /// The corners of one polygon.
     #[must_use]
     pub fn polygon(&self, polygon: u32) -> &[Corner] {
-        &self.corners[self.corners_of(polygon)]
+        &self.corners()[self.corners_of(polygon)]
     }
 
     /// Where the corners of one polygon stand in [`Self::corners`].
@@ -292,39 +200,25 @@ impl Mesh {
         &self.polygon_parts
     }
 
-    /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
+    /// The polygons without area, which have no normal of their own; ascending.
     #[must_use]
-    pub fn polygon_normals(&self) -> &[[f32; 3]] {
-        &self.polygon_normals
+    pub fn without_area(&self) -> &[u32] {
+        &self.without_area
     }
 
     /// The mean of a polygon's corners.
     #[must_use]
     pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
-        let corners = self.polygon(polygon).iter();
-        mean(corners.map(|corner| dvec3(self.positions[corner.position as usize])))
-    }
-
-    /// The means of the corners of all polygons. Found when first asked for.
-    #[must_use]
-    pub fn polygon_centres(&self) -> &[[f32; 3]] {
-        self.centres.get_or_init(|| {
-            let polygons = 0..index(self.polygon_count());
-            polygons.map(|polygon| self.polygon_centre(polygon).as_vec3().to_array()).collect()
-        })
-    }
-
-    /// The triangles of all polygons, in the order of the polygons.
-    #[must_use]
-    pub fn triangles(&self) -> &[Triangle] {
-        &self.triangles
+        mean(self.outlines().of(polygon as usize))
     }
 
     /// Where the triangles of one polygon stand in [`Self::triangles`].
     #[must_use]
     pub fn triangles_of(&self, polygon: u32) -> std::ops::Range<usize> {
-        let polygon = polygon as usize;
-        self.triangle_starts[polygon] as usize..self.triangle_starts[polygon + 1] as usize
+        // Every polygon before this one has two triangles less than it has corners.
+        let corners = self.corners_of(polygon);
+        let before = 2 * polygon as usize;
+        corners.start - before..corners.end - before - 2
     }
 
     /// The runs of the file's `o`, `g` and `usemtl`.
@@ -336,7 +230,7 @@ impl Mesh {
     /// Whether any polygon has normals of the file's own.
     #[must_use]
     pub const fn has_file_normals(&self) -> bool {
-        self.has_file_normals
+        !self.corners.filed.is_empty()
     }
 
     /// The extent of the vertices; `None` where there are none.
@@ -349,94 +243,6 @@ impl Mesh {
     #[must_use]
     pub const fn mean(&self) -> DVec3 {
         self.mean
-    }
-
-    /// The triangles and vertices in the order in which they are drawn fastest. Found when first
-    /// asked for.
-    #[must_use]
-    pub fn draw_order(&self) -> &DrawOrder {
-        self.order.get_or_init(|| DrawOrder::new(self))
-    }
-
-    /// The edges in the order in which they are drawn fastest. Found when first asked for.
-    #[must_use]
-    pub fn edge_order(&self) -> &EdgeOrder {
-        self.edge_order.get_or_init(|| EdgeOrder::new(self))
-    }
-
-    /// The sides of all polygons, each once. Found when first asked for.
-    #[must_use]
-    pub fn edges(&self) -> &[Edge] {
-        &self.edge_table().edges
-    }
-
-    /// The polygons that have this edge as a side.
-    #[must_use]
-    pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
-        &self.edge_table().polygons[edge.first as usize..(edge.first + edge.count) as usize]
-    }
-
-    fn edge_table(&self) -> &Edges {
-        self.edges.get_or_init(|| {
-            // Sides as (ends, polygon), sorted so that those with equal ends stand together.
-            let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(self.corners.len());
-            for polygon in 0..index(self.polygon_count()) {
-                let corners = self.polygon(polygon);
-                for (i, corner) in corners.iter().enumerate() {
-                    let (a, b) = (corner.position, corners[(i + 1) % corners.len()].position);
-                    if a != b {
-                        sides.push(([a.min(b), a.max(b)], polygon));
-                    }
-                }
-            }
-            sides.sort_unstable();
-            sides.dedup();
-            let polygons = sides.iter().map(|(_, polygon)| *polygon).collect();
-            let mut edges: Vec<Edge> = Vec::new();
-            for (i, (ends, _)) in sides.iter().enumerate() {
-                match edges.last_mut() {
-                    Some(last) if last.ends == *ends => last.count += 1,
-                    _ => edges.push(Edge { ends: *ends, first: index(i), count: 1 }),
-                }
-            }
-            Edges { edges, polygons }
-        })
-    }
-}
-
-impl Bounds {
-    /// The extent of points; `None` where there are none.
-    #[must_use]
-    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
-        points.into_iter().fold(None, |bounds: Option<Self>, p| {
-            Some(
-                bounds.map_or(Self { min: p, max: p }, |b| Self {
-                    min: b.min.min(p),
-                    max: b.max.max(p),
-                }),
-            )
-        })
-    }
-
-    /// The middle of the box.
-    #[must_use]
-    pub fn centre(&self) -> DVec3 {
-        (self.min + self.max) * 0.5
-    }
-
-    /// Length, height and width of the box.
-    #[must_use]
-    pub fn extent(&self) -> DVec3 {
-        self.max - self.min
-    }
-
-    /// Its eight corners.
-    #[must_use]
-    pub fn corners(&self) -> [DVec3; 8] {
-        let pick = |i: usize, bit: usize, axis: usize| {
-            if i & bit == 0 { self.min[axis] } else { self.max[axis] }
-        };
-        std::array::from_fn(|i| DVec3::new(pick(i, 1, 0), pick(i, 2, 1), pick(i, 4, 2)))
     }
 }
 
@@ -461,7 +267,7 @@ pub fn dvec3(v: [f32; 3]) -> DVec3 {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "fewer than 2^32 points")]
-fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
+pub(super) fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
     let (sum, count) = points.fold((DVec3::ZERO, 0_usize), |(sum, n), p| (sum + p, n + 1));
     sum / count.max(1) as f64
 }
@@ -469,14 +275,6 @@ fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
 /// An index of 32 bits. `check` has made sure that it fits.
 pub(super) fn index(i: usize) -> u32 {
     u32::try_from(i).expect("the constructor has checked that everything can be numbered")
-}
-
-fn running_sum(counts: &[u32]) -> Vec<u32> {
-    let sums = counts.iter().scan(0, |sum, count| {
-        *sum += count;
-        Some(*sum)
-    });
-    std::iter::once(0).chain(sums).collect()
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Plain data. Nothing here draws, nothing here reads files, nothing here knows of windows.
 
 mod axes;
+mod bounds;
 mod camera;
 mod command;
 mod edge_order;
@@ -10,6 +11,9 @@ mod light;
 mod list;
 mod material;
 mod mesh;
+mod mesh_build;
+mod mesh_edges;
+mod mesh_found;
 mod mesh_points;
 mod mesh_splits;
 mod model;
@@ -21,6 +25,7 @@ pub mod triangulate;
 mod view;
 
 pub use axes::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Lesson, Preset as AccuracyPreset};
+pub use bounds::Bounds;
 pub use camera::{Camera, CameraMode, Lens, Pose};
 pub use command::{Command, CommandError, Item};
 pub use edge_order::{DrawEdge, EdgeOrder};
@@ -28,9 +33,10 @@ pub use light::{Aim, Attenuation, Light, LightKind, Orbit, SpotOwner};
 pub use list::List;
 pub use material::{Material, MaterialChoice, PRESETS, Preset, PresetId};
 pub use mesh::{
-    Bounds, Corner, Edge, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle,
-    dvec3, newell,
+    Corner, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle, dvec3, newell,
 };
+pub use mesh_build::CornerLists;
+pub use mesh_edges::Edge;
 pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Winding, Wrap};
 pub use object::{Object, PartLook, Spin, Surface};
 pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};

@@ -5,7 +5,10 @@
 //! between equal depths, so that the order cannot show. Morton, "A Computer Oriented Geodetic Data
 //! Base", IBM 1966.
 
-use super::{Bounds, Corner, Mesh, NONE, dvec3};
+use rayon::prelude::*;
+
+use super::{Bounds, Mesh, NONE, dvec3};
+use crate::base::lists::sorted_by_keys;
 
 /// A triangle as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +40,8 @@ pub struct DrawOrder {
     pub z: Vec<f32>,
     /// The triangles.
     pub triangles: Vec<DrawTriangle>,
-    /// For each triangle of the mesh its place in [`Self::triangles`].
+    /// For each triangle of the mesh its place in [`Self::triangles`]; empty where that is its
+    /// number.
     places: Vec<u32>,
     smooth: Points,
     /// Empty where no polygon has normals of the file's own.
@@ -75,34 +79,59 @@ impl Points {
 }
 
 impl DrawOrder {
-    /// The order for a mesh.
-    pub(super) fn new(mesh: &Mesh) -> Self {
+    /// Along a Morton curve.
+    pub(super) fn along_curve(mesh: &Mesh) -> Self {
         let Some(bounds) = mesh.bounds() else { return Self::default() };
-        let vertices = |number: usize| {
-            mesh.triangles()[number].corners.map(|c| mesh.corners()[c as usize].position)
-        };
-        let count = mesh.triangles().len();
-        let mut keyed: Vec<(u32, u32)> = (0..count)
-            .map(|number| (morton(mesh, bounds, vertices(number)), index(number)))
-            .collect();
-        keyed.sort_unstable();
-
-        let mut order = Self { places: vec![0; count], ..Self::default() };
-        let mut places = vec![NONE; mesh.positions().len()];
-        for (place, (_, number)) in keyed.into_iter().enumerate() {
-            let vertices = vertices(number as usize).map(|vertex| {
-                let place = &mut places[vertex as usize];
-                if *place == NONE {
-                    *place = order.push(mesh.positions()[vertex as usize]);
-                }
-                *place
-            });
-            order.places[number as usize] = index(place);
-            order.triangles.push(DrawTriangle { vertices, number });
+        let count = mesh.triangle_count();
+        let key = |number: usize| morton(mesh, bounds, vertices(mesh, number));
+        let numbers = sorted_by_keys((0..count).into_par_iter().map(key).collect(), 30);
+        let mut places = vec![0; count];
+        for (place, number) in (0..).zip(&numbers) {
+            places[*number as usize] = place;
         }
-        order.smooth = order.points_of(mesh, |corner| corner.smooth);
+        let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
+        let triangles = numbers.into_par_iter().map(triangle).collect();
+        Self { places, ..Self::of(mesh, triangles) }
+    }
+
+    /// As the mesh has them.
+    pub(super) fn as_filed(mesh: &Mesh) -> Self {
+        let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
+        let numbers = (0..index(mesh.triangle_count())).into_par_iter();
+        Self::of(mesh, numbers.map(triangle).collect())
+    }
+
+    /// Triangles in this order, which name vertices of the mesh.
+    fn of(mesh: &Mesh, mut triangles: Vec<DrawTriangle>) -> Self {
+        // Vertices by their first use.
+        let mut places = vec![NONE; mesh.positions().len()];
+        let mut used = Vec::with_capacity(places.len());
+        for vertex in triangles.iter_mut().flat_map(|triangle| &mut triangle.vertices) {
+            let place = &mut places[*vertex as usize];
+            if *place == NONE {
+                *place = index(used.len());
+                used.push(*vertex);
+            }
+            *vertex = *place;
+        }
+        drop(places);
+        let coordinate = |axis: usize| -> Vec<f32> {
+            used.par_iter().map(|vertex| mesh.positions()[*vertex as usize][axis]).collect()
+        };
+        let [x, y, z] = [0, 1, 2].map(coordinate);
+        let mut order = Self { x, y, z, triangles, ..Self::default() };
+        order.smooth = if mesh.corners.are_vertices() {
+            let normal = |vertex: &u32| mesh.points()[*vertex as usize].normal;
+            Points {
+                of: Vec::new(),
+                normals: used.par_iter().map(normal).collect(),
+                vertices: (0..index(used.len())).collect(),
+            }
+        } else {
+            order.points_of(mesh, |corner| mesh.corners.smooth(corner))
+        };
         if mesh.has_file_normals() {
-            order.filed = order.points_of(mesh, |corner| corner.filed);
+            order.filed = order.points_of(mesh, |corner| mesh.corners.filed(corner));
         }
         order
     }
@@ -118,7 +147,7 @@ impl DrawOrder {
     #[inline(always)]
     #[must_use]
     pub fn place(&self, number: u32) -> u32 {
-        self.places[number as usize]
+        if self.places.is_empty() { number } else { self.places[number as usize] }
     }
 
     /// The points with one kind of normals.
@@ -130,13 +159,13 @@ impl DrawOrder {
         }
     }
 
-    fn points_of(&self, mesh: &Mesh, pick: impl Fn(&Corner) -> u32) -> Points {
+    fn points_of(&self, mesh: &Mesh, pick: impl Fn(usize) -> u32) -> Points {
         let mut points = Points::default();
         let mut places = vec![NONE; mesh.points().len()];
         for triangle in &self.triangles {
-            let corners = mesh.triangles()[triangle.number as usize].corners;
+            let corners = mesh.triangle(triangle.number as usize);
             let of = std::array::from_fn(|i| {
-                let point = pick(&mesh.corners()[corners[i] as usize]) as usize;
+                let point = pick(corners[i]) as usize;
                 if places[point] == NONE {
                     places[point] = index(points.normals.len());
                     points.normals.push(mesh.points()[point].normal);
@@ -160,13 +189,11 @@ impl DrawOrder {
         let i = vertex as usize;
         [f64::from(self.x[i]), f64::from(self.y[i]), f64::from(self.z[i])]
     }
+}
 
-    fn push(&mut self, [x, y, z]: [f32; 3]) -> u32 {
-        self.x.push(x);
-        self.y.push(y);
-        self.z.push(z);
-        index(self.x.len() - 1)
-    }
+/// The vertices of a triangle, as the mesh numbers them.
+fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
+    mesh.triangle(number).map(|corner| mesh.corners.vertices[corner])
 }
 
 /// The place of a triangle's middle on the curve, ten bits for each axis.

@@ -13,37 +13,65 @@
 //! is joined to the outline by a bridge names positions twice; a corner that stands on a corner of
 //! the ear does not block it.
 
+mod grid;
+
 use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3};
 
-/// How many corners are looked at before the rest is left to a fan: about a quarter of a second.
-///
-/// Enough for any simple polygon of ten thousand corners; half of them turn inwards at most.
-const BUDGET: usize = 50_000_000;
+use self::grid::Grid;
+
+/// How many corners and cells are looked at, for each corner that the polygon has, before the rest
+/// is left to a fan: enough for any simple polygon of two thousand corners, and for a million in
+/// shapes that anyone draws.
+const BUDGET: usize = 1000;
 
 /// Cuts a polygon into triangles, each as three places in `outline`, in its order of rotation.
 ///
 /// `normal` is the polygon's normal; there are `outline.len() - 2` triangles. A polygon that crosses
-/// itself gets some, too; one that is not convex and has tens of thousands of corners may end in a
+/// itself gets some, too; one that keeps thousands of corners in the way of each other may end in a
 /// fan.
 #[must_use]
 pub fn triangulate(outline: &[DVec3], normal: DVec3) -> Vec<[u32; 3]> {
-    match outline.len() {
-        0..3 => Vec::new(),
-        3 => vec![[0, 1, 2]],
-        _ => {
-            let flat = flatten(outline, normal);
-            if fan_is_right(&flat) { fan(flat.len()) } else { Ring::new(flat).cut() }
-        }
-    }
+    Triangulator::default().cut(outline.iter().copied(), normal).to_vec()
 }
 
-/// The corners seen along the normal, counter-clockwise where they are so about it.
-fn flatten(outline: &[DVec3], normal: DVec3) -> Vec<DVec2> {
-    let (x, y) = normal.any_orthonormal_pair();
-    let flat = |p: &DVec3| DVec2::new((*p - outline[0]).dot(x), (*p - outline[0]).dot(y));
-    outline.iter().map(flat).collect()
+/// Cuts polygon after polygon, in the same memory.
+#[derive(Debug, Default)]
+pub(super) struct Triangulator {
+    /// The corners seen along the normal, counter-clockwise where they are so about it.
+    flat: Vec<DVec2>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Triangulator {
+    /// As [`triangulate`].
+    pub(super) fn cut(
+        &mut self,
+        mut outline: impl ExactSizeIterator<Item = DVec3>,
+        normal: DVec3,
+    ) -> &[[u32; 3]] {
+        self.triangles.clear();
+        self.flat.clear();
+        match outline.len() {
+            0..3 => {}
+            3 => self.triangles.push([0, 1, 2]),
+            _ => {
+                let (x, y) = normal.any_orthonormal_pair();
+                let origin = outline.next().unwrap_or_default();
+                let flat = |p: DVec3| DVec2::new((p - origin).dot(x), (p - origin).dot(y));
+                self.flat.push(flat(origin));
+                self.flat.extend(outline.map(flat));
+                if fan_is_right(&self.flat) {
+                    let last = number(self.flat.len()) - 1;
+                    self.triangles.extend((1..last).map(|i| [0, i, i + 1]));
+                } else {
+                    self.triangles = Ring::new(std::mem::take(&mut self.flat)).cut();
+                }
+            }
+        }
+        &self.triangles
+    }
 }
 
 /// Twice the area of a triangle, positive where it runs counter-clockwise.
@@ -68,10 +96,6 @@ fn turns_once(flat: &[DVec2]) -> bool {
     let first = flat[1];
     let behind = |p: &DVec2| first.perp_dot(*p) < 0.0;
     flat[2..].iter().skip_while(|p| !behind(p)).all(behind)
-}
-
-fn fan(corners: usize) -> Vec<[u32; 3]> {
-    (1..number(corners) - 1).map(|i| [0, i, i + 1]).collect()
 }
 
 fn number(corners: usize) -> u32 {
@@ -112,8 +136,8 @@ struct Ring {
     next: Vec<u32>,
     last: Vec<u32>,
     turn: Vec<Turn>,
-    /// Corners that are not convex, or were not when this list was last swept.
-    inward: Vec<u32>,
+    /// Corners that are not convex, or were not when they were last looked at.
+    inward: Grid,
     /// Corners that may be ears, in the order in which they are looked at.
     candidates: VecDeque<u32>,
     gone: Vec<bool>,
@@ -129,7 +153,7 @@ impl Ring {
             next: (1..corners).chain([0]).collect(),
             last: std::iter::once(corners - 1).chain(0..corners - 1).collect(),
             turn: vec![Turn::Straight; flat.len()],
-            inward: Vec::new(),
+            inward: Grid::default(),
             candidates: VecDeque::new(),
             gone: vec![false; flat.len()],
             left: flat.len(),
@@ -140,7 +164,8 @@ impl Ring {
         for i in 0..corners {
             ring.turn[i as usize] = ring.turn_at(i);
         }
-        ring.inward = (0..corners).filter(|&i| ring.turn[i as usize] != Turn::Convex).collect();
+        let inward = (0..corners).filter(|&i| ring.turn[i as usize] != Turn::Convex);
+        ring.inward = Grid::new(inward.map(|i| (i, ring.flat[i as usize])).collect());
         // Every other corner first: triangles grow evenly in place of a fan of long ones.
         for i in (0..corners).step_by(2).chain((1..corners).step_by(2)) {
             ring.queue(i);
@@ -151,7 +176,8 @@ impl Ring {
     /// Cuts ear after ear; three corners, or what nobody has the time for, are a fan.
     fn cut(mut self) -> Vec<[u32; 3]> {
         let mut triangles = Vec::with_capacity(self.left - 2);
-        while self.left > 3 && self.looked_at < BUDGET {
+        let budget = self.left * BUDGET;
+        while self.left > 3 && self.looked_at < budget {
             let ear = self.ear().unwrap_or_else(|| self.forced());
             triangles.push([self.last[ear as usize], ear, self.next[ear as usize]]);
             self.remove(ear);
@@ -176,7 +202,7 @@ impl Ring {
             let before = std::mem::replace(&mut self.turn[corner as usize], now);
             // Only where the outline crosses itself.
             if before == Turn::Convex && now != Turn::Convex {
-                self.inward.push(corner);
+                self.inward.add(corner, self.flat[corner as usize]);
             }
             self.queue(corner);
         }
@@ -256,26 +282,42 @@ impl Ring {
         let own = [self.last[corner as usize], corner, self.next[corner as usize]];
         let ear = self.triangle(corner);
         let mut inward = std::mem::take(&mut self.inward);
-        // The list is swept where half of it is gone; each sweep is paid by what went.
-        let mut stale = 0;
-        let blocked = inward.iter().any(|&other| {
-            self.looked_at += 1;
+        let mut looked_at = 0;
+        let blocked = inward.any(self.reach(ear), &mut |other| {
+            looked_at += 1;
             if self.gone[other as usize] || self.turn[other as usize] == Turn::Convex {
-                stale += 1;
-                return false;
+                return None;
             }
-            !own.contains(&other) && self.blocks(ear, other, how)
+            Some(!own.contains(&other) && self.blocks(ear, other, how))
         });
-        if stale > inward.len() / 2 {
-            inward.retain(|&i| !self.gone[i as usize] && self.turn[i as usize] != Turn::Convex);
-        }
+        self.looked_at += looked_at + inward.cells_looked_at();
         self.inward = inward;
         !blocked
     }
 
+    /// A box that holds whatever may stand in the way of an ear, with what rounding adds to it.
+    ///
+    /// Each side of the ear is moved outwards by error / length at most, so the ear grows about the
+    /// middle of its inscribed circle by that over the circle's radius.
+    fn reach(&self, [a, b, c]: [DVec2; 3]) -> [DVec2; 2] {
+        let lengths = [a.distance(b), b.distance(c), c.distance(a)];
+        let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
+        let longest = lengths.into_iter().fold(0.0, f64::max);
+        let radius = area(a, b, c) / (lengths[0] + lengths[1] + lengths[2]);
+        let grown = 2.0 * longest * self.error([a, b, c]) / (shortest * radius);
+        // What has no size may be touched from anywhere.
+        let grown = if grown.is_finite() { grown.abs() } else { f64::INFINITY };
+        [a.min(b).min(c) - grown, a.max(b).max(c) + grown]
+    }
+
+    /// What the area of a triangle with a side of the ear may be wrong by.
+    fn error(&self, [a, b, c]: [DVec2; 3]) -> f64 {
+        self.tolerance * ((b - a).abs() + (c - b).abs()).max_element()
+    }
+
     fn blocks(&self, [a, b, c]: [DVec2; 3], other: u32, how: Blocked) -> bool {
         let p = self.flat[other as usize];
-        let error = self.tolerance * ((b - a).abs() + (c - b).abs()).max_element();
+        let error = self.error([a, b, c]);
         let least = area(a, b, p).min(area(b, c, p)).min(area(c, a, p));
         let inside = match how {
             Blocked::Touching => least >= -error,

@@ -6,23 +6,34 @@
 mod map;
 mod mend;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use self::map::{Map, map};
-use super::error::{reason, short_name};
+use super::error::{LoadError, short_name};
 use super::findings::{Finding, FindingKind, Findings};
-use super::locate::locate;
+use super::locate::Locator;
 use super::obj::lines::{Line, Lines, decode, number, words};
+use super::progress::Progress;
+use super::read::{MOST_WORDS, read};
 use super::texture::load_picture;
 use crate::base::Shared;
-use crate::scene::{FileMaterial, Texture, Wrap};
+use crate::scene::{FileMaterial, NONE, Texture, Wrap};
+
+/// The most texels of all textures of a model: 2 GB.
+const MOST_TEXELS: usize = 1 << 29;
 
 /// The materials of the files that a model names, in their order.
 #[derive(Debug, Default)]
 pub(super) struct Library {
     pub(super) materials: Vec<FileMaterial>,
     pub(super) findings: Vec<Finding>,
+    pub(super) locator: Locator,
+    /// Where each name stands in `materials`.
+    places: BTreeMap<String, u32>,
+    /// The files that were read.
+    read: BTreeSet<PathBuf>,
+    texels: usize,
     /// By path, wrapping, and the bits of offset and scale: what is the same is shared.
     textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
 }
@@ -43,25 +54,31 @@ struct Statements {
 }
 
 impl Library {
-    /// Reads one file; textures are looked for beside it, then beside the model.
+    /// Reads one file, if it was not read before; textures are looked for beside it, then beside the
+    /// model.
     pub(super) fn read(&mut self, path: &Path, model_folder: &Path) {
+        if !self.read.insert(path.to_owned()) {
+            return;
+        }
         let mut findings = Findings::new(&short_name(path));
-        match std::fs::read(path) {
+        match read(path, MOST_WORDS, &Progress::new()) {
             Ok(bytes) => {
                 let folders = [path.parent().unwrap_or(Path::new("")), model_folder];
                 for statements in read_statements(&bytes, &mut findings) {
                     self.add(statements, folders, &mut findings);
                 }
             }
-            Err(error) => findings.add(FindingKind::MtlUnreadable, &reason(&error), None),
+            Err(LoadError::File { reason, .. }) => {
+                findings.add(FindingKind::MtlUnreadable, &reason, None);
+            }
+            Err(error) => findings.add(FindingKind::MtlUnreadable, &error.to_string(), None),
         }
         self.findings.extend(findings.into_list());
     }
 
     /// The place of the material with this name.
     pub(super) fn place(&self, name: &str) -> Option<u32> {
-        let place = self.materials.iter().position(|material| material.name == name)?;
-        u32::try_from(place).ok()
+        self.places.get(name).copied()
     }
 
     fn add(&mut self, statements: Statements, folders: [&Path; 2], findings: &mut Findings) {
@@ -72,6 +89,8 @@ impl Library {
         let texture = statements.map.as_ref().and_then(|(line, map)| {
             self.texture(map, folders, &mut |kind, name| findings.add(kind, name, Some(*line)))
         });
+        let place = u32::try_from(self.materials.len()).unwrap_or(NONE);
+        self.places.insert(statements.name.clone(), place);
         self.materials.push(statements.mended(texture, findings));
     }
 
@@ -81,7 +100,8 @@ impl Library {
         folders: [&Path; 2],
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Texture>> {
-        let Some(path) = folders.into_iter().find_map(|folder| locate(folder, &map.name)) else {
+        let mut locate = |folder| self.locator.locate(folder, &map.name);
+        let Some(path) = folders.into_iter().find_map(&mut locate) else {
             note(FindingKind::TextureMissing, &map.name);
             return None;
         };
@@ -92,7 +112,14 @@ impl Library {
             return Some(texture.clone());
         }
         match load_picture(&path) {
+            Ok(picture) if self.texels + picture.size().area() > MOST_TEXELS => {
+                let most = MOST_TEXELS >> 28;
+                let reason = format!("the textures of this model take more than {most} GB");
+                note(FindingKind::TextureUnreadable, &reason);
+                None
+            }
             Ok(picture) => {
+                self.texels += picture.size().area();
                 let Map { wrap, offset, scale, .. } = *map;
                 let texture = Texture { source: path, picture, wrap, offset, scale };
                 let texture = Shared::new(texture);

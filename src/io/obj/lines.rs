@@ -6,6 +6,8 @@
 
 use std::borrow::Cow;
 
+use memchr::memchr2;
+
 /// A line, with those that continue it.
 #[derive(Clone, Debug)]
 pub(in crate::io) struct Line<'a> {
@@ -26,13 +28,35 @@ pub(in crate::io) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
+    /// The lines of a whole file.
     pub(in crate::io) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes: bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), at: 0, number: 0 }
+        Self::within(unmarked(bytes))
     }
 
-    /// How many bytes are behind, and how many there are.
-    pub(in crate::io) const fn position(&self) -> (usize, usize) {
-        (self.at, self.bytes.len())
+    /// The lines of a part of a file.
+    pub(super) const fn within(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0, number: 0 }
+    }
+
+    /// How many bytes are behind.
+    pub(super) const fn position(&self) -> usize {
+        self.at
+    }
+
+    /// How many lines are behind.
+    pub(super) const fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// The bytes that are not behind yet.
+    pub(super) fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
+
+    /// Passes over a line of so many bytes, its ending among them.
+    pub(super) const fn pass(&mut self, length: usize) {
+        self.at += length;
+        self.number = self.number.saturating_add(1);
     }
 
     /// The next line of the file as it stands there, trimmed.
@@ -42,8 +66,7 @@ impl<'a> Lines<'a> {
             return None;
         }
         self.number = self.number.saturating_add(1);
-        let end = rest.iter().position(|b| matches!(b, b'\n' | b'\r'));
-        let length = end.unwrap_or(rest.len());
+        let length = memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
         let ending = match &rest[length..] {
             [b'\r', b'\n', ..] => 2,
             [] => 0,
@@ -105,6 +128,11 @@ impl Line<'_> {
     }
 }
 
+/// A file without the mark of the byte order that it may begin with.
+pub(super) fn unmarked(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
+}
+
 /// The first word of a text that begins with one, and what follows it, trimmed.
 fn split_word(text: &[u8]) -> (&[u8], &[u8]) {
     let end = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
@@ -125,6 +153,15 @@ pub(in crate::io) fn decode(bytes: &[u8]) -> String {
         Ok(text) => text.to_owned(),
         Err(_) => bytes.iter().copied().map(char::from).collect(),
     }
+}
+
+/// A word for a message: its beginning, where it is longer than anyone wants to read.
+pub(in crate::io) fn excerpt(word: &[u8]) -> String {
+    const MOST: usize = 40;
+    // No sign of UTF-8 has more than four bytes.
+    let text = decode(&word[..word.len().min(4 * MOST)]);
+    let shown: String = text.chars().take(MOST).collect();
+    if shown.len() < word.len() && shown != decode(word) { shown + "..." } else { shown }
 }
 
 /// Why a word is no number.
@@ -148,7 +185,7 @@ pub(in crate::io) fn number(word: &[u8]) -> Result<(f32, &[u8]), NoNumber> {
     if let Some(value) = parse(before_comment) {
         return Ok((value, before_comment));
     }
-    let text = decode(word);
+    let text = excerpt(word);
     let point = text.replacen(',', ".", 1);
     Err(NoNumber(if point != text && point.parse::<f32>().is_ok() {
         format!("\"{text}\" has a decimal comma, where the format has a point")

@@ -1,9 +1,10 @@
 //! A model from an OBJ file.
 //!
-//! One pass over the bytes finds out what the statements say ([`scan`]), the faces that can be used
-//! are picked ([`sound`]), `tobj` reads the numbers from a text that it reads rightly
-//! ([`canonical`]), and a [`Mesh`] is made of them. A vertex of the mesh is a `v` of the file, used
-//! or not.
+//! The text is cut into chunks ([`chunks`]), which are read by all threads: the quick way where a
+//! line is plain ([`quick`]), else the way that knows everything ([`scan`], [`faces`]). What they say
+//! is put together as if one had read it all ([`join`]), the faces that can be used are picked
+//! ([`sound`]), and a [`Mesh`] is made of them. A vertex of the mesh is a `v` of the file, used or
+//! not.
 //!
 //! A number that cannot be read refuses the file, for what follows would be guesswork. What can be
 //! left out or mended without guessing is, and each such thing is a [`Finding`].
@@ -11,27 +12,39 @@
 //! The format is that of Wavefront's "Advanced Visualizer", Appendix B1, with the colours of
 //! vertices that MeshLab and others write.
 
-mod canonical;
+mod chunks;
+mod decimal;
+mod faces;
+mod join;
 pub(super) mod lines;
 mod parts;
+mod quick;
 mod scan;
 mod sound;
 
+use std::collections::BTreeSet;
+use std::io::Read;
 use std::path::Path;
 
-use self::canonical::Numbers;
+use rayon::prelude::*;
+
+use self::join::{Content, MOST_BYTES};
 use self::parts::PartNames;
-use self::scan::Scan;
-use self::sound::SoundFaces;
+use self::sound::FaceRuns;
 use super::error::{LoadError, short_name};
 use super::findings::{Finding, FindingKind, Findings};
-use super::locate::locate_all;
 use super::mtl::Library;
 use super::progress::Progress;
-use crate::base::math;
+use super::read::open;
 use crate::scene::{
-    LoadOptions, Mesh, MeshSource, Model, Part, SourceCorner, UpAxis, Winding, dvec3, newell,
+    CornerLists, LoadOptions, Mesh, MeshSource, Model, Part, UpAxis, Winding, dvec3, newell,
 };
+
+/// Why a file without anything in it is refused.
+const EMPTY: &str = "the file is empty";
+
+/// How many different statements `mtllib` are followed.
+const MOST_LIBRARIES: usize = 1000;
 
 /// A model, with what was found on the way.
 #[derive(Debug)]
@@ -49,9 +62,12 @@ pub struct Loaded {
 /// which none can be used; and where `progress` is cancelled.
 pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
     let file = short_name(path);
-    let bytes = read(path, &file, &progress.part(0.0, 0.1))?;
+    let (text, size) = open(path, MOST_BYTES)?;
+    let mut findings = Findings::new(&file);
+    let content = content(text, size, &file, &mut findings, &progress.part(0.0, 0.6))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut loaded = parse(&bytes, &file, Some(folder), options, &progress.part(0.1, 1.0))?;
+    let progress = progress.part(0.6, 1.0);
+    let mut loaded = model(content, &file, Some(folder), options, findings, &progress)?;
     // Complete, so that it holds wherever the program goes on to work.
     loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
     Ok(loaded)
@@ -69,31 +85,51 @@ pub fn parse(
     options: &LoadOptions,
     progress: &Progress,
 ) -> Result<Loaded, LoadError> {
-    if let Some(reason) = no_obj(bytes) {
-        return Err(LoadError::file(file, reason));
-    }
     let mut findings = Findings::new(file);
-    let mut scan = scan::scan(bytes, file, &mut findings, &progress.part(0.0, 0.4))?;
-    let faces = sound::sound_faces(&mut scan, &mut findings);
-    refuse_nothing(file, &scan, &faces)?;
-    if faces.arities.is_empty() {
+    let content = content(bytes, bytes.len(), file, &mut findings, &progress.part(0.0, 0.6))?;
+    model(content, file, folder, options, findings, &progress.part(0.6, 1.0))
+}
+
+/// What a text says, where it is one of an OBJ file; it has so many bytes, as far as that is known.
+fn content(
+    text: impl Read + Send,
+    size: usize,
+    file: &str,
+    findings: &mut Findings,
+    progress: &Progress,
+) -> Result<Content, LoadError> {
+    let content = join::content(text, size, file, findings, progress)?;
+    refuse_nothing(file, &content)?;
+    if content.faces.runs.is_empty() {
         findings.add(FindingKind::NoFaces, "", None);
     }
+    Ok(content)
+}
 
-    let library = libraries(&scan, folder, &mut findings);
-    let parts = named_parts(&scan.parts.list, &library, &mut findings);
-    let colors = std::mem::take(&mut scan.colors);
-    let edge_color = scan.edge_color;
+/// Makes a model of what a text says.
+fn model(
+    content: Content,
+    file: &str,
+    folder: Option<&Path>,
+    options: &LoadOptions,
+    mut findings: Findings,
+    progress: &Progress,
+) -> Result<Loaded, LoadError> {
+    let library = libraries(&content, folder, &mut findings);
+    let parts = named_parts(&content.parts, &library, &mut findings);
+    let edge_color = content.edge_color;
+    progress.reached(1, 10)?;
 
-    let numbers = canonical::through_tobj(scan, &faces, &progress.part(0.4, 0.7))
-        .map_err(|reason| reason.map_or(LoadError::Cancelled, |r| LoadError::file(file, r)))?;
-    progress.reached(7, 10)?;
-    let lines = faces.lines.clone();
-    let source = source(&numbers, colors, faces, parts, options)
+    let mut content = content;
+    let faces = FaceRuns::of(std::mem::take(&mut content.faces.runs));
+    let (source, corners) = source(content, &faces, parts, options)
         .ok_or_else(|| LoadError::file(file, "its coordinates are too large at this scale"))?;
-    note_shapes(&source, &lines, &mut findings);
-    let mesh = Mesh::new(source).map_err(|error| LoadError::file(file, error.to_string()))?;
-    note_crossings(&mesh, &lines, &mut findings);
+    let mesh = Mesh::from_lists(source, corners);
+    let mesh = mesh.map_err(|error| LoadError::file(file, error.to_string()))?;
+    for polygon in mesh.without_area() {
+        findings.note(FindingKind::FaceNoArea, faces.line(*polygon));
+    }
+    note_crossings(&mesh, &faces, &mut findings);
     progress.reached(1, 1)?;
 
     let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -102,31 +138,9 @@ pub fn parse(
     Ok(Loaded { model, findings: findings.into_list().into_iter().chain(of_materials).collect() })
 }
 
-/// Reads a file in pieces, so that it can be watched and cancelled.
-fn read(path: &Path, file: &str, progress: &Progress) -> Result<Vec<u8>, LoadError> {
-    use std::io::Read;
-    let system = |error: std::io::Error| LoadError::system(file, &error);
-    let mut handle = std::fs::File::open(path).map_err(system)?;
-    let metadata = handle.metadata().map_err(system)?;
-    if metadata.is_dir() {
-        return Err(LoadError::file(file, "this is a folder, not a file"));
-    }
-    let size = usize::try_from(metadata.len()).unwrap_or(0);
-    let mut bytes = Vec::new();
-    bytes
-        .try_reserve(size)
-        .map_err(|_full| LoadError::file(file, "there is not enough memory for it"))?;
-    loop {
-        let piece = handle.by_ref().take(8 << 20).read_to_end(&mut bytes).map_err(system)?;
-        progress.reached(bytes.len(), size)?;
-        if piece == 0 {
-            return Ok(bytes);
-        }
-    }
-}
-
-/// Why these bytes are no text of an OBJ file, where one can tell by their beginning.
-fn no_obj(bytes: &[u8]) -> Option<String> {
+/// Why a text that begins with these bytes is none of an OBJ file, where one can tell by them;
+/// `whole` says that there are no more.
+fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
     let known = [
         (&b"\xFF\xFE"[..], "a text of UTF-16; save it as UTF-8"),
         (b"\xFE\xFF", "a text of UTF-16; save it as UTF-8"),
@@ -142,8 +156,8 @@ fn no_obj(bytes: &[u8]) -> Option<String> {
         (b"solid ", "an STL file"),
         (b"OFF\n", "an OFF file"),
     ];
-    if bytes.trim_ascii().is_empty() {
-        return Some("the file is empty".to_owned());
+    if whole && bytes.trim_ascii().is_empty() {
+        return Some(EMPTY.to_owned());
     }
     for (begin, what) in known {
         if bytes.starts_with(begin) {
@@ -154,20 +168,20 @@ fn no_obj(bytes: &[u8]) -> Option<String> {
 }
 
 /// Refuses a file of which nothing would be left.
-fn refuse_nothing(file: &str, scan: &Scan, faces: &SoundFaces) -> Result<(), LoadError> {
-    if !faces.arities.is_empty() {
+fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
+    if !content.faces.runs.is_empty() {
         return Ok(());
     }
-    if let Some((line, reason)) = &faces.refused {
+    if let Some((line, reason)) = &content.faces.refused {
         let reason = format!("{reason}; no face of the file can be used");
         return Err(LoadError::line(file, *line, reason));
     }
-    if scan.vertices.kept() > 0 {
+    if !content.positions.is_empty() {
         return Ok(());
     }
     Err(LoadError::file(
         file,
-        match scan.vertices.count {
+        match content.vertices {
             0 => "this is no OBJ file: it has neither vertices nor faces",
             _ => "none of its vertices is finite",
         },
@@ -175,11 +189,21 @@ fn refuse_nothing(file: &str, scan: &Scan, faces: &SoundFaces) -> Result<(), Loa
 }
 
 /// The materials of the MTL files that are found in `folder`.
-fn libraries(scan: &Scan, folder: Option<&Path>, findings: &mut Findings) -> Library {
+fn libraries(content: &Content, folder: Option<&Path>, findings: &mut Findings) -> Library {
     let mut library = Library::default();
     let Some(folder) = folder else { return library };
-    for (line, names) in &scan.libraries {
-        for (name, path) in locate_all(folder, names, ".mtl") {
+    let mut seen = BTreeSet::new();
+    for (line, names) in &content.libraries {
+        // Exporters repeat the statement for every object.
+        if !seen.insert(names) {
+            continue;
+        }
+        // Each is a look at the disk.
+        if seen.len() > MOST_LIBRARIES {
+            findings.note(FindingKind::MtlMany, *line);
+            continue;
+        }
+        for (name, path) in library.locator.locate_all(folder, names, ".mtl") {
             match path {
                 Some(path) => library.read(&path, folder),
                 None => findings.add(FindingKind::MtlMissing, &name, Some(*line)),
@@ -209,86 +233,80 @@ fn named_parts(names: &[PartNames], library: &Library, findings: &mut Findings) 
 
 /// What the mesh is made of, turned and scaled as asked for; `None` where that is not finite.
 fn source(
-    numbers: &Numbers,
-    colors: Vec<[f32; 3]>,
-    faces: SoundFaces,
+    content: Content,
+    faces: &FaceRuns,
     parts: Vec<Part>,
     options: &LoadOptions,
-) -> Option<MeshSource> {
+) -> Option<(MeshSource, CornerLists)> {
+    let Content { mut positions, uvs, mut normals, colors, .. } = content;
+    if *options != LoadOptions::default() {
+        place(&mut positions, &mut normals, options);
+    }
+    let (arities, polygon_parts) = (faces.arities(), faces.parts());
+    let mut corners = content.faces.corners;
+    if options.winding == Winding::Turned {
+        let CornerLists { positions, uvs, normals } = &mut corners;
+        for list in [positions, uvs, normals].into_iter().filter(|list| !list.is_empty()) {
+            let mut rest = &mut list[..];
+            for arity in &arities {
+                let (polygon, others) = rest.split_at_mut(*arity as usize);
+                polygon.reverse();
+                rest = others;
+            }
+        }
+    }
+    let finite = positions.iter().flatten().all(|x| x.is_finite());
+    let source = MeshSource {
+        positions,
+        colors,
+        uvs,
+        normals,
+        corners: Vec::new(),
+        arities,
+        polygon_parts,
+        parts,
+    };
+    finite.then_some((source, corners))
+}
+
+/// Turns and scales what a file has as it is asked for.
+fn place(positions: &mut [[f32; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
     let up = |[x, y, z]: [f32; 3]| match options.up {
         UpAxis::Y => [x, y, z],
         UpAxis::Z => [x, z, -y],
     };
     let scale = options.scale.get();
-    #[expect(clippy::cast_possible_truncation, reason = "checked to be finite below")]
+    #[expect(clippy::cast_possible_truncation, reason = "the caller looks whether it is finite")]
     let scaled = |x: f32| if scale == 1.0 { x } else { (f64::from(x) * scale) as f32 };
     let turned = options.winding == Winding::Turned;
-    let normal = |row: &[f32; 3]| up(row.map(|x| if turned { -x } else { x }));
-
-    let mut corners = faces.corners;
-    if turned {
-        let mut begin = 0;
-        for arity in &faces.arities {
-            corners[begin..begin + *arity as usize].reverse();
-            begin += *arity as usize;
-        }
-    }
-    let positions: Vec<[f32; 3]> =
-        numbers.positions.as_chunks().0.iter().map(|row| up(*row).map(scaled)).collect();
-    let finite = positions.iter().flatten().all(|x| x.is_finite());
-    finite.then(|| MeshSource {
-        positions,
-        colors,
-        uvs: numbers.uvs.as_chunks().0.to_vec(),
-        normals: numbers.normals.as_chunks().0.iter().map(normal).collect(),
-        corners,
-        arities: faces.arities,
-        polygon_parts: faces.parts,
-        parts,
-    })
-}
-
-/// The polygons of a source, as ranges of its corners.
-fn polygons(source: &MeshSource) -> impl Iterator<Item = &[SourceCorner]> {
-    let mut rest = &source.corners[..];
-    source.arities.iter().map(move |arity| {
-        let (polygon, others) = rest.split_at(*arity as usize);
-        rest = others;
-        polygon
-    })
-}
-
-/// Notes the faces without area.
-fn note_shapes(source: &MeshSource, lines: &[u32], findings: &mut Findings) {
-    for (polygon, line) in polygons(source).zip(lines) {
-        let at = |corner: &SourceCorner| dvec3(source.positions[corner.position as usize]);
-        if math::unit(newell(polygon.iter().map(at))).is_none() {
-            findings.note(FindingKind::FaceNoArea, *line);
-        }
-    }
+    positions.par_iter_mut().for_each(|row| *row = up(*row).map(scaled));
+    normals.par_iter_mut().for_each(|row| *row = up(row.map(|x| if turned { -x } else { x })));
 }
 
 /// Notes polygons whose triangles do not all run the polygon's way: they cross
 /// themselves, or were too large to be cut up rightly.
-fn note_crossings(mesh: &Mesh, lines: &[u32], findings: &mut Findings) {
-    for (polygon, line) in (0..).zip(lines) {
-        let corners = mesh.corners_of(polygon).len();
-        if corners < 4 {
-            continue;
-        }
-        let normal = dvec3(mesh.polygon_normals()[polygon as usize]);
-        let at = |corner: u32| {
-            dvec3(mesh.positions()[mesh.corners()[corner as usize].position as usize])
-        };
-        let triangles = mesh.triangles()[mesh.triangles_of(polygon)].iter();
-        let areas: Vec<f64> = triangles
-            .map(|triangle| newell(triangle.corners.into_iter().map(at)).dot(normal))
-            .collect();
-        // Polygons that are not quite flat have triangles that are only just turned away.
-        let backwards: f64 = areas.iter().map(|area| (-area).max(0.0)).sum();
-        let forwards: f64 = areas.iter().map(|area| area.max(0.0)).sum();
-        if backwards > 1e-3 * forwards {
-            findings.add(FindingKind::PolygonCrosses, &corners.to_string(), Some(*line));
-        }
+fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
+    if mesh.triangle_count() == mesh.polygon_count() {
+        return;
     }
+    let crossing = |polygon: &u32| mesh.corners_of(*polygon).len() > 3 && crosses(mesh, *polygon);
+    let polygons = 0..u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX);
+    for polygon in polygons.into_par_iter().filter(crossing).collect::<Vec<_>>() {
+        let corners = mesh.corners_of(polygon).len().to_string();
+        findings.add(FindingKind::PolygonCrosses, &corners, Some(faces.line(polygon)));
+    }
+}
+
+fn crosses(mesh: &Mesh, polygon: u32) -> bool {
+    let normal = dvec3(mesh.polygon_normals()[polygon as usize]);
+    let at =
+        |corner: u32| dvec3(mesh.positions()[mesh.corners()[corner as usize].position as usize]);
+    // Polygons that are not quite flat have triangles that are only just turned away.
+    let [mut backwards, mut forwards] = [0.0; 2];
+    for triangle in &mesh.triangles()[mesh.triangles_of(polygon)] {
+        let area = newell(triangle.corners.into_iter().map(at)).dot(normal);
+        backwards += (-area).max(0.0);
+        forwards += area.max(0.0);
+    }
+    backwards > 1e-3 * forwards
 }

@@ -14,7 +14,8 @@ pub(super) struct Parts {
     place: Option<u32>,
 }
 
-/// What a part is called: by its object, its group and its material.
+/// What a part is called: by its object, its group and its material; each is `None` as long as no
+/// statement has named one.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct PartNames {
     pub(super) object: Option<String>,
@@ -39,5 +40,35 @@ impl Parts {
                 next
             })
         })
+    }
+
+    /// Takes up the parts of the lines that follow, of which `lines` are before them; gives the
+    /// place here of each part there.
+    pub(super) fn append(&mut self, following: &Self, lines: u32) -> Vec<u32> {
+        let before = self.now.clone();
+        let mut place = |names: &PartNames| {
+            self.rename(|now| *now = names.after(&before, lines));
+            self.place()
+        };
+        let places = following.list.iter().map(&mut place).collect();
+        self.rename(|now| *now = following.now.after(&before, lines));
+        places
+    }
+}
+
+impl PartNames {
+    /// The names as they are where others were given before; `lines` are before these.
+    fn after(&self, before: &Self, lines: u32) -> Self {
+        let given = |ours: &Option<String>, earlier: &Option<String>| {
+            ours.as_ref().or(earlier.as_ref()).cloned()
+        };
+        // An object begins without a group.
+        let group = if self.object.is_some() { &None } else { &before.group };
+        Self {
+            object: given(&self.object, &before.object),
+            group: given(&self.group, group),
+            material: given(&self.material, &before.material),
+            line: if self.material.is_some() { self.line + lines } else { before.line },
+        }
     }
 }

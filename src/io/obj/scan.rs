@@ -1,116 +1,161 @@
-//! One pass over the bytes of an OBJ file: what its statements say.
+//! What the statements of a chunk of an OBJ file say.
 //!
-//! Numbers are checked here, and their text is kept as the file writes it, for `tobj` to read.
-//! Indices are resolved here, for a negative one counts back from where it stands; whether a
-//! positive one is in range is known only at the end.
+//! Chunks are read apart from each other, so lines are counted from the chunk's own first one, and
+//! names of parts may be missing that earlier chunks give. A negative index counts back from where
+//! it stands, so it can be resolved only where it is known how much is before the chunk; whether a
+//! positive one is in range is known only at the end of the file.
+//!
+//! Most lines are read by the quick way (`quick`); what that leaves is read here.
 
-use super::lines::{Line, Lines, decode, number, words};
+use super::faces::Faces;
+use super::lines::{Line, Lines, excerpt, number, words};
 use super::parts::Parts;
 use crate::base::color::{Color, byte};
-use crate::io::error::LoadError;
 use crate::io::findings::{FindingKind, Findings};
-use crate::io::progress::Progress;
-use crate::scene::NONE;
+use crate::io::progress::Cancelled;
 
-/// An index that counts back past the beginning of the file, or is 0.
-pub(super) const WRONG: u32 = NONE - 1;
+/// How many vertices, places on the texture and normals there are.
+pub(super) type Counts = [u32; 3];
 
-/// Everything that the statements of a file say.
-#[derive(Debug, Default)]
-pub(super) struct Scan {
-    pub(super) vertices: Rows,
-    pub(super) uvs: Rows,
-    pub(super) normals: Rows,
-    /// Red, green and blue of the vertices that are kept, from the first one that has a colour;
-    /// NaN where a vertex has none. Empty where none has one.
+/// Everything that the statements of a chunk say.
+#[derive(Debug)]
+pub(super) struct Piece {
+    /// How many statements of each kind are before the chunk; `None` where that is not known.
+    pub(super) before: Option<Counts>,
+    /// How many lines the chunk has, as far as it was read.
+    pub(super) lines: u32,
+    pub(super) vertices: Rows<3>,
+    pub(super) uvs: Rows<2>,
+    pub(super) normals: Rows<3>,
+    /// Red, green and blue of the vertices that are kept, from the first one that has a colour up
+    /// to the last one; NaN where a vertex has none. Empty where none has one.
     pub(super) colors: Vec<[f32; 3]>,
     pub(super) faces: Faces,
     pub(super) parts: Parts,
     /// What follows `mtllib`, with its lines.
     pub(super) libraries: Vec<(u32, String)>,
     pub(super) edge_color: Option<Color>,
+    pub(super) findings: Findings,
+    /// Why the chunk was not read to its end.
+    pub(super) stop: Option<Stop>,
+    /// The chunk, where it has to be read again.
+    pub(super) text: Vec<u8>,
 }
 
-/// Statements of numbers, as text that `tobj` reads, one a line.
+/// Why a chunk was not read to its end.
+#[derive(Debug)]
+pub(super) enum Stop {
+    /// A line cannot be taken for what it says it is.
+    Wrong(u32, String),
+    /// A face counts back, and it is not known from where.
+    CountsBack,
+}
+
+impl From<String> for Stop {
+    fn from(reason: String) -> Self {
+        // The line is filled in where it is known.
+        Self::Wrong(0, reason)
+    }
+}
+
+/// Statements of numbers.
 #[derive(Debug, Default)]
-pub(super) struct Rows {
-    pub(super) text: Vec<u8>,
+pub(super) struct Rows<const N: usize> {
+    /// The first `N` numbers of those that are finite.
+    pub(super) kept: Vec<[f32; N]>,
     /// Statements, whether kept or not.
     pub(super) count: u32,
-    /// Those that are not finite, and not in the text; ascending.
+    /// Those that are not finite, and not kept; ascending.
     pub(super) lost: Vec<u32>,
 }
 
-impl Rows {
-    /// Statements that are kept.
-    #[expect(clippy::cast_possible_truncation, reason = "no more are lost than there are")]
-    pub(super) fn kept(&self) -> u32 {
-        self.count - self.lost.len() as u32
+impl<const N: usize> Rows<N> {
+    /// Keeps a row where it is finite; says whether it is.
+    #[inline]
+    pub(super) fn add(&mut self, row: [f32; N]) -> bool {
+        // More than can be counted are more than a mesh can have: it will say so.
+        self.count = self.count.saturating_add(1);
+        let finite = row.iter().all(|x| x.is_finite());
+        if finite {
+            self.kept.push(row);
+        } else {
+            self.lost.push(self.count - 1);
+        }
+        finite
     }
+}
 
-    /// Where statement `i` stands among those that are kept; `None` where it is lost.
-    #[expect(clippy::cast_possible_truncation, reason = "no more are lost than there are")]
-    pub(super) fn place(&self, i: u32) -> Option<u32> {
-        match self.lost.binary_search(&i) {
-            Ok(_) => None,
-            Err(before) => Some(i - before as u32),
+impl Piece {
+    pub(super) fn new(before: Option<Counts>) -> Self {
+        Self {
+            before,
+            lines: 0,
+            vertices: Rows::default(),
+            uvs: Rows::default(),
+            normals: Rows::default(),
+            colors: Vec::new(),
+            faces: Faces::default(),
+            parts: Parts::default(),
+            libraries: Vec::new(),
+            edge_color: None,
+            findings: Findings::default(),
+            stop: None,
+            text: Vec::new(),
         }
     }
-}
 
-/// A corner as the file names it, counted from 0, or [`NONE`], or [`WRONG`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RawCorner {
-    pub(super) vertex: u32,
-    pub(super) uv: u32,
-    pub(super) normal: u32,
-}
-
-/// Faces of three corners and more.
-#[derive(Debug, Default)]
-pub(super) struct Faces {
-    pub(super) corners: Vec<RawCorner>,
-    pub(super) arities: Vec<u32>,
-    pub(super) lines: Vec<u32>,
-    pub(super) parts: Vec<u32>,
-    /// The first face statement that cannot be used, with the reason.
-    pub(super) refused: Option<(u32, String)>,
-}
-
-/// Reads all statements.
-///
-/// # Errors
-/// Where a number cannot be read, or the work should end.
-pub(super) fn scan(
-    bytes: &[u8],
-    file: &str,
-    findings: &mut Findings,
-    progress: &Progress,
-) -> Result<Scan, LoadError> {
-    let mut scan = Scan::default();
-    let mut lines = Lines::new(bytes);
-    let mut count = 0_u32;
-    while let Some(line) = lines.next() {
-        count = count.wrapping_add(1);
-        if count.is_multiple_of(4096) {
-            let (done, all) = lines.position();
-            progress.reached(done, all)?;
+    /// Reads all statements of a chunk, or those up to the first that cannot be read. `reached` is
+    /// told now and then how many bytes are behind.
+    pub(super) fn read(
+        &mut self,
+        chunk: &[u8],
+        mut reached: impl FnMut(usize) -> Result<(), Cancelled>,
+    ) -> Result<(), Cancelled> {
+        let mut lines = Lines::within(chunk);
+        let mut count = 0_u32;
+        loop {
+            count = count.wrapping_add(1);
+            if count.is_multiple_of(4096) {
+                reached(lines.position())?;
+            }
+            if let Some(length) = self.quick(lines.rest(), lines.number().saturating_add(1)) {
+                lines.pass(length);
+                continue;
+            }
+            let Some(line) = lines.next() else { break };
+            if let Err(stop) = self.statement(&line) {
+                self.stop = Some(match stop {
+                    Stop::Wrong(_, reason) => Stop::Wrong(line.number, reason),
+                    Stop::CountsBack => stop,
+                });
+                break;
+            }
         }
-        scan.statement(&line, findings)
-            .map_err(|reason| LoadError::line(file, line.number, reason))?;
+        self.lines = lines.number();
+        Ok(())
     }
-    scan.complete_colors(findings);
-    Ok(scan)
-}
 
-impl Scan {
-    fn statement(&mut self, line: &Line<'_>, findings: &mut Findings) -> Result<(), String> {
+    /// How many statements of each kind are before the next one.
+    pub(super) fn counts(&self) -> Option<Counts> {
+        let own = [self.vertices.count, self.uvs.count, self.normals.count];
+        self.before.map(|before| std::array::from_fn(|i| before[i].saturating_add(own[i])))
+    }
+
+    /// Gives the vertex that was kept last a colour, or none.
+    pub(super) fn color(&mut self, color: Option<[f32; 3]>) {
+        if color.is_some() || !self.colors.is_empty() {
+            self.colors.resize(self.vertices.kept.len() - 1, NO_COLOR);
+            self.colors.push(color.unwrap_or(NO_COLOR));
+        }
+    }
+
+    fn statement(&mut self, line: &Line<'_>) -> Result<(), Stop> {
         let (keyword, rest) = line.statement();
         match keyword {
-            b"v" => return self.vertex(rest, line.number, findings),
-            b"vt" => return self.uv(rest, line.number, findings),
-            b"vn" => return self.normal(rest, line.number, findings),
-            b"f" | b"fo" => self.face(rest, line.number, findings),
+            b"v" => self.vertex(rest, line.number)?,
+            b"vt" => self.uv(rest, line.number)?,
+            b"vn" => self.normal(rest, line.number)?,
+            b"f" | b"fo" => self.face(rest, line.number)?,
             b"o" => self.parts.rename(|now| {
                 (now.object, now.group) = (Some(line.name()), None);
             }),
@@ -121,120 +166,66 @@ impl Scan {
             b"mtllib" => self.libraries.push((line.number, line.name())),
             b"c" if self.edge_color(rest) => {}
             b"l" | b"p" => {
-                findings.add(FindingKind::LineOrPoint, &decode(keyword), Some(line.number));
+                self.findings.add(FindingKind::LineOrPoint, &excerpt(keyword), Some(line.number));
             }
             b"s" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap"
             | b"maplib" | b"shadow_obj" | b"trace_obj" | b"t" => {}
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf"
             | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech"
             | b"stech" => {
-                findings.note(FindingKind::FreeForm, line.number);
+                self.findings.note(FindingKind::FreeForm, line.number);
             }
             _ if keyword.starts_with(b"#") => self.comment(keyword, rest),
             _ => {
-                let name: String = decode(keyword).chars().take(24).collect();
-                findings.add(FindingKind::Unknown, &name, Some(line.number));
+                self.findings.add(FindingKind::Unknown, &excerpt(keyword), Some(line.number));
             }
         }
         Ok(())
     }
 
     /// `v x y z`, `v x y z w`, `v x y z r g b` and `v x y z r g b a`.
-    fn vertex(&mut self, rest: &[u8], line: u32, findings: &mut Findings) -> Result<(), String> {
-        let row = row::<7>(rest)?;
-        if row.count < 3 {
-            return Err(format!("a vertex needs three numbers, here are {}", row.count));
+    fn vertex(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
+        let Row { values: [x, y, z, more @ ..], count } = row::<7>(rest)?;
+        if count < 3 {
+            return Err(format!("a vertex needs three numbers, here are {count}"));
         }
-        match row.count {
-            4 if row.values[3] != 1.0 => findings.note(FindingKind::Weight, line),
-            5 | 8.. => findings.note(FindingKind::ExtraNumbers, line),
+        match count {
+            4 if more[0] != 1.0 => self.findings.note(FindingKind::Weight, line),
+            5 | 8.. => self.findings.note(FindingKind::ExtraNumbers, line),
             _ => {}
         }
-        let color =
-            matches!(row.count, 6 | 7).then(|| [row.values[3], row.values[4], row.values[5]]);
-        let vertices = &mut self.vertices;
-        if vertices.add(b"v", &row, 3)? {
-            let kept = vertices.kept() as usize;
-            if color.is_some() || !self.colors.is_empty() {
-                self.colors.resize(kept - 1, [f32::NAN; 3]);
-                self.colors.push(color.unwrap_or([f32::NAN; 3]));
-            }
+        if self.vertices.add([x, y, z]) {
+            self.color(matches!(count, 6 | 7).then_some([more[0], more[1], more[2]]));
         } else {
-            findings.note(FindingKind::VertexNotFinite, line);
+            self.findings.note(FindingKind::VertexNotFinite, line);
         }
         Ok(())
     }
 
     /// `vt u`, `vt u v` and `vt u v w`.
-    fn uv(&mut self, rest: &[u8], line: u32, findings: &mut Findings) -> Result<(), String> {
-        let mut row = row::<3>(rest)?;
-        match row.count {
+    fn uv(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
+        let Row { values: [u, v], count } = row::<2>(rest)?;
+        match count {
             0 => return Err("a place on the texture needs two numbers, here is none".to_owned()),
-            1 => {
-                findings.note(FindingKind::UvSingle, line);
-                (row.texts[1], row.values[1]) = (b"0", 0.0);
-            }
+            1 => self.findings.note(FindingKind::UvSingle, line),
             _ => {}
         }
-        if !self.uvs.add(b"vt", &row, 2)? {
-            findings.note(FindingKind::UvNotFinite, line);
+        if !self.uvs.add([u, v]) {
+            self.findings.note(FindingKind::UvNotFinite, line);
         }
         Ok(())
     }
 
     /// `vn x y z`.
-    fn normal(&mut self, rest: &[u8], line: u32, findings: &mut Findings) -> Result<(), String> {
-        let row = row::<3>(rest)?;
-        if row.count < 3 {
-            return Err(format!("a normal needs three numbers, here are {}", row.count));
+    fn normal(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
+        let Row { values, count } = row::<3>(rest)?;
+        if count < 3 {
+            return Err(format!("a normal needs three numbers, here are {count}"));
         }
-        if !self.normals.add(b"vn", &row, 3)? {
-            findings.note(FindingKind::NormalNotFinite, line);
+        if !self.normals.add(values) {
+            self.findings.note(FindingKind::NormalNotFinite, line);
         }
         Ok(())
-    }
-
-    fn face(&mut self, rest: &[u8], line: u32, findings: &mut Findings) {
-        let faces = &mut self.faces;
-        let begin = faces.corners.len();
-        let counts = [self.vertices.count, self.uvs.count, self.normals.count];
-        let mut fault = None;
-        for word in words(rest) {
-            // A comment may follow a number at once.
-            let (word, comment) = match word.iter().position(|b| *b == b'#') {
-                Some(end) => (&word[..end], true),
-                None => (word, false),
-            };
-            match corner(word, counts) {
-                Some(corner) if corner.vertex == WRONG => {
-                    let reason = format!("a face names vertex {}", decode(word));
-                    fault.get_or_insert((FindingKind::FaceRange, String::new(), reason));
-                }
-                Some(corner) => faces.corners.push(corner),
-                None => {
-                    let text = decode(word);
-                    let reason = format!("\"{text}\" is no corner of a face");
-                    fault.get_or_insert((FindingKind::FaceUnreadable, text, reason));
-                }
-            }
-            if comment {
-                break;
-            }
-        }
-        let corners = faces.corners.len() - begin;
-        if fault.is_none() && corners < 3 {
-            let reason = format!("a face needs three corners or more, here are {corners}");
-            fault = Some((FindingKind::FaceShort, String::new(), reason));
-        }
-        if let Some((kind, name, reason)) = fault {
-            findings.add(kind, &name, Some(line));
-            faces.refused.get_or_insert((line, reason));
-            faces.corners.truncate(begin);
-            return;
-        }
-        faces.arities.push(u32::try_from(corners).unwrap_or(NONE));
-        faces.lines.push(line);
-        faces.parts.push(self.parts.place());
     }
 
     /// `# color r g b`.
@@ -263,111 +254,31 @@ impl Scan {
             _ => false,
         }
     }
-
-    /// White for vertices without a colour; 0 to 1 for colours of 0 to 255.
-    fn complete_colors(&mut self, findings: &mut Findings) {
-        if self.colors.is_empty() {
-            return;
-        }
-        self.colors.resize(self.vertices.kept() as usize, [f32::NAN; 3]);
-        let largest = self.colors.iter().flatten().fold(0.0, |a: f32, b| a.max(*b));
-        // A rounding error above 1 makes no byte of it.
-        let unit = if largest > 1.01 { 255.0 } else { 1.0 };
-        if unit > 1.0 {
-            findings.add(FindingKind::ColorBytes, "", None);
-        }
-        for color in &mut self.colors {
-            if color.iter().all(|x| x.is_finite()) {
-                *color = color.map(|x| (x / unit).clamp(0.0, 1.0));
-            } else {
-                findings.add(FindingKind::ColorPartly, "", None);
-                *color = [1.0; 3];
-            }
-        }
-    }
 }
 
-/// The numbers of a statement: at most `N` of them are kept.
-struct Row<'a, const N: usize> {
+/// What stands for a vertex without a colour among others.
+pub(super) const NO_COLOR: [f32; 3] = [f32::NAN; 3];
+
+/// The numbers of a statement: at most `N` of them are kept, and 0 stands for those that are not
+/// there.
+struct Row<const N: usize> {
     values: [f32; N],
-    texts: [&'a [u8]; N],
     /// How many there are.
     count: usize,
 }
 
-fn row<const N: usize>(rest: &[u8]) -> Result<Row<'_, N>, String> {
-    let mut row = Row { values: [0.0; N], texts: [&b""[..]; N], count: 0 };
+fn row<const N: usize>(rest: &[u8]) -> Result<Row<N>, String> {
+    let mut row = Row { values: [0.0; N], count: 0 };
     for word in words(rest) {
         let (value, text) = number(word).map_err(|fault| fault.0)?;
         if row.count < N {
-            (row.values[row.count], row.texts[row.count]) = (value, text);
+            row.values[row.count] = value;
         }
         row.count += 1;
+        // A comment follows the number at once.
         if text.len() < word.len() {
             break;
         }
     }
     Ok(row)
-}
-
-impl Rows {
-    /// Adds the first `needed` numbers of a row, where they are finite; says whether they are.
-    fn add<const N: usize>(
-        &mut self,
-        keyword: &[u8],
-        row: &Row<'_, N>,
-        needed: usize,
-    ) -> Result<bool, String> {
-        if self.count >= WRONG - 2 {
-            return Err("there are more of these than can be numbered".to_owned());
-        }
-        self.count += 1;
-        if !row.values[..needed].iter().all(|x| x.is_finite()) {
-            self.lost.push(self.count - 1);
-            return Ok(false);
-        }
-        self.text.extend_from_slice(keyword);
-        for text in &row.texts[..needed] {
-            self.text.push(b' ');
-            self.text.extend_from_slice(text);
-        }
-        self.text.push(b'\n');
-        Ok(true)
-    }
-}
-
-/// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` where it is no such thing.
-fn corner(word: &[u8], counts: [u32; 3]) -> Option<RawCorner> {
-    let mut places = [NONE; 3];
-    for (i, part) in word.split(|b| *b == b'/').enumerate() {
-        if i == 3 {
-            return None;
-        }
-        if !part.is_empty() {
-            places[i] = index(part, counts[i])?;
-        }
-    }
-    let [vertex, uv, normal] = places;
-    (vertex != NONE).then_some(RawCorner { vertex, uv, normal })
-}
-
-/// An index counted from 0: positive ones count from 1, negative ones back from `count`.
-fn index(digits: &[u8], count: u32) -> Option<u32> {
-    let (back, digits) = match digits {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, digits),
-    };
-    if digits.is_empty() {
-        return None;
-    }
-    let value = digits.iter().try_fold(0_u64, |value, digit| {
-        let digit = digit.is_ascii_digit().then(|| digit - b'0')?;
-        // Whatever is beyond 32 bits is as wrong as anything else there.
-        Some((value * 10 + u64::from(digit)).min(u64::from(u32::MAX)))
-    })?;
-    let value = u32::try_from(value).unwrap_or(u32::MAX);
-    let place =
-        if back { count.checked_sub(value).filter(|_| value > 0) } else { value.checked_sub(1) };
-    Some(place.map_or(WRONG, |place| place.min(WRONG)))
 }

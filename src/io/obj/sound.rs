@@ -1,132 +1,319 @@
-//! Which faces of a scan can be used, and what is odd about them.
+//! Which faces of a file can be used, and what is odd about them.
 
-use super::scan::{Faces, RawCorner, Scan, WRONG};
+use super::faces::{Faces, Run, WRONG};
+use crate::base::lists::concatenated;
 use crate::io::findings::{FindingKind, Findings};
-use crate::scene::{NONE, SourceCorner};
+use crate::scene::{CornerLists, NONE, SourceCorner};
+
+/// How many statements of a kind the file has, and which of them are lost, ascending.
+#[derive(Debug)]
+pub(super) struct Totals {
+    pub(super) count: u32,
+    pub(super) lost: Vec<u32>,
+}
+
+impl Totals {
+    /// Where statement `i` stands among those that are kept; `None` where it is lost.
+    fn place(&self, i: u32) -> Option<u32> {
+        match self.lost.binary_search(&i) {
+            Ok(_) => None,
+            Err(before) => Some(i - u32::try_from(before).unwrap_or(i)),
+        }
+    }
+
+    /// Whether every index of a list names something, or is [`NONE`] where that is allowed.
+    fn holds(&self, list: &[u32], none: bool) -> bool {
+        // Counted, not searched: that is done for many at once.
+        let wrong = |i: &&u32| **i >= self.count && !(none && **i == NONE);
+        self.lost.is_empty() && list.iter().filter(wrong).count() == 0
+    }
+}
 
 /// Faces whose every index is in range or [`NONE`], counted among what is kept of the file.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct SoundFaces {
-    pub(super) corners: Vec<SourceCorner>,
-    pub(super) arities: Vec<u32>,
-    pub(super) lines: Vec<u32>,
-    pub(super) parts: Vec<u32>,
+    pub(super) corners: CornerLists,
+    pub(super) runs: Vec<Run>,
     /// The first face that cannot be used, with the reason.
     pub(super) refused: Option<(u32, String)>,
 }
 
-/// Leaves out faces whose vertices are not there, and takes from corners what is not there.
-pub(super) fn sound_faces(scan: &mut Scan, findings: &mut Findings) -> SoundFaces {
-    let faces = std::mem::take(&mut scan.faces);
-    let mut sound = SoundFaces { refused: faces.refused.clone(), ..SoundFaces::default() };
-    sound.corners.reserve(faces.corners.len());
-    let mut begin = 0;
-    for (i, &arity) in faces.arities.iter().enumerate() {
-        let corners = &faces.corners[begin..begin + arity as usize];
-        begin += arity as usize;
-        if let Some((kind, reason)) = fault(corners, scan) {
-            findings.note(kind, faces.lines[i]);
-            let refused = (faces.lines[i], reason);
-            match &sound.refused {
-                Some(earlier) if earlier.0 <= refused.0 => {}
-                _ => sound.refused = Some(refused),
-            }
-            continue;
-        }
-        sound.add(corners, i, &faces, scan, findings);
-    }
-    note_mixed(&sound, findings);
-    sound
+/// The sound faces of one chunk.
+#[derive(Debug, Default)]
+pub(super) struct SoundPiece {
+    faces: Faces,
+    findings: Findings,
+    /// Faces without places on the texture, and without normals.
+    without: [Without; 2],
 }
 
-fn fault(corners: &[RawCorner], scan: &Scan) -> Option<(FindingKind, String)> {
-    let count = scan.vertices.count;
-    if let Some(wrong) = corners.iter().find(|corner| corner.vertex >= count) {
-        let named = u64::from(wrong.vertex) + 1;
+/// Corners without something, and faces that have such corners.
+#[derive(Clone, Copy, Debug, Default)]
+struct Without {
+    corners: usize,
+    faces: usize,
+    /// The line of the first such face.
+    first: u32,
+}
+
+impl Without {
+    fn note(&mut self, corners: usize, line: u32) {
+        if corners > 0 {
+            self.append(Self { corners, faces: 1, first: line });
+        }
+    }
+
+    fn append(&mut self, following: Self) {
+        if self.faces == 0 {
+            self.first = following.first;
+        }
+        self.faces += following.faces;
+        self.corners += following.corners;
+    }
+}
+
+impl SoundPiece {
+    /// Leaves out faces whose vertices are not there, and takes from corners what is not there.
+    /// `lines` are before the chunk; `parts` are the places of its parts in the file's list.
+    pub(super) fn of(mut faces: Faces, totals: &[Totals; 3], lines: u32, parts: &[u32]) -> Self {
+        for run in &mut faces.runs {
+            (run.line, run.part) = (run.line.saturating_add(lines), parts[run.part as usize]);
+        }
+        if let Some((line, _)) = &mut faces.refused {
+            *line = line.saturating_add(lines);
+        }
+        let lists = &faces.corners;
+        let sound = totals[0].holds(&lists.positions, false)
+            && totals[1].holds(&lists.uvs, true)
+            && totals[2].holds(&lists.normals, true);
+        if sound { Self::of_sound(faces) } else { Self::mended(&faces, totals) }
+    }
+
+    /// Notes what is odd about faces that are all sound.
+    fn of_sound(faces: Faces) -> Self {
+        let mut piece = Self { faces, ..Self::default() };
+        let lists = &piece.faces.corners;
+        let mut begin = 0;
+        for (corners, line) in faces_of(&piece.faces.runs) {
+            let face = begin..begin + corners;
+            begin = face.end;
+            if repeats(&lists.positions[face.clone()]) {
+                piece.findings.note(FindingKind::FaceRepeats, line);
+            }
+            for (without, list) in piece.without.iter_mut().zip([&lists.uvs, &lists.normals]) {
+                if let Some(own) = list.get(face.clone()) {
+                    without.note(own.iter().filter(|i| **i == NONE).count(), line);
+                }
+            }
+        }
+        let all = Without {
+            corners: lists.positions.len(),
+            faces: piece.faces.runs.iter().map(|run| run.faces as usize).sum(),
+            first: piece.faces.runs.first().map_or(0, |run| run.line),
+        };
+        for (without, list) in piece.without.iter_mut().zip([&lists.uvs, &lists.normals]) {
+            if list.is_empty() {
+                *without = all;
+            }
+        }
+        piece
+    }
+
+    /// Takes up the faces one by one.
+    fn mended(faces: &Faces, totals: &[Totals; 3]) -> Self {
+        let refused = faces.refused.clone();
+        let mut piece = Self { faces: Faces { refused, ..Faces::default() }, ..Self::default() };
+        let mut begin = 0;
+        for run in &faces.runs {
+            for line in run.line..run.line.saturating_add(run.faces) {
+                let face = begin..begin + run.corners as usize;
+                begin = face.end;
+                let vertices = &faces.corners.positions[face.clone()];
+                match fault(vertices, &totals[0]) {
+                    Some((kind, reason)) => piece.refuse(kind, line, reason),
+                    None => piece.add(&faces.corners, face, Run { line, ..*run }, totals),
+                }
+            }
+        }
+        piece
+    }
+
+    fn refuse(&mut self, kind: FindingKind, line: u32, reason: String) {
+        self.findings.note(kind, line);
+        match &self.faces.refused {
+            Some((earlier, _)) if *earlier <= line => {}
+            _ => self.faces.refused = Some((line, reason)),
+        }
+    }
+
+    /// Takes up a face with its indices brought to what is kept, and notes what is odd about it.
+    fn add(
+        &mut self,
+        lists: &CornerLists,
+        face: std::ops::Range<usize>,
+        of: Run,
+        totals: &[Totals; 3],
+    ) {
+        let [vertices, uvs, normals] = totals;
+        let [mut wrong_uv, mut wrong_normal] = [false; 2];
+        let [mut no_uv, mut no_normal] = [0; 2];
+        let begin = self.faces.corners();
+        let corners = face.len();
+        for i in face {
+            let corner = SourceCorner {
+                position: vertices.place(lists.positions[i]).unwrap_or(NONE),
+                uv: settled(lists.uv(i), uvs, &mut wrong_uv),
+                normal: settled(lists.normal(i), normals, &mut wrong_normal),
+            };
+            no_uv += usize::from(corner.uv == NONE);
+            no_normal += usize::from(corner.normal == NONE);
+            self.faces.push(corner);
+        }
+        self.faces.end_face(corners, of.line, of.part);
+        self.without[0].note(no_uv, of.line);
+        self.without[1].note(no_normal, of.line);
+        let odd = [
+            (wrong_uv, FindingKind::UvRange),
+            (wrong_normal, FindingKind::NormalRange),
+            (repeats(&self.faces.corners.positions[begin..]), FindingKind::FaceRepeats),
+        ];
+        for (_, kind) in odd.into_iter().filter(|(odd, _)| *odd) {
+            self.findings.note(kind, of.line);
+        }
+    }
+}
+
+impl SoundFaces {
+    /// Puts the faces of all chunks together.
+    pub(super) fn of(pieces: Vec<SoundPiece>, findings: &mut Findings) -> Self {
+        let mut all = Self { corners: CornerLists::default(), runs: Vec::new(), refused: None };
+        let mut without = [Without::default(); 2];
+        let [mut positions, mut uvs, mut normals] = [const { Vec::new() }; 3];
+        for piece in pieces {
+            // The lines are those of the file already.
+            findings.append(piece.findings, 0);
+            for (all, more) in without.iter_mut().zip(piece.without) {
+                all.append(more);
+            }
+            let Faces { corners, mut runs, refused } = piece.faces;
+            all.refused = all.refused.or(refused);
+            all.runs.append(&mut runs);
+            positions.push(corners.positions);
+            uvs.push(corners.uvs);
+            normals.push(corners.normals);
+        }
+        let lengths: Vec<usize> = positions.iter().map(Vec::len).collect();
+        all.corners = CornerLists {
+            positions: concatenated(positions),
+            uvs: optional(uvs, &lengths),
+            normals: optional(normals, &lengths),
+        };
+        // What no face has is missed by none.
+        let kinds = [FindingKind::UvMixed, FindingKind::NormalMixed];
+        for (without, kind) in without.into_iter().zip(kinds) {
+            if without.corners < all.corners.positions.len() {
+                findings.note_all(kind, without.faces, without.first);
+            }
+        }
+        all
+    }
+}
+
+/// What faces are, without their corners.
+#[derive(Debug)]
+pub(super) struct FaceRuns {
+    runs: Vec<Run>,
+    /// How many faces there are up to the end of each run.
+    ends: Vec<u32>,
+}
+
+impl FaceRuns {
+    pub(super) fn of(runs: Vec<Run>) -> Self {
+        let ends = runs.iter().scan(0_u32, |end, run| {
+            *end = end.saturating_add(run.faces);
+            Some(*end)
+        });
+        Self { ends: ends.collect(), runs }
+    }
+
+    /// The line of a face.
+    pub(super) fn line(&self, face: u32) -> u32 {
+        let place = self.ends.partition_point(|end| *end <= face);
+        let (run, end) = (self.runs[place], self.ends[place]);
+        run.line.saturating_add(run.faces - (end - face))
+    }
+
+    /// How many corners each face has, in order.
+    pub(super) fn arities(&self) -> Vec<u32> {
+        self.by_face(|run| run.corners)
+    }
+
+    /// The part of each face, in order.
+    pub(super) fn parts(&self) -> Vec<u32> {
+        self.by_face(|run| run.part)
+    }
+
+    fn by_face(&self, number: impl Fn(&Run) -> u32) -> Vec<u32> {
+        let faces = self.ends.last().copied().unwrap_or(0) as usize;
+        let mut numbers = Vec::with_capacity(faces);
+        for run in &self.runs {
+            numbers.resize(numbers.len() + run.faces as usize, number(run));
+        }
+        numbers
+    }
+}
+
+/// How many corners each face of these runs has, and its line.
+fn faces_of(runs: &[Run]) -> impl Iterator<Item = (usize, u32)> {
+    let faces = |run: &Run| {
+        let corners = run.corners as usize;
+        (run.line..run.line.saturating_add(run.faces)).map(move |line| (corners, line))
+    };
+    runs.iter().flat_map(faces)
+}
+
+/// Lists one after the other, of which those are empty that have nothing but [`NONE`]; `lengths` is
+/// how long they would be.
+fn optional(mut lists: Vec<Vec<u32>>, lengths: &[usize]) -> Vec<u32> {
+    if lists.iter().all(Vec::is_empty) {
+        return Vec::new();
+    }
+    for (list, length) in lists.iter_mut().zip(lengths) {
+        list.resize(*length, NONE);
+    }
+    concatenated(lists)
+}
+
+fn fault(face: &[u32], vertices: &Totals) -> Option<(FindingKind, String)> {
+    let count = vertices.count;
+    if let Some(wrong) = face.iter().find(|vertex| **vertex >= count) {
+        let named = u64::from(*wrong) + 1;
         let reason = format!("a face names vertex {named}, the file has {count}");
         return Some((FindingKind::FaceRange, reason));
     }
-    let lost = |corner: &RawCorner| scan.vertices.place(corner.vertex).is_none();
-    (!scan.vertices.lost.is_empty() && corners.iter().any(lost)).then(|| {
+    let lost = |vertex: &u32| vertices.place(*vertex).is_none();
+    (!vertices.lost.is_empty() && face.iter().any(lost)).then(|| {
         let reason = "a face names a vertex that is not finite".to_owned();
         (FindingKind::FaceOnLostVertex, reason)
     })
 }
 
-impl SoundFaces {
-    fn add(
-        &mut self,
-        corners: &[RawCorner],
-        face: usize,
-        faces: &Faces,
-        scan: &Scan,
-        findings: &mut Findings,
-    ) {
-        let line = faces.lines[face];
-        let begin = self.corners.len();
-        let [mut wrong_uv, mut wrong_normal] = [false; 2];
-        for corner in corners {
-            let within = |i: u32, count: u32, wrong: &mut bool| {
-                *wrong |= i == WRONG || (i != NONE && i >= count);
-                i < count
-            };
-            let uv = within(corner.uv, scan.uvs.count, &mut wrong_uv).then_some(corner.uv);
-            let normal = within(corner.normal, scan.normals.count, &mut wrong_normal);
-            let normal = normal.then_some(corner.normal);
-            self.corners.push(SourceCorner {
-                position: scan.vertices.place(corner.vertex).unwrap_or(NONE),
-                uv: uv.and_then(|i| scan.uvs.place(i)).unwrap_or(NONE),
-                normal: normal.and_then(|i| scan.normals.place(i)).unwrap_or(NONE),
-            });
-        }
-        for (wrong, kind) in
-            [(wrong_uv, FindingKind::UvRange), (wrong_normal, FindingKind::NormalRange)]
-        {
-            if wrong {
-                findings.note(kind, line);
-            }
-        }
-        if repeats(&self.corners[begin..]) {
-            findings.note(FindingKind::FaceRepeats, line);
-        }
-        self.arities.push(faces.arities[face]);
-        self.lines.push(line);
-        self.parts.push(faces.parts[face]);
-    }
+/// Where an index stands among what is kept, or [`NONE`].
+fn settled(index: u32, totals: &Totals, wrong: &mut bool) -> u32 {
+    let names = index < totals.count && index != WRONG;
+    *wrong |= !names && index != NONE;
+    if names { totals.place(index).unwrap_or(NONE) } else { NONE }
 }
 
 /// Whether a face names a vertex twice.
-fn repeats(corners: &[SourceCorner]) -> bool {
-    if corners.len() <= 8 {
-        let same = |i: usize| corners[..i].iter().any(|c| c.position == corners[i].position);
-        return (1..corners.len()).any(same);
-    }
-    let mut vertices: Vec<u32> = corners.iter().map(|corner| corner.position).collect();
-    vertices.sort_unstable();
-    vertices.windows(2).any(|two| two[0] == two[1])
-}
-
-/// Notes the faces without places on the texture, and without normals, where others have them.
-fn note_mixed(faces: &SoundFaces, findings: &mut Findings) {
-    note_without(faces, FindingKind::UvMixed, |corner| corner.uv, findings);
-    note_without(faces, FindingKind::NormalMixed, |corner| corner.normal, findings);
-}
-
-fn note_without(
-    faces: &SoundFaces,
-    kind: FindingKind,
-    index: impl Fn(&SourceCorner) -> u32,
-    findings: &mut Findings,
-) {
-    if faces.corners.iter().all(|corner| index(corner) == NONE) {
-        return;
-    }
-    let mut begin = 0;
-    for (arity, line) in faces.arities.iter().zip(&faces.lines) {
-        let corners = &faces.corners[begin..begin + *arity as usize];
-        begin += *arity as usize;
-        if corners.iter().any(|corner| index(corner) == NONE) {
-            findings.note(kind, *line);
+fn repeats(vertices: &[u32]) -> bool {
+    match vertices {
+        [a, b, c] => a == b || b == c || c == a,
+        few if few.len() <= 8 => (1..few.len()).any(|i| few[..i].contains(&few[i])),
+        many => {
+            let mut many = many.to_vec();
+            many.sort_unstable();
+            many.windows(2).any(|two| two[0] == two[1])
         }
     }
 }

@@ -241,23 +241,46 @@ pub(super) struct FilePolygons {
 }
 
 /// Numbers as `0-7 9 12-20`: a hundred thousand shown polygons are no hundred thousand lines.
+///
+/// They stay runs as long as nobody has said how many there can be.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
-pub(super) struct Numbers(pub(super) BTreeSet<u32>);
+pub(super) struct Numbers(Vec<(u32, u32)>);
 
-impl From<Numbers> for String {
-    fn from(numbers: Numbers) -> Self {
+impl Numbers {
+    pub(super) fn of(numbers: &BTreeSet<u32>) -> Self {
         let mut runs: Vec<(u32, u32)> = Vec::new();
-        for number in numbers.0 {
+        for &number in numbers {
             match runs.last_mut() {
                 Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
                 _ => runs.push((number, number)),
             }
         }
+        Self(runs)
+    }
+
+    /// Those of the numbers that are below `count`.
+    pub(super) fn below(&self, count: usize) -> BTreeSet<u32> {
+        let mut runs = self.0.clone();
+        runs.sort_unstable();
+        let end = u32::try_from(count).unwrap_or(u32::MAX);
+        let mut numbers = BTreeSet::new();
+        let mut next = 0;
+        for (first, last) in runs {
+            // However often a number is named, it is taken once.
+            numbers.extend(next.max(first)..end.min(last.saturating_add(1)));
+            next = next.max(last.saturating_add(1));
+        }
+        numbers
+    }
+}
+
+impl From<Numbers> for String {
+    fn from(numbers: Numbers) -> Self {
         let text = |(first, last): &(u32, u32)| {
             if first == last { first.to_string() } else { format!("{first}-{last}") }
         };
-        runs.iter().map(text).collect::<Vec<_>>().join(" ")
+        numbers.0.iter().map(text).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -265,20 +288,14 @@ impl TryFrom<String> for Numbers {
     type Error = String;
 
     fn try_from(text: String) -> Result<Self, String> {
-        let mut numbers = BTreeSet::new();
-        for word in text.split_whitespace() {
+        let run = |word: &str| {
             let (first, last) = word.split_once('-').unwrap_or((word, word));
             let number = |text: &str| {
                 text.parse::<u32>().map_err(|error| format!("\"{word}\" is no number: {error}"))
             };
-            let (first, last) = (number(first)?, number(last)?);
-            // No model has more parts or polygons than this.
-            if last.saturating_sub(first) > 100_000_000 {
-                return Err(format!("\"{word}\" are too many numbers"));
-            }
-            numbers.extend(first..=last);
-        }
-        Ok(Self(numbers))
+            Ok((number(first)?, number(last)?))
+        };
+        text.split_whitespace().map(run).collect::<Result<_, String>>().map(Self)
     }
 }
 
@@ -324,11 +341,21 @@ mod tests {
 
     #[test]
     fn numbers_are_written_in_runs_and_come_back() {
-        let numbers = Numbers([0, 1, 2, 5, 7, 8, u32::MAX].into());
+        let all: BTreeSet<u32> = [0, 1, 2, 5, 7, 8, 4000].into();
+        let numbers = Numbers::of(&all);
         let text = String::from(numbers.clone());
-        assert_eq!(text, "0-2 5 7-8 4294967295");
-        assert_eq!(Numbers::try_from(text), Ok(numbers));
-        assert!(Numbers::try_from("0-4000000000".to_owned()).is_err());
+        assert_eq!(text, "0-2 5 7-8 4000");
+        assert_eq!(Numbers::try_from(text), Ok(numbers.clone()));
+        assert_eq!(numbers.below(4001), all);
+        assert_eq!(numbers.below(8), [0, 1, 2, 5, 7].into());
         assert!(Numbers::try_from("three".to_owned()).is_err());
+    }
+
+    #[test]
+    fn numbers_that_no_model_has_cost_nothing() {
+        let text = "0-4294967295 ".repeat(10_000) + "5-2 4294967295";
+        let numbers = Numbers::try_from(text).unwrap();
+        assert_eq!(numbers.below(3), [0, 1, 2].into());
+        assert_eq!(numbers.below(0), BTreeSet::new());
     }
 }

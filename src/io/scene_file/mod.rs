@@ -14,10 +14,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use self::format::{FileModel, FileScene, FileTexture, Head, VERSION};
-use super::error::{LoadError, reason, short_name};
+use super::error::{LoadError, short_name};
 use super::findings::Finding;
 use super::progress::Progress;
-use super::replace::{Before, SaveError, replace};
+use super::read::{MOST_WORDS, read};
+use super::replace::{SaveError, Worth, replace};
 use super::texture::load_texture;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
@@ -85,7 +86,7 @@ fn listed(paths: &[PathBuf]) -> String {
 /// is.
 pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
     let text = to_text(path, scene, view, settings)?;
-    replace(path, text.as_bytes(), Before::Kept)
+    replace(path, text.as_bytes(), Worth::Work)
 }
 
 /// The text that [`save()`] would write to `path`.
@@ -129,7 +130,7 @@ pub fn open_with(
 ) -> Result<Opened, SceneFileError> {
     let name = short_name(path);
     let fail = |reason: String| SceneFileError::File { file: name.clone(), reason };
-    let bytes = std::fs::read(path).map_err(|error| fail(reason(&error)))?;
+    let bytes = read(path, MOST_WORDS, &Progress::new())?;
     let text =
         String::from_utf8(bytes).map_err(|_bytes| fail("this is no scene file".to_owned()))?;
     open_text(&text, &name, folder_of(path), relocated, progress)

@@ -9,7 +9,7 @@ use glam::{DMat3, DMat4, DVec3};
 
 use super::format::{
     FileCamera, FileLight, FileLightKind, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
-    FileScene, FileSpin, FileTexture, FileView, Numbers,
+    FileScene, FileSpin, FileTexture, FileView,
 };
 use crate::base::{Shared, color::Color};
 use crate::scene::{
@@ -101,9 +101,8 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
         finite("its texture", &[texture.offset, texture.scale].concat())?;
     }
     let model = needs.model(&object.model);
-    let Numbers(mut hidden_parts) = object.hidden_parts.clone();
     // The model may have changed since, and have fewer parts now.
-    hidden_parts.retain(|part| (*part as usize) < model.mesh.parts().len());
+    let hidden_parts = object.hidden_parts.below(model.mesh.parts().len());
     Ok(Object {
         name: object.name.clone(),
         visible: object.visible,
@@ -216,7 +215,7 @@ fn read_view(file: &FileView, scene: &Scene) -> Result<View, String> {
         let count = object.model.mesh.polygon_count();
         let there = |polygon: u32| (polygon as usize) < count;
         // The model may have changed since, and have fewer polygons now.
-        let shown = file.shown.0.iter().copied().filter(|i| there(*i)).collect();
+        let shown = file.shown.below(count);
         let mut mode = PolygonMode { current: 0, shown };
         mode.go_to(if there(file.current) { file.current } else { 0 });
         Some(mode)

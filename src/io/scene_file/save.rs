@@ -86,7 +86,7 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         name: name.clone(),
         visible: *visible,
         model: file_model(model, folder)?,
-        hidden_parts: Numbers(hidden_parts.clone()),
+        hidden_parts: Numbers::of(hidden_parts),
         placement: placement.now().to_cols_array_2d(),
         spin: FileSpin { axes, speed, since },
         material: material.clone(),
@@ -191,7 +191,7 @@ impl FileView {
         } = view;
         let polygons = polygons
             .as_ref()
-            .map(|mode| FilePolygons { current: mode.current, shown: Numbers(mode.shown.clone()) });
+            .map(|mode| FilePolygons { current: mode.current, shown: Numbers::of(&mode.shown) });
         Self {
             subject: *subject,
             object: object.map(|id| id.0),

@@ -180,7 +180,7 @@ fn model_ui(ui: &mut Ui, object: &Object) {
     fact(ui, "File", &source);
     fact(ui, "Vertices", &grouped(mesh.positions().len()));
     fact(ui, "Polygons", &grouped(mesh.polygon_count()));
-    fact(ui, "Triangles", &grouped(mesh.triangles().len()));
+    fact(ui, "Triangles", &grouped(mesh.triangle_count()));
     fact(ui, "Parts", &grouped(mesh.parts().len()));
     if let Some(bounds) = mesh.bounds() {
         let [x, y, z] = bounds.extent().to_array().map(short);

@@ -1,0 +1,27 @@
+//! Models: whatever the bytes, they are read or refused, and what is read is a mesh that holds
+//! together. The first byte says how it is read.
+
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use marraztu::io::{Progress, describe, parse};
+use marraztu::scene::{LoadOptions, Scale, UpAxis, Winding};
+
+fuzz_target!(|data: &[u8]| {
+    let Some((options, text)) = data.split_first() else { return };
+    let options = LoadOptions {
+        up: if options & 1 == 0 { UpAxis::Y } else { UpAxis::Z },
+        winding: if options & 2 == 0 { Winding::Kept } else { Winding::Turned },
+        scale: Scale::new(if options & 4 == 0 { 1.0 } else { 1e30 }).expect("above 0"),
+    };
+    let Ok(loaded) = parse(text, "a.obj", None, &options, &Progress::new()) else { return };
+    assert!(describe(&loaded).starts_with("name"));
+    let mesh = &loaded.model.mesh;
+    let corners = mesh.corners().len();
+    assert_eq!(mesh.triangles().len() + 2 * mesh.polygon_count(), corners);
+    let order = mesh.draw_order();
+    assert_eq!(order.triangles.len(), mesh.triangles().len());
+    for edge in mesh.edges() {
+        assert!(!mesh.edge_polygons(edge).is_empty());
+    }
+});

@@ -1,0 +1,48 @@
+//! The box that holds a set of points.
+
+use glam::DVec3;
+
+/// The extent of a set of points, in object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The smallest coordinates.
+    pub min: DVec3,
+    /// The largest coordinates.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// The extent of points; `None` where there are none.
+    #[must_use]
+    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
+        points.into_iter().fold(None, |bounds: Option<Self>, p| {
+            Some(
+                bounds.map_or(Self { min: p, max: p }, |b| Self {
+                    min: b.min.min(p),
+                    max: b.max.max(p),
+                }),
+            )
+        })
+    }
+
+    /// The middle of the box.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Length, height and width of the box.
+    #[must_use]
+    pub fn extent(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// Its eight corners.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        let pick = |i: usize, bit: usize, axis: usize| {
+            if i & bit == 0 { self.min[axis] } else { self.max[axis] }
+        };
+        std::array::from_fn(|i| DVec3::new(pick(i, 1, 0), pick(i, 2, 1), pick(i, 4, 2)))
+    }
+}

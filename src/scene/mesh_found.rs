@@ -1,0 +1,133 @@
+//! What of a mesh is found when it is first asked for.
+//!
+//! A picture needs a part of it: to find the rest, and to have memory filled with it, would take
+//! longer than the drawing.
+
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+use super::mesh::index;
+use super::mesh_build::{Outlines, triangles};
+use super::mesh_edges::{Edge, Edges};
+use super::mesh_points::shown_normal;
+use super::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
+
+/// What was asked for.
+#[derive(Default)]
+pub(super) struct Found {
+    corners: OnceLock<Vec<Corner>>,
+    triangles: OnceLock<Vec<Triangle>>,
+    normals: OnceLock<Vec<[f32; 3]>>,
+    centres: OnceLock<Vec<[f32; 3]>>,
+    edges: OnceLock<Edges>,
+    order: OnceLock<DrawOrder>,
+    edge_order: OnceLock<EdgeOrder>,
+}
+
+impl Mesh {
+    /// The corners of all polygons, one after the other.
+    #[must_use]
+    pub fn corners(&self) -> &[Corner] {
+        once::<Vec<_>>(&self.found.corners, || {
+            let corner = |i: usize| Corner {
+                position: self.corners.vertices[i],
+                uv: self.corners.uvs.get(i).copied().unwrap_or(NONE),
+                smooth: self.corners.smooth(i),
+                filed: self.corners.filed(i),
+            };
+            (0..self.corners.vertices.len()).into_par_iter().map(corner).collect()
+        })
+    }
+
+    /// The triangles of all polygons, in the order of the polygons.
+    #[must_use]
+    pub fn triangles(&self) -> &[Triangle] {
+        once::<Vec<_>>(&self.found.triangles, || triangles(&self.outlines()))
+    }
+
+    /// How many triangles there are.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.corners.vertices.len() - 2 * self.polygon_count()
+    }
+
+    /// The corners of a triangle, as places in [`Self::corners`].
+    pub(super) fn triangle(&self, number: usize) -> [usize; 3] {
+        if self.triangle_count() == self.polygon_count() {
+            // Each polygon is one.
+            return [3 * number, 3 * number + 1, 3 * number + 2];
+        }
+        self.triangles()[number].corners.map(|corner| corner as usize)
+    }
+
+    /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
+    #[must_use]
+    pub fn polygon_normals(&self) -> &[[f32; 3]] {
+        once::<Vec<_>>(&self.found.normals, || {
+            let outlines = self.outlines();
+            let polygons = 0..self.polygon_count();
+            polygons.into_par_iter().map(|i| shown_normal(outlines.normal(i))).collect()
+        })
+    }
+
+    /// The means of the corners of all polygons.
+    #[must_use]
+    pub fn polygon_centres(&self) -> &[[f32; 3]] {
+        once::<Vec<_>>(&self.found.centres, || {
+            let polygons = 0..index(self.polygon_count());
+            let centre = |polygon| self.polygon_centre(polygon).as_vec3().to_array();
+            polygons.into_par_iter().map(centre).collect()
+        })
+    }
+
+    /// The triangles and vertices in the order in which they are drawn fastest.
+    #[must_use]
+    pub fn draw_order(&self) -> &DrawOrder {
+        once(&self.found.order, || DrawOrder::along_curve(self))
+    }
+
+    /// Has the mesh drawn in the order of its file, unless another one has been found: for the one
+    /// picture of a program that then ends, a better order is not worth finding.
+    pub fn draw_as_filed(&self) {
+        once(&self.found.order, || DrawOrder::as_filed(self));
+    }
+
+    /// The edges in the order in which they are drawn fastest.
+    #[must_use]
+    pub fn edge_order(&self) -> &EdgeOrder {
+        once(&self.found.edge_order, || EdgeOrder::new(self))
+    }
+
+    /// The sides of all polygons, each once.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        self.edge_table().edges()
+    }
+
+    /// The polygons that have this edge as a side.
+    #[must_use]
+    pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
+        self.edge_table().polygons(edge)
+    }
+
+    fn edge_table(&self) -> &Edges {
+        once(&self.found.edges, || Edges::of(self))
+    }
+
+    /// The outlines of all polygons.
+    pub(super) fn outlines(&self) -> Outlines<'_> {
+        Outlines { places: &self.positions, corners: &self.corners.vertices, starts: &self.starts }
+    }
+}
+
+/// What a cell holds, found where it holds nothing yet.
+///
+/// It is found outside of the cell: a thread that waits for others in the middle of it may take up
+/// work that needs the same thing, and would wait for itself. Rather is it found twice.
+fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> T) -> &T {
+    cell.get().unwrap_or_else(|| {
+        let found = find();
+        cell.get_or_init(|| found)
+    })
+}
