@@ -488,6 +488,7 @@ const fn block_at(x: i32, y: i32) -> usize {
 
 /// The column and row of the tile, and the sample, whose word stands at a place where pixels have so many
 /// samples.
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 pub(super) const fn pixel_at(place: usize, samples: usize) -> ([i32; 2], usize) {
     let (plane, pixel) = (place / BLOCK_PIXELS, (place % BLOCK_PIXELS) as i32);
     let (block, sample) = ((plane / samples) as i32, plane % samples);

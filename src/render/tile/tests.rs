@@ -199,6 +199,7 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
 }
 
 /// The words of each pixel's samples, found triangle by triangle and sample by sample.
+#[expect(clippy::needless_range_loop, reason = "a sample is one of each pixel's")]
 fn one_by_one(triangles: &[LargeTriangle], places: &Places) -> Vec<[u64; FOUR]> {
     let mut words = vec![[0; FOUR]; PIXELS];
     for large in triangles {

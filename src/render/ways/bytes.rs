@@ -24,6 +24,7 @@ fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
 }
 
 /// The pattern's number at a place, from 0 to 63: the bits of x xor y and of y in turn, the last first.
+#[expect(clippy::cast_possible_truncation, reason = "the last bits are meant")]
 const fn bayer(x: i32, y: i32) -> u8 {
     let (x, y) = ((x ^ y) as u8, y as u8);
     let mut number = 0;

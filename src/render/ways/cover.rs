@@ -136,6 +136,7 @@ fn held(plain: &Plain) -> impl Fn(f32) -> f32 {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
     use super::*;
     use crate::render::coverage::{SUBPIXELS, Triangle};

@@ -91,7 +91,9 @@ mod tests {
     use crate::scene::Wrap;
 
     fn chequered(side: usize) -> Shared<Texture> {
-        let at = |i: usize| if (i % side + i / side) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] };
+        let at = |i: usize| {
+            if (i % side + i / side).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] }
+        };
         let picture =
             Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
         let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);

@@ -136,6 +136,7 @@ fn perspective([second, third]: Parts, [w0, w1, w2]: [f64; 3]) -> (Parts, f64) {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
     use super::*;
 
