@@ -5,7 +5,6 @@
 //! share of a sample, the sum begun twice for a background, and middles that are not held to what they
 //! show.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 
 mod common;

@@ -1,6 +1,5 @@
 //! What each axis of accuracy makes of a picture, held to the figures that its table states.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 #![expect(clippy::cast_precision_loss, reason = "small numbers")]
 
 mod common;

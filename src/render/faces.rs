@@ -192,8 +192,10 @@ impl<T: Faced> Faces<T> {
         }
     }
 
-    /// Lets the corners carry light that was evaluated at their corners: the front's and the back's.
-    pub(super) fn carry_light(&mut self, draw: &Draw, front: &[[T; 4]], back: &[[T; 4]]) {
+    /// Lets the corners carry the light of their vertices; `light` is asked for it by place, and by
+    /// whether it is that of the back.
+    #[inline(always)]
+    pub(super) fn carry_light(&mut self, draw: &Draw, mut light: impl FnMut(u32, bool) -> [T; 4]) {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
         let points = order.points(draw.normal_source);
@@ -202,9 +204,9 @@ impl<T: Faced> Faces<T> {
                 Normals::Face => mesh.triangles()[*number as usize].corners,
                 Normals::Vertex => points.of(self.places[slot], self.ids[slot]),
             };
-            let light = if self.back >> slot & 1 == 1 { back } else { front };
+            let back = self.back >> slot & 1 == 1;
             for (carried, place) in self.carried.iter_mut().zip(places) {
-                carried[slot] = light[place as usize];
+                carried[slot] = light(place, back);
             }
         }
     }

@@ -42,6 +42,7 @@ mod tile;
 mod vertices;
 mod watch;
 mod ways;
+mod whole;
 
 pub use changes::{Cause, Change, Changes};
 pub use plan::{Class, Effect, EffectUse, FramePlan, State};

@@ -1,16 +1,22 @@
 //! Paints tiles: what is seen in a tile, its colours, and the copy into the picture.
 //!
 //! A painter stays with its thread from frame to frame, so that a frame allocates and clears nothing
-//! for its tiles. A tile that showed nothing but the background and still does is not touched.
+//! for its tiles. A tile that showed nothing but the background and still does is not touched. Tiles
+//! are painted straight into the picture, or, where another thread is at work in the same rows or the
+//! picture ends inside of the tile, beside it and copied.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::bins::tiles_of;
 use super::colors::Sums;
 use super::coverage::PixelBox;
 use super::effects::Light;
 use super::places::{ALL, FOUR};
+use super::plan::FramePlan;
 use super::resolve::Samples;
 use super::surface::{Out, Scenery, Shader};
-use super::tile::{BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
+use super::tile::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
+use super::whole::{Blocks, Canvas};
 use crate::base::color::Color;
 use crate::base::image::Size;
 
@@ -33,25 +39,23 @@ pub(super) struct Band<'a> {
     pub(super) filled: &'a mut [Option<Color>],
 }
 
-/// Where a block stands in the rows of its tile.
-fn place_of([x, y]: [i32; 2], bounds: PixelBox) -> usize {
-    let [x, y] =
-        [x - bounds.left, y - bounds.top].map(|i| usize::try_from(i).expect("in the tile"));
-    y * TILE_SIDE + x
-}
-
-/// Puts the means of 2^`log2` samples into the rows of a tile, from `at` on.
-fn put_means(sums: &Sums, log2: u32, tile: &mut [[u8; 4]], at: usize) {
-    for (i, mean) in sums.means(log2).enumerate() {
-        tile[at + i / BLOCK_SIDE * TILE_SIDE + i % BLOCK_SIDE] = mean;
-    }
+/// A band that nobody else has.
+fn locked<'a, 'b>(band: &'a Mutex<Band<'b>>) -> MutexGuard<'a, Band<'b>> {
+    band.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Pixels to a side of a block.
-const BLOCK_SIDE: usize = 8;
+const ROW: usize = BLOCK as usize;
+/// Blocks in a row of a tile.
+const BLOCKS: usize = TILE_SIDE / ROW;
 
-/// Blocks of a tile.
-pub(super) const BLOCKS: usize = TILE_SIDE * TILE_SIDE / BLOCK_PIXELS;
+/// The colours of a tile over several passes, block by block; nothing before the first.
+pub(super) type TileSums = Mutex<Vec<Sums>>;
+
+/// Where a block of a tile begins.
+const fn corner_in_tile(block: usize) -> [usize; 2] {
+    [block % BLOCKS * ROW, block / BLOCKS * ROW]
+}
 
 /// Draws one tile after another.
 #[derive(Debug)]
@@ -59,7 +63,8 @@ pub(super) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
     samples: Samples,
-    pixels: Box<[[u8; 4]; TILE_SIDE * TILE_SIDE]>,
+    /// A tile beside the picture.
+    pixels: Vec<[u8; 4]>,
 }
 
 impl<T: Light> Default for Painter<T> {
@@ -68,7 +73,7 @@ impl<T: Light> Default for Painter<T> {
             shader: Shader::default(),
             visibility: Visibility::default(),
             samples: Samples::default(),
-            pixels: Box::new([[0; 4]; TILE_SIDE * TILE_SIDE]),
+            pixels: vec![[0; 4]; TILE_SIDE * TILE_SIDE],
         }
     }
 }
@@ -79,64 +84,112 @@ impl<T: Light> Painter<T> {
         self.shader.begin();
     }
 
-    /// Paints a tile; says whether it shows anything but the background.
-    pub(super) fn paint(&mut self, scenery: &Scenery<'_, T>, tile: usize) -> bool {
+    /// Paints a tile of the picture, whose band is given.
+    pub(super) fn paint(&mut self, scenery: &Scenery<'_, T>, tile: usize, band: &Mutex<Band<'_>>) {
         let Scenery { level, plan, frame, .. } = *scenery;
-        if frame.is_empty(tile) {
-            return false;
+        let (size, background) = (plan.size, plan.background);
+        let bounds = bounds_of(tile, size);
+        if !frame.is_empty(tile) {
+            self.visibility.draw(level, plan, frame, (tile, bounds));
         }
-        let bounds = bounds_of(tile, plan.size);
-        self.visibility.draw(level, plan, frame, (tile, bounds));
-        self.shader.tile.begin(plan, &self.visibility, bounds);
-        self.pixels.fill(plan.background.opaque());
-        let mut shows = false;
-        for block in 0..BLOCKS {
-            if !self.visibility.shows(block) {
-                continue;
+        if frame.is_empty(tile) || self.visibility.is_empty() {
+            return Self::fill(tile, size, background, &mut locked(band));
+        }
+        self.shader.tile.begin((level, plan), &self.visibility, bounds);
+        let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
+        let (column, place) = Self::place(tile, size);
+        if let (true, Ok(mut band)) = (whole, band.try_lock()) {
+            // Straight into the picture, where nobody else is at work in these rows.
+            let Band { pixels, filled } = &mut *band;
+            let mut canvas = Canvas { pixels: &mut pixels[place.start..], stride: size.width };
+            let shows = self.blocks(scenery, bounds, &mut canvas);
+            filled[column] = Some(background).filter(|_| !shows);
+            return;
+        }
+        let mut pixels = std::mem::take(&mut self.pixels);
+        let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
+        let shows = self.blocks(scenery, bounds, &mut canvas);
+        self.pixels = pixels;
+        let mut band = locked(band);
+        if shows {
+            self.copy(tile, size, &mut band);
+        } else {
+            Self::fill(tile, size, background, &mut band);
+        }
+    }
+
+    /// Colours the blocks of a tile; says whether it shows anything but the background.
+    fn blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        bounds: PixelBox,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let mut whole = self.visibility.whole_blocks();
+        if whole != u64::MAX {
+            for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
+                row[..TILE_SIDE].fill(scenery.plan.background.opaque());
             }
-            let corner = self.visibility.corner(block);
-            let (tile, at) = (&mut self.pixels[..], place_of(corner, bounds));
+        }
+        let mut shows = whole != 0;
+        for block in 0..BLOCK_PIXELS {
             if let Some(number) = self.visibility.whole(block) {
-                self.shader.whole_block(scenery, number, corner, &mut Out::Tile(tile, at));
-                shows = true;
-            } else if frame.places().are_many() {
-                shows |= self.paint_samples(scenery, block, at);
-            } else {
-                let words = self.visibility.block(block);
-                shows |= self.shader.block(scenery, words, corner, (tile, at));
+                if whole >> block & 1 != 0 {
+                    let which = (block..BLOCK_PIXELS)
+                        .filter(|other| self.visibility.whole(*other) == Some(number))
+                        .fold(0, |which, other| which | 1 << other);
+                    whole &= !which;
+                    let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
+                    self.shader.whole_blocks(scenery, number, blocks, canvas);
+                }
+            } else if self.visibility.shows(block) {
+                let corner = self.visibility.corner(block);
+                let at = canvas.place(corner_in_tile(block));
+                shows |= if scenery.frame.places().are_many() {
+                    self.block_of_samples(scenery, (block, corner), canvas, at)
+                } else {
+                    let words = self.visibility.block(block);
+                    self.shader.block(scenery, words, corner, (canvas, at))
+                };
             }
         }
         shows
     }
 
-    /// Paints a block whose pixels have four samples.
-    fn paint_samples(&mut self, scenery: &Scenery<'_, T>, block: usize, at: usize) -> bool {
-        let Self { shader, visibility, samples, pixels, .. } = self;
-        let (planes, corner) = (visibility.planes(block), visibility.corner(block));
-        let tile = &mut pixels[..];
+    /// Colours a block whose pixels have four samples.
+    fn block_of_samples(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        (block, corner): (usize, [i32; 2]),
+        canvas: &mut Canvas<'_>,
+        at: usize,
+    ) -> bool {
+        let Self { shader, visibility, samples, .. } = self;
+        let planes = visibility.planes(block);
         if samples.compare(scenery.level, planes) {
-            return shader.block(scenery, &planes[0], corner, (tile, at));
+            return shader.block(scenery, &planes[0], corner, (canvas, at));
         }
         let mut sums = Sums::default();
         let shows = shader.add_samples(scenery, (samples, planes), corner, &mut sums);
-        put_means(&sums, FOUR.ilog2(), tile, at);
+        canvas.put(at, &sums.means(FOUR.ilog2()));
         shows
     }
 
-    /// Adds the colours of four samples of a tile to those of others, block by block.
-    pub(super) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &mut [Sums]) {
+    /// Adds the colours of four samples of a tile to those of others.
+    pub(super) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &TileSums) {
         let Scenery { level, plan, frame, .. } = *scenery;
-        let (background, all) = (plan.background.opaque(), ALL);
-        if frame.is_empty(tile) {
-            return to.iter_mut().for_each(|sums| sums.add_everywhere(background, all));
-        }
+        let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
+        to.resize(BLOCK_PIXELS, Sums::default());
+        let empty = frame.is_empty(tile);
         let bounds = bounds_of(tile, plan.size);
         let Self { shader, visibility, samples, .. } = self;
-        visibility.draw(level, plan, frame, (tile, bounds));
-        shader.tile.begin(plan, visibility, bounds);
+        if !empty {
+            visibility.draw(level, plan, frame, (tile, bounds));
+            shader.tile.begin((level, plan), visibility, bounds);
+        }
         for (block, to) in to.iter_mut().enumerate() {
-            if !visibility.shows(block) {
-                to.add_everywhere(background, all);
+            if empty || !visibility.shows(block) {
+                to.add_everywhere(plan.background.opaque(), ALL);
                 continue;
             }
             let corner = visibility.corner(block);
@@ -150,16 +203,26 @@ impl<T: Light> Painter<T> {
         }
     }
 
-    /// Takes the means of all samples of a tile for its pixels.
-    pub(super) fn take_means(&mut self, of: &[Sums], samples: u32) {
+    /// Puts the means of all samples of a tile into its band of the picture.
+    pub(super) fn put_means(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        tile: usize,
+        of: &TileSums,
+        band: &Mutex<Band<'_>>,
+    ) {
+        let of = of.lock().unwrap_or_else(PoisonError::into_inner);
+        let FramePlan { size, samples, .. } = *scenery.plan;
+        let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
         for (block, sums) in of.iter().enumerate() {
-            let (x, y) = (block % 8 * 8, block / 8 * 8);
-            put_means(sums, samples.ilog2(), &mut self.pixels[..], y * TILE_SIDE + x);
+            let at = canvas.place(corner_in_tile(block));
+            canvas.put(at, &sums.means(samples.count().ilog2()));
         }
+        self.copy(tile, size, &mut locked(band));
     }
 
-    /// Copies what was painted into its band of the picture.
-    pub(super) fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
+    /// Copies the tile beside the picture into its band.
+    fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
         let (column, place) = Self::place(tile, size);
         band.filled[column] = None;
         for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width)) {
@@ -168,7 +231,7 @@ impl<T: Light> Painter<T> {
     }
 
     /// Fills a tile with a colour, where it is not filled with it.
-    pub(super) fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
+    fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
         let (column, place) = Self::place(tile, size);
         if band.filled[column] != Some(color) {
             band.filled[column] = Some(color);

@@ -103,6 +103,8 @@ pub trait Machine: Copy {
     fn load(self, row: &[Self::Number], at: usize) -> Self::R;
     /// The numbers of four rows that lie side by side, from `at` on.
     fn load_four(self, rows: &[[Self::Number; 4]], at: usize) -> [Self::R; 4];
+    /// Puts numbers into four rows that lie side by side, from `at` on.
+    fn store_four(self, values: [Self::R; 4], rows: &mut [[Self::Number; 4]], at: usize);
     /// Puts numbers into a row from `at` on.
     fn store(self, value: Self::R, row: &mut [Self::Number], at: usize);
     /// The whole numbers of a row that begin at `at`.
@@ -164,6 +166,11 @@ impl Machine for Exact {
     #[inline(always)]
     fn load_four(self, rows: &[[f64; 4]], at: usize) -> [f64; 4] {
         rows[at]
+    }
+
+    #[inline(always)]
+    fn store_four(self, values: [f64; 4], rows: &mut [[f64; 4]], at: usize) {
+        rows[at] = values;
     }
 
     #[inline(always)]
@@ -259,6 +266,19 @@ impl<S: Simd> Machine for Sixteen<S> {
         let (a, c) = even_low.deinterleave(even_high);
         let (b, d) = odd_low.deinterleave(odd_high);
         [a, b, c, d]
+    }
+
+    #[inline(always)]
+    fn store_four(self, [a, b, c, d]: [f32x16<S>; 4], rows: &mut [[f32; 4]], at: usize) {
+        let (even_low, even_high) = a.interleave(c);
+        let (odd_low, odd_high) = b.interleave(d);
+        let (first, second) = even_low.interleave(odd_low);
+        let (third, fourth) = even_high.interleave(odd_high);
+        let flat = rows[at..at + 16].as_flattened_mut();
+        first.store_slice(&mut flat[..16]);
+        second.store_slice(&mut flat[16..32]);
+        third.store_slice(&mut flat[32..48]);
+        fourth.store_slice(&mut flat[48..]);
     }
 
     #[inline(always)]

@@ -4,19 +4,18 @@
 //! bytes. What is picked is asked of the last picture that was finished, also after a frame that was
 //! given up.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::bins::tiles_of;
 use super::changes::{Cause, Changes};
-use super::colors::Sums;
 use super::effects::Light;
 use super::frame::Frame;
 use super::light::Lit;
-use super::painter::{BLOCKS, Band, Painter, bounds_of};
+use super::painter::{Band, Painter, TileSums, bounds_of};
 use super::places::passes;
 use super::plan::{EffectUse, FramePlan};
 use super::shines::Shines;
@@ -138,7 +137,7 @@ impl Renderer {
         if passes.len() > 1 {
             let [columns, rows] = tiles_of(plan.size);
             let tiles = usize::try_from(columns * rows).expect("not negative");
-            sums.resize_with(tiles, || Mutex::new(None));
+            sums.resize_with(tiles, TileSums::default);
         }
         // The first pass comes last, so that its frame is what is asked of what is seen.
         for (i, places) in passes.iter().enumerate().rev() {
@@ -286,7 +285,7 @@ impl Renderer {
         }
     }
 
-    /// Draws tiles, each thread its own; a band of rows is locked only while a tile is copied.
+    /// Draws tiles, each thread its own.
     fn draw<T: Painted>(
         &mut self,
         plan: &FramePlan,
@@ -297,8 +296,7 @@ impl Renderer {
         let mut laps = Laps::start();
         let Room { shines, lit, painters } = T::room(&mut self.rooms);
         shines.prepare(plan);
-        lit.prepare(plan, shines, self.level);
-        self.stages.light += laps.lap();
+        lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
         let scenery = Scenery { level, plan, frame, lit, shines };
         let Size { width, .. } = plan.size;
@@ -315,32 +313,21 @@ impl Renderer {
         let work = |painter: &mut Painter<T>| {
             painter.begin();
             loop {
-                let tile = next.fetch_add(1, Ordering::Relaxed);
-                if tile >= tiles || !watch.goes_on() {
+                let turn = next.fetch_add(1, Ordering::Relaxed);
+                if turn >= tiles || !watch.goes_on() {
                     return;
                 }
-                if !changes.tiles.contains(tile) {
-                    continue;
-                }
-                let shows = match pass.sums.get(tile) {
-                    None => painter.paint(&scenery, tile),
-                    Some(sums) => {
-                        let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
-                        let sums = sums.get_or_insert_with(|| vec![Sums::default(); BLOCKS]);
-                        painter.add(&scenery, tile, sums);
-                        if !pass.is_last {
-                            continue;
-                        }
-                        painter.take_means(sums, plan.samples.count());
-                        true
+                // Down and then across, so that threads are at work in bands of their own.
+                let (row, column) = (turn % bands.len(), turn / bands.len());
+                let tile = row * columns + column;
+                if changes.tiles.contains(tile) {
+                    match pass.sums.get(tile) {
+                        None => painter.paint(&scenery, tile, &bands[row]),
+                        Some(sums) => painter.add(&scenery, tile, sums),
                     }
-                };
-                let band = bands[tile / columns].lock();
-                let mut band = band.unwrap_or_else(PoisonError::into_inner);
-                if shows {
-                    painter.copy(tile, plan.size, &mut band);
-                } else {
-                    Painter::<T>::fill(tile, plan.size, plan.background, &mut band);
+                    if let (true, Some(sums)) = (pass.is_last, pass.sums.get(tile)) {
+                        painter.put_means(&scenery, tile, sums, &bands[row]);
+                    }
                 }
             }
         };
@@ -354,7 +341,7 @@ impl Renderer {
 #[derive(Debug)]
 struct Pass<'a> {
     /// For each tile the colours of earlier passes, block by block; none where there is one pass.
-    sums: &'a [Mutex<Option<Vec<Sums>>>],
+    sums: &'a [TileSums],
     is_last: bool,
 }
 

@@ -13,7 +13,7 @@ use super::hits::PACK;
 use super::places::FOUR;
 use super::plan::{Back, Draw, Pipeline};
 use super::small::{self, Pack, SMALL};
-use super::vertices::fetch;
+use super::vertices::{fetch, fetch_vertices};
 use crate::base::image::Size;
 use crate::base::math::each;
 use crate::scene::{DrawOrder, DrawTriangle};
@@ -159,12 +159,11 @@ impl<'a> Setup<'a> {
         triangles: &[DrawTriangle; PACK],
         corner: usize,
     ) -> [i32x16<S>; 4] {
-        // What is held to the last needs no check in each lane.
-        let last = self.vertices.len().saturating_sub(1);
-        fetch(
+        fetch_vertices(
             simd,
+            self.vertices,
             #[inline(always)]
-            |lane| self.vertices[(triangles[lane].vertices[corner] as usize).min(last)].row(),
+            |lane| triangles[lane].vertices[corner],
         )
     }
 

@@ -11,19 +11,16 @@ pub struct Stages {
     pub set_up: Duration,
     /// Lines to the tiles, the short ones to pixels.
     pub lines: Duration,
-    /// Light at faces and vertices.
-    pub light: Duration,
-    /// What is seen in each tile, its colours, and the copy into the picture.
+    /// What is seen in each tile, its light and its colours in the picture.
     pub tiles: Duration,
 }
 
 impl std::ops::AddAssign for Stages {
     fn add_assign(&mut self, other: Self) {
-        let Self { vertices, set_up, lines, light, tiles } = other;
+        let Self { vertices, set_up, lines, tiles } = other;
         self.vertices += vertices;
         self.set_up += set_up;
         self.lines += lines;
-        self.light += light;
         self.tiles += tiles;
     }
 }

@@ -13,7 +13,7 @@ use super::faces::Faces;
 use super::frame::Frame;
 use super::interpolate::{Located, Mixed, mix, surroundings};
 use super::items::Items;
-use super::light::Lit;
+use super::light::{Lighting, Lit, Table};
 use super::pick::SLOTS;
 use super::places::ALL;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage, TilePlan};
@@ -21,8 +21,9 @@ use super::real::{Kernel, Machine, Number, Triple};
 use super::shines::Shines;
 use super::texels::{color, uv, uv_ways};
 use super::texture;
-use super::tile::{BLOCK, BLOCK_PIXELS, Seen, TILE_SIDE, seen};
+use super::tile::{BLOCK, BLOCK_PIXELS, Seen, seen};
 use super::ways::bytes::{FinishBy, thresholds};
+use super::whole::{Blocks, Canvas};
 use crate::base::color::Color;
 use crate::scene::{LightAt, Rounding};
 
@@ -51,9 +52,9 @@ pub(super) struct Shader<T> {
 
 /// Where colours of a block go.
 #[derive(Debug)]
-pub(super) enum Out<'a> {
-    /// Into the rows of a tile, from a place on.
-    Tile(&'a mut [[u8; 4]], usize),
+pub(super) enum Out<'a, 'b> {
+    /// Into a tile, from a place on.
+    Tile(&'a mut Canvas<'b>, usize),
     /// To what other samples show.
     Sums(&'a mut Sums),
 }
@@ -99,14 +100,14 @@ impl<T: Light> Shader<T> {
         self.faces.forget();
     }
 
-    /// Colours the pixels of a block whose upper left pixel is `corner` into the rows of a tile, from
-    /// `at` on. What shows the background is left as it is; says whether anything else is shown.
+    /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on. What
+    /// shows the background is left as it is; says whether anything else is shown.
     pub(super) fn block(
         &mut self,
         scenery: &Scenery<'_, T>,
         words: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
-        (tile, at): (&mut [[u8; 4]], usize),
+        (canvas, at): (&mut Canvas<'_>, usize),
     ) -> bool {
         let shown = self.items.list(scenery.level, words, corner);
         let mut lines = shown.lines;
@@ -114,11 +115,12 @@ impl<T: Light> Shader<T> {
             let i = lines.trailing_zeros() as usize;
             lines &= lines - 1;
             if let Seen::Line(line) = seen(words[i]) {
-                tile[at + place(i)] = scenery.frame.line_color(scenery.plan, line);
+                canvas.pixels[at + canvas.place(in_block(i))] =
+                    scenery.frame.line_color(scenery.plan, line);
             }
         }
         if shown.triangles != 0 {
-            self.color_items(scenery, corner, &mut Out::Tile(tile, at));
+            self.color_items(scenery, corner, &mut Out::Tile(canvas, at));
         }
         (shown.triangles | shown.lines) != 0
     }
@@ -128,7 +130,7 @@ impl<T: Light> Shader<T> {
         &mut self,
         scenery: &Scenery<'_, T>,
         corner: [i32; 2],
-        out: &mut Out<'_>,
+        out: &mut Out<'_, '_>,
     ) {
         if let Some(group) = one_group(scenery, &self.items) {
             self.color_group(scenery, &group, out);
@@ -143,7 +145,7 @@ impl<T: Light> Shader<T> {
         scenery: &Scenery<'_, T>,
         number: u32,
         corner: [i32; 2],
-        out: &mut Out<'_>,
+        out: &mut Out<'_, '_>,
     ) {
         self.items.list_whole(number, corner);
         self.items.shares = [ALL; BLOCK_PIXELS];
@@ -151,14 +153,14 @@ impl<T: Light> Shader<T> {
     }
 
     /// Colours pixels that are coloured together.
-    fn color_group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, out: &mut Out<'_>) {
+    fn color_group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, out: &mut Out<'_, '_>) {
         self.colors.form = match out {
             Out::Tile(..) => Form::Pixels,
             Out::Sums(_) => Form::Parts,
         };
         self.group(scenery, group);
         match out {
-            Out::Tile(tile, at) => self.copy(tile, *at),
+            Out::Tile(canvas, at) => self.copy(canvas, *at),
             Out::Sums(sums) => {
                 let Items { len, places, shares, .. } = &self.items;
                 sums.add_all(&self.colors, &places[..*len], &shares[..*len]);
@@ -166,9 +168,59 @@ impl<T: Light> Shader<T> {
         }
     }
 
+    /// Colours the pixels of blocks that one triangle covers as a whole.
+    pub(super) fn whole_blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        number: u32,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) {
+        let group = group_of(scenery, number);
+        let [x, y] = blocks.corner;
+        self.items.list_whole(number, [x, y]);
+        if self.mix_blocks(scenery, &group, blocks, canvas) {
+            return;
+        }
+        blocks.each(|[column, row]| {
+            self.items.list_whole(number, [x + column, y + row]);
+            let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
+            let at = canvas.place(place);
+            self.color_group(scenery, &group, &mut Out::Tile(canvas, at));
+        });
+    }
+
+    /// Colours the pixels of blocks that one triangle covers as a whole in one pass, where all that is
+    /// to do is to mix the colours of its corners. Says whether it is.
+    fn mix_blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let Scenery { level, plan, lit, .. } = *scenery;
+        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
+            return false;
+        };
+        let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
+        if !mixed || group.draw.back == Back::Red || plan.ways.mixes_one_by_one() {
+            return false;
+        }
+        let tables = lit.tables(group.draw_index, group.pipeline);
+        if !tables[0].is_colored() {
+            return false;
+        }
+        if self.take(scenery, group, true) {
+            self.carry_diffuse(scenery, group, shaded, tables);
+            self.faces.spread(level);
+        }
+        T::mix_blocks(level, &self.faces, blocks, canvas)
+    }
+
     /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
     /// ways.
-    fn color_groups(&mut self, scenery: &Scenery<'_, T>, corner: [i32; 2], out: &mut Out<'_>) {
+    fn color_groups(&mut self, scenery: &Scenery<'_, T>, corner: [i32; 2], out: &mut Out<'_, '_>) {
         let mut done = [false; SLOTS];
         let all = std::mem::take(&mut self.items);
         for slot in 0..all.count {
@@ -189,19 +241,15 @@ impl<T: Light> Shader<T> {
         self.items = all;
     }
 
-    /// Copies the colours into the rows of the tile.
-    fn copy(&self, tile: &mut [[u8; 4]], at: usize) {
+    /// Copies the colours into the tile.
+    fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
         if self.items.is_whole() {
-            let rows = self.colors.pixels.chunks_exact(BLOCK as usize);
-            for (to, from) in tile[at..].chunks_mut(TILE_SIDE).zip(rows) {
-                for (to, from) in to[..BLOCK as usize].iter_mut().zip(from) {
-                    *to = from.to_le_bytes();
-                }
-            }
+            canvas.put(at, &self.colors.pixels);
         } else {
             let places = &self.items.places[..self.items.len];
             for (i, color) in places.iter().zip(&self.colors.pixels) {
-                tile[at + place(usize::from(*i))] = color.to_le_bytes();
+                let place = canvas.place(in_block(usize::from(*i)));
+                canvas.pixels[at + place] = color.to_le_bytes();
             }
         }
     }
@@ -228,26 +276,19 @@ impl<T: Light> Shader<T> {
     }
 
     fn shaded(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
-        let Scenery { level, plan, frame, .. } = *scenery;
-        let Group { draw, draw_index, base, .. } = *group;
+        let Scenery { level, plan, .. } = *scenery;
+        let draw = group.draw;
         let textured = shaded.texture.is_some() || shaded.vertex_colors;
         let rounding = plan.ways.rounding;
         // Every pixel has its own colour.
         let each = textured || rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let places = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
-        let vertices = frame.vertices_of(plan, draw_index);
-        let corners = frame.corners_of(plan, draw_index);
-        let new = self.faces.take(&self.items, draw.model.mesh.draw_order(), draw_index, base);
-        if new {
-            self.faces.find_sides(draw, plan, corners);
-        }
+        let new = self.take(scenery, group, places);
         if places {
-            if new {
-                self.faces.locate(level, draw, plan, vertices);
-            }
             self.located.find(level, &self.items, &self.faces, (plan, draw));
             if plan.ways.has_rare_places() {
+                let corners = scenery.frame.corners_of(plan, group.draw_index);
                 plan.ways.locate(&self.items, &self.faces, corners, &mut self.located);
             }
         }
@@ -256,7 +297,7 @@ impl<T: Light> Shader<T> {
         match light {
             None => {}
             Some((LightAt::Pixel, _)) => self.light_pixels(scenery, group, shaded, new),
-            Some((LightAt::Vertex, _)) => match self.mix_light(scenery, group, new) {
+            Some((LightAt::Vertex, _)) => match self.mix_light(scenery, group, shaded, new) {
                 Mixture::Bytes => return,
                 Mixture::Colors => tint = [1.0; 3],
                 Mixture::Light => {}
@@ -278,6 +319,23 @@ impl<T: Light> Shader<T> {
         if !(places || each) {
             self.colors.hand_out(&self.items.slots);
         }
+    }
+
+    /// Takes the triangles of the list, and where they are if the pixels have `places`. Says whether
+    /// they are others than before.
+    fn take(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, places: bool) -> bool {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let Group { draw, draw_index, base, .. } = *group;
+        let order = draw.model.mesh.draw_order();
+        let new = self.faces.take(&self.items, order, draw_index, base);
+        if new {
+            let vertices = frame.vertices_of(plan, draw_index);
+            self.faces.find_sides(draw, plan, frame.corners_of(plan, draw_index));
+            if places {
+                self.faces.locate(level, draw, plan, vertices);
+            }
+        }
+        new
     }
 
     /// Light at every pixel.
@@ -315,27 +373,58 @@ impl<T: Light> Shader<T> {
     }
 
     /// Light of the vertices, mixed at every pixel.
-    fn mix_light(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, new: bool) -> Mixture {
+    fn mix_light(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        new: bool,
+    ) -> Mixture {
         let Scenery { level, plan, .. } = *scenery;
-        let Self { items, faces, located, batch, colors, .. } = self;
-        let [front, back] = scenery.lit.tables(group.draw_index, group.pipeline);
-        if new || !front.is_colored() {
-            faces.carry_light(group.draw, &front.diffuse, &back.diffuse);
-            faces.spread(level);
+        let tables = scenery.lit.tables(group.draw_index, group.pipeline);
+        if new || !tables[0].is_colored() {
+            self.carry_diffuse(scenery, group, shaded, tables);
+            self.faces.spread(level);
         }
-        if front.is_colored() && plan.ways.rounding == Rounding::Nearest {
+        let Self { items, faces, located, batch, colors, .. } = self;
+        let colored = tables[0].is_colored();
+        if colored && plan.ways.rounding == Rounding::Nearest {
             mix(level, items, faces, located, Mixed::Colors(colors));
             return Mixture::Bytes;
         }
         mix(level, items, faces, located, Mixed::Rows(&mut batch.diffuse));
-        if front.is_colored() {
+        batch.len = items.len;
+        if colored {
             batch.specular = [[T::default(); BATCH]; 3];
             return Mixture::Colors;
         }
-        faces.carry_light(group.draw, &front.specular, &back.specular);
+        faces.carry_light(
+            group.draw,
+            #[inline(always)]
+            |place, back| tables[usize::from(back)].specular(place),
+        );
         faces.spread(level);
         mix(level, items, faces, located, Mixed::Rows(&mut batch.specular));
         Mixture::Light
+    }
+
+    /// Lets the faces carry the diffuse light of their corners, or their colours.
+    fn carry_diffuse(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        tables: [&Table<T>; 2],
+    ) {
+        let Self { faces, batch, .. } = self;
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let shines = scenery.shines.of(group.pipeline);
+        let lighting = Lighting { level: scenery.level, draw: group.draw, stages, shines };
+        faces.carry_light(
+            group.draw,
+            #[inline(always)]
+            |place, back| tables[usize::from(back)].diffuse(place, &lighting, batch),
+        );
     }
 
     /// Light of the faces: at every pixel where they have `places`, else face by face.
@@ -402,9 +491,9 @@ impl<T: Light> Shader<T> {
     }
 }
 
-/// Where pixel `i` of a block stands in the rows of a tile, from the block's first on.
-const fn place(i: usize) -> usize {
-    i / BLOCK as usize * TILE_SIDE + i % BLOCK as usize
+/// Column and row of pixel `i` of a block.
+const fn in_block(i: usize) -> [usize; 2] {
+    [i % BLOCK as usize, i / BLOCK as usize]
 }
 
 /// The group that a triangle belongs to.

@@ -70,11 +70,6 @@ pub(super) const fn seen_number(number: u32) -> Seen {
     }
 }
 
-/// The depth that a word says.
-pub(super) const fn depth(word: u64) -> f32 {
-    f32::from_bits(key(word))
-}
-
 /// What a word says of the depth: its bits, where it is kept as mostly.
 pub(super) const fn key(word: u64) -> u32 {
     (word >> 32) as u32
@@ -207,10 +202,20 @@ impl Visibility {
         (self.written | self.whole) >> block & 1 != 0
     }
 
+    /// Whether no block shows anything.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.written | self.whole == 0
+    }
+
     /// The triangle that a block shows, where one is known to cover it as a whole; its words are of
     /// no meaning then.
     pub(super) fn whole(&self, block: usize) -> Option<u32> {
         (self.whole >> block & 1 != 0).then(|| self.large[self.shown[block] as usize].number)
+    }
+
+    /// The blocks that one triangle is known to cover as a whole, a bit for each.
+    pub(super) const fn whole_blocks(&self) -> u64 {
+        self.whole
     }
 
     /// The words of a block that shows something, row by row, where pixels have one sample.
@@ -231,21 +236,18 @@ impl Visibility {
 
     /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
     /// nearer than; `None` where no triangle is seen.
-    pub(super) fn depths(&self) -> Option<[f32; 2]> {
-        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+    pub(super) fn depths(&self, level: Level) -> Option<[f32; 2]> {
+        // Depths are not negative, so that their bits are in the order of the numbers.
+        let (mut low, mut high) = (u32::MAX, 0);
         for block in (0..BLOCK_PIXELS).filter(|block| self.shows(*block)) {
-            if self.whole(block).is_some() {
-                low = low.min(self.farthest[block]);
-                high = high.max(self.nearest[block]);
-                continue;
-            }
-            for word in self.words(block) {
-                if let Seen::Triangle(_) = seen(*word) {
-                    (low, high) = (low.min(depth(*word)), high.max(depth(*word)));
-                }
-            }
+            let [own_low, own_high] = if self.whole(block).is_some() {
+                [self.farthest[block].to_bits(), self.nearest[block].to_bits()]
+            } else {
+                dispatch!(level, simd => depths_of(simd, self.words(block)))
+            };
+            (low, high) = (low.min(own_low), high.max(own_high));
         }
-        (low <= high).then_some([low, high])
+        (low <= high).then_some([low, high].map(f32::from_bits))
     }
 
     /// The upper left pixel of a block.
@@ -478,6 +480,21 @@ impl Visibility {
         }
         self.farthest[block] = self.farthest[block].max(low);
     }
+}
+
+/// The bits of the least and of the largest depth of the triangles among some words.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
+fn depths_of<S: Simd>(_: S, words: &[u64]) -> [u32; 2] {
+    let (mut low, mut high) = (u32::MAX, 0);
+    for word in words {
+        let depth = (*word >> 32) as u32;
+        // The numbers of lines are the upper half of all; the background has the lowest word.
+        let is_triangle = *word as u32 >> 31 == 1;
+        low = low.min(if is_triangle { depth } else { u32::MAX });
+        high = high.max(if is_triangle { depth } else { 0 });
+    }
+    [low, high]
 }
 
 /// The block of a pixel, by column and row of the tile.

@@ -67,7 +67,7 @@ impl FramePlan {
                 |(visibility, tile_plan), tile| {
                     let bounds = bounds_of(tile, self.size);
                     visibility.draw(level, self, frame, (tile, bounds));
-                    tile_plan.begin(self, visibility, bounds);
+                    tile_plan.begin((level, self), visibility, bounds);
                     self.count_tile(level, frame, (visibility, bounds), tile_plan)
                 },
             )

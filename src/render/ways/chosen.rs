@@ -164,6 +164,12 @@ impl<M: Machine> Machine for Choosing<M> {
     }
 
     #[inline(always)]
+    fn store_four(self, values: [Self::R; 4], rows: &mut [[M::Number; 4]], at: usize) {
+        let [a, b, c, d] = values;
+        self.machine.store_four([a.value, b.value, c.value, d.value], rows, at);
+    }
+
+    #[inline(always)]
     fn store(self, value: Self::R, row: &mut [M::Number], at: usize) {
         self.machine.store(value.value, row, at);
     }

@@ -97,6 +97,11 @@ impl Ways {
             || self.interpolation != Interpolation::Perspective
     }
 
+    /// Whether colours that are mixed between corners are mixed and rounded in a pixel's own way.
+    pub(super) fn mixes_one_by_one(&self) -> bool {
+        self.has_rare_places() || self.rounding != Rounding::Nearest
+    }
+
     /// Whether what is seen may be elsewhere than geometry says, so that nothing is left out for where
     /// it is.
     pub(super) fn has_rare_geometry(&self) -> bool {

@@ -152,9 +152,10 @@ mod tests {
         let (mut worst, ways) = (0.0_f64, Ways { vertices, ..Ways::default() });
         for i in 0..100 {
             let eye = DVec3::new(offset + 0.37 * f64::from(i), 0.61 * offset, -offset);
-            let world = DMat4::from_translation(eye - DVec3::Z * 400.0)
-                * DMat4::from_rotation_y(0.1 * f64::from(i));
-            let view = DMat4::from_translation(-eye);
+            let turn = DMat4::from_rotation_y(0.1 * f64::from(i));
+            let ahead = turn.transform_vector3(DVec3::Z) * -400.0;
+            let world = DMat4::from_translation(eye + ahead) * DMat4::from_rotation_x(0.7);
+            let view = turn.transpose() * DMat4::from_translation(-eye);
             let exact = Screen::new(clip_from_view * (view * world), size);
             let matrices = (clip_from_view, view, world);
             let screen = match vertices {
