@@ -27,8 +27,8 @@ use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer
 use marraztu::scene::{
     AXES, Arithmetic, Command, Fill, Filter, Frame, ItemId, LightAt, LightKind, MaterialChoice,
     MeshSource, Model, Normals, Object, ObjectId, Observer, Part, PolygonMode, PresetId,
-    Projection, Scene, Settings, SourceCorner, SpecularForm, SpotOwner, Subject, Surface, Texture,
-    Transformation, View, Wrap,
+    Projection, Samples, Scene, Settings, SourceCorner, SpecularForm, SpotOwner, Subject, Surface,
+    Texture, Transformation, View, Wrap,
 };
 
 /// Numbers that look random and are the same on every machine (Marsaglia's xorshift).
@@ -172,7 +172,11 @@ impl Desk {
                 self.size = Size::new(130 + 40 * dice.below(6), 70 + 40 * dice.below(6));
             }
             1 => settings.light = dice.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]),
-            2 => settings.filter = dice.one_of(&[Filter::Nearest, Filter::Bilinear]),
+            2 => {
+                settings.filter = dice.one_of(&[Filter::Nearest, Filter::Bilinear]);
+                settings.samples =
+                    dice.one_of(&[Samples::One, Samples::Four, Samples::Four, Samples::Sixteen]);
+            }
             3 => settings.arithmetic = dice.one_of(&[Arithmetic::F32, Arithmetic::F64]),
             4 => {
                 settings.specular =

@@ -19,8 +19,9 @@ use marraztu::scene::{
     Fill, Filter, Frame, Interpolation, Item, LeaveOut, Lens, Light, LightAt, LightId, LightKind,
     LoadOptions, Material, MaterialChoice, NormalLength, NormalMatrix, Normalising, Normals,
     Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId, Projection,
-    Rounding, Scale, Scene, Settings, SpecularForm, SpecularPower, Spin, SpotOwner, Steps, Subject,
-    Subpixels, Surface, Texture, Transformation, UpAxis, VertexArithmetic, View, Winding, Wrap,
+    Rounding, Samples, Scale, Scene, Settings, SpecularForm, SpecularPower, Spin, SpotOwner, Steps,
+    Subject, Subpixels, Surface, Texture, Transformation, UpAxis, VertexArithmetic, View, Winding,
+    Wrap,
 };
 use proptest::prelude::*;
 
@@ -145,6 +146,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     let settings = Settings {
         arithmetic: Arithmetic::F64,
         light: LightAt::Vertex,
+        samples: Samples::Sixteen,
         filter: Filter::Nearest,
         specular: SpecularForm::HalfVector,
         leave_out: LeaveOut::HalfStep,

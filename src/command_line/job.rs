@@ -7,7 +7,7 @@ use clap::Args;
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::job::{self, Mode};
-use marraztu::scene::LoadOptions;
+use marraztu::scene::{LoadOptions, Samples};
 
 use super::arguments::size;
 use super::failure::Failure;
@@ -31,7 +31,7 @@ pub(crate) struct Job {
     /// The picture's size
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
     pub(crate) size: Size,
-    /// Samples a pixel
+    /// Samples a pixel: 1, 4, 16, 64
     #[arg(long, default_value_t = 1)]
     pub(crate) msaa: u32,
     /// Frames to measure at the most
@@ -65,7 +65,10 @@ pub(crate) struct Job {
 
 /// Measures a job and prints its line. Gives the exit status.
 pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
-    let (Some(mode), 1) = (Mode::named(&arguments.mode), arguments.msaa) else { return Ok(3) };
+    let samples = Samples::ALL.into_iter().find(|samples| samples.count() == arguments.msaa);
+    let (Some(mode), Some(samples)) = (Mode::named(&arguments.mode), samples) else {
+        return Ok(3);
+    };
     if let Some(threads) = arguments.threads {
         // Fails only where the threads are there already, and this comes first.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
@@ -75,6 +78,7 @@ pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
         &job::Job {
             mode,
             size: arguments.size,
+            samples,
             frames: arguments.frames.max(1),
             warm_up: arguments.warm,
             budget: arguments.budget,
@@ -92,11 +96,12 @@ pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
         format!("{:.4},{:.4},{:.4}", measured.median(), measured.shortest(), measured.processor);
     writeln!(
         std::io::stdout().lock(),
-        "R,{},{},{},{},{width}x{height},1,{},{times},{times},{}",
+        "R,{},{},{},{},{width}x{height},{},{},{times},{times},{}",
         arguments.label,
         arguments.mesh.display(),
         measured.triangles,
         arguments.mode,
+        arguments.msaa,
         measured.frames.len(),
         measured.covered,
     )

@@ -15,7 +15,7 @@ use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     Aim, Attenuation, Camera, CameraId, Command, CommandError, Fill, Item, Lens, Light, LightAt,
     LightId, LightKind, Material, MaterialChoice, Mesh, MeshSource, Model, Normals, Object,
-    ObjectId, Orbit, Placed, Pose, Scene, Settings, SourceCorner, SpotOwner, View, dvec3,
+    ObjectId, Orbit, Placed, Pose, Samples, Scene, Settings, SourceCorner, SpotOwner, View, dvec3,
 };
 
 /// How the mesh is drawn.
@@ -55,6 +55,8 @@ pub struct Job {
     pub mode: Mode,
     /// The picture's.
     pub size: Size,
+    /// How many of each pixel.
+    pub samples: Samples,
     /// How many frames are measured at the most.
     pub frames: usize,
     /// How many are drawn first.
@@ -217,7 +219,7 @@ fn scene(job: &Job, model: Shared<Model>) -> Result<(Scene, View, Settings), Com
         Mode::Gouraud => LightAt::Vertex,
         Mode::Phong | Mode::Depth | Mode::Wire => LightAt::Pixel,
     };
-    Ok((scene, view, Settings { light, ..Settings::default() }))
+    Ok((scene, view, Settings { light, samples: job.samples, ..Settings::default() }))
 }
 
 fn lights(mode: Mode) -> Vec<Light> {

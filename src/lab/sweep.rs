@@ -69,8 +69,12 @@ pub struct Measured {
     pub verdict: Verdict,
     /// Whether their model is the one that is drawn now: only then can they stand in for it.
     pub scored: bool,
-    /// How far the picture is from the reference of its own model.
+    /// How far the picture is from the reference of its own model, and for an axis that is scored apart
+    /// from that of its own.
     pub error: Error,
+    /// The settings of that reference.
+    #[serde(skip)]
+    pub reference: Settings,
     /// The picture's hash, as 16 hexadecimal digits.
     pub hash: String,
 }
@@ -176,7 +180,7 @@ impl Bench<'_> {
         let thoroughness = self.question.thoroughness;
         let Candidates { all, left_out } = candidates;
         let base = all.first().expect("the default is always measured").settings;
-        let reference = (base.reference(), self.easel.shot(&base.reference()));
+        let mut references = vec![(base.reference(), self.easel.shot(&base.reference()))];
         let control = self.measured(&base, &base)?;
         let mut findings = self.begin(control, left_out);
         // Each piece of arithmetic counts as a choice.
@@ -189,7 +193,7 @@ impl Bench<'_> {
                 late += 1;
                 continue;
             }
-            self.add(&mut findings, &base, candidate, &reference)?;
+            self.add(&mut findings, &base, candidate, &mut references)?;
             tell(&findings);
         }
         if late > 0 {
@@ -235,14 +239,21 @@ impl Bench<'_> {
         findings: &mut Findings,
         base: &Settings,
         candidate: Candidate,
-        reference: &(Settings, Shot),
+        references: &mut Vec<(Settings, Shot)>,
     ) -> Result<(), Unmeasured> {
         let Candidate { group, name, settings } = candidate;
-        let known = findings.points.iter().position(|point| point.settings == settings);
+        let reference = match group {
+            Group::Axis(key) => settings.reference_on(key),
+            Group::Preset | Group::Current | Group::Combination => settings.reference(),
+        };
+        let known = findings
+            .points
+            .iter()
+            .position(|point| point.settings == settings && point.reference == reference);
         let point = match known {
             Some(point) => point,
             None => {
-                let point = self.point(findings, base, settings, reference)?;
+                let point = self.point(findings, base, (settings, reference), references)?;
                 findings.points.push(point);
                 findings.points.len() - 1
             }
@@ -258,8 +269,8 @@ impl Bench<'_> {
         &mut self,
         findings: &Findings,
         base: &Settings,
-        settings: Settings,
-        (exact, reference): &(Settings, Shot),
+        (settings, reference): (Settings, Settings),
+        references: &mut Vec<(Settings, Shot)>,
     ) -> Result<Measured, Unmeasured> {
         let a_ms = findings.control.a_ms;
         // The default is what all times are told in, and its ratio is the control's.
@@ -270,12 +281,15 @@ impl Bench<'_> {
             let ms = a_ms * ratio.quartiles.median;
             (ratio, ms)
         };
+        if references.iter().all(|(settings, _)| *settings != reference) {
+            references.push((reference, self.easel.shot(&reference)));
+        }
+        let exact = references.iter().find(|(settings, _)| *settings == reference);
+        let (_, exact) = exact.expect("it was drawn if it was not there");
         let shot = self.easel.shot(&settings);
-        let scored = settings.reference() == *exact;
-        let error = match scored {
-            true => shot.error(reference),
-            false => shot.error(&self.easel.shot(&settings.reference())),
-        };
+        // The first is the reference of the default.
+        let scored = references.first().is_some_and(|(settings, _)| *settings == reference);
+        let error = shot.error(exact);
         Ok(Measured {
             name: settings.in_words(),
             settings,
@@ -284,6 +298,7 @@ impl Bench<'_> {
             ratio,
             scored,
             error,
+            reference,
             hash: format!("{:016x}", hash(shot.picture())),
         })
     }

@@ -7,6 +7,7 @@ use super::clip::ScreenVertex;
 use super::coverage::PixelBox;
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
+use super::places::Places;
 use super::small::{Queue, SMALL};
 use super::tile::{TILE, TILE_SIDE};
 use super::ways::setup::Plain;
@@ -35,6 +36,8 @@ pub(super) struct Bin {
 pub(super) struct Bins {
     columns: i32,
     rows: i32,
+    /// Where pixels are looked at.
+    pub(super) places: Places,
     pub(super) tiles: Vec<Bin>,
     pub(super) hits: Hits,
     pub(super) large: Vec<LargeTriangle>,
@@ -55,8 +58,9 @@ pub(super) fn tiles_of(size: Size) -> [i32; 2] {
 }
 
 impl Bins {
-    /// Empties the bins, for a picture of this size.
-    pub(super) fn clear(&mut self, size: Size) {
+    /// Empties the bins, for a picture of this size that is looked at in these places.
+    pub(super) fn clear(&mut self, size: Size, places: Places) {
+        self.places = places;
         [self.columns, self.rows] = tiles_of(size);
         let count = usize::try_from(self.columns * self.rows).expect("not negative");
         self.tiles.resize_with(count, Bin::default);
@@ -111,6 +115,8 @@ impl Bins {
         self.lines.push(line);
         let picture =
             PixelBox { left: 0, top: 0, right: self.columns * TILE, bottom: self.rows * TILE };
+        // Seen from a place off the middle, it takes the next pixel at the most.
+        let width = if self.places.are_many() { width + 1 } else { width };
         for bounds in lines::stretches(&line, width, picture) {
             self.each(bounds, |bin| bin.lines.push(number));
         }

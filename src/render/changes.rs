@@ -142,6 +142,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         eye,
         arithmetic,
         light_at,
+        samples,
         filter,
         ways,
         view_from_world,
@@ -159,6 +160,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         || !alike_matrices(clip_from_view, &before.clip_from_view);
     let settings = *arithmetic != before.arithmetic
         || *light_at != before.light_at
+        || *samples != before.samples
         || *filter != before.filter
         || *ways != before.ways
         || *line_width != before.line_width

@@ -65,6 +65,13 @@ impl ScreenVertex {
         Self { x: at.x, y: at.y, depth, inverse_w: 1.0 }
     }
 
+    /// The vertex as it is seen from a place that is shifted by so many parts of a pixel; it is
+    /// [inside](Self::is_inside).
+    #[inline(always)]
+    pub(super) const fn seen_from(self, [x, y]: [i32; 2]) -> Self {
+        Self { x: self.x - x, y: self.y - y, ..self }
+    }
+
     /// Its place in the picture.
     #[inline(always)]
     pub(super) const fn at(&self) -> Snapped {

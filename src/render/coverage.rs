@@ -24,6 +24,15 @@ pub struct Snapped {
     pub y: i32,
 }
 
+impl Snapped {
+    /// The point as it is seen from a place that is shifted by this.
+    #[inline(always)]
+    #[must_use]
+    pub const fn seen_from(self, [x, y]: [i32; 2]) -> Self {
+        Self { x: self.x - x, y: self.y - y }
+    }
+}
+
 /// A rectangle of pixels: columns `left..right` of rows `top..bottom`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelBox {
@@ -41,16 +50,28 @@ impl PixelBox {
     /// The pixels whose centres lie in the box of three places.
     #[inline(always)]
     #[must_use]
-    pub fn of([a, b, c]: [Snapped; 3]) -> Self {
+    pub fn of(corners: [Snapped; 3]) -> Self {
+        Self::reached(corners, [[0; 2]; 2])
+    }
+
+    /// The pixels of which places that lie from `least` to `most` off the centre may lie in the box of
+    /// three places.
+    #[inline(always)]
+    #[must_use]
+    pub fn reached([a, b, c]: [Snapped; 3], [least, most]: [[i32; 2]; 2]) -> Self {
         let half = SUBPIXELS / 2;
         // The first centre at or after the smallest coordinate; past the last one before the largest.
-        let first = |a: i32, b: i32, c: i32| (a.min(b).min(c) + half - 1).div_euclid(SUBPIXELS);
-        let end = |a: i32, b: i32, c: i32| (a.max(b).max(c) - half).div_euclid(SUBPIXELS) + 1;
+        let first = |a: i32, b: i32, c: i32, most: i32| {
+            (a.min(b).min(c) + half - 1 - most).div_euclid(SUBPIXELS)
+        };
+        let end = |a: i32, b: i32, c: i32, least: i32| {
+            (a.max(b).max(c) - half - least).div_euclid(SUBPIXELS) + 1
+        };
         Self {
-            left: first(a.x, b.x, c.x),
-            top: first(a.y, b.y, c.y),
-            right: end(a.x, b.x, c.x),
-            bottom: end(a.y, b.y, c.y),
+            left: first(a.x, b.x, c.x, most[0]),
+            top: first(a.y, b.y, c.y, most[1]),
+            right: end(a.x, b.x, c.x, least[0]),
+            bottom: end(a.y, b.y, c.y, least[1]),
         }
     }
 

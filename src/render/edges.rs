@@ -15,6 +15,7 @@ use super::clip::{Screen, ScreenVertex};
 use super::facing::Outline;
 use super::hits::PACK;
 use super::lines::{self, Ends, LineNumber, SHORT, ScreenLine, Short};
+use super::places::FOUR;
 use super::plan::{Draw, Lines};
 use super::vertices::fetch_vertices;
 use crate::scene::{Corner, DrawEdge, NONE, NormalSource, dvec3};
@@ -39,25 +40,35 @@ pub(super) struct EdgeSetup<'a> {
 impl EdgeSetup<'_> {
     /// Puts some of the draw's edges into bins.
     pub(super) fn run(&self, level: Level, edges: &[DrawEdge], bins: &mut Bins) {
-        dispatch!(level, simd => self.all(simd, edges, bins));
+        if bins.places.are_many() {
+            dispatch!(level, simd => self.all::<_, FOUR>(simd, edges, bins));
+        } else {
+            dispatch!(level, simd => self.all::<_, 1>(simd, edges, bins));
+        }
     }
 
     #[inline(always)]
-    fn all<S: Simd>(&self, simd: S, edges: &[DrawEdge], bins: &mut Bins) {
+    fn all<S: Simd, const N: usize>(&self, simd: S, edges: &[DrawEdge], bins: &mut Bins) {
         let (whole, rest) = edges.as_chunks::<PACK>();
         for sixteen in whole {
-            self.sixteen(simd, sixteen, PACK, bins);
+            self.sixteen::<S, N>(simd, sixteen, PACK, bins);
         }
         if let Some(last) = rest.last() {
             let mut sixteen = [*last; PACK];
             sixteen[..rest.len()].copy_from_slice(rest);
-            self.sixteen(simd, &sixteen, rest.len(), bins);
+            self.sixteen::<S, N>(simd, &sixteen, rest.len(), bins);
         }
     }
 
     /// Sets up sixteen edges, of which the first `count` are meant.
     #[inline(always)]
-    fn sixteen<S: Simd>(&self, simd: S, edges: &[DrawEdge; PACK], count: usize, bins: &mut Bins) {
+    fn sixteen<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        edges: &[DrawEdge; PACK],
+        count: usize,
+        bins: &mut Bins,
+    ) {
         let mut numbers = [0; PACK];
         let (mut shown, mut odd) = (0_u64, 0_u64);
         for (lane, edge) in edges[..count].iter().enumerate() {
@@ -77,8 +88,13 @@ impl EdgeSetup<'_> {
         let short = (xb - xa).abs().simd_le(SHORT) & (yb - ya).abs().simd_le(SHORT);
         let some = short & mask32x16::from_bitmask(simd, shown);
         let number = i32x16::from_slice(simd, &numbers).bitcast();
-        let short = Short { some, number, width: self.width, nearer: self.nearer() };
-        lines::draw_short(a, b, &short, &mut bins.hits);
+        for sample in 0..N {
+            let [x, y] = bins.places.shift::<N>(sample);
+            let seen = |[ex, ey, depth]: Ends<S>| [ex - x, ey - y, depth];
+            let (width, nearer) = (self.width, self.nearer());
+            let short = Short { some, number, width, nearer, sample };
+            lines::draw_short::<S, N>(seen(a), seen(b), &short, &mut bins.hits);
+        }
         let mut long = shown & !some.to_bitmask();
         while long != 0 {
             let lane = long.trailing_zeros() as usize;

@@ -12,6 +12,7 @@ use super::clip::{Screen, ScreenVertex};
 use super::edges::{self, EdgeSetup};
 use super::facing::Facing;
 use super::lines::LineNumber;
+use super::places::Places;
 use super::plan::{Draw, FramePlan};
 use super::setup::{self, Setup};
 use super::stages::{Laps, Stages};
@@ -46,6 +47,8 @@ pub(super) struct Frame {
     normals: Vec<u32>,
     work: Vec<Work>,
     bins: Vec<Bins>,
+    /// Where its pixels are looked at.
+    places: Places,
 }
 
 /// Where the numbers of a draw begin.
@@ -117,10 +120,17 @@ impl Frame {
         self.held.clear();
     }
 
-    /// Brings everything that the plan draws onto the screen, as long as that is wanted. Vertices
-    /// that are there already stay. Says how long it took.
-    pub(super) fn build(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) -> Stages {
+    /// Brings everything that the plan draws onto the screen, to be looked at in some places of each
+    /// pixel, as long as that is wanted. Vertices that are there already stay. Says how long it took.
+    pub(super) fn build(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        places: Places,
+        watch: &Watch<'_>,
+    ) -> Stages {
         let mut laps = Laps::start();
+        self.places = places;
         self.number(plan);
         self.place(level, plan, watch);
         let vertices = laps.lap();
@@ -230,7 +240,7 @@ impl Frame {
         let threads = if count < FEW { 1 } else { rayon::current_num_threads() };
         self.bins.resize_with(threads, Bins::default);
         for bins in &mut self.bins {
-            bins.clear(plan.size);
+            bins.clear(plan.size, self.places);
         }
         self.share_out(level, plan, watch);
     }
@@ -289,6 +299,11 @@ impl Frame {
     /// The bins of all threads.
     pub(super) fn bins(&self) -> &[Bins] {
         &self.bins
+    }
+
+    /// Where its pixels are looked at.
+    pub(super) const fn places(&self) -> Places {
+        self.places
     }
 
     /// Whether nothing reaches into a tile.

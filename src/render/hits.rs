@@ -137,16 +137,16 @@ impl Hits {
         }
     }
 
-    /// Adds those of sixteen pixels that are covered and in the picture.
+    /// Adds those of sixteen pixels that are covered in one of their `N` samples and in the picture.
     #[inline(always)]
-    pub(super) fn add<S: Simd>(
+    pub(super) fn add<S: Simd, const N: usize>(
         &mut self,
         reach: &Reach,
-        pixels: &Pixels<S>,
+        (pixels, sample): (&Pixels<S>, usize),
         covered: mask32x16<S>,
     ) {
         let Pixels { x, y, .. } = *pixels;
-        let place = lanes_place(x & (TILE - 1), y & (TILE - 1)).bitcast();
+        let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
         let (column, row) = (x >> 6, y >> 6);
         let [width, height] = self.extent;
         match *reach {

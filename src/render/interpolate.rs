@@ -12,9 +12,10 @@
 use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
 use glam::{DMat3, DVec3};
 
+use super::colors::Colors;
 use super::coverage::Triangle;
 use super::effects::{BATCH, Batch, Rows, set, store};
-use super::faces::{Faced, Faces, barycentric, cut_w, cut_weights};
+use super::faces::{Faced, Faces, barycentric, cut_place, cut_w, cut_weights};
 use super::items::Items;
 use super::pick::{SLOTS, pick};
 use super::plan::{Draw, Eye, FramePlan};
@@ -25,17 +26,19 @@ use super::whole::{self, Blocks, Canvas, Linear as _, Wide};
 #[derive(Debug)]
 pub struct Located<T> {
     /// The second and third barycentric coordinate, linear on the screen.
-    linear: [[T; BATCH]; 2],
+    pub(super) linear: [[T; BATCH]; 2],
     /// The same with perspective.
     pub(super) weights: [[T; BATCH]; 2],
     /// The distance along the observer's axis.
     pub(super) w: [T; BATCH],
+    /// Where they are looked at, in pixels; where they [share](Items::shared) their pixels only.
+    pub(super) places: [[T; BATCH]; 2],
 }
 
 impl<T: Number> Default for Located<T> {
     fn default() -> Self {
         let row = [T::default(); BATCH];
-        Self { linear: [row; 2], weights: [row; 2], w: row }
+        Self { linear: [row; 2], weights: [row; 2], w: row, places: [row; 2] }
     }
 }
 
@@ -80,9 +83,12 @@ impl<T: Interpolated> Located<T> {
         faces: &Faces<T>,
         (plan, draw): (&FramePlan, &Draw),
     ) {
-        if !T::find(level, items, faces, self) {
+        if items.shared || !T::find(level, items, faces, self) {
             T::find_linear(level, items, faces, self);
             self.find_wide(items, faces);
+            if items.shared {
+                self.hold(level, items, faces);
+            }
             let count = faces.count;
             paged!(count, PAGES => T::run(level, Perspective::<T, PAGES> { items, faces, to: self }));
             if faces.cut != 0 {
@@ -98,10 +104,17 @@ impl<T: Interpolated> Located<T> {
             let slot = items.slots[i].cast_unsigned() as usize;
             if faces.cut >> slot & 1 == 1 {
                 let number = faces.numbers[slot];
-                let weights = cut_weights(plan, draw, number, [items.x[i], items.y[i]]);
+                let pixel = [items.x[i], items.y[i]];
+                let weights = cut_weights(plan, draw, number, (pixel, [0; 2]));
                 self.weights[0][i] = T::from_f64(weights.y);
                 self.weights[1][i] = T::from_f64(weights.z);
                 self.w[i] = T::from_f64(cut_w(plan, draw, number, weights));
+                if items.shared {
+                    let place = cut_place(plan, draw, number, weights);
+                    for (row, place) in self.places.iter_mut().zip(place) {
+                        row[i] = T::from_f64(place);
+                    }
+                }
             }
         }
     }
@@ -322,8 +335,8 @@ pub(super) fn between<R: Real>([a, b, c]: [Triple<R>; 3], [second, third]: [R; 2
 pub(super) enum Mixed<'a, T> {
     /// Light.
     Rows(&'a mut Rows<T>),
-    /// Colours, as pixels.
-    Pixels(&'a mut [u32; BATCH]),
+    /// Colours.
+    Colors(&'a mut Colors),
 }
 
 /// Mixes what the corners carry at every pixel.
@@ -355,7 +368,7 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
             let value = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
             match &mut to {
                 Mixed::Rows(rows) => store(machine, value, rows, at),
-                Mixed::Pixels(pixels) => machine.store_pixels(value, &mut pixels[..], at),
+                Mixed::Colors(colors) => colors.store(machine, value, at),
             }
         }
     }
@@ -373,14 +386,25 @@ pub(super) fn surroundings<T: Number>(
     let rays = Rays::new(plan);
     let normals = matrix(draw.view_from_normal);
     let way = plan.ways.rare_roots();
-    if way.is_some() {
-        let kernel = Surroundings::<T, 4> { items, faces, located, batch, rays, normals };
-        return T::run_by(level, way, kernel);
+    match (items.shared, way) {
+        (true, Some(_)) => {
+            let kernel = Surroundings::<T, 4, true> { items, faces, located, batch, rays, normals };
+            T::run_by(level, way, kernel);
+        }
+        (false, Some(_)) => {
+            let kernel =
+                Surroundings::<T, 4, false> { items, faces, located, batch, rays, normals };
+            T::run_by(level, way, kernel);
+        }
+        (true, None) => paged!(faces.count, PAGES => T::run(
+            level,
+            Surroundings::<T, PAGES, true> { items, faces, located, batch, rays, normals },
+        )),
+        (false, None) => paged!(faces.count, PAGES => T::run(
+            level,
+            Surroundings::<T, PAGES, false> { items, faces, located, batch, rays, normals },
+        )),
     }
-    paged!(faces.count, PAGES => T::run(
-        level,
-        Surroundings::<T, PAGES> { items, faces, located, batch, rays, normals },
-    ));
 }
 
 /// The columns of a matrix.
@@ -410,7 +434,7 @@ impl<T: Number> Rays<T> {
     }
 }
 
-struct Surroundings<'a, T, const PAGES: usize> {
+struct Surroundings<'a, T, const PAGES: usize, const SHARED: bool> {
     items: &'a Items,
     faces: &'a Faces<T>,
     located: &'a Located<T>,
@@ -419,7 +443,9 @@ struct Surroundings<'a, T, const PAGES: usize> {
     normals: [[T; 3]; 3],
 }
 
-impl<T: Number, const PAGES: usize> Kernel<T> for Surroundings<'_, T, PAGES> {
+impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
+    for Surroundings<'_, T, PAGES, SHARED>
+{
     #[inline(always)]
     fn run<M: Machine<Number = T>>(self, machine: M) {
         let Self { items, faces, located, batch, rays, normals } = self;
@@ -434,9 +460,14 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Surroundings<'_, T, PAGES> {
             store(machine, n, &mut batch.normal, at);
 
             let (one, half) = (machine.lift(1.0), machine.lift(0.5));
-            let (column, row) = (machine.whole(&items.x, at), machine.whole(&items.y, at));
-            let x = (column + half) * machine.set(rays.x[0]) + machine.set(rays.x[1]);
-            let y = (row + half) * machine.set(rays.y[0]) + machine.set(rays.y[1]);
+            let [column, row] = match SHARED {
+                true => {
+                    [machine.load(&located.places[0], at), machine.load(&located.places[1], at)]
+                }
+                false => [machine.whole(&items.x, at) + half, machine.whole(&items.y, at) + half],
+            };
+            let x = column * machine.set(rays.x[0]) + machine.set(rays.x[1]);
+            let y = row * machine.set(rays.y[0]) + machine.set(rays.y[1]);
             if rays.parallel {
                 let Triple([z0, z1, z2]) = picked::<M, PAGES>(machine, &faces.z, slots);
                 let z = z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1];

@@ -22,6 +22,10 @@ pub struct Items {
     pub(super) y: [i32; BLOCK_PIXELS],
     /// The slots of the triangles that they show. What stands behind the last is a slot too.
     pub(super) slots: [i32; BLOCK_PIXELS],
+    /// Whether they share their pixels with others: then it stands in `shares` how many of the samples
+    /// of its pixel each of them has.
+    pub(super) shared: bool,
+    pub(super) shares: [i32; BLOCK_PIXELS],
     /// How many slots are taken.
     pub(super) count: usize,
     /// The triangles of the slots, by their numbers in the frame.
@@ -34,6 +38,9 @@ pub(super) struct Shown {
     pub(super) triangles: u64,
     pub(super) lines: u64,
 }
+
+/// Among so many slots a triangle is looked for that is seen again.
+const RECENT: usize = 24;
 
 /// Pixels before the first and after the last, so that neighbours can be looked at.
 const MARGIN: usize = 16;
@@ -48,6 +55,8 @@ impl Default for Items {
             x: [0; BLOCK_PIXELS],
             y: [0; BLOCK_PIXELS],
             slots: [0; BLOCK_PIXELS],
+            shared: false,
+            shares: [0; BLOCK_PIXELS],
             count: 0,
             numbers: [0; SLOTS],
         }
@@ -68,6 +77,7 @@ impl Items {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
     fn find<S: Simd>(&mut self, simd: S, words: &[u64; BLOCK_PIXELS], corner: [i32; 2]) -> Shown {
+        self.shared = false;
         // The number of the background, as its word has it, is none of a triangle.
         let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
         for (number, word) in numbers[MARGIN..].iter_mut().zip(words) {
@@ -103,6 +113,7 @@ impl Items {
 
     /// Lists all pixels of a block that one triangle covers as a whole.
     pub(super) fn list_whole(&mut self, number: u32, corner: [i32; 2]) {
+        self.shared = false;
         self.count = 1;
         self.numbers[0] = number;
         self.put_all(corner, &[0; BLOCK_PIXELS]);
@@ -161,13 +172,49 @@ impl Items {
     }
 
     #[inline(always)]
-    fn put(&mut self, [left, top]: [i32; 2], place: u8, slot: i32) {
+    fn put(&mut self, [left, top]: [i32; 2], place: u8, slot: i32) -> usize {
         let i = self.len % BLOCK_PIXELS;
         self.places[i] = place;
         self.x[i] = left + i32::from(place) % BLOCK;
         self.y[i] = top + i32::from(place) / BLOCK;
         self.slots[i] = slot;
         self.len += 1;
+        i
+    }
+
+    /// Says how many samples of their pixels those of the list have.
+    pub(super) fn share(&mut self, of_places: &[i32; BLOCK_PIXELS]) {
+        self.shared = true;
+        for (share, place) in self.shares.iter_mut().zip(&self.places[..self.len]) {
+            *share = of_places[usize::from(*place) % BLOCK_PIXELS];
+        }
+    }
+
+    /// Empties the list, for triangles that share their pixels.
+    pub(super) fn begin_shared(&mut self) {
+        (self.len, self.count, self.shared) = (0, 0, true);
+    }
+
+    /// Whether there is no room for another.
+    pub(super) const fn is_full(&self) -> bool {
+        self.len == BLOCK_PIXELS
+    }
+
+    /// Adds a triangle that has some samples of a pixel, where there is room.
+    #[inline(always)]
+    pub(super) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
+        let last = self.numbers[..self.count].iter().rev().take(RECENT);
+        let slot = match last.clone().position(|other| *other == number) {
+            Some(back) => self.count - 1 - back,
+            None => {
+                self.numbers[self.count % SLOTS] = number;
+                self.count += 1;
+                self.count - 1
+            }
+        };
+        let slot = i32::try_from(slot).expect("there are 64 slots");
+        let i = self.put(corner, PLACES[place % BLOCK_PIXELS], slot);
+        self.shares[i] = share;
     }
 
     /// Takes over the items of another list whose slots have a true `keep`.
@@ -179,11 +226,12 @@ impl Items {
             new[slot] = i32::try_from(self.count).expect("there are 64 slots");
             self.count += 1;
         }
-        self.len = 0;
-        for (place, slot) in other.places[..other.len].iter().zip(&other.slots) {
-            let slot = slot.cast_unsigned() as usize;
+        (self.len, self.shared) = (0, other.shared);
+        for (from, place) in other.places[..other.len].iter().enumerate() {
+            let slot = other.slots[from].cast_unsigned() as usize;
             if keep[slot] {
-                self.put(corner, *place, new[slot]);
+                let to = self.put(corner, *place, new[slot]);
+                self.shares[to] = other.shares[from];
             }
         }
     }

@@ -12,6 +12,7 @@ use fearless_simd::{
 
 use super::bins::LargeTriangle;
 use super::coverage::{PixelBox, Triangle};
+use super::places::Places;
 use super::tile::{BLOCK, BLOCK_PIXELS};
 use crate::base::math::each;
 
@@ -69,22 +70,45 @@ impl Large {
         }
     }
 
-    /// Which blocks of the tile the triangle touches, of those that `area` reaches into (not empty;
-    /// in pixels from the tile's first).
+    /// What the edge functions gain by a shift by some parts of a pixel, all of them sixteenths.
     #[inline(always)]
-    pub(super) fn blocks<S: Simd>(&self, simd: S, area: PixelBox) -> Touched {
+    pub(super) fn gain(&self, [x, y]: [i32; 2]) -> [i64; 3] {
+        let [x, y] = [x, y].map(|by| i64::from(by / 16));
+        let gain = |i: usize| (self.right[i] >> 4) * x + (self.down[i] >> 4) * y;
+        [gain(0), gain(1), gain(2)]
+    }
+
+    /// Which blocks of the tile the triangle touches in any of the `N` samples of their pixels, of
+    /// those that `area` reaches into (not empty; in pixels from the tile's first).
+    #[inline(always)]
+    pub(super) fn blocks<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        area: PixelBox,
+        places: &Places,
+    ) -> Touched {
         let mut touched = Touched::default();
         let columns = eight_bits(area.left / BLOCK, (area.right - 1) / BLOCK);
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
         let side = i64::from(BLOCK);
+        // What the edge functions gain at the most and at the least from the middle to a sample.
+        let (mut most, mut least) = ([0; 3], [0; 3]);
+        if N > 1 {
+            (most, least) = ([i64::MIN; 3], [i64::MAX; 3]);
+            for sample in 0..N {
+                let gain = self.gain(places.shift::<N>(sample));
+                most = [0, 1, 2].map(|i: usize| most[i].max(gain[i]));
+                least = [0, 1, 2].map(|i: usize| least[i].min(gain[i]));
+            }
+        }
         for row in area.top / BLOCK..(area.bottom - 1) / BLOCK + 1 {
             let (mut some, mut whole) = (columns, columns);
             for i in 0..3 {
                 let first = self.edges[i] + i64::from(row) * side * self.down[i] - self.least[i];
                 let (x, y) = (7 * self.right[i], 7 * self.down[i]);
                 let first = across * (side * self.right[i]) + first;
-                some &= (first + (x.max(0) + y.max(0))).simd_ge(0).to_bitmask();
-                whole &= (first + (x.min(0) + y.min(0))).simd_ge(0).to_bitmask();
+                some &= (first + (x.max(0) + y.max(0) + most[i])).simd_ge(0).to_bitmask();
+                whole &= (first + (x.min(0) + y.min(0) + least[i])).simd_ge(0).to_bitmask();
             }
             touched.some |= some << (8 * row);
             touched.whole |= (some & whole) << (8 * row);
@@ -100,36 +124,45 @@ impl Large {
         [at(0), at(1), at(2)]
     }
 
-    /// The least and the largest depth that it may have in a block that it covers as a whole.
+    /// The least and the largest depth that it may have in the `N` samples of a block that it covers as
+    /// a whole.
     #[inline(always)]
     #[expect(
         clippy::cast_precision_loss,
         clippy::cast_possible_truncation,
         reason = "the rounding is allowed for"
     )]
-    pub(super) fn depths(&self, block: usize) -> [f32; 2] {
+    pub(super) fn depths<const N: usize>(&self, block: usize) -> [f32; 2] {
         let [_, second, third] = self.edges_at(block);
         let first = self.depth + second as f64 * self.to_second + third as f64 * self.to_third;
         let gain = |steps: &[i64; 3]| {
             7.0 * (steps[1] as f64 * self.to_second + steps[2] as f64 * self.to_third)
         };
-        let (x, y) = (gain(&self.right), gain(&self.down));
+        let (mut x, mut y) = (gain(&self.right), gain(&self.down));
+        let mut first = first;
+        if N > 1 {
+            // From half a pixel before the first middle to half a pixel behind the last.
+            first -= (x + y) / 14.0;
+            (x, y) = (x * (8.0 / 7.0), y * (8.0 / 7.0));
+        }
         let low = (first + x.min(0.0) + y.min(0.0) - ROUNDING) as f32;
         let high = (first + x.max(0.0) + y.max(0.0) + ROUNDING) as f32;
         [low.max(self.low), high.min(self.high)]
     }
 
-    /// Draws the triangle into the words of a block, of which it covers all or part.
+    /// Draws the triangle into the words that a block has for the samples with this shift; it covers all
+    /// of them or some.
     #[inline(always)]
     pub(super) fn draw<S: Simd>(
         &self,
         simd: S,
-        block: usize,
+        (block, shift): (usize, [i32; 2]),
         whole: bool,
         words: &mut [u64; BLOCK_PIXELS],
     ) {
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
-        let first = self.edges_at(block);
+        let (first, gain) = (self.edges_at(block), self.gain(shift));
+        let first = [first[0] + gain[0], first[1] + gain[1], first[2] + gain[2]];
         let [a, b, c] = self.right;
         let mut edges = [across * a + first[0], across * b + first[1], across * c + first[2]];
         let (two, _) = words.as_chunks_mut::<16>();

@@ -72,6 +72,14 @@ pub(super) struct ScreenLine {
     pub(super) nearer: u32,
 }
 
+impl ScreenLine {
+    /// The line as it is seen from a place that is shifted by so many parts of a pixel.
+    #[inline(always)]
+    pub(super) fn seen_from(&self, shift: [i32; 2]) -> Self {
+        Self { ends: self.ends.map(|end| end.seen_from(shift)), ..*self }
+    }
+}
+
 /// The pixels that a line may take.
 pub(super) fn bounds([a, b]: [Snapped; 2], width: i32) -> PixelBox {
     let low = |p: i32, q: i32| p.min(q).div_euclid(SUBPIXELS) - width;
@@ -199,13 +207,20 @@ pub(super) struct Short<S: Simd> {
     pub(super) width: i32,
     /// How many steps of depth they are nearer than they are.
     pub(super) nearer: u32,
+    /// The sample that looks at them.
+    pub(super) sample: usize,
 }
 
-/// Draws sixteen lines that are at most [`SHORT`].
+/// Draws sixteen lines that are at most [`SHORT`] as one of `N` samples a pixel sees them.
 ///
 /// In the turned axes of [`pixels`]: v = floor((va du + dv along) / (256 du)).
 #[inline(always)]
-pub(super) fn draw_short<S: Simd>(a: Ends<S>, b: Ends<S>, lines: &Short<S>, hits: &mut Hits) {
+pub(super) fn draw_short<S: Simd, const N: usize>(
+    a: Ends<S>,
+    b: Ends<S>,
+    lines: &Short<S>,
+    hits: &mut Hits,
+) {
     let simd = a[0].simd;
     let ([xa, ya, da], [xb, yb, db]) = (a, b);
     let steep = (yb - ya).abs().simd_gt((xb - xa).abs());
@@ -241,7 +256,8 @@ pub(super) fn draw_short<S: Simd>(a: Ends<S>, b: Ends<S>, lines: &Short<S>, hits
         for side in 0..lines.width {
             let v = v + side;
             let (x, y) = (steep.select(v, u), steep.select(u, v));
-            hits.add(&reach, &Pixels { x, y, depth, number: lines.number }, covered);
+            let pixels = Pixels { x, y, depth, number: lines.number };
+            hits.add::<S, N>(&reach, (&pixels, lines.sample), covered);
         }
     }
 }
@@ -345,8 +361,8 @@ mod tests {
             let [a, b] = ends.map(|ends| end(ends).map(|x| i32x16::splat(simd, x)));
             let depth = i32x16::splat(simd, 0.5_f32.to_bits().cast_signed());
             let some = mask32x16::from_bitmask(simd, 1 << 5);
-            let short = Short { some, number: u32x16::splat(simd, 0), width, nearer: 0 };
-            draw_short([a[0], a[1], depth], [b[0], b[1], depth], &short, &mut hits);
+            let short = Short { some, number: u32x16::splat(simd, 0), width, nearer: 0, sample: 0 };
+            draw_short::<_, 1>([a[0], a[1], depth], [b[0], b[1], depth], &short, &mut hits);
         });
         let mut pixels = Vec::new();
         for tile in 0..4 {

@@ -8,9 +8,13 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::bins::tiles_of;
+use super::colors::Sums;
 use super::coverage::PixelBox;
 use super::effects::Light;
-use super::surface::{Scenery, Shader};
+use super::places::{ALL, FOUR};
+use super::plan::FramePlan;
+use super::resolve::Samples;
+use super::surface::{Out, Scenery, Shader};
 use super::tile::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
 use super::whole::{Blocks, Canvas};
 use crate::base::color::Color;
@@ -45,11 +49,20 @@ const ROW: usize = BLOCK as usize;
 /// Blocks in a row of a tile.
 const BLOCKS: usize = TILE_SIDE / ROW;
 
+/// The colours of a tile over several passes, block by block; nothing before the first.
+pub(super) type TileSums = Mutex<Vec<Sums>>;
+
+/// Where a block of a tile begins.
+const fn corner_in_tile(block: usize) -> [usize; 2] {
+    [block % BLOCKS * ROW, block / BLOCKS * ROW]
+}
+
 /// Draws one tile after another.
 #[derive(Debug)]
 pub(super) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
+    samples: Samples,
     /// A tile beside the picture.
     pixels: Vec<[u8; 4]>,
 }
@@ -59,6 +72,7 @@ impl<T: Light> Default for Painter<T> {
         Self {
             shader: Shader::default(),
             visibility: Visibility::default(),
+            samples: Samples::default(),
             pixels: vec![[0; 4]; TILE_SIDE * TILE_SIDE],
         }
     }
@@ -98,11 +112,7 @@ impl<T: Light> Painter<T> {
         self.pixels = pixels;
         let mut band = locked(band);
         if shows {
-            band.filled[column] = None;
-            for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width))
-            {
-                to[place.clone()].copy_from_slice(&from[..place.len()]);
-            }
+            self.copy(tile, size, &mut band);
         } else {
             Self::fill(tile, size, background, &mut band);
         }
@@ -134,12 +144,90 @@ impl<T: Light> Painter<T> {
                 }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
-                let words = self.visibility.block(block);
-                let at = canvas.place([block % BLOCKS * ROW, block / BLOCKS * ROW]);
-                shows |= self.shader.block(scenery, words, corner, canvas, at);
+                let at = canvas.place(corner_in_tile(block));
+                shows |= if scenery.frame.places().are_many() {
+                    self.block_of_samples(scenery, (block, corner), canvas, at)
+                } else {
+                    let words = self.visibility.block(block);
+                    self.shader.block(scenery, words, corner, (canvas, at))
+                };
             }
         }
         shows
+    }
+
+    /// Colours a block whose pixels have four samples.
+    fn block_of_samples(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        (block, corner): (usize, [i32; 2]),
+        canvas: &mut Canvas<'_>,
+        at: usize,
+    ) -> bool {
+        let Self { shader, visibility, samples, .. } = self;
+        let planes = visibility.planes(block);
+        if samples.compare(scenery.level, planes) {
+            return shader.block(scenery, &planes[0], corner, (canvas, at));
+        }
+        let mut sums = Sums::default();
+        let shows = shader.add_samples(scenery, (samples, planes), corner, &mut sums);
+        canvas.put(at, &sums.means(FOUR.ilog2()));
+        shows
+    }
+
+    /// Adds the colours of four samples of a tile to those of others.
+    pub(super) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &TileSums) {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
+        to.resize(BLOCK_PIXELS, Sums::default());
+        let empty = frame.is_empty(tile);
+        let bounds = bounds_of(tile, plan.size);
+        let Self { shader, visibility, samples, .. } = self;
+        if !empty {
+            visibility.draw(level, plan, frame, (tile, bounds));
+            shader.tile.begin((level, plan), visibility, bounds);
+        }
+        for (block, to) in to.iter_mut().enumerate() {
+            if empty || !visibility.shows(block) {
+                to.add_everywhere(plan.background.opaque(), ALL);
+                continue;
+            }
+            let corner = visibility.corner(block);
+            if let Some(number) = visibility.whole(block) {
+                shader.whole_block(scenery, number, corner, &mut Out::Sums(to));
+            } else {
+                let planes = visibility.planes(block);
+                samples.compare(level, planes);
+                shader.add_samples(scenery, (samples, planes), corner, to);
+            }
+        }
+    }
+
+    /// Puts the means of all samples of a tile into its band of the picture.
+    pub(super) fn put_means(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        tile: usize,
+        of: &TileSums,
+        band: &Mutex<Band<'_>>,
+    ) {
+        let of = of.lock().unwrap_or_else(PoisonError::into_inner);
+        let FramePlan { size, samples, .. } = *scenery.plan;
+        let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
+        for (block, sums) in of.iter().enumerate() {
+            let at = canvas.place(corner_in_tile(block));
+            canvas.put(at, &sums.means(samples.count().ilog2()));
+        }
+        self.copy(tile, size, &mut locked(band));
+    }
+
+    /// Copies the tile beside the picture into its band.
+    fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
+        let (column, place) = Self::place(tile, size);
+        band.filled[column] = None;
+        for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width)) {
+            to[place.clone()].copy_from_slice(&from[..place.len()]);
+        }
     }
 
     /// Fills a tile with a colour, where it is not filled with it.

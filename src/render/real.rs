@@ -15,6 +15,7 @@ use fearless_simd::{
     SimdMask as _, dispatch, f32x16, i32x16, u32x16,
 };
 
+use super::effects::BATCH;
 use super::pick::{SLOTS, pick};
 pub use super::ways::ByWay;
 use super::ways::Choosing;
@@ -119,6 +120,15 @@ pub trait Machine: Copy {
         row: &mut [u32],
         at: usize,
     );
+    /// Puts colours into three rows: red, green and blue as the bytes of [`Self::store_pixels_by`] before
+    /// they are rounded down, in parts of 2^-16.
+    fn store_parts(
+        self,
+        color: Triple<Self::R>,
+        threshold: Self::R,
+        rows: &mut [[u32; BATCH]; 3],
+        at: usize,
+    );
     /// A constant.
     fn lift(self, constant: f64) -> Self::R;
     /// One number for all.
@@ -185,6 +195,21 @@ impl Machine for Exact {
         let byte = |x: f64| (Real::min(Real::max(x, 0.0), 1.0) * 255.0 + threshold) as u8;
         let [r, g, b] = color.0.map(byte);
         row[at] = u32::from_le_bytes([r, g, b, 255]);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 2^24")]
+    fn store_parts(
+        self,
+        color: Triple<f64>,
+        threshold: f64,
+        rows: &mut [[u32; BATCH]; 3],
+        at: usize,
+    ) {
+        for (row, number) in rows.iter_mut().zip(color.0) {
+            let held = Real::min(Real::max(number, 0.0), 1.0);
+            row[at] = ((held * 255.0 + threshold) * PARTS) as u32;
+        }
     }
 
     #[inline(always)]
@@ -287,6 +312,21 @@ impl<S: Simd> Machine for Sixteen<S> {
     }
 
     #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "a power of two")]
+    fn store_parts(
+        self,
+        color: Triple<f32x16<S>>,
+        threshold: f32x16<S>,
+        rows: &mut [[u32; BATCH]; 3],
+        at: usize,
+    ) {
+        for (row, number) in rows.iter_mut().zip(color.0) {
+            let parts: i32x16<S> = (before_rounding(number, threshold) * PARTS as f32).to_int();
+            parts.bitcast::<u32x16<S>>().store_slice(&mut row[at..at + 16]);
+        }
+    }
+
+    #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
     fn lift(self, constant: f64) -> f32x16<S> {
         (constant as f32).simd_into(self.0)
@@ -316,9 +356,18 @@ impl<S: Simd> Machine for Sixteen<S> {
 /// What [`Number::byte`] does to one number, with a threshold of one half.
 #[inline(always)]
 fn lanes_byte<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> i32x16<S> {
-    let (zero, one) = (number.lift(0.0), number.lift(1.0));
-    (Real::min(Real::max(number, zero), one) * 255.0 + threshold).to_int()
+    before_rounding(number, threshold).to_int()
 }
+
+/// The byte of a number before it is rounded down.
+#[inline(always)]
+fn before_rounding<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> f32x16<S> {
+    let (zero, one) = (number.lift(0.0), number.lift(1.0));
+    Real::min(Real::max(number, zero), one) * 255.0 + threshold
+}
+
+/// Into how many parts a step of a byte is cut where colours are added up.
+const PARTS: f64 = 65536.0;
 
 /// The numbers that pictures can be computed in.
 pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {

@@ -15,7 +15,8 @@ use super::changes::{Cause, Changes};
 use super::effects::Light;
 use super::frame::Frame;
 use super::light::Lit;
-use super::painter::{Band, Painter, bounds_of};
+use super::painter::{Band, Painter, TileSums, bounds_of};
+use super::places::passes;
 use super::plan::{EffectUse, FramePlan};
 use super::shines::Shines;
 use super::stages::{Laps, Stages};
@@ -130,12 +131,26 @@ impl Renderer {
     }
 
     fn draw_changes(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
-        self.stages =
-            if self.built { Stages::default() } else { self.frame.build(self.level, plan, watch) };
-        if !watch.is_given_up() {
+        self.stages = Stages::default();
+        let passes = passes(plan.samples);
+        let mut sums = Vec::new();
+        if passes.len() > 1 {
+            let [columns, rows] = tiles_of(plan.size);
+            let tiles = usize::try_from(columns * rows).expect("not negative");
+            sums.resize_with(tiles, TileSums::default);
+        }
+        // The first pass comes last, so that its frame is what is asked of what is seen.
+        for (i, places) in passes.iter().enumerate().rev() {
+            if !self.built || passes.len() > 1 {
+                self.stages += self.frame.build(self.level, plan, *places, watch);
+            }
+            if watch.is_given_up() {
+                return;
+            }
+            let pass = Pass { sums: &sums, is_last: i == 0 };
             match plan.arithmetic {
-                Arithmetic::F32 => self.draw::<f32>(plan, changes, watch),
-                Arithmetic::F64 => self.draw::<f64>(plan, changes, watch),
+                Arithmetic::F32 => self.draw::<f32>(plan, changes, &pass, watch),
+                Arithmetic::F64 => self.draw::<f64>(plan, changes, &pass, watch),
             }
         }
     }
@@ -153,7 +168,8 @@ impl Renderer {
     /// begun since.
     fn build_again(&mut self) {
         if let (false, Some(plan)) = (self.built, &self.plan) {
-            self.frame.build(self.level, plan, &Watch::new(&|| true));
+            let places = passes(plan.samples)[0];
+            self.frame.build(self.level, plan, places, &Watch::new(&|| true));
             self.built = true;
         }
     }
@@ -176,7 +192,8 @@ impl Renderer {
         self.frame.triangles()
     }
 
-    /// What the last picture shows in column `x` of row `y`; `None` for the background.
+    /// What the last picture shows in column `x` of row `y`; `None` for the background. Of a pixel with
+    /// several samples the four nearest to its middle are asked: it is what most of them show.
     #[must_use]
     pub fn hit(&mut self, x: usize, y: usize) -> Option<Hit> {
         self.build_again();
@@ -269,7 +286,13 @@ impl Renderer {
     }
 
     /// Draws tiles, each thread its own.
-    fn draw<T: Painted>(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+    fn draw<T: Painted>(
+        &mut self,
+        plan: &FramePlan,
+        changes: &Changes,
+        pass: &Pass<'_>,
+        watch: &Watch<'_>,
+    ) {
         let mut laps = Laps::start();
         let Room { shines, lit, painters } = T::room(&mut self.rooms);
         shines.prepare(plan);
@@ -298,14 +321,28 @@ impl Renderer {
                 let (row, column) = (turn % bands.len(), turn / bands.len());
                 let tile = row * columns + column;
                 if changes.tiles.contains(tile) {
-                    painter.paint(&scenery, tile, &bands[row]);
+                    match pass.sums.get(tile) {
+                        None => painter.paint(&scenery, tile, &bands[row]),
+                        Some(sums) => painter.add(&scenery, tile, sums),
+                    }
+                    if let (true, Some(sums)) = (pass.is_last, pass.sums.get(tile)) {
+                        painter.put_means(&scenery, tile, sums, &bands[row]);
+                    }
                 }
             }
         };
         painters.resize_with(rayon::current_num_threads(), Painter::default);
         painters.par_iter_mut().with_max_len(1).for_each(work);
-        self.stages.tiles = laps.lap();
+        self.stages.tiles += laps.lap();
     }
+}
+
+/// One of the passes that a picture is made of.
+#[derive(Debug)]
+struct Pass<'a> {
+    /// For each tile the colours of earlier passes, block by block; none where there is one pass.
+    sums: &'a [TileSums],
+    is_last: bool,
 }
 
 /// What is kept from frame to frame for one kind of numbers.

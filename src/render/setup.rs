@@ -1,7 +1,7 @@
 //! From vertices on the screen to triangles in bins.
 //!
-//! Sixteen triangles at a time: those that face away, that cover no pixel's centre or that miss the
-//! picture are dropped before anything of theirs is copied. What has a corner beyond the planes is
+//! Sixteen triangles at a time: those that face away, that reach no pixel's centre (or sample) or that miss
+//! the picture are dropped before anything of theirs is copied. What has a corner beyond the planes is
 //! cut, and what is so large that its area needs 64 bits is looked at one by one.
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16};
@@ -10,6 +10,7 @@ use super::bins::{Bins, LargeTriangle};
 use super::clip::{Screen, ScreenVertex};
 use super::coverage::{PixelBox, SUBPIXELS, doubled_area};
 use super::hits::PACK;
+use super::places::FOUR;
 use super::plan::{Back, Draw, Pipeline};
 use super::small::{self, Pack, SMALL};
 use super::vertices::{fetch, fetch_vertices};
@@ -65,11 +66,15 @@ impl<'a> Setup<'a> {
         pipelines: &[Pipeline],
         bins: &mut Bins,
     ) {
-        dispatch!(level, simd => self.all(simd, triangles, pipelines, bins));
+        if bins.places.are_many() {
+            dispatch!(level, simd => self.all::<_, FOUR>(simd, triangles, pipelines, bins));
+        } else {
+            dispatch!(level, simd => self.all::<_, 1>(simd, triangles, pipelines, bins));
+        }
     }
 
     #[inline(always)]
-    fn all<S: Simd>(
+    fn all<S: Simd, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle],
@@ -78,18 +83,18 @@ impl<'a> Setup<'a> {
     ) {
         let (whole, rest) = triangles.as_chunks::<PACK>();
         for sixteen in whole {
-            self.sixteen(simd, sixteen, PACK, pipelines, bins);
+            self.sixteen::<S, N>(simd, sixteen, PACK, pipelines, bins);
         }
         if let Some(last) = rest.last() {
             let mut sixteen = [*last; PACK];
             sixteen[..rest.len()].copy_from_slice(rest);
-            self.sixteen(simd, &sixteen, rest.len(), pipelines, bins);
+            self.sixteen::<S, N>(simd, &sixteen, rest.len(), pipelines, bins);
         }
     }
 
     /// Sets up sixteen triangles, of which the first `count` are meant.
     #[inline(always)]
-    fn sixteen<S: Simd>(
+    fn sixteen<S: Simd, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
@@ -104,10 +109,11 @@ impl<'a> Setup<'a> {
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
 
         let half = SUBPIXELS / 2;
-        let left = (low_x + (half - 1)) >> 8;
-        let right = ((high_x - half) >> 8) + 1;
-        let top = (low_y + (half - 1)) >> 8;
-        let bottom = ((high_y - half) >> 8) + 1;
+        let [least, most] = bins.places.reach::<N>();
+        let left = (low_x + (half - 1 - most[0])) >> 8;
+        let right = ((high_x - (half + least[0])) >> 8) + 1;
+        let top = (low_y + (half - 1 - most[1])) >> 8;
+        let bottom = ((high_y - (half + least[1])) >> 8) + 1;
         let [width, height] = bins.hits.extent();
         let seen = left.simd_lt(right)
             & top.simd_lt(bottom)
@@ -135,13 +141,13 @@ impl<'a> Setup<'a> {
             let number = number + self.base.cast_signed();
             let pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
             let side = (right - left).max(bottom - top);
-            self.sort(simd, triangles, &pack, (plain, side), pipelines, bins);
+            self.sort::<S, N>(simd, triangles, &pack, (plain, side), pipelines, bins);
         }
         let mut odd = odd.to_bitmask();
         while odd != 0 {
             let lane = odd.trailing_zeros() as usize;
             odd &= odd - 1;
-            self.add_odd(&triangles[lane], pipelines, bins);
+            self.add_odd::<N>(&triangles[lane], pipelines, bins);
         }
     }
 
@@ -164,7 +170,7 @@ impl<'a> Setup<'a> {
     /// Sorts triangles that are seen by the larger sides of their boxes: into the queues of small
     /// ones, or to the large ones.
     #[inline(always)]
-    fn sort<S: Simd>(
+    fn sort<S: Simd, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
@@ -189,7 +195,7 @@ impl<'a> Setup<'a> {
             }
             bins.drawn += count;
             if bins.queues[queue].add(pack, some, count) {
-                small::draw_full(simd, queue, bins);
+                small::draw_full::<S, N>(simd, queue, bins);
             }
         }
         let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
@@ -198,7 +204,8 @@ impl<'a> Setup<'a> {
             large &= large - 1;
             let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
             let number = self.base + triangles[lane].number;
-            let bounds = PixelBox::of(each(corners, |corner| corner.at()));
+            let at = each(corners, |corner| corner.at());
+            let bounds = PixelBox::reached(at, bins.places.reach::<N>());
             let cutout = cutout >> lane & 1 != 0;
             bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
         }
@@ -226,7 +233,12 @@ impl<'a> Setup<'a> {
     }
 
     /// Adds a triangle that has to be cut, or whose area needs 64 bits.
-    fn add_odd(&self, triangle: &DrawTriangle, pipelines: &[Pipeline], bins: &mut Bins) {
+    fn add_odd<const N: usize>(
+        &self,
+        triangle: &DrawTriangle,
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+    ) {
         let kind = self.kind(triangle.number, pipelines);
         if kind == Kind::Not {
             return;
@@ -246,7 +258,8 @@ impl<'a> Setup<'a> {
             }
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
-            let bounds = PixelBox::of(corners.map(|corner| corner.at()));
+            let at = corners.map(|corner| corner.at());
+            let bounds = PixelBox::reached(at, bins.places.reach::<N>());
             bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
         }
     }
@@ -272,9 +285,13 @@ impl<'a> Setup<'a> {
 
 /// Draws the small triangles that are still waiting.
 pub(super) fn finish(level: Level, bins: &mut Bins) {
+    let many = bins.places.are_many();
     dispatch!(level, simd => {
         for queue in 0..SMALL.len() {
-            small::draw_rest(simd, queue, bins);
+            match many {
+                true => small::draw_rest::<_, FOUR>(simd, queue, bins),
+                false => small::draw_rest::<_, 1>(simd, queue, bins),
+            }
         }
     });
 }

@@ -13,6 +13,7 @@ use fearless_simd::{
 use super::bins::Bins;
 use super::coverage::{PixelBox, SUBPIXELS};
 use super::hits::{PACK, Pixels};
+use super::places::Places;
 use super::real::Real;
 use crate::base::math::each;
 
@@ -83,19 +84,19 @@ impl Queue {
     }
 }
 
-/// Draws the triangles of a queue that is full, but for some of the last.
+/// Draws the triangles of a queue that is full, but for some of the last, in `N` samples a pixel.
 #[inline(always)]
-pub(super) fn draw_full<S: Simd>(simd: S, queue: usize, bins: &mut Bins) {
+pub(super) fn draw_full<S: Simd, const N: usize>(simd: S, queue: usize, bins: &mut Bins) {
     for at in (0..WAITING).step_by(PACK) {
         let pack = bins.queues[queue].pack(simd, at);
-        draw(simd, &pack, bins);
+        draw::<S, N>(simd, &pack, bins);
     }
     bins.queues[queue].forget();
 }
 
 /// Draws the triangles that are left in a queue.
 #[inline(always)]
-pub(super) fn draw_rest<S: Simd>(simd: S, queue: usize, bins: &mut Bins) {
+pub(super) fn draw_rest<S: Simd, const N: usize>(simd: S, queue: usize, bins: &mut Bins) {
     let count = std::mem::take(&mut bins.queues[queue].count);
     for at in (0..count).step_by(PACK) {
         let mut pack = bins.queues[queue].pack(simd, at);
@@ -105,20 +106,22 @@ pub(super) fn draw_rest<S: Simd>(simd: S, queue: usize, bins: &mut Bins) {
         for row in &mut pack {
             *row = there.select(*row, nothing);
         }
-        draw(simd, &pack, bins);
+        draw::<S, N>(simd, &pack, bins);
     }
 }
 
 /// Draws sixteen triangles whose boxes have at most 8 x 8 pixels.
 #[inline(always)]
-pub(super) fn draw<S: Simd>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
-    let lanes = Lanes::new(simd, pack);
+pub(super) fn draw<S: Simd, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
+    let places = bins.places;
+    let lanes = Lanes::new(simd, pack, places.reach::<N>());
     let reach = bins.hits.reach(lanes.bounds());
-    lanes.each_pixel(
+    lanes.each_sample::<N>(
+        &places,
         #[inline(always)]
-        |x, y, covered, depth| {
+        |[x, y], sample, covered, depth| {
             let pixels = Pixels { x, y, depth: depth.bitcast(), number: lanes.number };
-            bins.hits.add(&reach, &pixels, covered);
+            bins.hits.add::<S, N>(&reach, (&pixels, sample), covered);
         },
     );
 }
@@ -147,13 +150,13 @@ struct Lanes<S: Simd> {
 
 impl<S: Simd> Lanes<S> {
     #[inline(always)]
-    fn new(simd: S, pack: &Pack<S>) -> Self {
+    fn new(simd: S, pack: &Pack<S>, [least, most]: [[i32; 2]; 2]) -> Self {
         let [x0, y0, x1, y1, x2, y2, d0, d1, d2, number] = *pack;
         let half = SUBPIXELS / 2;
-        let left = (x0.min(x1).min(x2) + (half - 1)) >> 8;
-        let top = (y0.min(y1).min(y2) + (half - 1)) >> 8;
-        let right = ((x0.max(x1).max(x2) - half) >> 8) + 1;
-        let bottom = ((y0.max(y1).max(y2) - half) >> 8) + 1;
+        let left = (x0.min(x1).min(x2) + (half - 1 - most[0])) >> 8;
+        let top = (y0.min(y1).min(y2) + (half - 1 - most[1])) >> 8;
+        let right = ((x0.max(x1).max(x2) - (half + least[0])) >> 8) + 1;
+        let bottom = ((y0.max(y1).max(y2) - (half + least[1])) >> 8) + 1;
         // Coordinates from the middle of the first pixel.
         let (cx, cy) = ((left << 8) + half, (top << 8) + half);
         let [x0, x1, x2] = each([x0, x1, x2], |x| (x - cx).to_float::<f32x16<S>>());
@@ -198,26 +201,50 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Calls `take` with a pixel of each box, where some triangle covers its own, and with the depths
-    /// there.
+    /// Calls `take` with a pixel of each box and one of its `N` samples, where some triangle covers its
+    /// own, and with the depths there.
     #[inline(always)]
-    fn each_pixel(&self, mut take: impl FnMut(i32x16<S>, i32x16<S>, mask32x16<S>, f32x16<S>)) {
+    fn each_sample<const N: usize>(
+        &self,
+        places: &Places,
+        mut take: impl FnMut([i32x16<S>; 2], usize, mask32x16<S>, f32x16<S>),
+    ) {
+        let shifts = self.shifts::<N>(places);
         let columns = (self.right - self.left).reduce_max();
         let rows = (self.bottom - self.top).reduce_max();
         let mut row = self.first;
         for dy in 0..rows {
             let mut edges = row;
             for dx in 0..columns {
-                let covered = edges[0].simd_ge(self.least[0])
-                    & edges[1].simd_ge(self.least[1])
-                    & edges[2].simd_ge(self.least[2]);
-                if covered.any_true() {
-                    take(self.left + dx, self.top + dy, covered, self.depth_at(edges));
+                for (sample, shift) in shifts.iter().enumerate() {
+                    let edges = if N == 1 { edges } else { step(edges, *shift) };
+                    let covered = edges[0].simd_ge(self.least[0])
+                        & edges[1].simd_ge(self.least[1])
+                        & edges[2].simd_ge(self.least[2]);
+                    if covered.any_true() {
+                        let pixel = [self.left + dx, self.top + dy];
+                        take(pixel, sample, covered, self.depth_at(edges));
+                    }
                 }
                 edges = step(edges, self.a);
             }
             row = step(row, self.b);
         }
+    }
+
+    /// What the edge functions gain from the middle of a pixel to its samples.
+    #[inline(always)]
+    fn shifts<const N: usize>(&self, places: &Places) -> [[f32x16<S>; 3]; N] {
+        let mut shifts = [[f32x16::splat(self.depth.simd, 0.0); 3]; N];
+        for (sample, shift) in shifts.iter_mut().enumerate() {
+            let [x, y] = places.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
+            *shift = [
+                self.a[0] * x + self.b[0] * y,
+                self.a[1] * x + self.b[1] * y,
+                self.a[2] * x + self.b[2] * y,
+            ];
+        }
+        shifts
     }
 
     /// The depths at a pixel, linear on the screen and within the depths of the corners.

@@ -15,6 +15,16 @@ pub struct Stages {
     pub tiles: Duration,
 }
 
+impl std::ops::AddAssign for Stages {
+    fn add_assign(&mut self, other: Self) {
+        let Self { vertices, set_up, lines, tiles } = other;
+        self.vertices += vertices;
+        self.set_up += set_up;
+        self.lines += lines;
+        self.tiles += tiles;
+    }
+}
+
 /// Measures one stage after the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Laps(Instant);

@@ -7,6 +7,7 @@
 
 use fearless_simd::Level;
 
+use super::colors::{Colors, Form, Sums};
 use super::effects::{BATCH, Batch, Light, Rows, Shine, load, set};
 use super::faces::Faces;
 use super::frame::Frame;
@@ -14,6 +15,7 @@ use super::interpolate::{Located, Mixed, mix, surroundings};
 use super::items::Items;
 use super::light::{Lighting, Lit, Table};
 use super::pick::SLOTS;
+use super::places::ALL;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage, TilePlan};
 use super::real::{Kernel, Machine, Number, Triple};
 use super::shines::Shines;
@@ -40,12 +42,21 @@ pub(super) struct Scenery<'a, T> {
 pub(super) struct Shader<T> {
     /// The lights of the tile that is coloured.
     pub(super) tile: TilePlan,
-    items: Items,
+    pub(super) items: Items,
     faces: Faces<T>,
     located: Located<T>,
     batch: Batch<T>,
     texels: Rows<T>,
-    colors: [u32; BATCH],
+    colors: Colors,
+}
+
+/// Where colours of a block go.
+#[derive(Debug)]
+pub(super) enum Out<'a, 'b> {
+    /// Into a tile, from a place on.
+    Tile(&'a mut Canvas<'b>, usize),
+    /// To what other samples show.
+    Sums(&'a mut Sums),
 }
 
 /// What mixing the light of vertices gave.
@@ -78,7 +89,7 @@ impl<T: Light> Default for Shader<T> {
             located: Located::default(),
             batch: Batch::default(),
             texels: [[T::default(); BATCH]; 3],
-            colors: [0; BATCH],
+            colors: Colors::default(),
         }
     }
 }
@@ -89,14 +100,14 @@ impl<T: Light> Shader<T> {
         self.faces.forget();
     }
 
-    /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on. What shows the background is left as it is; says whether anything else is shown.
+    /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on. What
+    /// shows the background is left as it is; says whether anything else is shown.
     pub(super) fn block(
         &mut self,
         scenery: &Scenery<'_, T>,
         words: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
-        canvas: &mut Canvas<'_>,
-        at: usize,
+        (canvas, at): (&mut Canvas<'_>, usize),
     ) -> bool {
         let shown = self.items.list(scenery.level, words, corner);
         let mut lines = shown.lines;
@@ -108,16 +119,53 @@ impl<T: Light> Shader<T> {
                     scenery.frame.line_color(scenery.plan, line);
             }
         }
-        if shown.triangles == 0 {
-            return shown.lines != 0;
+        if shown.triangles != 0 {
+            self.color_items(scenery, corner, &mut Out::Tile(canvas, at));
         }
+        (shown.triangles | shown.lines) != 0
+    }
+
+    /// Colours the pixels of the list.
+    pub(super) fn color_items(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
         if let Some(group) = one_group(scenery, &self.items) {
-            self.group(scenery, &group);
-            self.copy(canvas, at);
+            self.color_group(scenery, &group, out);
         } else {
-            self.groups(scenery, corner, canvas, at);
+            self.color_groups(scenery, corner, out);
         }
-        true
+    }
+
+    /// Colours the pixels of a block that one triangle covers as a whole.
+    pub(super) fn whole_block(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        number: u32,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
+        self.items.list_whole(number, corner);
+        self.items.shares = [ALL; BLOCK_PIXELS];
+        self.color_group(scenery, &group_of(scenery, number), out);
+    }
+
+    /// Colours pixels that are coloured together.
+    fn color_group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, out: &mut Out<'_, '_>) {
+        self.colors.form = match out {
+            Out::Tile(..) => Form::Pixels,
+            Out::Sums(_) => Form::Parts,
+        };
+        self.group(scenery, group);
+        match out {
+            Out::Tile(canvas, at) => self.copy(canvas, *at),
+            Out::Sums(sums) => {
+                let Items { len, places, shares, .. } = &self.items;
+                sums.add_all(&self.colors, &places[..*len], &shares[..*len]);
+            }
+        }
     }
 
     /// Colours the pixels of blocks that one triangle covers as a whole.
@@ -136,9 +184,9 @@ impl<T: Light> Shader<T> {
         }
         blocks.each(|[column, row]| {
             self.items.list_whole(number, [x + column, y + row]);
-            self.group(scenery, &group);
             let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
-            self.copy(canvas, canvas.place(place));
+            let at = canvas.place(place);
+            self.color_group(scenery, &group, &mut Out::Tile(canvas, at));
         });
     }
 
@@ -172,13 +220,7 @@ impl<T: Light> Shader<T> {
 
     /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
     /// ways.
-    fn groups(
-        &mut self,
-        scenery: &Scenery<'_, T>,
-        corner: [i32; 2],
-        canvas: &mut Canvas<'_>,
-        at: usize,
-    ) {
+    fn color_groups(&mut self, scenery: &Scenery<'_, T>, corner: [i32; 2], out: &mut Out<'_, '_>) {
         let mut done = [false; SLOTS];
         let all = std::mem::take(&mut self.items);
         for slot in 0..all.count {
@@ -194,8 +236,7 @@ impl<T: Light> Shader<T> {
                 done[other] |= keep[other];
             }
             self.items.take_from(&all, &keep, corner);
-            self.group(scenery, &group);
-            self.copy(canvas, at);
+            self.color_group(scenery, &group, out);
         }
         self.items = all;
     }
@@ -203,10 +244,10 @@ impl<T: Light> Shader<T> {
     /// Copies the colours into the tile.
     fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
         if self.items.is_whole() {
-            canvas.put(at, &self.colors);
+            canvas.put(at, &self.colors.pixels);
         } else {
             let places = &self.items.places[..self.items.len];
-            for (i, color) in places.iter().zip(&self.colors) {
+            for (i, color) in places.iter().zip(&self.colors.pixels) {
                 let place = canvas.place(in_block(usize::from(*i)));
                 canvas.pixels[at + place] = color.to_le_bytes();
             }
@@ -215,7 +256,7 @@ impl<T: Light> Shader<T> {
 
     fn group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>) {
         match &scenery.plan.pipelines[group.pipeline as usize] {
-            Pipeline::Flat(color) => self.colors.fill(u32::from_le_bytes(color.opaque())),
+            Pipeline::Flat(color) => self.colors.fill(color.opaque()),
             Pipeline::Shaded(shaded) => {
                 self.shaded(scenery, group, shaded);
                 if group.draw.back == Back::Red {
@@ -227,9 +268,9 @@ impl<T: Light> Shader<T> {
 
     /// Backs that are red are red.
     fn redden(&mut self) {
-        for (color, slot) in self.colors[..self.items.len].iter_mut().zip(&self.items.slots) {
+        for (i, slot) in self.items.slots[..self.items.len].iter().enumerate() {
             if self.faces.back >> slot & 1 == 1 {
-                *color = u32::from_le_bytes(Color::BACK_FACE.opaque());
+                self.colors.set(i, Color::BACK_FACE.opaque());
             }
         }
     }
@@ -276,7 +317,7 @@ impl<T: Light> Shader<T> {
             T::run(level, FinishBy { batch, lit, own, thresholds, colors });
         }
         if !(places || each) {
-            self.hand_out_colors();
+            self.colors.hand_out(&self.items.slots);
         }
     }
 
@@ -348,7 +389,7 @@ impl<T: Light> Shader<T> {
         let Self { items, faces, located, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
         if colored && plan.ways.rounding == Rounding::Nearest {
-            mix(level, items, faces, located, Mixed::Pixels(colors));
+            mix(level, items, faces, located, Mixed::Colors(colors));
             return Mixture::Bytes;
         }
         mix(level, items, faces, located, Mixed::Rows(&mut batch.diffuse));
@@ -408,14 +449,6 @@ impl<T: Light> Shader<T> {
                 }
             }
             batch.len = items.len;
-        }
-    }
-
-    /// From colours of faces to colours of pixels.
-    fn hand_out_colors(&mut self) {
-        let of_faces = self.colors;
-        for (color, slot) in self.colors.iter_mut().zip(&self.items.slots) {
-            *color = of_faces[slot.cast_unsigned() as usize % SLOTS];
         }
     }
 
@@ -506,7 +539,7 @@ struct Finish<'a, T> {
     batch: &'a Batch<T>,
     lit: bool,
     own: Own<'a, T>,
-    colors: &'a mut [u32; BATCH],
+    colors: &'a mut Colors,
 }
 
 impl<T: Light> Kernel<T> for Finish<'_, T> {
@@ -521,7 +554,7 @@ impl<T: Light> Kernel<T> for Finish<'_, T> {
                 let specular = load(machine, &batch.specular, at);
                 color = Triple([tr * r, tg * g, tb * b]).plus(specular);
             }
-            machine.store_pixels(color, colors, at);
+            colors.store(machine, color, at);
         }
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn uv_ways(
     let Some(uvs) = uvs(draw, number) else { return [[0.0; 2]; 2] };
     let corners = frame.corners_of(plan, draw_index);
     let at = |pixel: [i32; 2]| -> [f64; 2] {
-        let weights = weights(plan, draw, corners, number, pixel).to_array();
+        let weights = weights(plan, draw, corners, number, (pixel, [0; 2])).to_array();
         [0, 1].map(|axis| (0..3).map(|i| weights[i] * uvs[i][axis]).sum())
     };
     let own = at([x, y]);
@@ -57,8 +57,14 @@ pub(super) fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
     (a + (b - a) * weights.y + (c - a) * weights.z).to_array()
 }
 
-/// Whether a triangle with a texture that leaves pixels out is drawn at one of them.
-pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i32; 2]) -> bool {
+/// Whether a triangle with a texture that leaves some of it out is drawn in a place of a pixel, shifted
+/// by so many parts of a pixel from its middle.
+pub(super) fn is_opaque(
+    plan: &FramePlan,
+    frame: &Frame,
+    number: u32,
+    place: ([i32; 2], [i32; 2]),
+) -> bool {
     let (index, start) = frame.draw_of(number);
     let draw = &plan.draws[index as usize];
     let number = number - start.number;
@@ -66,7 +72,7 @@ pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i3
         return true;
     };
     let (Some(opacity), Some(texture)) = (shaded.cutout, &shaded.texture) else { return true };
-    let weights = weights(plan, draw, frame.corners_of(plan, index), number, pixel);
+    let weights = weights(plan, draw, frame.corners_of(plan, index), number, place);
     let Some(uv) = uv(draw, number, weights) else { return true };
     texture::sample::<f64>(texture, uv, plan.filter)[3] * opacity >= 0.5
 }

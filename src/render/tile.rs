@@ -12,14 +12,18 @@
 //!
 //! A block that nothing reaches is never touched, and one that a single large triangle covers is not
 //! asked for its depths: that it is covered is all that is noted, until something else comes near.
+//!
+//! Where pixels are looked at in four places, a block has four planes of words, one for each place: what
+//! covers a pixel in a place is what covers its middle as seen from there.
 
 use fearless_simd::{Level, Simd, dispatch, i32x16};
 
 use super::bins::{Bins, LargeTriangle};
-use super::coverage::{PixelBox, Triangle};
+use super::coverage::{Covered, PixelBox, Triangle};
 use super::frame::Frame;
 use super::large::Large;
 use super::lines::{self, LineNumber};
+use super::places::{FOUR, Places};
 use super::plan::FramePlan;
 use super::texels;
 use crate::base::math::each;
@@ -52,9 +56,15 @@ pub(super) enum Seen {
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
 pub(super) const fn seen(word: u64) -> Seen {
-    let number = !(word as u32);
+    seen_number(!(word as u32))
+}
+
+/// What the number of a primitive says is seen. The background has that of the word 0, which is none of
+/// a line.
+#[inline(always)]
+pub(super) const fn seen_number(number: u32) -> Seen {
     match LineNumber::of(number) {
-        _ if word == 0 => Seen::Background,
+        _ if number == u32::MAX => Seen::Background,
         Some(line) => Seen::Line(line),
         None => Seen::Triangle(number),
     }
@@ -70,10 +80,15 @@ fn word(depth: f32, number: u32) -> u64 {
     u64::from(depth.to_bits()) << 32 | u64::from(!number)
 }
 
-/// The words of one tile, block by block, each block row by row.
+/// The words of a block for each of four samples.
+pub(super) type Planes = [[u64; BLOCK_PIXELS]; FOUR];
+
+/// The words of one tile, block by block, in each block sample by sample, and these row by row.
 #[derive(Debug)]
 pub(super) struct Visibility {
-    words: Box<[u64; PIXELS]>,
+    words: Box<[u64; FOUR * PIXELS]>,
+    /// Where pixels are looked at.
+    places: Places,
     /// The blocks whose words are written, a bit for each.
     written: u64,
     /// The blocks that are known to show one triangle, and have no words yet.
@@ -92,7 +107,8 @@ pub(super) struct Visibility {
 impl Default for Visibility {
     fn default() -> Self {
         Self {
-            words: Box::new([0; PIXELS]),
+            words: Box::new([0; FOUR * PIXELS]),
+            places: Places::default(),
             written: 0,
             whole: 0,
             shown: [0; BLOCK_PIXELS],
@@ -113,22 +129,37 @@ impl Visibility {
         frame: &Frame,
         (tile, bounds): (usize, PixelBox),
     ) {
-        self.clear(bounds);
+        self.clear(bounds, frame.places());
         if plan.ways.draws_one_by_one() {
             return self.draw_one_by_one(plan, frame, (tile, bounds));
         }
+        if self.places.are_many() {
+            self.draw_in::<FOUR>(level, plan, frame, tile);
+        } else {
+            self.draw_in::<1>(level, plan, frame, tile);
+        }
+    }
+
+    /// Draws in `N` samples a pixel.
+    fn draw_in<const N: usize>(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        frame: &Frame,
+        tile: usize,
+    ) {
         for bins in frame.bins() {
-            dispatch!(level, simd => self.draw_plain(simd, bins, tile));
+            dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, tile));
         }
         for bins in frame.bins() {
-            dispatch!(level, simd => self.draw_hits(simd, bins, tile));
+            dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
             for &number in &bins.tiles[tile].large {
                 let large = &bins.large[number as usize];
                 if large.cutout {
-                    self.draw_cutout(level, plan, frame, large);
+                    self.draw_cutout::<N>(level, plan, frame, large);
                 }
             }
-            dispatch!(level, simd => self.draw_lines(simd, bins, plan.line_width, tile));
+            dispatch!(level, simd => self.draw_lines::<_, N>(simd, bins, plan.line_width, tile));
         }
     }
 
@@ -141,13 +172,25 @@ impl Visibility {
     ) {
         self.words.fill(0);
         self.written = u64::MAX;
-        plan.ways.paint(plan, frame, (tile, bounds), &mut |[x, y], key, number| {
-            let word = &mut self.words[place(x, y)];
-            *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
-        });
+        let (places, count) = (self.places, self.places.count());
+        for sample in 0..count {
+            let shift = if count == 1 { [0; 2] } else { places.shift::<FOUR>(sample) };
+            plan.ways.paint(
+                plan,
+                frame,
+                (tile, bounds),
+                (sample, shift),
+                &mut |[x, y], key, number| {
+                    let plane = (block_at(x, y) * count + sample) * BLOCK_PIXELS;
+                    let word = &mut self.words[plane + within(x, y)];
+                    *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
+                },
+            );
+        }
     }
 
-    fn clear(&mut self, bounds: PixelBox) {
+    fn clear(&mut self, bounds: PixelBox, places: Places) {
+        self.places = places;
         (self.written, self.whole) = (0, 0);
         self.large.clear();
         self.farthest.fill(0.0);
@@ -175,9 +218,20 @@ impl Visibility {
         self.whole
     }
 
-    /// The words of a block that shows something, row by row.
+    /// The words of a block that shows something, row by row, where pixels have one sample.
     pub(super) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
         &self.words.as_chunks().0[block]
+    }
+
+    /// The words of a block that shows something, where pixels have four samples.
+    pub(super) fn planes(&self, block: usize) -> &Planes {
+        &self.words.as_chunks().0.as_chunks().0[block]
+    }
+
+    /// All words of a block that shows something.
+    fn words(&self, block: usize) -> &[u64] {
+        let count = BLOCK_PIXELS * self.places.count();
+        &self.words[block * count..][..count]
     }
 
     /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
@@ -189,7 +243,7 @@ impl Visibility {
             let [own_low, own_high] = if self.whole(block).is_some() {
                 [self.farthest[block].to_bits(), self.nearest[block].to_bits()]
             } else {
-                dispatch!(level, simd => depths_of(simd, self.block(block)))
+                dispatch!(level, simd => depths_of(simd, self.words(block)))
             };
             (low, high) = (low.min(own_low), high.max(own_high));
         }
@@ -202,81 +256,147 @@ impl Visibility {
         [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
     }
 
-    /// The word of a pixel of the tile.
+    /// The word of a pixel of the tile: of its samples the one that shows what most of them show, the
+    /// first of equals.
     pub(super) fn word(&mut self, level: Level, x: i32, y: i32) -> u64 {
-        let place = place(x - self.bounds.left, y - self.bounds.top);
-        if !self.shows(place / BLOCK_PIXELS) {
-            return 0;
+        let (words, count) = self.samples(level, x, y);
+        let alike = |word: &u64| words.iter().filter(|other| seen(**other) == seen(*word)).count();
+        let mut most = words[0];
+        for word in &words[1..count] {
+            if alike(word) > alike(&most) {
+                most = *word;
+            }
         }
-        dispatch!(level, simd => self.write(simd, place / BLOCK_PIXELS));
-        self.words[place]
+        most
     }
 
-    /// Sees to it that a block has words.
+    /// The words of the samples of a pixel of the tile, and how many they are.
+    pub(super) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; FOUR], usize) {
+        let count = self.places.count();
+        let (x, y) = (x - self.bounds.left, y - self.bounds.top);
+        let block = block_at(x, y);
+        let mut words = [0; FOUR];
+        if self.shows(block) {
+            match count {
+                1 => dispatch!(level, simd => self.write::<_, 1>(simd, block)),
+                _ => dispatch!(level, simd => self.write::<_, FOUR>(simd, block)),
+            }
+            for (sample, word) in words[..count].iter_mut().enumerate() {
+                *word = self.words(block)[sample * BLOCK_PIXELS + within(x, y)];
+            }
+        }
+        (words, count)
+    }
+
+    /// Sees to it that a block has words for `N` samples a pixel.
     #[inline(always)]
-    fn write<S: Simd>(&mut self, simd: S, block: usize) {
+    fn write<S: Simd, const N: usize>(&mut self, simd: S, block: usize) {
         let bit = 1 << block;
         if self.written & bit == 0 {
             self.written |= bit;
-            let words = block_of(&mut self.words, block);
-            words.fill(0);
+            for sample in 0..N {
+                self.plane::<N>(block, sample).fill(0);
+            }
             if self.whole & bit != 0 {
                 self.whole &= !bit;
-                self.large[self.shown[block] as usize].draw(simd, block, true, words);
+                let large = self.large[self.shown[block] as usize];
+                self.draw_planes::<S, N>(simd, &large, block, true);
             }
         }
     }
 
+    /// The words of a block for one of `N` samples.
     #[inline(always)]
-    fn put<S: Simd>(&mut self, simd: S, x: i32, y: i32, depth: f32, number: u32) {
-        let place = place(x - self.bounds.left, y - self.bounds.top);
-        self.write(simd, place / BLOCK_PIXELS);
-        self.words[place] = self.words[place].max(word(depth, number));
+    fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
+        &mut self.words.as_chunks_mut().0[block * N + sample]
+    }
+
+    /// Draws a triangle into a block, of which it covers all or part.
+    #[inline(always)]
+    fn draw_planes<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        large: &Large,
+        block: usize,
+        whole: bool,
+    ) {
+        let places = self.places;
+        for sample in 0..N {
+            let shift = places.shift::<N>(sample);
+            large.draw(simd, (block, shift), whole, self.plane::<N>(block, sample));
+        }
+    }
+
+    #[inline(always)]
+    fn put<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        (x, y, sample): (i32, i32, usize),
+        depth: f32,
+        number: u32,
+    ) {
+        let (x, y) = (x - self.bounds.left, y - self.bounds.top);
+        self.write::<S, N>(simd, block_at(x, y));
+        let old = &mut self.plane::<N>(block_at(x, y), sample)[within(x, y)];
+        *old = word(depth, number).max(*old);
     }
 
     /// Draws the lines of a tile that are not short.
     #[inline(always)]
-    fn draw_lines<S: Simd>(&mut self, simd: S, bins: &Bins, width: i32, tile: usize) {
+    fn draw_lines<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        bins: &Bins,
+        width: i32,
+        tile: usize,
+    ) {
         for &place in &bins.tiles[tile].lines {
-            let line = &bins.lines[place as usize];
-            lines::pixels(
-                line,
-                width,
-                self.bounds,
-                #[inline(always)]
-                |x, y, depth| self.put(simd, x, y, depth, line.number),
-            );
+            for sample in 0..N {
+                let line = bins.lines[place as usize].seen_from(self.places.shift::<N>(sample));
+                lines::pixels(
+                    &line,
+                    width,
+                    self.bounds,
+                    #[inline(always)]
+                    |x, y, depth| self.put::<S, N>(simd, (x, y, sample), depth, line.number),
+                );
+            }
         }
     }
 
-    fn draw_cutout(
+    /// Draws a triangle whose texture decides in each sample whether it is there.
+    fn draw_cutout<const N: usize>(
         &mut self,
         level: Level,
         plan: &FramePlan,
         frame: &Frame,
         large: &LargeTriangle,
     ) {
-        let corners = each(large.corners, |corner| corner.at());
-        let Some(triangle) = Triangle::new(corners) else { return };
-        let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
-        triangle.covered(self.bounds, |pixel| {
-            if texels::is_opaque(plan, frame, large.number, [pixel.x, pixel.y]) {
-                let depth = seen.depth(pixel.edges);
-                dispatch!(level, simd => self.put(simd, pixel.x, pixel.y, depth, large.number));
-            }
-        });
+        for sample in 0..N {
+            let shift = self.places.shift::<N>(sample);
+            let corners = each(large.corners, |corner| corner.at().seen_from(shift));
+            let Some(triangle) = Triangle::new(corners) else { return };
+            let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
+            triangle.covered(self.bounds, |Covered { x, y, edges }| {
+                if texels::is_opaque(plan, frame, large.number, ([x, y], shift)) {
+                    let (at, depth) = ((x, y, sample), seen.depth(edges));
+                    dispatch!(level, simd => self.put::<_, N>(simd, at, depth, large.number));
+                }
+            });
+        }
     }
 
     /// Draws the small triangles of a tile, and lines that are short.
     #[inline(always)]
-    fn draw_hits<S: Simd>(&mut self, simd: S, bins: &Bins, tile: usize) {
+    fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
         bins.hits.each(
             tile,
             #[inline(always)]
             |place, depth, number| {
-                let place = place as usize % PIXELS;
-                if self.written >> (place / BLOCK_PIXELS) & 1 == 0 {
-                    self.write(simd, place / BLOCK_PIXELS);
+                let place = place as usize % (N * PIXELS);
+                let block = place / (N * BLOCK_PIXELS);
+                if self.written >> block & 1 == 0 {
+                    self.write::<S, N>(simd, block);
                 }
                 let word = u64::from(depth) << 32 | u64::from(!number);
                 self.words[place] = self.words[place].max(word);
@@ -286,21 +406,23 @@ impl Visibility {
 
     /// Draws the large triangles of a tile whose textures have no part in where they are.
     #[inline(always)]
-    fn draw_plain<S: Simd>(&mut self, simd: S, bins: &Bins, tile: usize) {
+    fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
         for &number in &bins.tiles[tile].large {
             let large = &bins.large[number as usize];
             if !large.cutout {
-                self.draw_large(simd, large);
+                self.draw_large::<S, N>(simd, large);
             }
         }
     }
 
     #[inline(always)]
-    fn draw_large<S: Simd>(&mut self, simd: S, large: &LargeTriangle) {
-        let Some(triangle) = Triangle::new(each(large.corners, |corner| corner.at())) else {
+    fn draw_large<S: Simd, const N: usize>(&mut self, simd: S, large: &LargeTriangle) {
+        let corners = each(large.corners, |corner| corner.at());
+        let Some(triangle) = Triangle::new(corners) else {
             return;
         };
-        let area = triangle.bounds().intersection(self.bounds);
+        let reached = PixelBox::reached(corners, self.places.reach::<N>());
+        let area = reached.intersection(self.bounds);
         if area.is_empty() {
             return;
         }
@@ -312,7 +434,7 @@ impl Visibility {
             right: area.right - left,
             bottom: area.bottom - top,
         };
-        let touched = large.blocks(simd, area);
+        let touched = large.blocks::<S, N>(simd, area, &self.places);
         let mut some = touched.some;
         let mut place = None;
         while some != 0 {
@@ -322,24 +444,24 @@ impl Visibility {
                 continue;
             }
             if touched.whole >> block & 1 != 0 {
-                self.draw_whole(simd, &large, block, &mut place);
+                self.draw_whole::<S, N>(simd, &large, block, &mut place);
             } else {
-                self.write(simd, block);
-                large.draw(simd, block, false, block_of(&mut self.words, block));
+                self.write::<S, N>(simd, block);
+                self.draw_planes::<S, N>(simd, &large, block, false);
             }
         }
     }
 
     /// Draws a triangle into a block that it covers; `place` is where it stands among those that do.
     #[inline(always)]
-    fn draw_whole<S: Simd>(
+    fn draw_whole<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         large: &Large,
         block: usize,
         place: &mut Option<u32>,
     ) {
-        let [low, high] = large.depths(block);
+        let [low, high] = large.depths::<N>(block);
         if high < self.farthest[block] {
             return;
         }
@@ -353,8 +475,8 @@ impl Visibility {
             self.whole |= bit;
             self.nearest[block] = high;
         } else {
-            self.write(simd, block);
-            large.draw(simd, block, true, block_of(&mut self.words, block));
+            self.write::<S, N>(simd, block);
+            self.draw_planes::<S, N>(simd, large, block, true);
         }
         self.farthest[block] = self.farthest[block].max(low);
     }
@@ -363,7 +485,7 @@ impl Visibility {
 /// The bits of the least and of the largest depth of the triangles among some words.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
-fn depths_of<S: Simd>(_: S, words: &[u64; BLOCK_PIXELS]) -> [u32; 2] {
+fn depths_of<S: Simd>(_: S, words: &[u64]) -> [u32; 2] {
     let (mut low, mut high) = (u32::MAX, 0);
     for word in words {
         let depth = (*word >> 32) as u32;
@@ -375,187 +497,40 @@ fn depths_of<S: Simd>(_: S, words: &[u64; BLOCK_PIXELS]) -> [u32; 2] {
     [low, high]
 }
 
-/// The words of a block.
+/// The block of a pixel, by column and row of the tile.
 #[inline(always)]
-fn block_of(words: &mut [u64; PIXELS], block: usize) -> &mut [u64; BLOCK_PIXELS] {
-    &mut words.as_chunks_mut().0[block]
+const fn block_at(x: i32, y: i32) -> usize {
+    (y / BLOCK * BLOCKS + x / BLOCK) as usize
 }
 
-/// The column and row of the tile whose word stands at a place.
-#[expect(clippy::cast_possible_truncation, reason = "a tile has 4096 pixels")]
-pub(super) const fn column_and_row(place: usize) -> [i32; 2] {
-    let (block, pixel) = ((place / BLOCK_PIXELS) as i32, (place % BLOCK_PIXELS) as i32);
-    [block % BLOCKS * BLOCK + pixel % BLOCK, block / BLOCKS * BLOCK + pixel / BLOCK]
+/// The column and row of the tile, and the sample, whose word stands at a place where pixels have so many
+/// samples.
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
+pub(super) const fn pixel_at(place: usize, samples: usize) -> ([i32; 2], usize) {
+    let (plane, pixel) = (place / BLOCK_PIXELS, (place % BLOCK_PIXELS) as i32);
+    let (block, sample) = ((plane / samples) as i32, plane % samples);
+    let at = [block % BLOCKS * BLOCK + pixel % BLOCK, block / BLOCKS * BLOCK + pixel / BLOCK];
+    (at, sample)
 }
 
-/// Where the word of a pixel stands, by column and row of the tile.
+/// Where a pixel stands in its block.
 #[inline(always)]
-const fn place(x: i32, y: i32) -> usize {
-    ((y / BLOCK * BLOCKS + x / BLOCK) * BLOCK * BLOCK + y % BLOCK * BLOCK + x % BLOCK) as usize
+const fn within(x: i32, y: i32) -> usize {
+    (y % BLOCK * BLOCK + x % BLOCK) as usize
 }
 
-/// The same for sixteen pixels.
+/// Where the words of sixteen pixels stand in the tile, for one of `N` samples.
 #[inline(always)]
-pub(super) fn lanes_place<S: Simd>(x: i32x16<S>, y: i32x16<S>) -> i32x16<S> {
-    ((y >> 3) << 9) + ((x >> 3) << 6) + ((y & 7) << 3) + (x & 7)
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
+pub(super) fn lanes_place<S: Simd, const N: usize>(
+    x: i32x16<S>,
+    y: i32x16<S>,
+    sample: usize,
+) -> i32x16<S> {
+    let block = ((y >> 3) << 3) + (x >> 3);
+    let first = (block * (N * BLOCK_PIXELS) as i32) + (sample * BLOCK_PIXELS) as i32;
+    first + ((y & 7) << 3) + (x & 7)
 }
 
 #[cfg(test)]
-mod tests {
-    use fearless_simd::SimdBase as _;
-
-    use super::*;
-    use crate::base::image::Size;
-    use crate::render::clip::ScreenVertex;
-    use crate::render::coverage::Snapped;
-    use crate::render::small::{self, ROWS, SMALL};
-
-    const SIZE: Size = Size { width: 150, height: 140 };
-    const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };
-
-    /// Numbers that look random.
-    fn numbers(mut state: u64) -> impl FnMut(i32) -> i32 {
-        move |below| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            ((state >> 33) % below.cast_unsigned() as u64) as i32
-        }
-    }
-
-    fn bins() -> Bins {
-        let mut bins = Bins::default();
-        bins.clear(SIZE);
-        bins
-    }
-
-    /// The bins with some small triangles, sixteen at the most.
-    fn small(triangles: &[[Snapped; 3]]) -> Bins {
-        let mut rows = [[0; 16]; ROWS];
-        for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
-            for (i, corner) in corners.iter().enumerate() {
-                (rows[2 * i][lane], rows[2 * i + 1][lane]) = (corner.x, corner.y);
-                rows[6 + i][lane] = 0.5_f32.to_bits().cast_signed();
-            }
-            rows[9][lane] = number;
-        }
-        let mut bins = bins();
-        dispatch!(Level::new(), simd => {
-            let mut pack = [i32x16::splat(simd, 0); ROWS];
-            for (row, values) in rows.iter().zip(&mut pack) {
-                *values = i32x16::from_slice(simd, row);
-            }
-            small::draw(simd, &pack, &mut bins);
-        });
-        bins
-    }
-
-    /// The pixels that show the primitive with the number 0, row by row.
-    fn seen_in(bins: &Bins) -> Vec<(i32, i32)> {
-        let mut visibility = Visibility::default();
-        let mut pixels = Vec::new();
-        for tile in 0..9 {
-            let (left, top) = (tile % 3 * TILE, tile / 3 * TILE);
-            let own = PixelBox { left, top, right: left + TILE, bottom: top + TILE };
-            let own = own.intersection(PICTURE);
-            visibility.clear(own);
-            dispatch!(Level::new(), simd => {
-                visibility.draw_plain(simd, bins, tile as usize);
-                visibility.draw_hits(simd, bins, tile as usize);
-            });
-            for (x, y) in (top..own.bottom).flat_map(|y| (left..own.right).map(move |x| (x, y))) {
-                if seen(visibility.word(Level::new(), x, y)) == Seen::Triangle(0) {
-                    pixels.push((y, x));
-                }
-            }
-        }
-        pixels.sort_unstable();
-        pixels
-    }
-
-    #[test]
-    fn every_way_covers_the_pixels_that_the_rule_says() {
-        let mut random = numbers(7);
-        for extent in [1, 2, 4, 8, 30, 100] {
-            for _ in 0..2000 {
-                // Every second coordinate on a pixel's centre or border.
-                let (left, top) = (random(158) - 8, random(148) - 8);
-                let mut coordinate = |from: i32| {
-                    let place = from * 256 + random(extent * 256);
-                    if random(2) == 0 { place } else { place / 128 * 128 }
-                };
-                let corners =
-                    [0, 1, 2].map(|_| Snapped { x: coordinate(left), y: coordinate(top) });
-                let mut want = Vec::new();
-                if let Some(triangle) = Triangle::new(corners) {
-                    triangle.covered(PICTURE, |pixel| want.push((pixel.y, pixel.x)));
-                }
-                let bounds = PixelBox::of(corners);
-                let side = bounds.width().max(bounds.height());
-                if side <= SMALL[3] && !bounds.is_empty() {
-                    let got = seen_in(&small(&[corners]));
-                    assert_eq!(got, want, "{corners:?} alone");
-                    // Others far away are drawn pixel by pixel, whatever the tile.
-                    let far = [(2, 2), (140, 3), (4, 130), (141, 135)].map(|(x, y)| {
-                        [(0, 0), (200, 0), (0, 200)]
-                            .map(|(dx, dy)| Snapped { x: x * 256 + dx, y: y * 256 + dy })
-                    });
-                    let got = seen_in(&small(&[corners, far[0], far[1], far[2], far[3]]));
-                    let nearer = |pixel: &(i32, i32)| !got.contains(pixel);
-                    assert!(!want.iter().any(nearer), "{corners:?} among others");
-                    assert_eq!(got.len(), want.len(), "{corners:?} among others");
-                }
-                let mut bins = bins();
-                let corners = corners.map(|corner| ScreenVertex::new(corner, 0.5));
-                bins.add_large(LargeTriangle { corners, number: 0, cutout: false }, bounds);
-                assert_eq!(seen_in(&bins), want, "{corners:?} alone in 64 bits");
-            }
-        }
-    }
-
-    /// Squares that cover blocks as a whole, in few depths, some of them tilted.
-    #[test]
-    fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
-        let mut random = numbers(5);
-        for _ in 0..300 {
-            let triangles: Vec<LargeTriangle> = (0..6)
-                .map(|number| {
-                    let depth = random(4) as f32 / 4.0;
-                    let tilt = random(2) as f32 / 8.0;
-                    let mut corner = |depth: f32| {
-                        let [x, y] = [0, 0].map(|_| random(120) * 256 - 20 * 256);
-                        ScreenVertex::new(Snapped { x, y }, depth)
-                    };
-                    let corners = [corner(depth), corner(depth), corner(depth + tilt)];
-                    LargeTriangle { corners, number, cutout: false }
-                })
-                .collect();
-            let mut want = vec![0; PIXELS];
-            let tile = PixelBox { left: 0, top: 0, right: TILE, bottom: TILE };
-            let mut visibility = Visibility::default();
-            visibility.clear(tile);
-            for large in &triangles {
-                dispatch!(Level::new(), simd => visibility.draw_large(simd, large));
-                let corners = large.corners.map(|corner| corner.at());
-                let Some(triangle) = Triangle::new(corners) else { continue };
-                let seen = Large::new(large, &triangle, [0, 0]);
-                triangle.covered(tile, |pixel| {
-                    let word = word(seen.depth(pixel.edges), large.number);
-                    let old = &mut want[place(pixel.x, pixel.y)];
-                    *old = word.max(*old);
-                });
-            }
-            for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
-                let (block, pixel) = (place(x, y) / BLOCK_PIXELS, place(x, y) % BLOCK_PIXELS);
-                let got = match visibility.whole(block) {
-                    Some(number) => Seen::Triangle(number),
-                    None if visibility.shows(block) => seen(visibility.block(block)[pixel]),
-                    None => Seen::Background,
-                };
-                assert_eq!(got, seen(want[place(x, y)]), "{x}, {y}: {triangles:?}");
-            }
-            for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
-                let got = visibility.word(Level::new(), x, y);
-                assert_eq!(got, want[place(x, y)], "{x}, {y}: {triangles:?}");
-            }
-        }
-    }
-}
+mod tests;

@@ -43,7 +43,8 @@ pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;
 pub use settings::{
     Arithmetic, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt, NormalMatrix,
-    Normalising, Rounding, Settings, SpecularForm, SpecularPower, Subpixels, VertexArithmetic,
+    Normalising, Rounding, Samples, Settings, SpecularForm, SpecularPower, Subpixels,
+    VertexArithmetic,
 };
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,

@@ -12,6 +12,8 @@ pub struct Settings {
     /// Where light is evaluated.
     #[serde(rename = "shading", alias = "light")]
     pub light: LightAt,
+    /// In how many places of a pixel it is asked what is seen.
+    pub samples: Samples,
     /// What a texture gives between its texels.
     pub filter: Filter,
     /// Which form the highlight has.
@@ -67,6 +69,36 @@ pub enum LightAt {
     /// At each pixel, with interpolated normals (Phong).
     #[default]
     Pixel,
+}
+
+/// In how many places of a pixel it is asked what is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Samples {
+    /// In its middle.
+    #[default]
+    One,
+    /// In four.
+    Four,
+    /// In sixteen.
+    Sixteen,
+    /// In sixty-four: the reference.
+    SixtyFour,
+}
+
+impl Samples {
+    /// From few to many.
+    pub const ALL: [Self; 4] = [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour];
+
+    /// How many.
+    #[must_use]
+    pub const fn count(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Four => 4,
+            Self::Sixteen => 16,
+            Self::SixtyFour => 64,
+        }
+    }
 }
 
 /// What a texture gives between its texels.

@@ -1,4 +1,4 @@
-//! A dozen pictures by their sums: the same on every processor.
+//! A dozen pictures and more by their sums: the same on every processor.
 //!
 //! The sum is FNV-1a (Fowler, Noll and Vo) in 64 bits, over width, height and the bytes of the
 //! pixels. The list of what the sums are is `tests/pictures.sums`; `marraztu prove pictures` prints it
@@ -16,7 +16,7 @@ use crate::render::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     AXES, Arithmetic, Command, Fill, Filter, Item, LightAt, LoadOptions, Mesh, MeshSource, Model,
-    NONE, Normals, Object, Part, Projection, Scene, Settings, SourceCorner, SpecularForm,
+    NONE, Normals, Object, Part, Projection, Samples, Scene, Settings, SourceCorner, SpecularForm,
     SpecularPower, Texture, View, Wrap,
 };
 
@@ -93,6 +93,7 @@ pub fn samples() -> Vec<Sample> {
         vertex_normals: true,
         ..view.clone()
     };
+    let of = |samples| Settings { samples, ..settings };
     let half = Settings { specular: SpecularForm::HalfVector, ..settings };
     let (textured, rough) = (textured(&near), Settings { filter: Filter::Nearest, ..settings });
     let (stage, from_above) = stage::scene(&[scattered()], SIDE);
@@ -110,6 +111,8 @@ pub fn samples() -> Vec<Sample> {
         sample("texture", &textured, &view, settings),
         sample("texture, nearest", &textured, &view, rough),
         sample("scattered triangles", &stage, &from_above, settings),
+        sample("four samples", &near, &drawn, of(Samples::Four)),
+        sample("sixteen samples", &stage, &from_above, of(Samples::Sixteen)),
     ];
     let bent = bent(&textured);
     for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))

@@ -20,7 +20,7 @@ use crate::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
     Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
     MeshSource, Model, NONE, NormalLength, Normals, Object, ObjectId, Observer, Orbit, Part,
-    Placed, Pose, PresetId, Projection, Scene, Settings, SourceCorner, SpecularForm, Spin,
+    Placed, Pose, PresetId, Projection, Samples, Scene, Settings, SourceCorner, SpecularForm, Spin,
     SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
 };
 
@@ -414,6 +414,7 @@ impl Hostile {
         Settings {
             arithmetic: self.dice.one_of(&[Arithmetic::F32, Arithmetic::F32, Arithmetic::F64]),
             light: self.dice.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]),
+            samples: self.dice.one_of(&[Samples::One, Samples::One, Samples::Four]),
             filter: self.dice.one_of(&[Filter::Nearest, Filter::Bilinear]),
             specular: self.dice.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
             leave_out: self.dice.one_of(&[LeaveOut::Unseen, LeaveOut::HalfStep]),

@@ -40,6 +40,7 @@ pub fn heading(row: &Row) -> String {
             let Some(axis) = Axis::named(key) else { return key.to_owned() };
             let scored = match axis.kind {
                 AxisKind::Scored => "",
+                AxisKind::ScoredApart => " (scored by itself)",
                 AxisKind::Model => " (a model: not scored)",
             };
             format!("{}{scored}, --{key}", axis.name)

@@ -1,5 +1,7 @@
 //! How many pixels each effect of a picture takes part in.
 //!
+//! A pixel with several samples counts for what most of them show.
+//!
 //! Counted afterwards, by looking once more at what is seen: so drawing counts nothing and pays nothing.
 
 use std::collections::BTreeMap;
@@ -19,6 +21,14 @@ use crate::render::lines::LineNumber;
 use crate::render::painter::bounds_of;
 use crate::render::tile::{Seen, Visibility, seen};
 use crate::scene::{ItemId, LightAt};
+
+/// The triangle that a word shows.
+fn triangle(word: u64) -> Option<u32> {
+    match seen(word) {
+        Seen::Triangle(number) => Some(number),
+        Seen::Background | Seen::Line(_) => None,
+    }
+}
 
 /// Pixels by effect and thing, and what the worst of them may be off by.
 #[derive(Debug, Default)]
@@ -82,6 +92,13 @@ impl FramePlan {
         let mut last = None;
         let rows = bounds.top..bounds.bottom;
         for (y, x) in rows.flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x))) {
+            // A surface that takes part in pixels of others counts for what it may be off by.
+            let (samples, count) = visibility.samples(level, x, y);
+            for number in samples[1..count].iter().filter_map(|word| triangle(*word)) {
+                let (draw, start) = frame.draw_of(number);
+                let pipeline = self.draws[draw as usize].pipeline_of(number - start.number);
+                surfaces.entry((draw, pipeline)).or_default();
+            }
             match seen(visibility.word(level, x, y)) {
                 Seen::Background => {}
                 Seen::Line(line) => self.count_line(frame, line, &mut counts),

@@ -38,7 +38,7 @@ use super::ways::Ways;
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::scene::{
-    Arithmetic, Filter, LeaveOut, LightAt, LightId, Projection, Scene, Settings, View,
+    Arithmetic, Filter, LeaveOut, LightAt, LightId, Projection, Samples, Scene, Settings, View,
 };
 
 /// Everything that a frame needs.
@@ -54,6 +54,8 @@ pub struct FramePlan {
     pub(in crate::render) arithmetic: Arithmetic,
     /// Where light is evaluated.
     pub(in crate::render) light_at: LightAt,
+    /// In how many places of a pixel it is asked what is seen.
+    pub(in crate::render) samples: Samples,
     /// What textures give between their texels.
     pub(in crate::render) filter: Filter,
     /// Which ways are not those that every picture is drawn by.
@@ -161,6 +163,7 @@ impl FramePlan {
             },
             arithmetic: settings.arithmetic,
             light_at: settings.light,
+            samples: settings.samples,
             filter: settings.filter,
             ways: Ways::of(settings),
             view_from_world: observer.view_from_world,

@@ -12,7 +12,7 @@ use super::{Eye, FramePlan, Pipeline, Shaded, Stage, bounded};
 use crate::render::coverage::PixelBox;
 use crate::render::region::Region;
 use crate::render::tile::Visibility;
-use crate::scene::LeaveOut;
+use crate::scene::{LeaveOut, Samples};
 
 /// What interpolating a depth, or one by w, in 32 bits may be wrong by, as a part of the largest.
 const ROUNDING: f64 = 2e-6;
@@ -64,7 +64,9 @@ impl TilePlan {
         self.kept.clear();
         let tiled =
             |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
-        let depths = plan.pipelines.iter().any(tiled).then(|| visibility.depths(level));
+        let middles = plan.samples == Samples::One;
+        let tiled = middles && plan.pipelines.iter().any(tiled);
+        let depths = tiled.then(|| visibility.depths(level));
         self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));
         if self.region.is_some() {
             self.decided.resize(plan.pipelines.len(), None);

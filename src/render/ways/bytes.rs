@@ -7,6 +7,7 @@
 //! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973,
 //! of order 8.
 
+use crate::render::colors::Colors;
 use crate::render::effects::{BATCH, Batch, load};
 use crate::render::items::Items;
 use crate::render::real::{Kernel, Machine, Number, Triple};
@@ -23,7 +24,7 @@ fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
 }
 
 /// The pattern's number at a place, from 0 to 63: the bits of x xor y and of y in turn, the last first.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 8")]
+#[expect(clippy::cast_possible_truncation, reason = "the last bits are meant")]
 const fn bayer(x: i32, y: i32) -> u8 {
     let (x, y) = ((x ^ y) as u8, y as u8);
     let mut number = 0;
@@ -50,7 +51,7 @@ pub(in crate::render) struct FinishBy<'a, T> {
     pub(in crate::render) lit: bool,
     pub(in crate::render) own: Own<'a, T>,
     pub(in crate::render) thresholds: &'a [T; BATCH],
-    pub(in crate::render) colors: &'a mut [u32; BATCH],
+    pub(in crate::render) colors: &'a mut Colors,
 }
 
 impl<T: Number> Kernel<T> for FinishBy<'_, T> {
@@ -65,7 +66,7 @@ impl<T: Number> Kernel<T> for FinishBy<'_, T> {
                 let specular = load(machine, &batch.specular, at);
                 color = Triple([tr * r, tg * g, tb * b]).plus(specular);
             }
-            machine.store_pixels_by(color, machine.load(thresholds, at), colors, at);
+            colors.store_by(machine, color, machine.load(thresholds, at), at);
         }
     }
 }

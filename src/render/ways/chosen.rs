@@ -9,6 +9,7 @@ use fearless_simd::{Simd, SimdBase as _, f32x16};
 
 use super::power::Power;
 use super::root;
+use crate::render::effects::BATCH;
 use crate::render::pick::SLOTS;
 use crate::render::real::{Machine, Real, Triple};
 use crate::scene::Normalising;
@@ -193,6 +194,18 @@ impl<M: Machine> Machine for Choosing<M> {
     ) {
         let color = Triple([r.value, g.value, b.value]);
         self.machine.store_pixels_by(color, threshold.value, row, at);
+    }
+
+    #[inline(always)]
+    fn store_parts(
+        self,
+        Triple([r, g, b]): Triple<Self::R>,
+        threshold: Self::R,
+        rows: &mut [[u32; BATCH]; 3],
+        at: usize,
+    ) {
+        let color = Triple([r.value, g.value, b.value]);
+        self.machine.store_parts(color, threshold.value, rows, at);
     }
 
     #[inline(always)]

@@ -10,7 +10,7 @@ use crate::render::frame::Frame;
 use crate::render::lines;
 use crate::render::plan::FramePlan;
 use crate::render::texels::is_opaque;
-use crate::render::tile::column_and_row;
+use crate::render::tile::pixel_at;
 use crate::scene::{Coverage, DepthFormat};
 
 /// How many steps of a format of its own lines are nearer than the surfaces that they lie on.
@@ -20,19 +20,21 @@ const LINES_NEARER: u32 = 2;
 pub(in crate::render) type Put<'a> = &'a mut dyn FnMut([i32; 2], u32, u32);
 
 impl Ways {
-    /// Draws everything that reaches into a tile.
+    /// Draws everything that reaches into a tile, as a sample of its pixels sees it: the sample's number,
+    /// and how many parts of a pixel it lies from the middle.
     pub(in crate::render) fn paint(
         &self,
         plan: &FramePlan,
         frame: &Frame,
         (tile, bounds): (usize, PixelBox),
+        sample: (usize, [i32; 2]),
         put: Put<'_>,
     ) {
         for bins in frame.bins() {
             for number in &bins.tiles[tile].large {
-                self.triangle(plan, frame, (bins, *number), bounds, put);
+                self.triangle(plan, frame, (bins, *number), (bounds, sample.1), put);
             }
-            self.lines(plan, bins, (tile, bounds), put);
+            self.lines(plan, bins, (tile, bounds), sample, put);
         }
     }
 
@@ -41,13 +43,14 @@ impl Ways {
         plan: &FramePlan,
         frame: &Frame,
         (bins, number): (&Bins, u32),
-        bounds: PixelBox,
+        (bounds, shift): (PixelBox, [i32; 2]),
         put: Put<'_>,
     ) {
         let (plain, own) = bins.plain(number);
+        let plain = &plain.seen_from(shift, self.parts());
         let clip = own.intersection(bounds);
         let mut take = |x: i32, y: i32, depth: f32| {
-            if !plain.cutout || is_opaque(plan, frame, plain.number, [x, y]) {
+            if !plain.cutout || is_opaque(plan, frame, plain.number, ([x, y], shift)) {
                 put([x - bounds.left, y - bounds.top], key(self.depth, depth), plain.number);
             }
         };
@@ -58,7 +61,8 @@ impl Ways {
             Coverage::Points => {
                 let (draw, start) = frame.draw_of(plain.number);
                 let draw = &plan.draws[draw as usize];
-                points::cover(plan, draw, plain.number - start.number, clip, &mut take);
+                let number = plain.number - start.number;
+                points::cover(plan, draw, number, (clip, shift), &mut take);
             }
         }
     }
@@ -68,16 +72,21 @@ impl Ways {
         plan: &FramePlan,
         bins: &Bins,
         (tile, bounds): (usize, PixelBox),
+        (sample, shift): (usize, [i32; 2]),
         put: Put<'_>,
     ) {
         let nearer = if self.depth == DepthFormat::F32Reversed { 0 } else { LINES_NEARER };
         let key = |depth: f32| key(self.depth, depth) + nearer;
+        let samples = bins.places.count();
         bins.hits.each(tile, |place, depth, number| {
-            put(column_and_row(place as usize), key(f32::from_bits(depth)), number);
+            let (at, own) = pixel_at(place as usize, samples);
+            if own == sample {
+                put(at, key(f32::from_bits(depth)), number);
+            }
         });
         for place in &bins.tiles[tile].lines {
-            let line = &bins.lines[*place as usize];
-            lines::pixels(line, plan.line_width, bounds, |x, y, depth| {
+            let line = bins.lines[*place as usize].seen_from(shift);
+            lines::pixels(&line, plan.line_width, bounds, |x, y, depth| {
                 put([x - bounds.left, y - bounds.top], key(depth), line.number);
             });
         }

@@ -8,7 +8,7 @@
 
 use super::Ways;
 use crate::render::clip::ScreenVertex;
-use crate::render::coverage::{Snapped, doubled_area};
+use crate::render::coverage::{SUBPIXELS, Snapped, doubled_area};
 use crate::render::faces::{Faced, Faces};
 use crate::render::interpolate::Located;
 use crate::render::items::Items;
@@ -36,23 +36,28 @@ impl Ways {
                 continue;
             }
             let by_w = [0, 1, 2].map(|corner| faces.by_w[corner][slot].into());
-            let pixel = [items.x[i], items.y[i]];
-            let ([second, third], w) =
-                self.parts_at(corners.map(|corner| corner.at()), by_w, pixel);
+            let place = ([items.x[i], items.y[i]], [0; 2]);
+            let corners = corners.map(|corner| corner.at());
+            let ([second, third], w) = self.parts_at(corners, by_w, place, items.shared);
             to.weights[0][i] = T::from_f64(second);
             to.weights[1][i] = T::from_f64(third);
             to.w[i] = T::from_f64(w);
         }
     }
 
-    /// The parts in a pixel, by the way that is chosen, and the pixel's w.
+    /// The parts in a place of a pixel, so many 256th parts of it from its middle, by the way that is
+    /// chosen, and the place's w. What may lie outside is held to the triangle.
     pub(in crate::render) fn parts_at(
         &self,
         corners: [Snapped; 3],
         by_w: [f64; 3],
-        [x, y]: [i32; 2],
+        ([x, y], shift): ([i32; 2], [i32; 2]),
+        held: bool,
     ) -> (Parts, f64) {
-        let linear = |x: f64| self.linear(corners, [x, f64::from(y)]);
+        let [dx, dy] = shift.map(|shift| shift * (self.parts() / SUBPIXELS));
+        let corners = corners.map(|at| Snapped { x: at.x - dx, y: at.y - dy });
+        let held = held || self.coverage != Coverage::Exact;
+        let linear = |x: f64| self.linear(corners, [x, f64::from(y)], held);
         let own = linear(f64::from(x));
         let (exact, w) = perspective(own, by_w);
         let parts = match self.interpolation {
@@ -72,7 +77,7 @@ impl Ways {
 
     /// The parts in a place, by column and row of pixels, linear on the screen.
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
-    fn linear(&self, corners: [Snapped; 3], at: [f64; 2]) -> Parts {
+    fn linear(&self, corners: [Snapped; 3], at: [f64; 2], held: bool) -> Parts {
         let parts = f64::from(self.parts());
         let [x, y] = at.map(|i| (i + 0.5) * parts);
         let [p, q, r] = corners.map(|Snapped { x, y }| [f64::from(x), f64::from(y)]);
@@ -81,7 +86,7 @@ impl Ways {
         let edge =
             |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
         let [second, third] = [edge(r, p) / area, edge(p, q) / area];
-        if self.coverage == Coverage::Exact {
+        if !held {
             return [second, third];
         }
         // The centre may lie outside: the nearest that does not extrapolate.
@@ -144,7 +149,7 @@ mod tests {
         let by_w = [1.0 / 2.2, 1.0 / 100.0, 1.0 / 2.2];
         let exact = Ways::default();
         let apart = |x: i32| {
-            let of = |ways: &Ways| ways.parts_at(corners, by_w, [x, 0]).0[0];
+            let of = |ways: &Ways| ways.parts_at(corners, by_w, ([x, 0], [0; 2]), false).0[0];
             (of(&ways) - of(&exact)).abs() * 1024.0
         };
         (0..799).map(apart).fold(0.0, f64::max)
@@ -201,12 +206,15 @@ mod tests {
             for (pixel, want) in
                 [([0, 0], [0.0, 0.0]), ([40, 0], [1.0, 0.0]), ([0, 20], [0.0, 1.0])]
             {
-                assert_eq!(ways.parts_at(corners, [1.0, 0.5, 0.25], pixel).0, want);
+                assert_eq!(
+                    ways.parts_at(corners, [1.0, 0.5, 0.25], (pixel, [0; 2]), false).0,
+                    want
+                );
             }
         }
         let ways = Ways { coverage: Coverage::Points, ..Ways::default() };
         for pixel in [[-3, 5], [41, 21], [20, -1]] {
-            let ([b, c], w) = ways.parts_at(corners, [1.0, 0.5, 0.25], pixel);
+            let ([b, c], w) = ways.parts_at(corners, [1.0, 0.5, 0.25], (pixel, [0; 2]), false);
             assert!(b >= 0.0 && c >= 0.0 && b + c <= 1.0 + 1e-12 && w > 0.0, "{pixel:?}: {b} {c}");
         }
     }

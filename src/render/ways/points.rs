@@ -9,7 +9,7 @@
 
 use glam::{DVec3, DVec4};
 
-use crate::render::coverage::PixelBox;
+use crate::render::coverage::{PixelBox, SUBPIXELS};
 use crate::render::plan::{Draw, Eye, FramePlan};
 
 /// The step, in units of the world.
@@ -19,19 +19,19 @@ const STEP: f64 = 0.1;
 const MOST: f64 = 16.0;
 
 /// Calls `take` with the pixel and the depth of every point that falls into `clip`, of a triangle of a
-/// draw.
+/// draw; `clip` lies so many 256th parts of a pixel off.
 pub(super) fn cover(
     plan: &FramePlan,
     draw: &Draw,
     number: u32,
-    clip: PixelBox,
+    (clip, shift): (PixelBox, [i32; 2]),
     take: &mut dyn FnMut(i32, i32, f32),
 ) {
     let order = draw.model.mesh.draw_order();
     let corners = order.vertices_of(number).map(|vertex| {
         draw.view_from_object.transform_point3(DVec3::from_array(order.position(vertex)))
     });
-    let Some(window) = Window::new(plan, clip, &corners) else { return };
+    let Some(window) = Window::new(plan, (clip, shift), &corners) else { return };
     let step = window.step;
     let rows = |y: f64| (y / step).ceil();
     let mut row = rows(window.low[1].max(least(&corners, |p| p.y)));
@@ -80,6 +80,7 @@ fn span(corners: &[DVec3; 3], y: f64) -> Option<[DVec3; 2]> {
 struct Window<'a> {
     plan: &'a FramePlan,
     clip: PixelBox,
+    shift: [f64; 2],
     half: [f64; 2],
     step: f64,
     low: [f64; 2],
@@ -88,7 +89,12 @@ struct Window<'a> {
 
 impl<'a> Window<'a> {
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-    fn new(plan: &'a FramePlan, clip: PixelBox, corners: &[DVec3; 3]) -> Option<Self> {
+    fn new(
+        plan: &'a FramePlan,
+        (clip, shift): (PixelBox, [i32; 2]),
+        corners: &[DVec3; 3],
+    ) -> Option<Self> {
+        let shift = shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
         let half = [plan.size.width as f64 / 2.0, plan.size.height as f64 / 2.0];
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
         // View space has a unit of its own.
@@ -118,7 +124,7 @@ impl<'a> Window<'a> {
             [low, all.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
         };
         let (x, y) = (reach(x), reach(y));
-        Some(Self { plan, clip, half, step, low: [x[0], y[0]], high: [x[1], y[1]] })
+        Some(Self { plan, clip, shift, half, step, low: [x[0], y[0]], high: [x[1], y[1]] })
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "a pixel of the picture, and its depth")]
@@ -128,8 +134,8 @@ impl<'a> Window<'a> {
         if !(w > 0.0 && (0.0..=1.0).contains(&depth)) {
             return;
         }
-        let column = ((x / w + 1.0) * self.half[0]).floor() as i32;
-        let row = ((1.0 - y / w) * self.half[1]).floor() as i32;
+        let column = ((x / w + 1.0) * self.half[0] - self.shift[0]).floor() as i32;
+        let row = ((1.0 - y / w) * self.half[1] - self.shift[1]).floor() as i32;
         let PixelBox { left, top, right, bottom } = self.clip;
         if (left..right).contains(&column) && (top..bottom).contains(&row) {
             take(column, row, depth as f32);

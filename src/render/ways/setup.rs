@@ -6,7 +6,7 @@ use super::vertices::{FINE_GUARD, Projected};
 use crate::base::image::Size;
 use crate::render::bins::Bins;
 use crate::render::clip::{Clip, Screen};
-use crate::render::coverage::{PixelBox, Snapped, doubled_area};
+use crate::render::coverage::{PixelBox, SUBPIXELS, Snapped, doubled_area};
 use crate::render::plan::{Back, Pipeline};
 use crate::render::setup::{Kind, Setup};
 use crate::scene::DrawTriangle;
@@ -23,6 +23,20 @@ pub(in crate::render) struct Plain {
     pub(in crate::render) number: u32,
     /// Whether its texture decides where it is drawn.
     pub(super) cutout: bool,
+}
+
+impl Plain {
+    /// The same as a place sees it that lies so many 256th parts of a pixel from a pixel's middle, where
+    /// pixels have `parts`.
+    pub(super) fn seen_from(&self, shift: [i32; 2], parts: i32) -> Self {
+        let [x, y] = shift.map(|shift| shift * (parts / SUBPIXELS));
+        let [dx, dy] = shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
+        Self {
+            corners: self.corners.map(|at| Snapped { x: at.x - x, y: at.y - y }),
+            pixels: self.pixels.map(|[x, y]| [x - dx, y - dy]),
+            ..*self
+        }
+    }
 }
 
 impl Ways {

@@ -31,6 +31,7 @@ mod geometry;
 mod light;
 mod picture;
 mod presets;
+mod sampling;
 mod sense;
 mod texture;
 
@@ -64,6 +65,9 @@ pub struct Axis {
 pub enum AxisKind {
     /// The last choice is the most exact, and the others have an error against it.
     Scored,
+    /// The same, but the exact choice shows so much else that the references of all other axes leave
+    /// this one as it is.
+    ScoredApart,
     /// The choices are different models of the world: none is an error of another.
     Model,
 }
@@ -109,6 +113,7 @@ pub const AXES: &[Axis] = &[
     geometry::SUBPIXELS,
     geometry::COVERAGE,
     picture::DEPTH,
+    sampling::SAMPLES,
     geometry::INTERPOLATION,
     geometry::STRETCHED,
     texture::FILTER,
@@ -146,7 +151,7 @@ impl Axis {
     #[must_use]
     pub fn most_exact(&self, settings: &Settings) -> &'static Choice {
         match (self.kind, self.choices.last()) {
-            (AxisKind::Scored, Some(last)) => last,
+            (AxisKind::Scored | AxisKind::ScoredApart, Some(last)) => last,
             _ => self.chosen(settings),
         }
     }

@@ -118,10 +118,22 @@ impl Preset {
 }
 
 impl Settings {
-    /// The reference: every axis at its most exact. Models stay as they are chosen.
+    /// The reference: every axis at its most exact. Models stay as they are chosen, and so does an axis
+    /// that is scored apart where it is at its default.
     #[must_use]
     pub fn reference(&self) -> Self {
-        AXES.iter().fold(*self, |settings, axis| axis.most_exact(&settings).of(&settings))
+        AXES.iter().fold(*self, |settings, axis| match axis.kind {
+            AxisKind::ScoredApart if axis.default_choice().is(&settings) => settings,
+            _ => axis.most_exact(&settings).of(&settings),
+        })
+    }
+
+    /// The reference for the choices of the axis of this key: the same, with that axis at its most exact
+    /// whatever it is scored by.
+    #[must_use]
+    pub fn reference_on(&self, key: &str) -> Self {
+        let reference = self.reference();
+        Axis::named(key).map_or(reference, |axis| axis.most_exact(&reference).of(&reference))
     }
 
     /// These settings with the models that others have chosen.

@@ -28,6 +28,10 @@ pub(super) fn if_any(
     if parts.any(|(object, part)| has(object, part)) { Ok(()) } else { Err(reason) }
 }
 
+pub(super) const fn is_there(_: &Object, _: u32) -> bool {
+    true
+}
+
 pub(super) fn is_lit(object: &Object, _: u32) -> bool {
     object.surface != Surface::Texture
 }

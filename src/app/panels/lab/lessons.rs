@@ -31,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             axis_ui(ui, axis, state, asks);
         });
         let coarse = match axis.kind {
-            AxisKind::Scored => "When it is coarse",
+            AxisKind::Scored | AxisKind::ScoredApart => "When it is coarse",
             AxisKind::Model => "Which is right",
         };
         let lesson = &axis.lesson;

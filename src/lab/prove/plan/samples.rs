@@ -11,8 +11,8 @@ use crate::lab::prove::dice::Dice;
 use crate::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, Fill, Filter, LeaveOut, Lens, Light, LightAt,
     LightId, LightKind, List, MaterialChoice, Normals, Object, ObjectId, Observer, Orbit, Placed,
-    PolygonMode, Pose, PresetId, Projection, Scene, Settings, SpecularForm, SpotOwner, Surface,
-    View,
+    PolygonMode, Pose, PresetId, Projection, Samples, Scene, Settings, SpecularForm, SpotOwner,
+    Surface, View,
 };
 
 /// What a picture is made of.
@@ -263,11 +263,21 @@ fn view(dice: &mut Dice, scene: &Scene) -> View {
     }
 }
 
+/// Mostly one, for many take longer.
+fn samples(dice: &mut Dice) -> Samples {
+    match dice.percent(25) {
+        true if dice.percent(10) => dice.pick(&[Samples::Sixteen, Samples::SixtyFour]),
+        true => Samples::Four,
+        false => Samples::One,
+    }
+}
+
 fn settings(dice: &mut Dice) -> Settings {
     let at = [LightAt::Face, LightAt::Vertex, LightAt::Pixel, LightAt::Pixel, LightAt::Pixel];
     Settings {
         arithmetic: if dice.percent(8) { Arithmetic::F64 } else { Arithmetic::F32 },
         light: dice.pick(&at),
+        samples: samples(dice),
         filter: dice.pick(&[Filter::Nearest, Filter::Bilinear]),
         specular: dice.pick(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
         leave_out: LeaveOut::Unseen,
