@@ -12,6 +12,7 @@ mod features;
 mod lamps;
 mod observer;
 mod planner;
+mod range;
 pub mod rules;
 mod surfaces;
 mod tile;
@@ -109,7 +110,7 @@ impl FramePlan {
         settings: &Settings,
         size: Size,
     ) -> Self {
-        Self::planned(rules, Notes::default(), scene, view, settings, size).plan
+        Self::planned(rules, Notes::default, scene, view, settings, size).plan
     }
 
     /// The same plan as [`Self::new`], with every effect that it has and does without.
@@ -121,11 +122,28 @@ impl FramePlan {
         size: Size,
     ) -> (Self, Vec<EffectUse>) {
         let Planning { plan, notes } =
-            Self::planned(Rules::sound(), Notes::wanted(), scene, view, settings, size);
+            Self::planned(Rules::sound(), Notes::wanted, scene, view, settings, size);
         (plan, notes.into_uses())
     }
 
+    /// Plans in the numbers that are asked for, or in 64 bits where 32 have no room.
     fn planned(
+        rules: Arc<Rules>,
+        notes: fn() -> Notes,
+        scene: &Scene,
+        view: &View,
+        settings: &Settings,
+        size: Size,
+    ) -> Planning {
+        let as_asked = Self::planned_in(rules.clone(), notes(), scene, view, settings, size);
+        if settings.arithmetic == Arithmetic::F64 || as_asked.plan.has_room() {
+            return as_asked;
+        }
+        let settings = Settings { arithmetic: Arithmetic::F64, ..*settings };
+        Self::planned_in(rules, notes(), scene, view, &settings, size)
+    }
+
+    fn planned_in(
         rules: Arc<Rules>,
         notes: Notes,
         scene: &Scene,

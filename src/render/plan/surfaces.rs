@@ -244,14 +244,20 @@ impl Planner<'_> {
     }
 }
 
-/// What a part reflects.
+/// The largest coefficient and exponent: beside anything else that light is, it is beyond measure,
+/// and it has room in 32 bits.
+const LARGEST: f64 = 1e30;
+
+/// What a part reflects. A file may say anything; an exponent below 0 would make a highlight of what
+/// is not one.
 fn coefficients(look: &PartLook<'_>) -> Matter {
     let material = look.material;
+    let held = |color: [f64; 3]| color.map(|k| k.clamp(-LARGEST, LARGEST));
     Matter {
-        ambient: material.ambient,
-        diffuse: material.diffuse,
-        specular: material.specular,
-        exponent: material.exponent,
+        ambient: held(material.ambient),
+        diffuse: held(material.diffuse),
+        specular: held(material.specular),
+        exponent: material.exponent.max(0.0).min(LARGEST),
         ..Matter::default()
     }
 }
