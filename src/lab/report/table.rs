@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::Report;
 use crate::lab::candidates::Group;
 use crate::lab::sweep::{Measured, Row};
-use crate::scene::{AXES, Axis, AxisKind};
+use crate::scene::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
 
 /// A number with three digits that count: "0", "0.0123", "4.57", "137", "1.2e-5".
 #[must_use]
@@ -137,6 +137,9 @@ fn figures(point: &Measured) -> String {
 }
 
 fn foot(text: &mut String, report: &Report) {
+    for preset in ACCURACY_PRESETS.iter().filter(|preset| !preset.faults.is_empty()) {
+        let _ = writeln!(text, "{}, --preset {}: {}", preset.label, preset.word, preset.in_words());
+    }
     for left_out in &report.findings.left_out {
         let _ = writeln!(text, "not measured: {}: {}", left_out.what, left_out.reason);
     }
