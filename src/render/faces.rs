@@ -216,6 +216,11 @@ impl<T: Faced> Faces<T> {
         T::run(level, Spread(self));
     }
 
+    /// The corners of a triangle, of those of its draw.
+    pub(super) fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
+        self.ids[slot].map(|id| all[id as usize])
+    }
+
     /// The corners of a triangle on the screen.
     pub(super) fn corners(&self, slot: usize) -> [Snapped; 3] {
         each([0, 1, 2], |i: usize| {
@@ -340,10 +345,15 @@ pub(super) fn weights(
     if !own.iter().all(ScreenVertex::is_inside) {
         return cut_weights(plan, draw, number, pixel);
     }
-    let triangle = Triangle::new(own.map(|vertex| vertex.at()));
-    let [second, third] = triangle.map_or([0.0; 2], |triangle| barycentric(&triangle, pixel));
     let screen = Screen::new(draw.clip_from_object, plan.size);
     let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
+    if plan.ways.has_rare_places() {
+        let by_w = w.map(|w| 1.0 / w);
+        let ([second, third], _) = plan.ways.parts_at(own.map(|vertex| vertex.at()), by_w, pixel);
+        return DVec3::new(1.0 - second - third, second, third);
+    }
+    let triangle = Triangle::new(own.map(|vertex| vertex.at()));
+    let [second, third] = triangle.map_or([0.0; 2], |triangle| barycentric(&triangle, pixel));
     let by_w = DVec3::new(1.0 - second - third, second, third) / DVec3::from_array(w);
     by_w / by_w.element_sum()
 }

@@ -27,9 +27,9 @@ pub struct Located<T> {
     /// The second and third barycentric coordinate, linear on the screen.
     linear: [[T; BATCH]; 2],
     /// The same with perspective.
-    weights: [[T; BATCH]; 2],
+    pub(super) weights: [[T; BATCH]; 2],
     /// The distance along the observer's axis.
-    w: [T; BATCH],
+    pub(super) w: [T; BATCH],
 }
 
 impl<T: Number> Default for Located<T> {
@@ -372,6 +372,11 @@ pub(super) fn surroundings<T: Number>(
 ) {
     let rays = Rays::new(plan);
     let normals = matrix(draw.view_from_normal);
+    let way = plan.ways.rare_roots();
+    if way.is_some() {
+        let kernel = Surroundings::<T, 4> { items, faces, located, batch, rays, normals };
+        return T::run_by(level, way, kernel);
+    }
     paged!(faces.count, PAGES => T::run(
         level,
         Surroundings::<T, PAGES> { items, faces, located, batch, rays, normals },

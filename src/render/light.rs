@@ -15,7 +15,7 @@ use super::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded, Stage};
 use super::real::{Kernel, Machine, Number, Real, Triple};
 use super::surface::run;
 use crate::base::math::each;
-use crate::scene::{LightAt, Normals, dvec3};
+use crate::scene::{LightAt, Normalising, Normals, dvec3};
 
 /// Light at the vertices of a frame, and what it takes to light faces.
 #[derive(Debug, Default)]
@@ -105,7 +105,8 @@ impl<T: Light> Lit<T> {
                 if faces.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
             put(batch, slot, centres[polygon], normals[polygon].map(|x| x * turn));
         }
-        T::run(level, Place { batch, to_view: self.to_view[index as usize] });
+        let to_view = self.to_view[index as usize];
+        T::run_by(level, to_view.way, Place { batch, to_view });
     }
 }
 
@@ -174,7 +175,7 @@ impl<T: Light> Table<T> {
         let to_view = self.to_view.expect("it was made ready");
         self.diffuse[chunk].get_or_init(|| {
             put_places(draw, chunk * BATCH, batch);
-            T::run(level, Place { batch, to_view });
+            T::run_by(level, to_view.way, Place { batch, to_view });
             batch.darken();
             run(stages, shines, level, batch);
             let mut diffuse = [[T::default(); 4]; BATCH];
@@ -285,6 +286,8 @@ struct ToView<T> {
     linear: [[T; 3]; 3],
     normals: [[T; 3]; 3],
     eye: Eye,
+    /// By which rare way, where it is one.
+    way: Option<Normalising>,
 }
 
 impl<T: Number> ToView<T> {
@@ -301,6 +304,7 @@ impl<T: Number> ToView<T> {
             linear: columns(DMat3::from_mat4(draw.view_from_object)),
             normals: columns(draw.view_from_normal),
             eye: plan.eye,
+            way: plan.ways.rare_roots(),
         }
     }
 

@@ -17,10 +17,12 @@ use super::frame::Frame;
 use super::light::Lit;
 use super::painter::{Band, Painter, bounds_of};
 use super::plan::{EffectUse, FramePlan};
+use super::shines::Shines;
 use super::stages::{Laps, Stages};
-use super::surface::{Scenery, Shines};
+use super::surface::Scenery;
 use super::tile::{self, Seen, TILE, TILE_SIDE, Visibility};
 use super::watch::Watch;
+use super::ways;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Arithmetic, ItemId};
@@ -190,7 +192,8 @@ impl Renderer {
         visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
         let word = visibility.word(self.level, x, y);
         let (draw, polygon) = self.seen(plan, word)?;
-        Some(Hit { item: plan.draws[draw as usize].item, polygon, depth: tile::depth(word) })
+        let depth = ways::depth::depth(plan.ways.depth, tile::key(word));
+        Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
     /// Where the last picture shows an item: a flag for each pixel, row by row from the top.

@@ -35,7 +35,7 @@ pub(super) struct Setup<'a> {
 
 /// How a triangle is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Not,
     Plain,
     Cutout,
@@ -256,7 +256,7 @@ impl<'a> Setup<'a> {
         vertices.map(|vertex| self.screen.clip(self.order.position(vertex)))
     }
 
-    fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
+    pub(super) fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
         let mesh = &self.draw.model.mesh;
         let polygon = mesh.triangles()[number as usize].polygon;
         if self.draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {

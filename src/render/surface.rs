@@ -6,10 +6,9 @@
 //! block; no pixel asks where it lies.
 
 use fearless_simd::Level;
-use glam::DVec3;
 
 use super::effects::{BATCH, Batch, Light, Rows, Shine, load, set};
-use super::faces::{Faces, weights};
+use super::faces::Faces;
 use super::frame::Frame;
 use super::interpolate::{Located, Mixed, mix, surroundings};
 use super::items::Items;
@@ -17,11 +16,14 @@ use super::light::{Lighting, Lit, Table};
 use super::pick::SLOTS;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage, TilePlan};
 use super::real::{Kernel, Machine, Number, Triple};
+use super::shines::Shines;
+use super::texels::{color, uv, uv_ways};
 use super::texture;
 use super::tile::{BLOCK, BLOCK_PIXELS, Seen, seen};
+use super::ways::bytes::{FinishBy, thresholds};
 use super::whole::{Blocks, Canvas};
 use crate::base::color::Color;
-use crate::scene::{LightAt, NONE};
+use crate::scene::{LightAt, Rounding};
 
 /// What colouring pixels reads.
 #[derive(Clone, Copy, Debug)]
@@ -31,29 +33,6 @@ pub(super) struct Scenery<'a, T> {
     pub(super) frame: &'a Frame,
     pub(super) lit: &'a Lit<T>,
     pub(super) shines: &'a Shines<T>,
-}
-
-/// For each pipeline its lamps, in the order of its stages.
-#[derive(Debug, Default)]
-pub(super) struct Shines<T>(Vec<Vec<Shine<T>>>);
-
-impl<T: Number> Shines<T> {
-    /// Prepares the lamps of a plan.
-    pub(super) fn prepare(&mut self, plan: &FramePlan) {
-        self.0.resize_with(plan.pipelines.len(), Vec::new);
-        for (shines, pipeline) in self.0.iter_mut().zip(&plan.pipelines) {
-            shines.clear();
-            if let Pipeline::Shaded(Shaded { light: Some(stages), matter, .. }) = pipeline {
-                let lamps = stages.iter().map(|stage| &plan.lamps[stage.lamp as usize]);
-                shines.extend(lamps.map(|lamp| Shine::new(lamp, matter)));
-            }
-        }
-    }
-
-    /// The lamps of a pipeline.
-    pub(super) fn of(&self, pipeline: u32) -> &[Shine<T>] {
-        &self.0[pipeline as usize]
-    }
 }
 
 /// Colours pixels. Each thread has its own.
@@ -67,6 +46,17 @@ pub(super) struct Shader<T> {
     batch: Batch<T>,
     texels: Rows<T>,
     colors: [u32; BATCH],
+}
+
+/// What mixing the light of vertices gave.
+#[derive(Clone, Copy, Debug)]
+enum Mixture {
+    /// The bytes of the pixels.
+    Bytes,
+    /// Their colours, as diffuse light.
+    Colors,
+    /// Diffuse and specular light.
+    Light,
 }
 
 /// Pixels that are coloured together.
@@ -166,7 +156,7 @@ impl<T: Light> Shader<T> {
             return false;
         };
         let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
-        if !mixed || group.draw.back == Back::Red {
+        if !mixed || group.draw.back == Back::Red || plan.ways.mixes_one_by_one() {
             return false;
         }
         let tables = lit.tables(group.draw_index, group.pipeline);
@@ -248,28 +238,44 @@ impl<T: Light> Shader<T> {
         let Scenery { level, plan, .. } = *scenery;
         let draw = group.draw;
         let textured = shaded.texture.is_some() || shaded.vertex_colors;
+        let rounding = plan.ways.rounding;
+        // Every pixel has its own colour.
+        let each = textured || rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let places = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
         let new = self.take(scenery, group, places);
         if places {
             self.located.find(level, &self.items, &self.faces, (plan, draw));
+            if plan.ways.has_rare_places() {
+                let corners = scenery.frame.corners_of(plan, group.draw_index);
+                plan.ways.locate(&self.items, &self.faces, corners, &mut self.located);
+            }
         }
         self.batch.len = self.items.len;
+        let mut tint = shaded.tint;
         match light {
             None => {}
             Some((LightAt::Pixel, _)) => self.light_pixels(scenery, group, shaded, new),
-            Some((LightAt::Vertex, _)) if self.mix_light(scenery, group, shaded, new) => return,
-            Some((LightAt::Vertex, _)) => {}
-            Some((LightAt::Face, stages)) => self.light_faces(scenery, group, stages, textured),
+            Some((LightAt::Vertex, _)) => match self.mix_light(scenery, group, shaded, new) {
+                Mixture::Bytes => return,
+                Mixture::Colors => tint = [1.0; 3],
+                Mixture::Light => {}
+            },
+            Some((LightAt::Face, stages)) => self.light_faces(scenery, group, stages, each),
         }
         if textured {
-            self.texels(draw, shaded, plan);
+            self.texels(scenery, group, shaded);
         }
         let Self { batch, texels, colors, .. } = self;
-        let own =
-            if textured { Own::Texels(texels) } else { Own::Tint(shaded.tint.map(T::from_f64)) };
-        T::run(level, Finish { batch, lit: light.is_some(), own, colors });
-        if !places {
+        let own = if textured { Own::Texels(texels) } else { Own::Tint(tint.map(T::from_f64)) };
+        let lit = light.is_some();
+        if rounding == Rounding::Nearest {
+            T::run(level, Finish { batch, lit, own, colors });
+        } else {
+            let thresholds = &thresholds(rounding, &self.items);
+            T::run(level, FinishBy { batch, lit, own, thresholds, colors });
+        }
+        if !(places || each) {
             self.hand_out_colors();
         }
     }
@@ -283,7 +289,7 @@ impl<T: Light> Shader<T> {
         let new = self.faces.take(&self.items, order, draw_index, base);
         if new {
             let vertices = frame.vertices_of(plan, draw_index);
-            self.faces.find_sides(draw, plan, vertices);
+            self.faces.find_sides(draw, plan, frame.corners_of(plan, draw_index));
             if places {
                 self.faces.locate(level, draw, plan, vertices);
             }
@@ -325,26 +331,32 @@ impl<T: Light> Shader<T> {
         }
     }
 
-    /// Light of the vertices, mixed at every pixel. Says whether that gave the colours already.
+    /// Light of the vertices, mixed at every pixel.
     fn mix_light(
         &mut self,
         scenery: &Scenery<'_, T>,
         group: &Group<'_>,
         shaded: &Shaded,
         new: bool,
-    ) -> bool {
-        let level = scenery.level;
+    ) -> Mixture {
+        let Scenery { level, plan, .. } = *scenery;
         let tables = scenery.lit.tables(group.draw_index, group.pipeline);
         if new || !tables[0].is_colored() {
             self.carry_diffuse(scenery, group, shaded, tables);
             self.faces.spread(level);
         }
         let Self { items, faces, located, batch, colors, .. } = self;
-        if tables[0].is_colored() {
+        let colored = tables[0].is_colored();
+        if colored && plan.ways.rounding == Rounding::Nearest {
             mix(level, items, faces, located, Mixed::Pixels(colors));
-            return true;
+            return Mixture::Bytes;
         }
         mix(level, items, faces, located, Mixed::Rows(&mut batch.diffuse));
+        batch.len = items.len;
+        if colored {
+            batch.specular = [[T::default(); BATCH]; 3];
+            return Mixture::Colors;
+        }
         faces.carry_light(
             group.draw,
             #[inline(always)]
@@ -352,8 +364,7 @@ impl<T: Light> Shader<T> {
         );
         faces.spread(level);
         mix(level, items, faces, located, Mixed::Rows(&mut batch.specular));
-        batch.len = items.len;
-        false
+        Mixture::Light
     }
 
     /// Lets the faces carry the diffuse light of their corners, or their colours.
@@ -409,7 +420,9 @@ impl<T: Light> Shader<T> {
     }
 
     /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
-    fn texels(&mut self, draw: &Draw, shaded: &Shaded, plan: &FramePlan) {
+    fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+        let (plan, draw) = (scenery.plan, group.draw);
+        let mips = shaded.texture.as_ref().and_then(|texture| scenery.shines.mips_of(texture));
         let Self { items, faces, located, texels, .. } = self;
         for (row, tint) in texels.iter_mut().zip(shaded.tint) {
             row.fill(T::from_f64(tint));
@@ -420,7 +433,18 @@ impl<T: Light> Shader<T> {
             if let Some(texture) = &shaded.texture
                 && let Some(uv) = uv(draw, number, weights)
             {
-                let texel = texture::sample::<T>(texture, uv, plan.filter);
+                let texel = match mips {
+                    None => texture::sample::<T>(texture, uv, plan.filter),
+                    Some(mips) => mips.sample(
+                        uv,
+                        uv_ways(
+                            (plan, scenery.frame),
+                            group.draw_index,
+                            number,
+                            [items.x[i], items.y[i]],
+                        ),
+                    ),
+                };
                 for (row, part) in texels.iter_mut().zip(texel) {
                     row[i] = row[i] * part;
                 }
@@ -462,14 +486,14 @@ fn one_group<'a, T>(scenery: &Scenery<'a, T>, items: &Items) -> Option<Group<'a>
 
 /// The colour t of the surface itself: one, or one for each pixel.
 #[derive(Clone, Copy, Debug)]
-enum Own<'a, T> {
+pub(super) enum Own<'a, T> {
     Tint([T; 3]),
     Texels(&'a Rows<T>),
 }
 
 impl<T: Number> Own<'_, T> {
     #[inline(always)]
-    fn at<M: Machine<Number = T>>(self, machine: M, at: usize) -> Triple<M::R> {
+    pub(super) fn at<M: Machine<Number = T>>(self, machine: M, at: usize) -> Triple<M::R> {
         match self {
             Self::Tint(tint) => set(machine, tint),
             Self::Texels(texels) => load(machine, texels, at),
@@ -512,45 +536,4 @@ pub(super) fn run<T: Light>(
     for (stage, shine) in stages.iter().zip(shines) {
         T::add_light(stage.variant(), level, batch, shine);
     }
-}
-
-/// The place on the texture; `None` where a corner has none.
-fn uv(draw: &Draw, number: u32, weights: DVec3) -> Option<[f64; 2]> {
-    let mesh = &draw.model.mesh;
-    let own = mesh.triangles()[number as usize];
-    let ids = own.corners.map(|corner| mesh.corners()[corner as usize].uv);
-    if ids.contains(&NONE) {
-        return None;
-    }
-    let [a, b, c] = ids.map(|id| mesh.uvs()[id as usize].map(f64::from));
-    let between = |axis: usize| {
-        let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-        let value = a[axis] + (b[axis] - a[axis]) * weights.y + (c[axis] - a[axis]) * weights.z;
-        value.clamp(low, high)
-    };
-    Some([between(0), between(1)])
-}
-
-/// The vertex colours' mixture.
-fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
-    let mesh = &draw.model.mesh;
-    let own = mesh.triangles()[number as usize];
-    let [a, b, c] = own.corners.map(|corner| {
-        crate::scene::dvec3(mesh.colors()[mesh.corners()[corner as usize].position as usize])
-    });
-    (a + (b - a) * weights.y + (c - a) * weights.z).to_array()
-}
-
-/// Whether a triangle with a texture that leaves pixels out is drawn at one of them.
-pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i32; 2]) -> bool {
-    let (index, start) = frame.draw_of(number);
-    let draw = &plan.draws[index as usize];
-    let number = number - start.number;
-    let Pipeline::Shaded(shaded) = &plan.pipelines[draw.pipeline_of(number) as usize] else {
-        return true;
-    };
-    let (Some(opacity), Some(texture)) = (shaded.cutout, &shaded.texture) else { return true };
-    let weights = weights(plan, draw, frame.vertices_of(plan, index), number, pixel);
-    let Some(uv) = uv(draw, number, weights) else { return true };
-    texture::sample::<f64>(texture, uv, plan.filter)[3] * opacity >= 0.5
 }

@@ -21,7 +21,7 @@ use super::frame::Frame;
 use super::large::Large;
 use super::lines::{self, LineNumber};
 use super::plan::FramePlan;
-use super::surface;
+use super::texels;
 use crate::base::math::each;
 
 /// Pixels to a side of a tile.
@@ -60,9 +60,9 @@ pub(super) const fn seen(word: u64) -> Seen {
     }
 }
 
-/// The depth that a word says.
-pub(super) const fn depth(word: u64) -> f32 {
-    f32::from_bits((word >> 32) as u32)
+/// What a word says of the depth: its bits, where it is kept as mostly.
+pub(super) const fn key(word: u64) -> u32 {
+    (word >> 32) as u32
 }
 
 #[inline(always)]
@@ -114,6 +114,9 @@ impl Visibility {
         (tile, bounds): (usize, PixelBox),
     ) {
         self.clear(bounds);
+        if plan.ways.draws_one_by_one() {
+            return self.draw_one_by_one(plan, frame, (tile, bounds));
+        }
         for bins in frame.bins() {
             dispatch!(level, simd => self.draw_plain(simd, bins, tile));
         }
@@ -127,6 +130,21 @@ impl Visibility {
             }
             dispatch!(level, simd => self.draw_lines(simd, bins, plan.line_width, tile));
         }
+    }
+
+    /// Draws everything by a rare way, pixel by pixel.
+    fn draw_one_by_one(
+        &mut self,
+        plan: &FramePlan,
+        frame: &Frame,
+        (tile, bounds): (usize, PixelBox),
+    ) {
+        self.words.fill(0);
+        self.written = u64::MAX;
+        plan.ways.paint(plan, frame, (tile, bounds), &mut |[x, y], key, number| {
+            let word = &mut self.words[place(x, y)];
+            *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
+        });
     }
 
     fn clear(&mut self, bounds: PixelBox) {
@@ -242,7 +260,7 @@ impl Visibility {
         let Some(triangle) = Triangle::new(corners) else { return };
         let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
         triangle.covered(self.bounds, |pixel| {
-            if surface::is_opaque(plan, frame, large.number, [pixel.x, pixel.y]) {
+            if texels::is_opaque(plan, frame, large.number, [pixel.x, pixel.y]) {
                 let depth = seen.depth(pixel.edges);
                 dispatch!(level, simd => self.put(simd, pixel.x, pixel.y, depth, large.number));
             }
@@ -361,6 +379,13 @@ fn depths_of<S: Simd>(_: S, words: &[u64; BLOCK_PIXELS]) -> [u32; 2] {
 #[inline(always)]
 fn block_of(words: &mut [u64; PIXELS], block: usize) -> &mut [u64; BLOCK_PIXELS] {
     &mut words.as_chunks_mut().0[block]
+}
+
+/// The column and row of the tile whose word stands at a place.
+#[expect(clippy::cast_possible_truncation, reason = "a tile has 4096 pixels")]
+pub(super) const fn column_and_row(place: usize) -> [i32; 2] {
+    let (block, pixel) = ((place / BLOCK_PIXELS) as i32, (place % BLOCK_PIXELS) as i32);
+    [block % BLOCKS * BLOCK + pixel % BLOCK, block / BLOCKS * BLOCK + pixel / BLOCK]
 }
 
 /// Where the word of a pixel stands, by column and row of the tile.

@@ -417,6 +417,7 @@ impl Hostile {
             filter: self.dice.one_of(&[Filter::Nearest, Filter::Bilinear]),
             specular: self.dice.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
             leave_out: self.dice.one_of(&[LeaveOut::Unseen, LeaveOut::HalfStep]),
+            ..Settings::default()
         }
     }
 }

@@ -34,6 +34,7 @@ pub use self::turning::Turning;
 use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectUse, State, Thing};
 use super::effects::Lamp;
+use super::ways::Ways;
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::scene::{
@@ -55,6 +56,8 @@ pub struct FramePlan {
     pub(in crate::render) light_at: LightAt,
     /// What textures give between their texels.
     pub(in crate::render) filter: Filter,
+    /// Which ways are not those that every picture is drawn by.
+    pub(in crate::render) ways: Ways,
     /// Where the observer is and which way they look.
     pub(in crate::render) view_from_world: DMat4,
     /// `clip_from_view`.
@@ -159,6 +162,7 @@ impl FramePlan {
             arithmetic: settings.arithmetic,
             light_at: settings.light,
             filter: settings.filter,
+            ways: Ways::of(settings),
             view_from_world: observer.view_from_world,
             clip_from_view: observer.clip_from_view,
             line_width: if view.wide_lines { 2 } else { 1 },

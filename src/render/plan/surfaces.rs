@@ -90,7 +90,7 @@ impl Planner<'_> {
     /// The light of a material.
     fn lit(&self, into: &mut Planning, ground: &Ground<'_>, look: &PartLook<'_>) -> Shaded {
         let matter = coefficients(look);
-        let mut matter = matter.with_floor(self.floor(into, &matter));
+        let mut matter = matter.with_floor(self.floor(into, &matter), self.settings.power);
         let mut shaded = Shaded {
             matter,
             light: None,
@@ -232,7 +232,7 @@ impl Planner<'_> {
         }
         let cut_off = bounded::cut_off(stages, lit, region, power.min(1.0));
         if power < 1.0 {
-            return (matter.with_floor(floor), cut_off);
+            return (matter.with_floor(floor, self.settings.power), cut_off);
         }
         for stage in stages {
             stage.highlight = Form::Plain;
