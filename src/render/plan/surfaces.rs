@@ -257,7 +257,7 @@ fn coefficients(look: &PartLook<'_>) -> Matter {
         ambient: held(material.ambient),
         diffuse: held(material.diffuse),
         specular: held(material.specular),
-        exponent: material.exponent.max(0.0).min(LARGEST),
+        exponent: material.exponent.clamp(0.0, LARGEST),
         ..Matter::default()
     }
 }
