@@ -25,7 +25,7 @@ use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{Gesture, History, Refusal, Stroke, items, look, motion, selection};
 use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer};
 use marraztu::scene::{
-    Arithmetic, Command, Fill, Filter, Frame, ItemId, LightAt, LightKind, MaterialChoice,
+    AXES, Arithmetic, Command, Fill, Filter, Frame, ItemId, LightAt, LightKind, MaterialChoice,
     MeshSource, Model, Normals, Object, ObjectId, Observer, Part, PolygonMode, PresetId,
     Projection, Scene, Settings, SourceCorner, SpecularForm, SpotOwner, Subject, Surface, Texture,
     Transformation, View, Wrap,
@@ -167,7 +167,7 @@ impl Desk {
     fn stand_elsewhere(&mut self, dice: &mut Dice) {
         self.stays = 12;
         let settings = &mut self.settings;
-        match dice.below(8) {
+        match dice.below(9) {
             0 => {
                 self.size = Size::new(130 + 40 * dice.below(6), 70 + 40 * dice.below(6));
             }
@@ -183,6 +183,10 @@ impl Desk {
                     dice.one_of(&[Projection::Perspective, Projection::Orthographic]);
             }
             6 => self.perform(Ok(Command::Background(dice.color()))),
+            7 => {
+                let axis = &AXES[dice.below(AXES.len())];
+                *settings = axis.choices[dice.below(axis.choices.len())].of(settings);
+            }
             _ => {
                 let turn = [0.2 * dice.number(), 0.2 * dice.number()];
                 let first = Stroke::First;

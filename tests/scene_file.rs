@@ -15,11 +15,12 @@ use marraztu::io::{
     save_picture, to_text,
 };
 use marraztu::scene::{
-    Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Fill, Filter, Frame, Item,
-    LeaveOut, Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice,
-    NormalLength, Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose,
-    PresetId, Projection, Scale, Scene, Settings, SpecularForm, Spin, SpotOwner, Steps, Subject,
-    Surface, Texture, Transformation, UpAxis, View, Winding, Wrap,
+    Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Coverage, DepthFormat,
+    Fill, Filter, Frame, Interpolation, Item, LeaveOut, Lens, Light, LightAt, LightId, LightKind,
+    LoadOptions, Material, MaterialChoice, NormalLength, NormalMatrix, Normalising, Normals,
+    Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId, Projection,
+    Rounding, Scale, Scene, Settings, SpecularForm, SpecularPower, Spin, SpotOwner, Steps, Subject,
+    Subpixels, Surface, Texture, Transformation, UpAxis, VertexArithmetic, View, Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -147,6 +148,15 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         filter: Filter::Nearest,
         specular: SpecularForm::HalfVector,
         leave_out: LeaveOut::HalfStep,
+        power: SpecularPower::Table256,
+        normalising: Normalising::Newton,
+        rounding: Rounding::Dithered,
+        stretched: NormalMatrix::AsItIs,
+        vertices: VertexArithmetic::F32ComposedInF64,
+        subpixels: Subpixels::Bits4,
+        coverage: Coverage::ScanLines,
+        depth: DepthFormat::Bits24,
+        interpolation: Interpolation::EverySixteen,
     };
     (scene, view, settings)
 }

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Answers: what do the small scenes show that teach one axis of accuracy each?
 
-Run as `python3 assets/lessons/make.py`: it writes ball.obj, plate.obj and tiles.png beside itself.
+Run as `python3 assets/lessons/make.py`: it writes ball.obj, plate.obj, wheel.obj and tiles.png beside itself.
 
 The decision: each thing is as coarse as it can be while one still knows what it is, so that a fault of drawing is large:
-a ball of 16 by 8 patches, whose highlight falls inside a patch; a square plate; a picture of 16 by 16 texels.
+a ball of 16 by 8 patches, whose highlight falls inside a patch; a square plate; a wheel of 48 spokes, thinner than a pixel at their ends; a picture of 16 by 16 texels.
 
 Space: right-handed, Y up, counter-clockwise faces seen from outside. Standard library only, no chance.
 """
@@ -57,6 +57,20 @@ def plate(half=50):
     (HERE / "plate.obj").write_text("".join(lines), encoding="ascii", newline="\n")
 
 
+def wheel(radius=50, spokes=48, width=1.2):
+    """Spokes in the plane z = 0 that face +Z: triangles as wide as `width` near the middle, thin outside."""
+    lines = [HEAD.format(f"wheel: {spokes} spokes that face +Z", "wheel")]
+    points = []
+    for spoke in range(spokes):
+        angle = 2 * pi * (spoke + 0.37) / spokes
+        along, across = (cos(angle), sin(angle)), (-sin(angle), cos(angle))
+        for at, side in [(8, -0.5), (radius, 0), (8, 0.5)]:
+            points.append([along[i] * at + across[i] * side * width for i in range(2)])
+    lines += [f"v {number(x)} {number(y)} 0\n" for x, y in points]
+    lines += [f"f {3 * i + 1} {3 * i + 2} {3 * i + 3}\n" for i in range(spokes)]
+    (HERE / "wheel.obj").write_text("".join(lines), encoding="ascii", newline="\n")
+
+
 def tiles(side=16):
     """A face in 16 by 16 texels: round, two eyes, a mouth, on a ground of two blues."""
     rows = []
@@ -86,4 +100,5 @@ def tiles(side=16):
 if __name__ == "__main__":
     ball()
     plate()
+    wheel()
     tiles()

@@ -214,7 +214,7 @@ actions! {
     ToggleStatistics Window ONCE [] "Statistics" "Shows how much is drawn and how long it takes.";
     TogglePlan     Window ONCE [Named(Key::F3)] "Plan" "Shows each effect of the picture: on or left out, why, and what it costs.";
     MeasurePlan    Window ONCE [Named(Key::F4)] "Measure effects" "Measures how long a picture takes with and without each of its effects.";
-    ToggleLaboratory Window ONCE [] "Laboratory" "Shows what accuracy costs in time: each choice of each axis, measured and judged.";
+    ToggleLaboratory Window ONCE [Named(Key::F5)] "Laboratory" "Shows what accuracy costs in time: each choice of each axis, measured and judged.";
     ThemeSystem    Window ONCE [] "As the system" "The window is light or dark as the system is.";
     ThemeLight     Window ONCE [] "Light" "Dark text on light panels.";
     ThemeDark      Window ONCE [] "Dark" "Light text on dark panels.";

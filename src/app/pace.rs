@@ -86,7 +86,7 @@ impl Wealth {
         let Settings { light, filter, .. } = self.settings;
         Economy {
             vertex_light: economy.vertex_light && light == LightAt::Pixel,
-            nearest_texels: economy.nearest_texels && self.textured && filter == Filter::Bilinear,
+            nearest_texels: economy.nearest_texels && self.textured && filter != Filter::Nearest,
             half_size: economy.half_size,
         }
     }
@@ -236,16 +236,9 @@ impl Motion {
 mod tests {
     use super::*;
 
-    const ALL: Wealth = Wealth {
-        settings: Settings {
-            arithmetic: crate::scene::Arithmetic::F32,
-            light: LightAt::Pixel,
-            filter: Filter::Bilinear,
-            specular: crate::scene::SpecularForm::Reflection,
-            leave_out: crate::scene::LeaveOut::Unseen,
-        },
-        textured: true,
-    };
+    fn all() -> Wealth {
+        Wealth { settings: Settings::default(), textured: true }
+    }
 
     fn ms(time: u64) -> Duration {
         Duration::from_millis(time)
@@ -276,18 +269,18 @@ mod tests {
             ([100, 110, 110, 110, 110], Economy::NONE),
         ] {
             let mut pace = Pace::default();
-            assert_eq!(settled(&mut pace, ALL, times), chosen, "{times:?}");
-            assert_eq!(pace.choose(false, 1.0, ALL), Economy::NONE, "still: with all");
+            assert_eq!(settled(&mut pace, all(), times), chosen, "{times:?}");
+            assert_eq!(pace.choose(false, 1.0, all()), Economy::NONE, "still: with all");
         }
     }
 
     #[test]
     fn nothing_is_given_up_that_the_picture_does_not_have() {
         let times = [500, 400, 300, 200, 100];
-        let plain = Wealth { textured: false, ..ALL };
+        let plain = Wealth { textured: false, ..all() };
         let economy = settled(&mut Pace::default(), plain, times);
         assert_eq!(economy.words(), "light per vertex, half size");
-        let settings = Settings { light: LightAt::Face, ..ALL.settings };
+        let settings = Settings { light: LightAt::Face, ..all().settings };
         let flat = Wealth { settings, textured: false };
         assert_eq!(settled(&mut Pace::default(), flat, times).words(), "half size");
         let (applied, size) = Economy::ALL[4].applied(settings, Size::new(801, 600));
@@ -298,21 +291,21 @@ mod tests {
     fn where_only_a_part_is_drawn_again_its_own_time_counts() {
         let mut pace = Pace::default();
         pace.record(Economy::NONE, 1.0, ms(100));
-        assert_eq!(pace.choose(true, 0.2, ALL), Economy::NONE, "20 ms of 100");
-        assert_ne!(pace.choose(true, 0.5, ALL), Economy::NONE, "50 ms of 100");
+        assert_eq!(pace.choose(true, 0.2, all()), Economy::NONE, "20 ms of 100");
+        assert_ne!(pace.choose(true, 0.5, all()), Economy::NONE, "50 ms of 100");
         pace.record(Economy::NONE, 0.2, ms(60));
-        assert_ne!(pace.choose(true, 0.2, ALL), Economy::NONE, "it was 60 ms");
-        assert_ne!(pace.choose(true, 1.0, ALL), Economy::NONE);
+        assert_ne!(pace.choose(true, 0.2, all()), Economy::NONE, "it was 60 ms");
+        assert_ne!(pace.choose(true, 1.0, all()), Economy::NONE);
     }
 
     #[test]
     fn what_another_scene_took_is_forgotten() {
         let mut pace = Pace::default();
-        assert_eq!(settled(&mut pace, ALL, [60, 70, 70, 20, 10]), Economy::ALL[3]);
+        assert_eq!(settled(&mut pace, all(), [60, 70, 70, 20, 10]), Economy::ALL[3]);
         pace.record(Economy::NONE, 1.0, ms(70));
-        assert_eq!(pace.choose(true, 1.0, ALL), Economy::ALL[3], "about the same");
+        assert_eq!(pace.choose(true, 1.0, all()), Economy::ALL[3], "about the same");
         pace.record(Economy::NONE, 1.0, ms(300));
-        assert_eq!(pace.choose(true, 1.0, ALL), Economy::ALL[1], "tried again");
+        assert_eq!(pace.choose(true, 1.0, all()), Economy::ALL[1], "tried again");
     }
 
     #[test]
@@ -333,7 +326,7 @@ mod tests {
         let mut pace = Pace::default();
         pace.record(Economy::NONE, 1.0, ms(5));
         pace.record_given_up(1.0, ms(40));
-        assert_eq!(pace.choose(true, 1.0, ALL), Economy::ALL[1]);
+        assert_eq!(pace.choose(true, 1.0, all()), Economy::ALL[1]);
         pace.record_given_up(1.0, ms(2));
         assert_eq!(pace.expected(Economy::NONE, 1.0), Some(ms(40)));
     }

@@ -118,18 +118,24 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
 /// The matrix that turns normals as `m` turns surfaces: sign(det m) times its cofactors.
 ///
 /// The inverse transpose, but for a positive factor, and defined for singular `m` as well; the sign
-/// keeps the normals of a mirrored object on its outer side. The factor is a power of two that brings
-/// the largest entry of `m` to between 1/2 and 1, so that objects of any size have normals whose squares
+/// keeps the normals of a mirrored object on its outer side. The factor is that of
+/// [`at_power_of_two`], so that objects of any size have normals whose squares
 /// neither overflow nor vanish, in f32 too.
 #[must_use]
 pub fn normal_matrix(m: DMat3) -> DMat3 {
-    let m = m * power_of_two_near(1.0 / largest_entry(m));
+    let m = at_power_of_two(m);
     let cofactors = DMat3::from_cols(
         m.y_axis.cross(m.z_axis),
         m.z_axis.cross(m.x_axis),
         m.x_axis.cross(m.y_axis),
     );
     if m.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }
+}
+
+/// `m` times a power of two that brings its largest entry to between 1/2 and 1.
+#[must_use]
+pub fn at_power_of_two(m: DMat3) -> DMat3 {
+    m * power_of_two_near(1.0 / largest_entry(m))
 }
 
 /// The largest power of two that is not above `x`, for `x` above 0; 1 for what has none. Multiplied

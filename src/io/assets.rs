@@ -46,6 +46,7 @@ static X_WING: Asset = Asset::new("x_wing", include_bytes!("../../assets/x_wing.
 static R_FALKE: Asset = Asset::new("r_falke", include_bytes!("../../assets/r_falke.obj"));
 static BALL: Asset = Asset::new("ball", include_bytes!("../../assets/lessons/ball.obj"));
 static PLATE: Asset = Asset::new("plate", include_bytes!("../../assets/lessons/plate.obj"));
+static WHEEL: Asset = Asset::new("wheel", include_bytes!("../../assets/lessons/wheel.obj"));
 
 /// The one texture that the program carries, by the path that stands for it in a scene file.
 const TILES: (&str, &[u8]) = ("own:tiles.png", include_bytes!("../../assets/lessons/tiles.png"));
@@ -59,7 +60,7 @@ pub fn cam_model() -> Shared<Model> {
 /// A model that the program carries, by its name.
 #[must_use]
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
-    let all = [&CAM, &X_WING, &R_FALKE, &BALL, &PLATE];
+    let all = [&CAM, &X_WING, &R_FALKE, &BALL, &PLATE, &WHEEL];
     all.into_iter().find(|asset| asset.name == name).map(Asset::model)
 }
 

@@ -11,7 +11,14 @@ use super::scene_file::{Opened, SceneFileError, open_text};
 /// The scenes, by the names that [`crate::scene::Lesson::scene`] has.
 const LESSONS: &[(&str, &str)] = &[
     ("ball", include_str!("../../assets/lessons/ball.marraztu")),
+    ("dusk", include_str!("../../assets/lessons/dusk.marraztu")),
+    ("far", include_str!("../../assets/lessons/far.marraztu")),
+    ("fence", include_str!("../../assets/lessons/fence.marraztu")),
+    ("floor", include_str!("../../assets/lessons/floor.marraztu")),
+    ("near", include_str!("../../assets/lessons/near.marraztu")),
     ("plate", include_str!("../../assets/lessons/plate.marraztu")),
+    ("pressed", include_str!("../../assets/lessons/pressed.marraztu")),
+    ("wheel", include_str!("../../assets/lessons/wheel.marraztu")),
 ];
 
 /// The scene of a lesson.

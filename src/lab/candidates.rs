@@ -98,7 +98,7 @@ pub fn candidates(
     let (sensible, senseless): (Vec<&Axis>, Vec<&Axis>) =
         axes.iter().partition(|axis| (axis.sense)(scene, view).is_ok());
     for axis in &sensible {
-        for choice in axis.choices {
+        for choice in offered(axis, scene, view) {
             add(Group::Axis(axis.key), choice.label.to_owned(), choice.of(&base));
         }
     }
@@ -106,7 +106,7 @@ pub fn candidates(
         add(Group::Preset, preset.label.to_owned(), preset.of(current));
     }
     add(Group::Current, current.in_words(), *current);
-    let combinations = combinations(&base, &sensible);
+    let combinations = combinations(&base, &sensible, scene, view);
     let count = combinations.len();
     for settings in combinations.into_iter().take(most_combinations) {
         add(Group::Combination, settings.in_words(), settings);
@@ -114,6 +114,14 @@ pub fn candidates(
     for axis in senseless {
         let reason = (axis.sense)(scene, view).err().unwrap_or_default().to_owned();
         found.left_out.push(LeftOut { what: axis.name.to_owned(), reason });
+    }
+    for axis in &sensible {
+        for choice in axis.choices {
+            if let Err(reason) = (choice.sense)(scene, view) {
+                let (what, reason) = (format!("{} {}", axis.key, choice.word), reason.to_owned());
+                found.left_out.push(LeftOut { what, reason });
+            }
+        }
     }
     if count > most_combinations {
         found.left_out.push(LeftOut {
@@ -124,14 +132,24 @@ pub fn candidates(
     found
 }
 
+/// The choices of an axis that are something of their own in a scene.
+fn offered(axis: &Axis, scene: &Scene, view: &View) -> impl Iterator<Item = &'static Choice> {
+    axis.choices.iter().filter(|choice| (choice.sense)(scene, view).is_ok())
+}
+
 /// Settings that differ from `base` in two or more scored axes: first all that differ in two, then in
 /// three, and so on.
-fn combinations(base: &Settings, axes: &[&'static Axis]) -> Vec<Settings> {
+fn combinations(
+    base: &Settings,
+    axes: &[&'static Axis],
+    scene: &Scene,
+    view: &View,
+) -> Vec<Settings> {
     let scored = axes.iter().filter(|axis| axis.kind == AxisKind::Scored);
     let mut all: Vec<(usize, Settings)> = vec![(0, *base)];
     for axis in scored {
         let others = |settings: &Settings| -> Vec<&'static Choice> {
-            axis.choices.iter().filter(|choice| !choice.is(settings)).collect()
+            offered(axis, scene, view).filter(|choice| !choice.is(settings)).collect()
         };
         let grown: Vec<(usize, Settings)> = all
             .iter()

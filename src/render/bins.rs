@@ -9,6 +9,7 @@ use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::small::{Queue, SMALL};
 use super::tile::{TILE, TILE_SIDE};
+use super::ways::setup::Plain;
 use crate::base::image::Size;
 
 /// A triangle that is not small, or not simple.
@@ -23,7 +24,7 @@ pub(super) struct LargeTriangle {
 /// What one tile has to look at besides its hits.
 #[derive(Debug, Default)]
 pub(super) struct Bin {
-    /// Triangles, as places in [`Bins::large`].
+    /// Triangles, as places in [`Bins::large`], or among those that are drawn one by one.
     pub(super) large: Vec<u32>,
     /// Lines, as places in [`Bins::lines`].
     pub(super) lines: Vec<u32>,
@@ -37,6 +38,8 @@ pub(super) struct Bins {
     pub(super) tiles: Vec<Bin>,
     pub(super) hits: Hits,
     pub(super) large: Vec<LargeTriangle>,
+    /// Triangles that are drawn one by one, with their boxes: then there are no others.
+    plain: Vec<(Plain, PixelBox)>,
     pub(super) lines: Vec<ScreenLine>,
     /// Small triangles that wait to be drawn together, by the size of their boxes.
     pub(super) queues: Box<[Queue; SMALL.len()]>,
@@ -65,6 +68,7 @@ impl Bins {
             .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
         self.hits.clear(extent, [self.columns, self.rows]);
         self.large.clear();
+        self.plain.clear();
         self.lines.clear();
         // A frame that was given up leaves some behind.
         for queue in self.queues.iter_mut() {
@@ -85,6 +89,20 @@ impl Bins {
         self.drawn += 1;
         self.large.push(triangle);
         self.each(bounds, |bin| bin.large.push(number));
+    }
+
+    /// Adds a triangle that is drawn pixel by pixel, somewhere in a box.
+    pub(super) fn add_plain(&mut self, triangle: Plain, bounds: PixelBox) {
+        let number = u32::try_from(self.plain.len()).expect("fewer than 2^32 triangles");
+        self.drawn += 1;
+        self.plain.push((triangle, bounds));
+        self.each(bounds, |bin| bin.large.push(number));
+    }
+
+    /// A triangle that is drawn pixel by pixel, and its box.
+    pub(super) fn plain(&self, number: u32) -> (&Plain, PixelBox) {
+        let (plain, bounds) = &self.plain[number as usize];
+        (plain, *bounds)
     }
 
     /// Adds a line of so many pixels' width to the tiles that it crosses.

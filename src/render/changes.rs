@@ -143,6 +143,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         arithmetic,
         light_at,
         filter,
+        ways,
         view_from_world,
         clip_from_view,
         line_width,
@@ -159,6 +160,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
     let settings = *arithmetic != before.arithmetic
         || *light_at != before.light_at
         || *filter != before.filter
+        || *ways != before.ways
         || *line_width != before.line_width
         || *leave_out != before.leave_out
         || *rules != before.rules;

@@ -49,6 +49,16 @@ impl ScreenVertex {
         self.x != Self::BEYOND
     }
 
+    /// A vertex at a place.
+    pub(super) const fn placed(at: Snapped, depth: f32, inverse_w: f32) -> Self {
+        Self { x: at.x, y: at.y, depth, inverse_w }
+    }
+
+    /// The same beyond the planes.
+    pub(super) const fn beyond(self) -> Self {
+        Self { x: Self::BEYOND, ..self }
+    }
+
     /// A vertex at a place, for tests.
     #[cfg(test)]
     pub(super) const fn new(at: Snapped, depth: f32) -> Self {
@@ -69,8 +79,9 @@ pub(super) type Clip = [f64; 4];
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Screen {
     /// The rows of `clip_from_object`.
-    rows: [[f64; 4]; 4],
-    half: [f64; 2],
+    pub(super) rows: [[f64; 4]; 4],
+    /// Half of the picture's width and height.
+    pub(super) half: [f64; 2],
     guard: [f64; 2],
 }
 
@@ -83,6 +94,11 @@ impl Screen {
             half,
             guard: half.map(|half| GUARD / half - 1.0),
         }
+    }
+
+    /// The same with a guard band of so many pixels.
+    pub(super) fn guarded(self, pixels: f64) -> Self {
+        Self { guard: self.half.map(|half| pixels / half - 1.0), ..self }
     }
 
     /// A place of object space in clip space.
@@ -136,8 +152,19 @@ impl Screen {
         }
     }
 
+    /// Where a place inside is in the picture, in pixels.
+    pub(super) fn pixels(&self, [x, y, _, w]: Clip) -> [f64; 2] {
+        let inverse_w = 1.0 / w;
+        [(x * inverse_w + 1.0) * self.half[0], (1.0 - y * inverse_w) * self.half[1]]
+    }
+
     /// What is left of a triangle of clip space: the corners of a convex polygon.
     pub(super) fn cut(&self, corners: [Clip; 3]) -> Vec<ScreenVertex> {
+        self.cut_in_clip(corners).into_iter().map(|corner| self.project(corner)).collect()
+    }
+
+    /// The same before it is brought to the screen.
+    pub(super) fn cut_in_clip(&self, corners: [Clip; 3]) -> Vec<Clip> {
         let mut polygon = corners.to_vec();
         if !polygon.as_flattened().iter().all(|x| x.is_finite()) {
             return Vec::new();
@@ -157,7 +184,7 @@ impl Screen {
             }
             polygon = kept;
         }
-        polygon.into_iter().map(|corner| self.project(corner)).collect()
+        polygon
     }
 
     /// The part of a line between two places of clip space that is inside.

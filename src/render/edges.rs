@@ -16,7 +16,7 @@ use super::facing::Outline;
 use super::hits::PACK;
 use super::lines::{self, Ends, LineNumber, SHORT, ScreenLine, Short};
 use super::plan::{Draw, Lines};
-use super::vertices::fetch;
+use super::vertices::fetch_vertices;
 use crate::scene::{Corner, DrawEdge, NONE, NormalSource, dvec3};
 
 /// How many steps of depth lines are nearer than the surfaces that they lie on.
@@ -95,11 +95,11 @@ impl EdgeSetup<'_> {
 
     #[inline(always)]
     fn ends<S: Simd>(&self, simd: S, edges: &[DrawEdge; PACK], end: usize) -> Ends<S> {
-        let last = self.vertices.len().saturating_sub(1);
-        let [x, y, depth, _] = fetch(
+        let [x, y, depth, _] = fetch_vertices(
             simd,
+            self.vertices,
             #[inline(always)]
-            |lane| self.vertices[(edges[lane].vertices[end] as usize).min(last)].row(),
+            |lane| edges[lane].vertices[end],
         );
         [x, y, depth]
     }

@@ -192,8 +192,10 @@ impl<T: Faced> Faces<T> {
         }
     }
 
-    /// Lets the corners carry light that was evaluated at their corners: the front's and the back's.
-    pub(super) fn carry_light(&mut self, draw: &Draw, front: &[[T; 4]], back: &[[T; 4]]) {
+    /// Lets the corners carry the light of their vertices; `light` is asked for it by place, and by
+    /// whether it is that of the back.
+    #[inline(always)]
+    pub(super) fn carry_light(&mut self, draw: &Draw, mut light: impl FnMut(u32, bool) -> [T; 4]) {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
         let points = order.points(draw.normal_source);
@@ -202,9 +204,9 @@ impl<T: Faced> Faces<T> {
                 Normals::Face => mesh.triangles()[*number as usize].corners,
                 Normals::Vertex => points.of(self.places[slot], self.ids[slot]),
             };
-            let light = if self.back >> slot & 1 == 1 { back } else { front };
+            let back = self.back >> slot & 1 == 1;
             for (carried, place) in self.carried.iter_mut().zip(places) {
-                carried[slot] = light[place as usize];
+                carried[slot] = light(place, back);
             }
         }
     }
@@ -212,6 +214,11 @@ impl<T: Faced> Faces<T> {
     /// Makes what the corners carry ready.
     pub(super) fn spread(&mut self, level: Level) {
         T::run(level, Spread(self));
+    }
+
+    /// The corners of a triangle, of those of its draw.
+    pub(super) fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
+        self.ids[slot].map(|id| all[id as usize])
     }
 
     /// The corners of a triangle on the screen.
@@ -338,10 +345,15 @@ pub(super) fn weights(
     if !own.iter().all(ScreenVertex::is_inside) {
         return cut_weights(plan, draw, number, pixel);
     }
-    let triangle = Triangle::new(own.map(|vertex| vertex.at()));
-    let [second, third] = triangle.map_or([0.0; 2], |triangle| barycentric(&triangle, pixel));
     let screen = Screen::new(draw.clip_from_object, plan.size);
     let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
+    if plan.ways.has_rare_places() {
+        let by_w = w.map(|w| 1.0 / w);
+        let ([second, third], _) = plan.ways.parts_at(own.map(|vertex| vertex.at()), by_w, pixel);
+        return DVec3::new(1.0 - second - third, second, third);
+    }
+    let triangle = Triangle::new(own.map(|vertex| vertex.at()));
+    let [second, third] = triangle.map_or([0.0; 2], |triangle| barycentric(&triangle, pixel));
     let by_w = DVec3::new(1.0 - second - third, second, third) / DVec3::from_array(w);
     by_w / by_w.element_sum()
 }

@@ -12,7 +12,7 @@ use super::coverage::doubled_area;
 use super::hits::PACK;
 use super::plan::{Back, Draw};
 use super::setup::NARROW;
-use super::vertices::fetch;
+use super::vertices::fetch_vertices;
 use crate::base::image::Size;
 use crate::scene::{DrawTriangle, Mesh};
 
@@ -114,11 +114,11 @@ impl<'a> Facing<'a> {
         triangles: &[DrawTriangle; PACK],
         corner: usize,
     ) -> [i32x16<S>; 2] {
-        let last = self.vertices.len().saturating_sub(1);
-        let [x, y, _, _] = fetch(
+        let [x, y, _, _] = fetch_vertices(
             simd,
+            self.vertices,
             #[inline(always)]
-            |lane| self.vertices[(triangles[lane].vertices[corner] as usize).min(last)].row(),
+            |lane| triangles[lane].vertices[corner],
         );
         [x, y]
     }

@@ -17,6 +17,7 @@ use super::setup::{self, Setup};
 use super::stages::{Laps, Stages};
 use super::vertices;
 use super::watch::Watch;
+use super::ways::Ways;
 use crate::base::Shared;
 use crate::base::color::Color;
 use crate::base::image::Size;
@@ -33,6 +34,8 @@ const FEW: usize = 4096;
 pub(super) struct Frame {
     /// The vertices of all draws, in the order in which their meshes are drawn.
     vertices: Vec<ScreenVertex>,
+    /// The same in finer parts of a pixel, where triangles have them.
+    fine: Vec<ScreenVertex>,
     /// What the vertices of each draw are of; nothing where they have yet to be brought there.
     held: Vec<Option<Held>>,
     starts: Vec<Start>,
@@ -91,19 +94,20 @@ struct Held {
     model: Shared<Model>,
     clip_from_object: DMat4,
     size: Size,
+    ways: Ways,
     vertex: usize,
 }
 
 impl Held {
-    fn new(draw: &Draw, size: Size, vertex: usize) -> Self {
-        let clip_from_object = draw.clip_from_object;
-        Self { model: draw.model.clone(), clip_from_object, size, vertex }
+    fn new(draw: &Draw, plan: &FramePlan, vertex: usize) -> Self {
+        let (clip_from_object, FramePlan { size, ways, .. }) = (draw.clip_from_object, plan);
+        Self { model: draw.model.clone(), clip_from_object, size: *size, ways: *ways, vertex }
     }
 
-    fn is_of(&self, draw: &Draw, size: Size, vertex: usize) -> bool {
+    fn is_of(&self, draw: &Draw, plan: &FramePlan, vertex: usize) -> bool {
         Shared::same(&self.model, &draw.model)
             && alike_matrices(&self.clip_from_object, &draw.clip_from_object)
-            && (self.size, self.vertex) == (size, vertex)
+            && (self.size, self.ways, self.vertex) == (plan.size, plan.ways, vertex)
     }
 }
 
@@ -146,7 +150,7 @@ impl Frame {
         // What is not kept is overwritten from here on, whoever it belonged to.
         self.held.resize_with(plan.draws.len(), || None);
         for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
-            *held = held.take().filter(|held| held.is_of(draw, plan.size, start.vertex));
+            *held = held.take().filter(|held| held.is_of(draw, plan, start.vertex));
         }
         self.vertices.resize(vertex, ScreenVertex::default());
         self.outlines.resize_with(outline, AtomicU8::default);
@@ -164,7 +168,12 @@ impl Frame {
                 if held[next].is_none() {
                     let screen = Screen::new(draw.clip_from_object, plan.size);
                     let order = draw.model.mesh.draw_order();
-                    vertices::transform(level, &screen, order, at - start.vertex, own);
+                    let first = at - start.vertex;
+                    if plan.ways.has_plain_vertices() {
+                        vertices::transform(level, &screen, order, first, own);
+                    } else {
+                        plan.ways.transform(level, &screen, order, first, own);
+                    }
                 }
                 at += own.len();
                 (out, next) = (others, next + 1);
@@ -175,11 +184,29 @@ impl Frame {
         } else {
             self.vertices.par_chunks_mut(CHUNK).enumerate().for_each(work);
         }
+        self.place_finely(plan);
         if watch.is_given_up() {
             return;
         }
         for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
-            held.get_or_insert_with(|| Held::new(draw, plan.size, start.vertex));
+            held.get_or_insert_with(|| Held::new(draw, plan, start.vertex));
+        }
+    }
+
+    /// Corners in finer parts of a pixel, where that is chosen.
+    fn place_finely(&mut self, plan: &FramePlan) {
+        self.fine.clear();
+        if !plan.ways.has_fine_corners() {
+            return;
+        }
+        self.fine.resize(self.vertices.len(), ScreenVertex::default());
+        for (draw, start) in plan.draws.iter().zip(&self.starts) {
+            let screen = Screen::new(draw.clip_from_object, plan.size);
+            let order = draw.model.mesh.draw_order();
+            let own = &mut self.fine[start.vertex..start.vertex_end];
+            own.par_chunks_mut(CHUNK).enumerate().for_each(|(i, out)| {
+                plan.ways.transform_finely(&screen, order, i * CHUNK, out);
+            });
         }
     }
 
@@ -283,6 +310,15 @@ impl Frame {
         &self.vertices[self.starts[draw as usize].vertex..][..count]
     }
 
+    /// The corners that the triangles of a draw have.
+    pub(super) fn corners_of(&self, plan: &FramePlan, draw: u32) -> &[ScreenVertex] {
+        if self.fine.is_empty() {
+            return self.vertices_of(plan, draw);
+        }
+        let Start { vertex, vertex_end, .. } = self.starts[draw as usize];
+        &self.fine[vertex..vertex_end]
+    }
+
     /// The colour of a line.
     pub(super) fn line_color(&self, plan: &FramePlan, line: LineNumber) -> [u8; 4] {
         if line.is_back() {
@@ -352,7 +388,12 @@ impl<'a> Parts<'a> {
             What::Triangles => {
                 let pipelines = &self.plan.pipelines;
                 let setup = Setup::new(draw, pipelines, vertices, size, self.starts[i].number);
-                setup.run(level, chunk(&mesh.draw_order().triangles, from), pipelines, bins);
+                let triangles = chunk(&mesh.draw_order().triangles, from);
+                if self.plan.ways.draws_one_by_one() {
+                    self.plan.ways.set_up(&setup, triangles, pipelines, (size, bins));
+                } else {
+                    setup.run(level, triangles, pipelines, bins);
+                }
             }
             What::Facing => {
                 let triangles = chunk(&mesh.draw_order().triangles, from);

@@ -18,7 +18,8 @@ use super::faces::{Faced, Faces, barycentric, cut_w, cut_weights};
 use super::items::Items;
 use super::pick::{SLOTS, pick};
 use super::plan::{Draw, Eye, FramePlan};
-use super::real::{Kernel, Machine, Number, Sixteen, Triple};
+use super::real::{Kernel, Machine, Number, Real, Sixteen, Triple};
+use super::whole::{self, Blocks, Canvas, Linear as _, Wide};
 
 /// Where the pixels of a list lie in their triangles.
 #[derive(Debug)]
@@ -26,9 +27,9 @@ pub struct Located<T> {
     /// The second and third barycentric coordinate, linear on the screen.
     linear: [[T; BATCH]; 2],
     /// The same with perspective.
-    weights: [[T; BATCH]; 2],
+    pub(super) weights: [[T; BATCH]; 2],
     /// The distance along the observer's axis.
-    w: [T; BATCH],
+    pub(super) w: [T; BATCH],
 }
 
 impl<T: Number> Default for Located<T> {
@@ -45,6 +46,9 @@ pub trait Interpolated: Faced {
     fn find(level: Level, items: &Items, faces: &Faces<Self>, to: &mut Located<Self>) -> bool;
     /// Finds the linear barycentric coordinates, but for those of wide triangles.
     fn find_linear(level: Level, items: &Items, faces: &Faces<Self>, to: &mut Located<Self>);
+    /// Mixes the colours that the corners of one triangle carry in blocks of a tile that it covers as
+    /// a whole, where that can be done in one pass; says whether it can.
+    fn mix_blocks(level: Level, faces: &Faces<Self>, blocks: Blocks, to: &mut Canvas<'_>) -> bool;
 }
 
 /// Does something for as many pages of slots as `count` triangles take.
@@ -134,6 +138,10 @@ impl Interpolated for f64 {
     }
 
     fn find_linear(_: Level, _: &Items, _: &Faces<Self>, _: &mut Located<Self>) {}
+
+    fn mix_blocks(_: Level, _: &Faces<Self>, _: Blocks, _: &mut Canvas<'_>) -> bool {
+        false
+    }
 }
 
 impl Interpolated for f32 {
@@ -156,6 +164,10 @@ impl Interpolated for f32 {
         paged!(faces.count, PAGES => {
             dispatch!(level, simd => find_narrow::<_, PAGES>(simd, items, faces, to));
         });
+    }
+
+    fn mix_blocks(level: Level, faces: &Faces<Self>, blocks: Blocks, to: &mut Canvas<'_>) -> bool {
+        whole::mix(level, faces, blocks, to)
     }
 }
 
@@ -197,14 +209,8 @@ fn edge<S: Simd, const PAGES: usize>(
     (a * x + b * y + c).to_float()
 }
 
-/// Where pixels lie in one triangle whose edge functions need more bits. They are whole numbers that
-/// f64 holds, up to 2^53.
+/// Where pixels lie in one triangle whose edge functions need more bits.
 #[inline(always)]
-#[expect(
-    clippy::cast_precision_loss,
-    clippy::cast_possible_truncation,
-    reason = "the nearest number is meant"
-)]
 fn find_in_one<S: Simd>(
     simd: S,
     items: &Items,
@@ -213,41 +219,20 @@ fn find_in_one<S: Simd>(
     to: &mut Located<f32>,
 ) {
     let machine = Sixteen(simd);
-    let per_area = 1.0 / triangle.doubled_area() as f64;
-    let (left, top) = (items.x[0], items.y[0]);
-    let [_, e, f] = triangle.edges_at(left, top);
-    let (e, f) = (e as f64, f as f64);
-    let [[_, er, fr], [_, ed, fd]] = triangle.steps();
-    let (er, fr, ed, fd) = (er as f64, fr as f64, ed as f64, fd as f64);
+    let wide = Wide::new(simd, triangle);
     let [w0, w1, w2] = faces.by_w;
     let by_w = set(machine, [w0[0], w1[0], w2[0]]);
-    // What the edge functions gain in the columns of a whole block.
-    let columns = COLUMNS.map(|x| [x * er, x * fr]);
-    for at in (0..items.len).step_by(16) {
-        let (mut second, mut third) = ([0.0; 16], [0.0; 16]);
-        if items.is_whole() {
-            let y = f64::from(items.y[at] - top);
-            let (e, f) = ([e + y * ed, e + y * ed + ed], [f + y * fd, f + y * fd + fd]);
-            for lane in 0..16 {
-                let [right_e, right_f] = columns[lane % 8];
-                second[lane] = ((e[lane / 8] + right_e) * per_area) as f32;
-                third[lane] = ((f[lane / 8] + right_f) * per_area) as f32;
-            }
-        } else {
-            for lane in 0..16 {
-                let x = f64::from(items.x[at + lane] - left);
-                let y = f64::from(items.y[at + lane] - top);
-                second[lane] = ((e + y * ed + x * er) * per_area) as f32;
-                third[lane] = ((f + y * fd + x * fr) * per_area) as f32;
-            }
+    if items.is_whole() {
+        for (pair, linear) in wide.block(simd, [items.x[0], items.y[0]]).into_iter().enumerate() {
+            to.put(machine, 16 * pair, linear, by_w);
         }
-        let linear = [machine.load(&second, 0), machine.load(&third, 0)];
+        return;
+    }
+    for at in (0..items.len).step_by(16) {
+        let linear = wide.scattered(simd, &items.x[at..at + 16], &items.y[at..at + 16]);
         to.put(machine, at, linear, by_w);
     }
 }
-
-/// The columns of a block.
-const COLUMNS: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Linear coordinates get perspective.
 struct Perspective<'a, T, const PAGES: usize> {
@@ -270,21 +255,32 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Perspective<'_, T, PAGES> {
 }
 
 impl<T: Number> Located<T> {
-    /// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; the sum is one by the pixel's own
-    /// w.
+    /// Linear coordinates get perspective.
     #[inline(always)]
     fn put<M: Machine<Number = T>>(
         &mut self,
         machine: M,
         at: usize,
-        [second, third]: [M::R; 2],
-        Triple([w0, w1, w2]): Triple<M::R>,
+        linear: [M::R; 2],
+        by_w: Triple<M::R>,
     ) {
-        let w = machine.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
+        let (weights, w) = with_perspective(machine, linear, by_w);
         machine.store(w, &mut self.w, at);
-        machine.store(second * w1 * w, &mut self.weights[0], at);
-        machine.store(third * w2 * w, &mut self.weights[1], at);
+        machine.store(weights[0], &mut self.weights[0], at);
+        machine.store(weights[1], &mut self.weights[1], at);
     }
+}
+
+/// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and one by the sum, which is the
+/// pixel's own w.
+#[inline(always)]
+pub(super) fn with_perspective<M: Machine>(
+    machine: M,
+    [second, third]: [M::R; 2],
+    Triple([w0, w1, w2]): Triple<M::R>,
+) -> ([M::R; 2], M::R) {
+    let w = machine.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
+    ([second * w1 * w, third * w2 * w], w)
 }
 
 /// Three numbers of the triangles that some pixels show.
@@ -307,11 +303,17 @@ fn mixed<M: Machine, const PAGES: usize>(
     machine: M,
     rows: &[[[M::Number; SLOTS]; 3]; 3],
     slots: M::Slots,
-    [second, third]: [M::R; 2],
+    weights: [M::R; 2],
 ) -> Triple<M::R> {
     let a = picked::<M, PAGES>(machine, &rows[0], slots);
     let b = picked::<M, PAGES>(machine, &rows[1], slots);
     let c = picked::<M, PAGES>(machine, &rows[2], slots);
+    between([a, b, c], weights)
+}
+
+/// What the first corner carries, and the weighted differences of the others from it.
+#[inline(always)]
+pub(super) fn between<R: Real>([a, b, c]: [Triple<R>; 3], [second, third]: [R; 2]) -> Triple<R> {
     a.plus(b.times(second)).plus(c.times(third))
 }
 
@@ -370,6 +372,11 @@ pub(super) fn surroundings<T: Number>(
 ) {
     let rays = Rays::new(plan);
     let normals = matrix(draw.view_from_normal);
+    let way = plan.ways.rare_roots();
+    if way.is_some() {
+        let kernel = Surroundings::<T, 4> { items, faces, located, batch, rays, normals };
+        return T::run_by(level, way, kernel);
+    }
     paged!(faces.count, PAGES => T::run(
         level,
         Surroundings::<T, PAGES> { items, faces, located, batch, rays, normals },

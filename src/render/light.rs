@@ -1,18 +1,21 @@
-//! Light that is evaluated at faces or at vertices, before any pixel.
+//! Light that is evaluated at faces or at vertices, and taken from there by pixels.
+//!
+//! Vertices are lit when the first pixel asks for one of them, with those around it: what is turned
+//! away, behind something else or outside of the picture is never lit. Whichever thread asks first,
+//! the light is the same.
+
+use std::sync::OnceLock;
 
 use fearless_simd::Level;
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
-use super::effects::{BATCH, Batch, Light, Rows, load, set, store};
+use super::effects::{BATCH, Batch, Light, Shine, load, set, store};
 use super::faces::Faces;
-use super::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded};
+use super::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded, Stage};
 use super::real::{Kernel, Machine, Number, Real, Triple};
-use super::surface::{Shines, run};
-use crate::scene::{LightAt, Normals, dvec3};
-
-/// Places that a thread takes at a time.
-const CHUNK: usize = 16 * BATCH;
+use super::surface::run;
+use crate::base::math::each;
+use crate::scene::{LightAt, Normalising, Normals, dvec3};
 
 /// Light at the vertices of a frame, and what it takes to light faces.
 #[derive(Debug, Default)]
@@ -24,28 +27,29 @@ pub(super) struct Lit<T> {
     to_view: Vec<ToView<T>>,
 }
 
+/// The light of as many vertices as are lit together.
+type Lights<T> = [[T; 4]; BATCH];
+
 /// The light of one draw by one pipeline on one side, at its points or (with the normals of faces)
 /// at its corners.
 #[derive(Debug, Default)]
 pub(super) struct Table<T> {
     draw: u32,
     pipeline: u32,
-    back: bool,
+    /// The way to view space, with the normals of this side.
+    to_view: Option<ToView<T>>,
+    /// The colour of the surface, where light becomes colours, ready to be mixed: t D + S with one t
+    /// for all of the surface.
+    tint: Option<[T; 3]>,
     /// Diffuse light; where `specular` is empty, the colour that both give.
-    pub(super) diffuse: Vec<[T; 4]>,
-    pub(super) specular: Vec<[T; 4]>,
-}
-
-impl<T> Table<T> {
-    /// Whether it has colours, ready to be mixed: t D + S with one t for all of the surface.
-    pub(super) const fn is_colored(&self) -> bool {
-        self.specular.is_empty()
-    }
+    diffuse: Vec<OnceLock<Lights<T>>>,
+    /// Specular light, which is there where diffuse light is.
+    specular: Vec<OnceLock<Lights<T>>>,
 }
 
 impl<T: Light> Lit<T> {
-    /// Lights what the plan says is lit at vertices.
-    pub(super) fn prepare(&mut self, plan: &FramePlan, shines: &Shines<T>, level: Level) {
+    /// Makes ready for what the plan says is lit at vertices.
+    pub(super) fn prepare(&mut self, plan: &FramePlan) {
         self.to_view.clear();
         self.to_view.extend(plan.draws.iter().map(|draw| ToView::new(plan, draw)));
         self.used = 0;
@@ -66,10 +70,10 @@ impl<T: Light> Lit<T> {
                         self.tables.push(Table::default());
                     }
                     let table = &mut self.tables[self.used];
-                    (table.draw, table.pipeline, table.back) = (i, pipeline, back);
+                    (table.draw, table.pipeline) = (i, pipeline);
                     self.used += 1;
-                    let to_view = self.to_view[i as usize].seen_from(back);
-                    table.fill(level, draw, shaded, (shines, to_view));
+                    table.to_view = Some(self.to_view[i as usize].seen_from(back));
+                    table.clear(draw, shaded);
                 }
             }
         }
@@ -81,7 +85,7 @@ impl<T: Light> Lit<T> {
         let mut tables = self.tables[..self.used]
             .iter()
             .filter(|table| (table.draw, table.pipeline) == (draw, pipeline));
-        let front = tables.next().expect("what is lit at vertices was lit before");
+        let front = tables.next().expect("what is lit at vertices was made ready");
         [front, tables.next().unwrap_or(front)]
     }
 
@@ -101,7 +105,8 @@ impl<T: Light> Lit<T> {
                 if faces.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
             put(batch, slot, centres[polygon], normals[polygon].map(|x| x * turn));
         }
-        T::run(level, Place { batch, to_view: self.to_view[index as usize] });
+        let to_view = self.to_view[index as usize];
+        T::run_by(level, to_view.way, Place { batch, to_view });
     }
 }
 
@@ -114,103 +119,159 @@ fn put<T: Number>(batch: &mut Batch<T>, i: usize, position: [f32; 3], normal: [f
     }
 }
 
+/// By what the vertices of a draw are lit.
+#[derive(Debug)]
+pub(super) struct Lighting<'a, T> {
+    pub(super) level: Level,
+    pub(super) draw: &'a Draw,
+    pub(super) stages: &'a [Stage],
+    pub(super) shines: &'a [Shine<T>],
+}
+
 impl<T: Light> Table<T> {
-    /// Lights the places of a draw.
-    fn fill(
-        &mut self,
-        level: Level,
-        draw: &Draw,
-        shaded: &Shaded,
-        (shines, to_view): (&Shines<T>, ToView<T>),
-    ) {
-        let mesh = &draw.model.mesh;
-        let order = mesh.draw_order();
-        let points = order.points(draw.normal_source);
-        let (count, polygons) = match draw.normals {
-            Normals::Vertex => (points.normals.len(), Vec::new()),
-            Normals::Face => (mesh.corners().len(), polygons_of_corners(draw)),
-        };
-        let place = |i: usize| match draw.normals {
-            Normals::Vertex => {
-                let vertex = points.vertices[i] as usize;
-                ([order.x[vertex], order.y[vertex], order.z[vertex]], points.normals[i])
-            }
-            Normals::Face => {
-                let position = mesh.corners()[i].position as usize;
-                (mesh.positions()[position], mesh.polygon_normals()[polygons[i] as usize])
-            }
-        };
-        let stages = shaded.light.as_deref().unwrap_or_default();
-        let shines = shines.of(self.pipeline);
-        let tint = shaded.tint.map(T::from_f64);
+    /// Whether there are colours in the place of diffuse light, and no other.
+    pub(super) const fn is_colored(&self) -> bool {
+        self.tint.is_some()
+    }
+
+    /// Takes all light away, and makes room for that of a draw.
+    fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
+        let count = place_count(draw).div_ceil(BATCH);
         let colored = shaded.texture.is_none() && !shaded.vertex_colors;
-        self.diffuse.resize(count, [T::default(); 4]);
-        self.specular.resize(if colored { 0 } else { count }, [T::default(); 4]);
-        let light = |first: usize, diffuse: &mut [[T; 4]], specular: &mut [[T; 4]]| {
-            let mut batch = Batch::<T>::default();
-            for (i, diffuse) in diffuse.chunks_mut(BATCH).enumerate() {
-                batch.len = diffuse.len();
-                for lane in 0..batch.len {
-                    let (position, normal) = place(first + i * BATCH + lane);
-                    put(&mut batch, lane, position, normal);
-                }
-                T::run(level, Place { batch: &mut batch, to_view });
-                batch.darken();
-                run(stages, shines, level, &mut batch);
-                if colored {
-                    T::run(level, Color { batch: &mut batch, tint });
-                } else {
-                    let specular = &mut specular[i * BATCH..][..batch.len];
-                    take_rows(&batch.specular, specular);
-                }
-                take_rows(&batch.diffuse, diffuse);
+        self.tint = colored.then(|| shaded.tint.map(T::from_f64));
+        self.diffuse.clear();
+        self.diffuse.resize_with(count, OnceLock::new);
+        self.specular.clear();
+        self.specular.resize_with(if colored { 0 } else { count }, OnceLock::new);
+    }
+
+    /// The diffuse light at a place, or its colour. What it takes to light it is done in `batch`.
+    #[inline(always)]
+    pub(super) fn diffuse(
+        &self,
+        place: u32,
+        lighting: &Lighting<'_, T>,
+        batch: &mut Batch<T>,
+    ) -> [T; 4] {
+        let (chunk, at) = (place as usize / BATCH, place as usize % BATCH);
+        match self.diffuse[chunk].get() {
+            Some(lights) => lights[at],
+            None => self.light(chunk, lighting, batch)[at],
+        }
+    }
+
+    /// The specular light at a place whose diffuse light was asked for before.
+    #[inline(always)]
+    pub(super) fn specular(&self, place: u32) -> [T; 4] {
+        let lights = self.specular[place as usize / BATCH].get();
+        lights.expect("it comes with diffuse light")[place as usize % BATCH]
+    }
+
+    /// Lights the places that are lit together, unless another thread does.
+    #[cold]
+    #[inline(never)]
+    fn light(&self, chunk: usize, lighting: &Lighting<'_, T>, batch: &mut Batch<T>) -> &Lights<T> {
+        let Lighting { level, draw, stages, shines } = *lighting;
+        let to_view = self.to_view.expect("it was made ready");
+        self.diffuse[chunk].get_or_init(|| {
+            put_places(draw, chunk * BATCH, batch);
+            T::run_by(level, to_view.way, Place { batch, to_view });
+            batch.darken();
+            run(stages, shines, level, batch);
+            let mut diffuse = [[T::default(); 4]; BATCH];
+            let mut specular = [[T::default(); 4]; BATCH];
+            let (tint, batch) = (self.tint, &*batch);
+            T::run(level, Keep { batch, tint, to: [&mut diffuse, &mut specular] });
+            if let Some(place) = self.specular.get(chunk) {
+                // Whoever lights the diffuse light of these is alone.
+                place.get_or_init(|| specular);
             }
-        };
-        let chunks = self.diffuse.par_chunks_mut(CHUNK);
-        if colored {
-            chunks.enumerate().for_each(|(i, diffuse)| light(i * CHUNK, diffuse, &mut []));
-        } else {
-            let both = chunks.zip(self.specular.par_chunks_mut(CHUNK)).enumerate();
-            both.for_each(|(i, (diffuse, specular))| light(i * CHUNK, diffuse, specular));
+            diffuse
+        })
+    }
+}
+
+/// How many places of a draw are lit: its points or, with the normals of faces, its corners.
+fn place_count(draw: &Draw) -> usize {
+    let mesh = &draw.model.mesh;
+    match draw.normals {
+        Normals::Vertex => mesh.draw_order().points(draw.normal_source).normals.len(),
+        Normals::Face => mesh.corners().len(),
+    }
+}
+
+/// Puts places of a draw into a batch, from `first` on.
+fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
+    let mesh = &draw.model.mesh;
+    batch.len = (place_count(draw) - first).min(BATCH);
+    match draw.normals {
+        Normals::Vertex => {
+            let order = mesh.draw_order();
+            let points = order.points(draw.normal_source);
+            let own = first..first + batch.len;
+            let (vertices, normals) = (&points.vertices[own.clone()], &points.normals[own]);
+            let places = batch.position.iter_mut().zip([&order.x, &order.y, &order.z]);
+            for (to, from) in places {
+                for (to, vertex) in to.iter_mut().zip(vertices) {
+                    *to = T::from_f64(f64::from(from[*vertex as usize]));
+                }
+            }
+            let [x, y, z] = &mut batch.normal;
+            for (((x, y), z), normal) in x.iter_mut().zip(y).zip(z).zip(normals) {
+                [*x, *y, *z] = each(*normal, |n| T::from_f64(f64::from(n)));
+            }
+        }
+        Normals::Face => {
+            let mut polygon = polygon_of_corner(draw, first);
+            for i in 0..batch.len {
+                while !mesh.corners_of(polygon).contains(&(first + i)) {
+                    polygon += 1;
+                }
+                let position = mesh.corners()[first + i].position as usize;
+                put(batch, i, mesh.positions()[position], mesh.polygon_normals()[polygon as usize]);
+            }
         }
     }
 }
 
-/// Copies what stands in rows to where it is fetched from.
-#[inline(always)]
-fn take_rows<T: Number>([r, g, b]: &Rows<T>, to: &mut [[T; 4]]) {
-    for (((to, r), g), b) in to.iter_mut().zip(r).zip(g).zip(b) {
-        *to = [*r, *g, *b, T::default()];
+/// The polygon that a corner belongs to.
+fn polygon_of_corner(draw: &Draw, corner: usize) -> u32 {
+    let mesh = &draw.model.mesh;
+    let (mut low, mut high) =
+        (0, u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers"));
+    while high - low > 1 {
+        let middle = low.midpoint(high);
+        if mesh.corners_of(middle).start <= corner { low = middle } else { high = middle }
     }
+    low
 }
 
-/// t D + S, in the place of D.
-struct Color<'a, T> {
-    batch: &'a mut Batch<T>,
-    tint: [T; 3],
+/// Keeps the light of a batch: D and S, or with a `tint` t the colour t D + S in the place of D.
+struct Keep<'a, T> {
+    batch: &'a Batch<T>,
+    tint: Option<[T; 3]>,
+    to: [&'a mut Lights<T>; 2],
 }
 
-impl<T: Number> Kernel<T> for Color<'_, T> {
+impl<T: Number> Kernel<T> for Keep<'_, T> {
     #[inline(always)]
     fn run<M: Machine<Number = T>>(self, machine: M) {
-        let Self { batch, tint } = self;
-        let Triple([tr, tg, tb]) = set(machine, tint);
+        let Self { batch, tint, to: [diffuse, specular] } = self;
+        let zero = machine.lift(0.0);
         for at in (0..batch.len).step_by(M::LANES) {
             let Triple([r, g, b]) = load(machine, &batch.diffuse, at);
-            let color = Triple([tr * r, tg * g, tb * b]).plus(load(machine, &batch.specular, at));
-            store(machine, color, &mut batch.diffuse, at);
+            let s = load(machine, &batch.specular, at);
+            if let Some(tint) = tint {
+                let Triple([tr, tg, tb]) = set(machine, tint);
+                let Triple([r, g, b]) = Triple([tr * r, tg * g, tb * b]).plus(s);
+                machine.store_four([r, g, b, zero], diffuse, at);
+            } else {
+                let Triple([sr, sg, sb]) = s;
+                machine.store_four([r, g, b, zero], diffuse, at);
+                machine.store_four([sr, sg, sb, zero], specular, at);
+            }
         }
     }
-}
-
-/// The polygon of each corner.
-fn polygons_of_corners(draw: &Draw) -> Vec<u32> {
-    let mesh = &draw.model.mesh;
-    let mut polygons = Vec::with_capacity(mesh.corners().len());
-    for polygon in 0..u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers") {
-        polygons.extend(mesh.corners_of(polygon).map(|_| polygon));
-    }
-    polygons
 }
 
 /// How far off a vertex is lit, in units of view space.
@@ -225,6 +286,8 @@ struct ToView<T> {
     linear: [[T; 3]; 3],
     normals: [[T; 3]; 3],
     eye: Eye,
+    /// By which rare way, where it is one.
+    way: Option<Normalising>,
 }
 
 impl<T: Number> ToView<T> {
@@ -241,6 +304,7 @@ impl<T: Number> ToView<T> {
             linear: columns(DMat3::from_mat4(draw.view_from_object)),
             normals: columns(draw.view_from_normal),
             eye: plan.eye,
+            way: plan.ways.rare_roots(),
         }
     }
 

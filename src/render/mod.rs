@@ -27,14 +27,18 @@ pub mod real;
 pub mod region;
 mod renderer;
 mod setup;
+mod shines;
 mod single;
 mod small;
 mod stages;
 mod surface;
+mod texels;
 mod texture;
 mod tile;
 mod vertices;
 mod watch;
+mod ways;
+mod whole;
 
 pub use changes::{Cause, Change, Changes};
 pub use plan::{Class, Effect, EffectUse, FramePlan, State};

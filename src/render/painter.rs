@@ -1,13 +1,18 @@
 //! Paints tiles: what is seen in a tile, its colours, and the copy into the picture.
 //!
 //! A painter stays with its thread from frame to frame, so that a frame allocates and clears nothing
-//! for its tiles. A tile that showed nothing but the background and still does is not touched.
+//! for its tiles. A tile that showed nothing but the background and still does is not touched. Tiles
+//! are painted straight into the picture, or, where another thread is at work in the same rows or the
+//! picture ends inside of the tile, beside it and copied.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::bins::tiles_of;
 use super::coverage::PixelBox;
 use super::effects::Light;
 use super::surface::{Scenery, Shader};
-use super::tile::{BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
+use super::tile::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, Visibility};
+use super::whole::{Blocks, Canvas};
 use crate::base::color::Color;
 use crate::base::image::Size;
 
@@ -30,19 +35,23 @@ pub(super) struct Band<'a> {
     pub(super) filled: &'a mut [Option<Color>],
 }
 
-/// Where a block stands in the rows of its tile.
-fn place_of([x, y]: [i32; 2], bounds: PixelBox) -> usize {
-    let [x, y] =
-        [x - bounds.left, y - bounds.top].map(|i| usize::try_from(i).expect("in the tile"));
-    y * TILE_SIDE + x
+/// A band that nobody else has.
+fn locked<'a, 'b>(band: &'a Mutex<Band<'b>>) -> MutexGuard<'a, Band<'b>> {
+    band.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+/// Pixels to a side of a block.
+const ROW: usize = BLOCK as usize;
+/// Blocks in a row of a tile.
+const BLOCKS: usize = TILE_SIDE / ROW;
 
 /// Draws one tile after another.
 #[derive(Debug)]
 pub(super) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
-    pixels: Box<[[u8; 4]; TILE_SIDE * TILE_SIDE]>,
+    /// A tile beside the picture.
+    pixels: Vec<[u8; 4]>,
 }
 
 impl<T: Light> Default for Painter<T> {
@@ -50,7 +59,7 @@ impl<T: Light> Default for Painter<T> {
         Self {
             shader: Shader::default(),
             visibility: Visibility::default(),
-            pixels: Box::new([[0; 4]; TILE_SIDE * TILE_SIDE]),
+            pixels: vec![[0; 4]; TILE_SIDE * TILE_SIDE],
         }
     }
 }
@@ -61,45 +70,80 @@ impl<T: Light> Painter<T> {
         self.shader.begin();
     }
 
-    /// Paints a tile; says whether it shows anything but the background.
-    pub(super) fn paint(&mut self, scenery: &Scenery<'_, T>, tile: usize) -> bool {
+    /// Paints a tile of the picture, whose band is given.
+    pub(super) fn paint(&mut self, scenery: &Scenery<'_, T>, tile: usize, band: &Mutex<Band<'_>>) {
         let Scenery { level, plan, frame, .. } = *scenery;
-        if frame.is_empty(tile) {
-            return false;
+        let (size, background) = (plan.size, plan.background);
+        let bounds = bounds_of(tile, size);
+        if !frame.is_empty(tile) {
+            self.visibility.draw(level, plan, frame, (tile, bounds));
         }
-        let bounds = bounds_of(tile, plan.size);
-        self.visibility.draw(level, plan, frame, (tile, bounds));
-        self.shader.tile.begin(plan, &self.visibility, bounds);
-        self.pixels.fill(plan.background.opaque());
-        let mut shows = false;
-        for block in 0..TILE_SIDE * TILE_SIDE / BLOCK_PIXELS {
-            if !self.visibility.shows(block) {
-                continue;
+        if frame.is_empty(tile) || self.visibility.is_empty() {
+            return Self::fill(tile, size, background, &mut locked(band));
+        }
+        self.shader.tile.begin((level, plan), &self.visibility, bounds);
+        let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
+        let (column, place) = Self::place(tile, size);
+        if let (true, Ok(mut band)) = (whole, band.try_lock()) {
+            // Straight into the picture, where nobody else is at work in these rows.
+            let Band { pixels, filled } = &mut *band;
+            let mut canvas = Canvas { pixels: &mut pixels[place.start..], stride: size.width };
+            let shows = self.blocks(scenery, bounds, &mut canvas);
+            filled[column] = Some(background).filter(|_| !shows);
+            return;
+        }
+        let mut pixels = std::mem::take(&mut self.pixels);
+        let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
+        let shows = self.blocks(scenery, bounds, &mut canvas);
+        self.pixels = pixels;
+        let mut band = locked(band);
+        if shows {
+            band.filled[column] = None;
+            for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width))
+            {
+                to[place.clone()].copy_from_slice(&from[..place.len()]);
             }
-            let corner = self.visibility.corner(block);
-            let (tile, at) = (&mut self.pixels[..], place_of(corner, bounds));
+        } else {
+            Self::fill(tile, size, background, &mut band);
+        }
+    }
+
+    /// Colours the blocks of a tile; says whether it shows anything but the background.
+    fn blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        bounds: PixelBox,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let mut whole = self.visibility.whole_blocks();
+        if whole != u64::MAX {
+            for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
+                row[..TILE_SIDE].fill(scenery.plan.background.opaque());
+            }
+        }
+        let mut shows = whole != 0;
+        for block in 0..BLOCK_PIXELS {
             if let Some(number) = self.visibility.whole(block) {
-                self.shader.whole_block(scenery, number, corner, tile, at);
-                shows = true;
-            } else {
+                if whole >> block & 1 != 0 {
+                    let which = (block..BLOCK_PIXELS)
+                        .filter(|other| self.visibility.whole(*other) == Some(number))
+                        .fold(0, |which, other| which | 1 << other);
+                    whole &= !which;
+                    let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
+                    self.shader.whole_blocks(scenery, number, blocks, canvas);
+                }
+            } else if self.visibility.shows(block) {
+                let corner = self.visibility.corner(block);
                 let words = self.visibility.block(block);
-                shows |= self.shader.block(scenery, words, corner, tile, at);
+                let at = canvas.place([block % BLOCKS * ROW, block / BLOCKS * ROW]);
+                shows |= self.shader.block(scenery, words, corner, canvas, at);
             }
         }
         shows
     }
 
-    /// Copies what was painted into its band of the picture.
-    pub(super) fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
-        let (column, place) = Self::place(tile, size);
-        band.filled[column] = None;
-        for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width)) {
-            to[place.clone()].copy_from_slice(&from[..place.len()]);
-        }
-    }
-
     /// Fills a tile with a colour, where it is not filled with it.
-    pub(super) fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
+    fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
         let (column, place) = Self::place(tile, size);
         if band.filled[column] != Some(color) {
             band.filled[column] = Some(color);

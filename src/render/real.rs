@@ -16,6 +16,10 @@ use fearless_simd::{
 };
 
 use super::pick::{SLOTS, pick};
+pub use super::ways::ByWay;
+use super::ways::Choosing;
+pub use super::ways::power::Power;
+use crate::scene::{Normalising, SpecularPower};
 
 /// A real number, or several of them side by side.
 pub trait Real:
@@ -82,34 +86,6 @@ impl Real for f64 {
     }
 }
 
-/// To which power numbers are taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Power {
-    /// At least 0.
-    pub(super) exponent: f64,
-    /// A power below 2^`floor` counts as 0. It keeps subnormal numbers out, and the work with them.
-    pub(super) floor: f64,
-    /// 2^`floor`.
-    pub(super) least: f64,
-    /// The exponent, where it is a whole number that squaring reaches fast.
-    pub(super) whole: Option<u32>,
-    /// A number whose power is below the floor, but normal in 32 bits; where the exponent is whole.
-    pub(super) held: f64,
-}
-
-impl Power {
-    /// The largest exponent that is reached by squaring.
-    const LARGEST: u32 = 64;
-
-    /// The power with an exponent of at least 0; 0 where it is below 2^`floor`, from -60 to 0.
-    #[must_use]
-    pub fn new(exponent: f64, floor: f64) -> Self {
-        let whole = (1..=Self::LARGEST).find(|n| f64::from(*n) == exponent);
-        let held = whole.map_or(0.0, |n| libm::exp2(-f64::from(126 / n)));
-        Self { exponent, floor, least: libm::exp2(floor), whole, held }
-    }
-}
-
 /// What takes numbers from rows in memory, some at a time, computes with them, and puts them back.
 ///
 /// Code that is written over a machine is compiled for each: see [`Kernel`].
@@ -117,7 +93,7 @@ pub trait Machine: Copy {
     /// The numbers in memory.
     type Number: Copy;
     /// The numbers that are computed with: [`Self::LANES`] of them.
-    type R: Real;
+    type R: ByWay;
     /// Places in a row: [`Self::LANES`] of them.
     type Slots: Copy;
     /// How many numbers are taken at a time.
@@ -126,6 +102,8 @@ pub trait Machine: Copy {
     fn load(self, row: &[Self::Number], at: usize) -> Self::R;
     /// The numbers of four rows that lie side by side, from `at` on.
     fn load_four(self, rows: &[[Self::Number; 4]], at: usize) -> [Self::R; 4];
+    /// Puts numbers into four rows that lie side by side, from `at` on.
+    fn store_four(self, values: [Self::R; 4], rows: &mut [[Self::Number; 4]], at: usize);
     /// Puts numbers into a row from `at` on.
     fn store(self, value: Self::R, row: &mut [Self::Number], at: usize);
     /// The whole numbers of a row that begin at `at`.
@@ -133,6 +111,14 @@ pub trait Machine: Copy {
     /// Puts colours into a row of pixels: red, green, blue and 255, as bytes in this order, each the
     /// nearest to 255 times the number, as [`Number::byte`] has it.
     fn store_pixels(self, color: Triple<Self::R>, row: &mut [u32], at: usize);
+    /// The same, each the whole part of 255 times the number and a threshold from 0 to 1.
+    fn store_pixels_by(
+        self,
+        color: Triple<Self::R>,
+        threshold: Self::R,
+        row: &mut [u32],
+        at: usize,
+    );
     /// A constant.
     fn lift(self, constant: f64) -> Self::R;
     /// One number for all.
@@ -173,6 +159,11 @@ impl Machine for Exact {
     }
 
     #[inline(always)]
+    fn store_four(self, values: [f64; 4], rows: &mut [[f64; 4]], at: usize) {
+        rows[at] = values;
+    }
+
+    #[inline(always)]
     fn store(self, value: f64, row: &mut [f64], at: usize) {
         row[at] = value;
     }
@@ -185,6 +176,14 @@ impl Machine for Exact {
     #[inline(always)]
     fn store_pixels(self, color: Triple<f64>, row: &mut [u32], at: usize) {
         let [r, g, b] = color.0.map(Number::byte);
+        row[at] = u32::from_le_bytes([r, g, b, 255]);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before")]
+    fn store_pixels_by(self, color: Triple<f64>, threshold: f64, row: &mut [u32], at: usize) {
+        let byte = |x: f64| (Real::min(Real::max(x, 0.0), 1.0) * 255.0 + threshold) as u8;
+        let [r, g, b] = color.0.map(byte);
         row[at] = u32::from_le_bytes([r, g, b, 255]);
     }
 
@@ -245,6 +244,19 @@ impl<S: Simd> Machine for Sixteen<S> {
     }
 
     #[inline(always)]
+    fn store_four(self, [a, b, c, d]: [f32x16<S>; 4], rows: &mut [[f32; 4]], at: usize) {
+        let (even_low, even_high) = a.interleave(c);
+        let (odd_low, odd_high) = b.interleave(d);
+        let (first, second) = even_low.interleave(odd_low);
+        let (third, fourth) = even_high.interleave(odd_high);
+        let flat = rows[at..at + 16].as_flattened_mut();
+        first.store_slice(&mut flat[..16]);
+        second.store_slice(&mut flat[16..32]);
+        third.store_slice(&mut flat[32..48]);
+        fourth.store_slice(&mut flat[48..]);
+    }
+
+    #[inline(always)]
     fn store(self, value: f32x16<S>, row: &mut [f32], at: usize) {
         value.store_slice(&mut row[at..at + 16]);
     }
@@ -256,8 +268,20 @@ impl<S: Simd> Machine for Sixteen<S> {
 
     #[inline(always)]
     fn store_pixels(self, color: Triple<f32x16<S>>, row: &mut [u32], at: usize) {
+        self.store_pixels_by(color, Machine::lift(self, 0.5), row, at);
+    }
+
+    #[inline(always)]
+    fn store_pixels_by(
+        self,
+        color: Triple<f32x16<S>>,
+        threshold: f32x16<S>,
+        row: &mut [u32],
+        at: usize,
+    ) {
         let Triple([r, g, b]) = color;
-        let (r, g, b) = (lanes_byte(r), lanes_byte(g), lanes_byte(b));
+        let byte = |number| lanes_byte(number, threshold);
+        let (r, g, b) = (byte(r), byte(g), byte(b));
         let pixels = r | (g << 8) | (b << 16) | (255 << 24_i32);
         pixels.bitcast::<u32x16<S>>().store_slice(&mut row[at..at + 16]);
     }
@@ -289,11 +313,11 @@ impl<S: Simd> Machine for Sixteen<S> {
     }
 }
 
-/// What [`Number::byte`] does to one number.
+/// What [`Number::byte`] does to one number, with a threshold of one half.
 #[inline(always)]
-fn lanes_byte<S: Simd>(number: f32x16<S>) -> i32x16<S> {
+fn lanes_byte<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> i32x16<S> {
     let (zero, one) = (number.lift(0.0), number.lift(1.0));
-    (Real::min(Real::max(number, zero), one) * 255.0 + 0.5).to_int()
+    (Real::min(Real::max(number, zero), one) * 255.0 + threshold).to_int()
 }
 
 /// The numbers that pictures can be computed in.
@@ -302,8 +326,12 @@ pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + '
     fn from_f64(number: f64) -> Self;
     /// The byte nearest to 255 times the number: clamped once, rounded, NaN gives 0.
     fn byte(self) -> u8;
+    /// How such numbers take powers by themselves.
+    const POWER: SpecularPower;
     /// Does the work with the machine for such numbers, and with instructions of this level.
     fn run(level: Level, kernel: impl Kernel<Self>);
+    /// The same by a rare way, where there is one.
+    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>);
 }
 
 impl Number for f64 {
@@ -317,8 +345,17 @@ impl Number for f64 {
         crate::base::color::byte(self)
     }
 
+    const POWER: SpecularPower = SpecularPower::Library;
+
     fn run(_: Level, kernel: impl Kernel<Self>) {
         kernel.run(Exact);
+    }
+
+    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>) {
+        match way {
+            None => Self::run(level, kernel),
+            Some(way) => kernel.run(Choosing { machine: Exact, way }),
+        }
     }
 }
 
@@ -335,8 +372,19 @@ impl Number for f32 {
         (Real::min(Real::max(self, 0.0), 1.0) * 255.0 + 0.5) as u8
     }
 
+    const POWER: SpecularPower = SpecularPower::Polynomial;
+
     fn run(level: Level, kernel: impl Kernel<Self>) {
         dispatch!(level, simd => kernel.run(Sixteen(simd)));
+    }
+
+    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>) {
+        match way {
+            None => Self::run(level, kernel),
+            Some(way) => {
+                dispatch!(level, simd => kernel.run(Choosing { machine: Sixteen(simd), way }));
+            }
+        }
     }
 }
 

@@ -17,10 +17,12 @@ use super::frame::Frame;
 use super::light::Lit;
 use super::painter::{Band, Painter, bounds_of};
 use super::plan::{EffectUse, FramePlan};
+use super::shines::Shines;
 use super::stages::{Laps, Stages};
-use super::surface::{Scenery, Shines};
+use super::surface::Scenery;
 use super::tile::{self, Seen, TILE, TILE_SIDE, Visibility};
 use super::watch::Watch;
+use super::ways;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Arithmetic, ItemId};
@@ -190,7 +192,8 @@ impl Renderer {
         visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
         let word = visibility.word(self.level, x, y);
         let (draw, polygon) = self.seen(plan, word)?;
-        Some(Hit { item: plan.draws[draw as usize].item, polygon, depth: tile::depth(word) })
+        let depth = ways::depth::depth(plan.ways.depth, tile::key(word));
+        Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
     /// Where the last picture shows an item: a flag for each pixel, row by row from the top.
@@ -265,13 +268,12 @@ impl Renderer {
         }
     }
 
-    /// Draws tiles, each thread its own; a band of rows is locked only while a tile is copied.
+    /// Draws tiles, each thread its own.
     fn draw<T: Painted>(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
         let mut laps = Laps::start();
         let Room { shines, lit, painters } = T::room(&mut self.rooms);
         shines.prepare(plan);
-        lit.prepare(plan, shines, self.level);
-        self.stages.light = laps.lap();
+        lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
         let scenery = Scenery { level, plan, frame, lit, shines };
         let Size { width, .. } = plan.size;
@@ -288,20 +290,15 @@ impl Renderer {
         let work = |painter: &mut Painter<T>| {
             painter.begin();
             loop {
-                let tile = next.fetch_add(1, Ordering::Relaxed);
-                if tile >= tiles || !watch.goes_on() {
+                let turn = next.fetch_add(1, Ordering::Relaxed);
+                if turn >= tiles || !watch.goes_on() {
                     return;
                 }
-                if !changes.tiles.contains(tile) {
-                    continue;
-                }
-                let shows = painter.paint(&scenery, tile);
-                let band = bands[tile / columns].lock();
-                let mut band = band.unwrap_or_else(std::sync::PoisonError::into_inner);
-                if shows {
-                    painter.copy(tile, plan.size, &mut band);
-                } else {
-                    Painter::<T>::fill(tile, plan.size, plan.background, &mut band);
+                // Down and then across, so that threads are at work in bands of their own.
+                let (row, column) = (turn % bands.len(), turn / bands.len());
+                let tile = row * columns + column;
+                if changes.tiles.contains(tile) {
+                    painter.paint(&scenery, tile, &bands[row]);
                 }
             }
         };

@@ -12,7 +12,7 @@ use super::coverage::{PixelBox, SUBPIXELS, doubled_area};
 use super::hits::PACK;
 use super::plan::{Back, Draw, Pipeline};
 use super::small::{self, Pack, SMALL};
-use super::vertices::fetch;
+use super::vertices::{fetch, fetch_vertices};
 use crate::base::image::Size;
 use crate::base::math::each;
 use crate::scene::{DrawOrder, DrawTriangle};
@@ -35,7 +35,7 @@ pub(super) struct Setup<'a> {
 
 /// How a triangle is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Not,
     Plain,
     Cutout,
@@ -153,12 +153,11 @@ impl<'a> Setup<'a> {
         triangles: &[DrawTriangle; PACK],
         corner: usize,
     ) -> [i32x16<S>; 4] {
-        // What is held to the last needs no check in each lane.
-        let last = self.vertices.len().saturating_sub(1);
-        fetch(
+        fetch_vertices(
             simd,
+            self.vertices,
             #[inline(always)]
-            |lane| self.vertices[(triangles[lane].vertices[corner] as usize).min(last)].row(),
+            |lane| triangles[lane].vertices[corner],
         )
     }
 
@@ -257,7 +256,7 @@ impl<'a> Setup<'a> {
         vertices.map(|vertex| self.screen.clip(self.order.position(vertex)))
     }
 
-    fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
+    pub(super) fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
         let mesh = &self.draw.model.mesh;
         let polygon = mesh.triangles()[number as usize].polygon;
         if self.draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {

@@ -5,7 +5,7 @@
 //! root and quotient, which would be most of the time of light.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdInto as _,
+    Bytes as _, Level, Select as _, Simd, SimdBase, SimdFloat as _, SimdInt as _, SimdInto as _,
     f32x16, i32x16,
 };
 
@@ -187,6 +187,17 @@ impl Single for f32 {
     }
 }
 
+/// Whether the processor's own maximum of a and b is a where a > b, else b, also of NaN and of zeros:
+/// that of x86 is. "Intel 64 and IA-32 Architectures Software Developer's Manual", MAXPS.
+#[inline(always)]
+fn has_own_maximum<S: Simd>(simd: S) -> bool {
+    match simd.level() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse2(_) | Level::Sse4_2(_) | Level::Avx2(_) | Level::Avx512(_) => true,
+        _ => false,
+    }
+}
+
 impl<S: Simd> Real for f32x16<S> {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
@@ -197,6 +208,22 @@ impl<S: Simd> Real for f32x16<S> {
     #[inline(always)]
     fn if_more(self, than: Self, yes: Self, no: Self) -> Self {
         self.simd_gt(than).select(yes, no)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if has_own_maximum(self.simd) {
+            return <Self as SimdBase<S>>::max(self, other);
+        }
+        self.if_more(other, self, other)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if has_own_maximum(self.simd) {
+            return <Self as SimdBase<S>>::min(self, other);
+        }
+        other.if_more(self, self, other)
     }
 
     #[inline(always)]

@@ -11,9 +11,7 @@ pub struct Stages {
     pub set_up: Duration,
     /// Lines to the tiles, the short ones to pixels.
     pub lines: Duration,
-    /// Light at faces and vertices.
-    pub light: Duration,
-    /// What is seen in each tile, its colours, and the copy into the picture.
+    /// What is seen in each tile, its light and its colours in the picture.
     pub tiles: Duration,
 }
 

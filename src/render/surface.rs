@@ -6,21 +6,24 @@
 //! block; no pixel asks where it lies.
 
 use fearless_simd::Level;
-use glam::DVec3;
 
 use super::effects::{BATCH, Batch, Light, Rows, Shine, load, set};
-use super::faces::{Faces, weights};
+use super::faces::Faces;
 use super::frame::Frame;
 use super::interpolate::{Located, Mixed, mix, surroundings};
 use super::items::Items;
-use super::light::Lit;
+use super::light::{Lighting, Lit, Table};
 use super::pick::SLOTS;
 use super::plan::{Back, Draw, FramePlan, Pipeline, Shaded, Stage, TilePlan};
 use super::real::{Kernel, Machine, Number, Triple};
+use super::shines::Shines;
+use super::texels::{color, uv, uv_ways};
 use super::texture;
-use super::tile::{BLOCK, BLOCK_PIXELS, Seen, TILE_SIDE, seen};
+use super::tile::{BLOCK, BLOCK_PIXELS, Seen, seen};
+use super::ways::bytes::{FinishBy, thresholds};
+use super::whole::{Blocks, Canvas};
 use crate::base::color::Color;
-use crate::scene::{LightAt, NONE};
+use crate::scene::{LightAt, Rounding};
 
 /// What colouring pixels reads.
 #[derive(Clone, Copy, Debug)]
@@ -30,29 +33,6 @@ pub(super) struct Scenery<'a, T> {
     pub(super) frame: &'a Frame,
     pub(super) lit: &'a Lit<T>,
     pub(super) shines: &'a Shines<T>,
-}
-
-/// For each pipeline its lamps, in the order of its stages.
-#[derive(Debug, Default)]
-pub(super) struct Shines<T>(Vec<Vec<Shine<T>>>);
-
-impl<T: Number> Shines<T> {
-    /// Prepares the lamps of a plan.
-    pub(super) fn prepare(&mut self, plan: &FramePlan) {
-        self.0.resize_with(plan.pipelines.len(), Vec::new);
-        for (shines, pipeline) in self.0.iter_mut().zip(&plan.pipelines) {
-            shines.clear();
-            if let Pipeline::Shaded(Shaded { light: Some(stages), matter, .. }) = pipeline {
-                let lamps = stages.iter().map(|stage| &plan.lamps[stage.lamp as usize]);
-                shines.extend(lamps.map(|lamp| Shine::new(lamp, matter)));
-            }
-        }
-    }
-
-    /// The lamps of a pipeline.
-    pub(super) fn of(&self, pipeline: u32) -> &[Shine<T>] {
-        &self.0[pipeline as usize]
-    }
 }
 
 /// Colours pixels. Each thread has its own.
@@ -66,6 +46,17 @@ pub(super) struct Shader<T> {
     batch: Batch<T>,
     texels: Rows<T>,
     colors: [u32; BATCH],
+}
+
+/// What mixing the light of vertices gave.
+#[derive(Clone, Copy, Debug)]
+enum Mixture {
+    /// The bytes of the pixels.
+    Bytes,
+    /// Their colours, as diffuse light.
+    Colors,
+    /// Diffuse and specular light.
+    Light,
 }
 
 /// Pixels that are coloured together.
@@ -98,14 +89,13 @@ impl<T: Light> Shader<T> {
         self.faces.forget();
     }
 
-    /// Colours the pixels of a block whose upper left pixel is `corner` into the rows of a tile, from
-    /// `at` on. What shows the background is left as it is; says whether anything else is shown.
+    /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on. What shows the background is left as it is; says whether anything else is shown.
     pub(super) fn block(
         &mut self,
         scenery: &Scenery<'_, T>,
         words: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
-        tile: &mut [[u8; 4]],
+        canvas: &mut Canvas<'_>,
         at: usize,
     ) -> bool {
         let shown = self.items.list(scenery.level, words, corner);
@@ -114,7 +104,8 @@ impl<T: Light> Shader<T> {
             let i = lines.trailing_zeros() as usize;
             lines &= lines - 1;
             if let Seen::Line(line) = seen(words[i]) {
-                tile[at + place(i)] = scenery.frame.line_color(scenery.plan, line);
+                canvas.pixels[at + canvas.place(in_block(i))] =
+                    scenery.frame.line_color(scenery.plan, line);
             }
         }
         if shown.triangles == 0 {
@@ -122,25 +113,61 @@ impl<T: Light> Shader<T> {
         }
         if let Some(group) = one_group(scenery, &self.items) {
             self.group(scenery, &group);
-            self.copy(tile, at);
+            self.copy(canvas, at);
         } else {
-            self.groups(scenery, corner, tile, at);
+            self.groups(scenery, corner, canvas, at);
         }
         true
     }
 
-    /// Colours the pixels of a block that one triangle covers as a whole.
-    pub(super) fn whole_block(
+    /// Colours the pixels of blocks that one triangle covers as a whole.
+    pub(super) fn whole_blocks(
         &mut self,
         scenery: &Scenery<'_, T>,
         number: u32,
-        corner: [i32; 2],
-        tile: &mut [[u8; 4]],
-        at: usize,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
     ) {
-        self.items.list_whole(number, corner);
-        self.group(scenery, &group_of(scenery, number));
-        self.copy(tile, at);
+        let group = group_of(scenery, number);
+        let [x, y] = blocks.corner;
+        self.items.list_whole(number, [x, y]);
+        if self.mix_blocks(scenery, &group, blocks, canvas) {
+            return;
+        }
+        blocks.each(|[column, row]| {
+            self.items.list_whole(number, [x + column, y + row]);
+            self.group(scenery, &group);
+            let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
+            self.copy(canvas, canvas.place(place));
+        });
+    }
+
+    /// Colours the pixels of blocks that one triangle covers as a whole in one pass, where all that is
+    /// to do is to mix the colours of its corners. Says whether it is.
+    fn mix_blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let Scenery { level, plan, lit, .. } = *scenery;
+        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
+            return false;
+        };
+        let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
+        if !mixed || group.draw.back == Back::Red || plan.ways.mixes_one_by_one() {
+            return false;
+        }
+        let tables = lit.tables(group.draw_index, group.pipeline);
+        if !tables[0].is_colored() {
+            return false;
+        }
+        if self.take(scenery, group, true) {
+            self.carry_diffuse(scenery, group, shaded, tables);
+            self.faces.spread(level);
+        }
+        T::mix_blocks(level, &self.faces, blocks, canvas)
     }
 
     /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
@@ -149,7 +176,7 @@ impl<T: Light> Shader<T> {
         &mut self,
         scenery: &Scenery<'_, T>,
         corner: [i32; 2],
-        tile: &mut [[u8; 4]],
+        canvas: &mut Canvas<'_>,
         at: usize,
     ) {
         let mut done = [false; SLOTS];
@@ -168,24 +195,20 @@ impl<T: Light> Shader<T> {
             }
             self.items.take_from(&all, &keep, corner);
             self.group(scenery, &group);
-            self.copy(tile, at);
+            self.copy(canvas, at);
         }
         self.items = all;
     }
 
-    /// Copies the colours into the rows of the tile.
-    fn copy(&self, tile: &mut [[u8; 4]], at: usize) {
+    /// Copies the colours into the tile.
+    fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
         if self.items.is_whole() {
-            let rows = self.colors.chunks_exact(BLOCK as usize);
-            for (to, from) in tile[at..].chunks_mut(TILE_SIDE).zip(rows) {
-                for (to, from) in to[..BLOCK as usize].iter_mut().zip(from) {
-                    *to = from.to_le_bytes();
-                }
-            }
+            canvas.put(at, &self.colors);
         } else {
             let places = &self.items.places[..self.items.len];
             for (i, color) in places.iter().zip(&self.colors) {
-                tile[at + place(usize::from(*i))] = color.to_le_bytes();
+                let place = canvas.place(in_block(usize::from(*i)));
+                canvas.pixels[at + place] = color.to_le_bytes();
             }
         }
     }
@@ -212,40 +235,66 @@ impl<T: Light> Shader<T> {
     }
 
     fn shaded(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
-        let Scenery { level, plan, frame, .. } = *scenery;
-        let Group { draw, draw_index, base, .. } = *group;
+        let Scenery { level, plan, .. } = *scenery;
+        let draw = group.draw;
         let textured = shaded.texture.is_some() || shaded.vertex_colors;
+        let rounding = plan.ways.rounding;
+        // Every pixel has its own colour.
+        let each = textured || rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let places = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
-        let vertices = frame.vertices_of(plan, draw_index);
-        let new = self.faces.take(&self.items, draw.model.mesh.draw_order(), draw_index, base);
-        if new {
-            self.faces.find_sides(draw, plan, vertices);
-        }
+        let new = self.take(scenery, group, places);
         if places {
-            if new {
-                self.faces.locate(level, draw, plan, vertices);
-            }
             self.located.find(level, &self.items, &self.faces, (plan, draw));
+            if plan.ways.has_rare_places() {
+                let corners = scenery.frame.corners_of(plan, group.draw_index);
+                plan.ways.locate(&self.items, &self.faces, corners, &mut self.located);
+            }
         }
         self.batch.len = self.items.len;
+        let mut tint = shaded.tint;
         match light {
             None => {}
             Some((LightAt::Pixel, _)) => self.light_pixels(scenery, group, shaded, new),
-            Some((LightAt::Vertex, _)) if self.mix_light(scenery, group, new) => return,
-            Some((LightAt::Vertex, _)) => {}
-            Some((LightAt::Face, stages)) => self.light_faces(scenery, group, stages, textured),
+            Some((LightAt::Vertex, _)) => match self.mix_light(scenery, group, shaded, new) {
+                Mixture::Bytes => return,
+                Mixture::Colors => tint = [1.0; 3],
+                Mixture::Light => {}
+            },
+            Some((LightAt::Face, stages)) => self.light_faces(scenery, group, stages, each),
         }
         if textured {
-            self.texels(draw, shaded, plan);
+            self.texels(scenery, group, shaded);
         }
         let Self { batch, texels, colors, .. } = self;
-        let own =
-            if textured { Own::Texels(texels) } else { Own::Tint(shaded.tint.map(T::from_f64)) };
-        T::run(level, Finish { batch, lit: light.is_some(), own, colors });
-        if !places {
+        let own = if textured { Own::Texels(texels) } else { Own::Tint(tint.map(T::from_f64)) };
+        let lit = light.is_some();
+        if rounding == Rounding::Nearest {
+            T::run(level, Finish { batch, lit, own, colors });
+        } else {
+            let thresholds = &thresholds(rounding, &self.items);
+            T::run(level, FinishBy { batch, lit, own, thresholds, colors });
+        }
+        if !(places || each) {
             self.hand_out_colors();
         }
+    }
+
+    /// Takes the triangles of the list, and where they are if the pixels have `places`. Says whether
+    /// they are others than before.
+    fn take(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, places: bool) -> bool {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let Group { draw, draw_index, base, .. } = *group;
+        let order = draw.model.mesh.draw_order();
+        let new = self.faces.take(&self.items, order, draw_index, base);
+        if new {
+            let vertices = frame.vertices_of(plan, draw_index);
+            self.faces.find_sides(draw, plan, frame.corners_of(plan, draw_index));
+            if places {
+                self.faces.locate(level, draw, plan, vertices);
+            }
+        }
+        new
     }
 
     /// Light at every pixel.
@@ -282,24 +331,59 @@ impl<T: Light> Shader<T> {
         }
     }
 
-    /// Light of the vertices, mixed at every pixel. Says whether that gave the colours already.
-    fn mix_light(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, new: bool) -> bool {
-        let level = scenery.level;
-        let Self { items, faces, located, batch, colors, .. } = self;
-        let [front, back] = scenery.lit.tables(group.draw_index, group.pipeline);
-        if new || !front.is_colored() {
-            faces.carry_light(group.draw, &front.diffuse, &back.diffuse);
-            faces.spread(level);
+    /// Light of the vertices, mixed at every pixel.
+    fn mix_light(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        new: bool,
+    ) -> Mixture {
+        let Scenery { level, plan, .. } = *scenery;
+        let tables = scenery.lit.tables(group.draw_index, group.pipeline);
+        if new || !tables[0].is_colored() {
+            self.carry_diffuse(scenery, group, shaded, tables);
+            self.faces.spread(level);
         }
-        if front.is_colored() {
+        let Self { items, faces, located, batch, colors, .. } = self;
+        let colored = tables[0].is_colored();
+        if colored && plan.ways.rounding == Rounding::Nearest {
             mix(level, items, faces, located, Mixed::Pixels(colors));
-            return true;
+            return Mixture::Bytes;
         }
         mix(level, items, faces, located, Mixed::Rows(&mut batch.diffuse));
-        faces.carry_light(group.draw, &front.specular, &back.specular);
+        batch.len = items.len;
+        if colored {
+            batch.specular = [[T::default(); BATCH]; 3];
+            return Mixture::Colors;
+        }
+        faces.carry_light(
+            group.draw,
+            #[inline(always)]
+            |place, back| tables[usize::from(back)].specular(place),
+        );
         faces.spread(level);
         mix(level, items, faces, located, Mixed::Rows(&mut batch.specular));
-        false
+        Mixture::Light
+    }
+
+    /// Lets the faces carry the diffuse light of their corners, or their colours.
+    fn carry_diffuse(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        tables: [&Table<T>; 2],
+    ) {
+        let Self { faces, batch, .. } = self;
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let shines = scenery.shines.of(group.pipeline);
+        let lighting = Lighting { level: scenery.level, draw: group.draw, stages, shines };
+        faces.carry_light(
+            group.draw,
+            #[inline(always)]
+            |place, back| tables[usize::from(back)].diffuse(place, &lighting, batch),
+        );
     }
 
     /// Light of the faces: at every pixel where they have `places`, else face by face.
@@ -336,7 +420,9 @@ impl<T: Light> Shader<T> {
     }
 
     /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
-    fn texels(&mut self, draw: &Draw, shaded: &Shaded, plan: &FramePlan) {
+    fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+        let (plan, draw) = (scenery.plan, group.draw);
+        let mips = shaded.texture.as_ref().and_then(|texture| scenery.shines.mips_of(texture));
         let Self { items, faces, located, texels, .. } = self;
         for (row, tint) in texels.iter_mut().zip(shaded.tint) {
             row.fill(T::from_f64(tint));
@@ -347,7 +433,18 @@ impl<T: Light> Shader<T> {
             if let Some(texture) = &shaded.texture
                 && let Some(uv) = uv(draw, number, weights)
             {
-                let texel = texture::sample::<T>(texture, uv, plan.filter);
+                let texel = match mips {
+                    None => texture::sample::<T>(texture, uv, plan.filter),
+                    Some(mips) => mips.sample(
+                        uv,
+                        uv_ways(
+                            (plan, scenery.frame),
+                            group.draw_index,
+                            number,
+                            [items.x[i], items.y[i]],
+                        ),
+                    ),
+                };
                 for (row, part) in texels.iter_mut().zip(texel) {
                     row[i] = row[i] * part;
                 }
@@ -361,9 +458,9 @@ impl<T: Light> Shader<T> {
     }
 }
 
-/// Where pixel `i` of a block stands in the rows of a tile, from the block's first on.
-const fn place(i: usize) -> usize {
-    i / BLOCK as usize * TILE_SIDE + i % BLOCK as usize
+/// Column and row of pixel `i` of a block.
+const fn in_block(i: usize) -> [usize; 2] {
+    [i % BLOCK as usize, i / BLOCK as usize]
 }
 
 /// The group that a triangle belongs to.
@@ -389,14 +486,14 @@ fn one_group<'a, T>(scenery: &Scenery<'a, T>, items: &Items) -> Option<Group<'a>
 
 /// The colour t of the surface itself: one, or one for each pixel.
 #[derive(Clone, Copy, Debug)]
-enum Own<'a, T> {
+pub(super) enum Own<'a, T> {
     Tint([T; 3]),
     Texels(&'a Rows<T>),
 }
 
 impl<T: Number> Own<'_, T> {
     #[inline(always)]
-    fn at<M: Machine<Number = T>>(self, machine: M, at: usize) -> Triple<M::R> {
+    pub(super) fn at<M: Machine<Number = T>>(self, machine: M, at: usize) -> Triple<M::R> {
         match self {
             Self::Tint(tint) => set(machine, tint),
             Self::Texels(texels) => load(machine, texels, at),
@@ -439,45 +536,4 @@ pub(super) fn run<T: Light>(
     for (stage, shine) in stages.iter().zip(shines) {
         T::add_light(stage.variant(), level, batch, shine);
     }
-}
-
-/// The place on the texture; `None` where a corner has none.
-fn uv(draw: &Draw, number: u32, weights: DVec3) -> Option<[f64; 2]> {
-    let mesh = &draw.model.mesh;
-    let own = mesh.triangles()[number as usize];
-    let ids = own.corners.map(|corner| mesh.corners()[corner as usize].uv);
-    if ids.contains(&NONE) {
-        return None;
-    }
-    let [a, b, c] = ids.map(|id| mesh.uvs()[id as usize].map(f64::from));
-    let between = |axis: usize| {
-        let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-        let value = a[axis] + (b[axis] - a[axis]) * weights.y + (c[axis] - a[axis]) * weights.z;
-        value.clamp(low, high)
-    };
-    Some([between(0), between(1)])
-}
-
-/// The vertex colours' mixture.
-fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
-    let mesh = &draw.model.mesh;
-    let own = mesh.triangles()[number as usize];
-    let [a, b, c] = own.corners.map(|corner| {
-        crate::scene::dvec3(mesh.colors()[mesh.corners()[corner as usize].position as usize])
-    });
-    (a + (b - a) * weights.y + (c - a) * weights.z).to_array()
-}
-
-/// Whether a triangle with a texture that leaves pixels out is drawn at one of them.
-pub(super) fn is_opaque(plan: &FramePlan, frame: &Frame, number: u32, pixel: [i32; 2]) -> bool {
-    let (index, start) = frame.draw_of(number);
-    let draw = &plan.draws[index as usize];
-    let number = number - start.number;
-    let Pipeline::Shaded(shaded) = &plan.pipelines[draw.pipeline_of(number) as usize] else {
-        return true;
-    };
-    let (Some(opacity), Some(texture)) = (shaded.cutout, &shaded.texture) else { return true };
-    let weights = weights(plan, draw, frame.vertices_of(plan, index), number, pixel);
-    let Some(uv) = uv(draw, number, weights) else { return true };
-    texture::sample::<f64>(texture, uv, plan.filter)[3] * opacity >= 0.5
 }

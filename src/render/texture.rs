@@ -25,7 +25,8 @@ pub(super) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter)
     };
     match filter {
         Filter::Nearest => texel(whole(x), whole(y)),
-        Filter::Bilinear => {
+        // Of what the picture has at its own size; that it is seen from afar is asked before.
+        Filter::Bilinear | Filter::Trilinear => {
             let (x, y) = (x - 0.5, y - 0.5);
             let (column, row) = (whole(x), whole(y));
             let (s, t) = (T::from_f64(x - x.floor()), T::from_f64(y - y.floor()));

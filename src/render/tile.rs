@@ -21,7 +21,7 @@ use super::frame::Frame;
 use super::large::Large;
 use super::lines::{self, LineNumber};
 use super::plan::FramePlan;
-use super::surface;
+use super::texels;
 use crate::base::math::each;
 
 /// Pixels to a side of a tile.
@@ -60,9 +60,9 @@ pub(super) const fn seen(word: u64) -> Seen {
     }
 }
 
-/// The depth that a word says.
-pub(super) const fn depth(word: u64) -> f32 {
-    f32::from_bits((word >> 32) as u32)
+/// What a word says of the depth: its bits, where it is kept as mostly.
+pub(super) const fn key(word: u64) -> u32 {
+    (word >> 32) as u32
 }
 
 #[inline(always)]
@@ -114,6 +114,9 @@ impl Visibility {
         (tile, bounds): (usize, PixelBox),
     ) {
         self.clear(bounds);
+        if plan.ways.draws_one_by_one() {
+            return self.draw_one_by_one(plan, frame, (tile, bounds));
+        }
         for bins in frame.bins() {
             dispatch!(level, simd => self.draw_plain(simd, bins, tile));
         }
@@ -129,6 +132,21 @@ impl Visibility {
         }
     }
 
+    /// Draws everything by a rare way, pixel by pixel.
+    fn draw_one_by_one(
+        &mut self,
+        plan: &FramePlan,
+        frame: &Frame,
+        (tile, bounds): (usize, PixelBox),
+    ) {
+        self.words.fill(0);
+        self.written = u64::MAX;
+        plan.ways.paint(plan, frame, (tile, bounds), &mut |[x, y], key, number| {
+            let word = &mut self.words[place(x, y)];
+            *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
+        });
+    }
+
     fn clear(&mut self, bounds: PixelBox) {
         (self.written, self.whole) = (0, 0);
         self.large.clear();
@@ -141,10 +159,20 @@ impl Visibility {
         (self.written | self.whole) >> block & 1 != 0
     }
 
+    /// Whether no block shows anything.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.written | self.whole == 0
+    }
+
     /// The triangle that a block shows, where one is known to cover it as a whole; its words are of
     /// no meaning then.
     pub(super) fn whole(&self, block: usize) -> Option<u32> {
         (self.whole >> block & 1 != 0).then(|| self.large[self.shown[block] as usize].number)
+    }
+
+    /// The blocks that one triangle is known to cover as a whole, a bit for each.
+    pub(super) const fn whole_blocks(&self) -> u64 {
+        self.whole
     }
 
     /// The words of a block that shows something, row by row.
@@ -154,21 +182,18 @@ impl Visibility {
 
     /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
     /// nearer than; `None` where no triangle is seen.
-    pub(super) fn depths(&self) -> Option<[f32; 2]> {
-        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+    pub(super) fn depths(&self, level: Level) -> Option<[f32; 2]> {
+        // Depths are not negative, so that their bits are in the order of the numbers.
+        let (mut low, mut high) = (u32::MAX, 0);
         for block in (0..BLOCK_PIXELS).filter(|block| self.shows(*block)) {
-            if self.whole(block).is_some() {
-                low = low.min(self.farthest[block]);
-                high = high.max(self.nearest[block]);
-                continue;
-            }
-            for word in self.block(block) {
-                if let Seen::Triangle(_) = seen(*word) {
-                    (low, high) = (low.min(depth(*word)), high.max(depth(*word)));
-                }
-            }
+            let [own_low, own_high] = if self.whole(block).is_some() {
+                [self.farthest[block].to_bits(), self.nearest[block].to_bits()]
+            } else {
+                dispatch!(level, simd => depths_of(simd, self.block(block)))
+            };
+            (low, high) = (low.min(own_low), high.max(own_high));
         }
-        (low <= high).then_some([low, high])
+        (low <= high).then_some([low, high].map(f32::from_bits))
     }
 
     /// The upper left pixel of a block.
@@ -235,7 +260,7 @@ impl Visibility {
         let Some(triangle) = Triangle::new(corners) else { return };
         let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
         triangle.covered(self.bounds, |pixel| {
-            if surface::is_opaque(plan, frame, large.number, [pixel.x, pixel.y]) {
+            if texels::is_opaque(plan, frame, large.number, [pixel.x, pixel.y]) {
                 let depth = seen.depth(pixel.edges);
                 dispatch!(level, simd => self.put(simd, pixel.x, pixel.y, depth, large.number));
             }
@@ -335,10 +360,32 @@ impl Visibility {
     }
 }
 
+/// The bits of the least and of the largest depth of the triangles among some words.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
+fn depths_of<S: Simd>(_: S, words: &[u64; BLOCK_PIXELS]) -> [u32; 2] {
+    let (mut low, mut high) = (u32::MAX, 0);
+    for word in words {
+        let depth = (*word >> 32) as u32;
+        // The numbers of lines are the upper half of all; the background has the lowest word.
+        let is_triangle = *word as u32 >> 31 == 1;
+        low = low.min(if is_triangle { depth } else { u32::MAX });
+        high = high.max(if is_triangle { depth } else { 0 });
+    }
+    [low, high]
+}
+
 /// The words of a block.
 #[inline(always)]
 fn block_of(words: &mut [u64; PIXELS], block: usize) -> &mut [u64; BLOCK_PIXELS] {
     &mut words.as_chunks_mut().0[block]
+}
+
+/// The column and row of the tile whose word stands at a place.
+#[expect(clippy::cast_possible_truncation, reason = "a tile has 4096 pixels")]
+pub(super) const fn column_and_row(place: usize) -> [i32; 2] {
+    let (block, pixel) = ((place / BLOCK_PIXELS) as i32, (place % BLOCK_PIXELS) as i32);
+    [block % BLOCKS * BLOCK + pixel % BLOCK, block / BLOCKS * BLOCK + pixel / BLOCK]
 }
 
 /// Where the word of a pixel stands, by column and row of the tile.

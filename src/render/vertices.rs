@@ -28,6 +28,25 @@ fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [Scre
     }
 }
 
+/// x, y, depth and one by w of sixteen vertices, by their numbers. A number beyond the last means the
+/// last, which spares a check in each lane.
+#[inline(always)]
+pub(super) fn fetch_vertices<S: Simd>(
+    simd: S,
+    vertices: &[ScreenVertex],
+    number: impl Fn(usize) -> u32,
+) -> [i32x16<S>; 4] {
+    if vertices.is_empty() {
+        return [i32x16::splat(simd, 0); 4];
+    }
+    let last = vertices.len() - 1;
+    fetch(
+        simd,
+        #[inline(always)]
+        |lane| vertices[(number(lane) as usize).min(last)].row(),
+    )
+}
+
 /// Four rows of sixteen numbers from sixteen rows of four.
 #[inline(always)]
 pub(super) fn fetch<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [i32x16<S>; 4] {

@@ -41,7 +41,10 @@ pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Windin
 pub use object::{Object, PartLook, Spin, Surface};
 pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;
-pub use settings::{Arithmetic, Filter, LeaveOut, LightAt, Settings, SpecularForm};
+pub use settings::{
+    Arithmetic, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt, NormalMatrix,
+    Normalising, Rounding, Settings, SpecularForm, SpecularPower, Subpixels, VertexArithmetic,
+};
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,
     Transformation, View,

@@ -468,9 +468,8 @@ fn case_27_threads_and_instructions_do_not_show_in_a_dozen_pictures() {
         })
         .collect();
     let samples = samples();
-    let names = |sample: &marraztu::lab::prove::pictures::Sample| sample.name;
     assert_eq!(
-        samples.iter().map(names).collect::<Vec<_>>(),
+        samples.iter().map(|sample| &sample.name[..]).collect::<Vec<_>>(),
         listed.iter().map(|(name, _)| *name).collect::<Vec<_>>()
     );
     let mut pictures = 0;

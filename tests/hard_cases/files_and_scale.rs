@@ -5,8 +5,8 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::io::{FindingKind, LoadError, Loaded, Progress, parse};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource, ObjectId, Orbit,
-    Placed, Pose, Projection, Scene, Settings, View, newell,
+    Arithmetic, Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource,
+    ObjectId, Orbit, Placed, Pose, Projection, Scene, Settings, View, newell,
 };
 
 use super::cases::look;
@@ -175,7 +175,7 @@ fn scaled(by: f64, projection: Projection) -> (Scene, View) {
 fn case_66_a_scene_of_another_size_is_the_same_picture() {
     let mut differ = 0;
     for projection in [Projection::Perspective, Projection::Orthographic] {
-        for arithmetic in [marraztu::scene::Arithmetic::F32, marraztu::scene::Arithmetic::F64] {
+        for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
             let settings = Settings { arithmetic, ..Settings::default() };
             let picture = |by: f64| -> Picture {
                 let (scene, view) = scaled(by, projection);
@@ -193,11 +193,20 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
             }
         }
     }
+    // A lens that reaches so far that what is near has no square in f32, in the unit of the lens.
+    let (mut far, view) = scaled(1.0, Projection::Perspective);
+    let mut camera = far.selected_camera(&view).clone();
+    camera.lens.far = 1e39;
+    far.cameras = List::from_iter([(view.camera, camera)]);
+    let [fast, exact] = [Arithmetic::F32, Arithmetic::F64]
+        .map(|arithmetic| draw(&far, &view, &Settings { arithmetic, ..Settings::default() }, 128));
+    let step = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
+    differ += fast.pixels().iter().zip(exact.pixels()).filter(|pair| step(*pair)).count();
     // A length brought to 1 in f32: at 2^-80 its square is 0.
     let tiny = 2.0_f32.powi(-80);
     Figure {
         case: 66,
-        what: "pixels that differ in scenes of 2^-90 to 2^90 times the size",
+        what: "pixels that differ in scenes of 2^-90 to 2^90 times the size, and with a far plane at 1e39",
         naive: Some((
             "a normal of length 2^-80 by its length in f32",
             f64::from(tiny / (tiny * tiny).sqrt()),

@@ -99,7 +99,7 @@ pub(crate) fn found(clock: &mut FalseClock, easel: &mut FalseEasel) -> Findings 
     bench.run(candidates, &mut |_| {}).unwrap()
 }
 
-/// The first scene with a triangle that has a texture.
+/// The first scene with a stretched triangle that has a texture and an exponent of 32.
 fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
     use marraztu::base::Shared;
     use marraztu::scene::*;
@@ -107,7 +107,11 @@ fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
     let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
     let options = LoadOptions::default();
     let loaded = io::parse(text, "triangle.obj", None, &options, &io::Progress::new()).unwrap();
-    let mut object = Object::new(Shared::new(loaded.model), MaterialChoice::File);
+    let [ambient, diffuse, specular] = [[0.5; 3]; 3];
+    let material = Material { ambient, diffuse, specular, exponent: 32.0 };
+    let mut object = Object::new(Shared::new(loaded.model), MaterialChoice::Own(material));
+    let stretch = glam::DMat4::from_scale(glam::DVec3::new(1.0, 2.0, 1.0));
+    object.placement = Placed::new(stretch);
     let picture = Picture::filled(Size::new(1, 1), [255; 4]);
     let (wrap, source) = (Wrap::default(), std::path::PathBuf::new());
     let texture = Texture { source, picture, wrap, offset: [0.0; 2], scale: [1.0; 2] };

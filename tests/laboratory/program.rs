@@ -85,7 +85,7 @@ fn a_pixel_is_blamed_and_one_outside_is_refused() {
     let (out, _) = lab(0, folder.path(), &[&arguments[..], &["--pixel", "0,0"]].concat());
     assert!(out.contains("shows  the background") && out.contains("0 byte steps off"), "{out}");
     assert!(out.contains("shading pixel instead of face"), "{out}");
-    assert!(out.contains("filter bilinear instead of nearest"), "{out}");
+    assert!(out.contains("filter trilinear instead of nearest"), "{out}");
     let (_, err) = lab(1, folder.path(), &[&arguments[..], &["--pixel", "64,0"]].concat());
     assert!(err.contains("there is no 64,0"), "{err}");
 }

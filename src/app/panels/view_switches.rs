@@ -9,8 +9,8 @@ use crate::app::ask::Ask;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::scene::{
-    ACCURACY_PRESETS, AXES, Axis, CameraMode, Command, Frame, Normals, Observer, Projection,
-    Subject, Transformation,
+    ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, CameraMode, Command, Frame, Normals, Observer,
+    Projection, Subject, Transformation,
 };
 
 /// Shows it; what is asked for is added to `asks`.
@@ -208,9 +208,11 @@ fn normals_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
 /// How exactly pictures are drawn: the presets, and every axis of the table.
 fn settings_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let now = state.settings;
+    let hints: Vec<String> = ACCURACY_PRESETS.iter().map(AccuracyPreset::in_words).collect();
     let presets: Vec<Choice<'_>> = ACCURACY_PRESETS
         .iter()
-        .map(|preset| Choice::new("Accuracy", preset.label, preset.of(&now) == now, preset.what))
+        .zip(&hints)
+        .map(|(preset, hint)| Choice::new("Accuracy", preset.label, preset.of(&now) == now, hint))
         .collect();
     if let Some(clicked) = row(ui, "Accuracy", |ui| choices(ui, &presets)) {
         asks.push(Ask::Settings(ACCURACY_PRESETS[clicked].of(&now)));
@@ -227,7 +229,7 @@ pub(super) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, asks: &mut Vec<As
     let hints: Vec<String> = axis
         .choices
         .iter()
-        .map(|choice| match senseless {
+        .map(|choice| match senseless.or_else(|| (choice.sense)(&state.scene, &state.view).err()) {
             Some(why) => format!("{} Changes nothing now: {why}.", choice.what),
             None => format!("{} Error: {}.", choice.what, choice.error),
         })

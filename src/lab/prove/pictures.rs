@@ -15,9 +15,9 @@ use crate::io;
 use crate::render::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
-    Arithmetic, Command, Fill, Filter, Item, LightAt, LoadOptions, Mesh, MeshSource, Model, NONE,
-    Normals, Object, Part, Projection, Scene, Settings, SourceCorner, SpecularForm, Texture, View,
-    Wrap,
+    AXES, Arithmetic, Command, Fill, Filter, Item, LightAt, LoadOptions, Mesh, MeshSource, Model,
+    NONE, Normals, Object, Part, Projection, Scene, Settings, SourceCorner, SpecularForm,
+    SpecularPower, Texture, View, Wrap,
 };
 
 /// Pixels to a side.
@@ -42,7 +42,7 @@ pub fn levels() -> Vec<Level> {
 #[derive(Debug)]
 pub struct Sample {
     /// What it shows.
-    pub name: &'static str,
+    pub name: String,
     plan: FramePlan,
 }
 
@@ -76,11 +76,12 @@ pub fn samples() -> Vec<Sample> {
     let (scene, view) = io::default_scene();
     let near = nearer(&scene);
     let settings = Settings::default();
-    let sample = |name, scene: &Scene, view: &View, settings: Settings| {
+    let sample = |name: &str, scene: &Scene, view: &View, settings: Settings| {
         let plan = FramePlan::new(scene, view, &settings, Size::new(SIDE, SIDE));
-        Sample { name, plan }
+        Sample { name: String::from(name), plan }
     };
-    let exact = Settings { arithmetic: Arithmetic::F64, ..settings };
+    let (arithmetic, power) = (Arithmetic::F64, SpecularPower::Library);
+    let exact = Settings { arithmetic, power, ..settings };
     let at = |light| Settings { light, ..settings };
     let parallel = View { projection: Projection::Orthographic, ..view.clone() };
     let faces = View { normals: Normals::Face, ..view.clone() };
@@ -95,7 +96,7 @@ pub fn samples() -> Vec<Sample> {
     let half = Settings { specular: SpecularForm::HalfVector, ..settings };
     let (textured, rough) = (textured(&near), Settings { filter: Filter::Nearest, ..settings });
     let (stage, from_above) = stage::scene(&[scattered()], SIDE);
-    vec![
+    let mut all = vec![
         sample("first scene", &scene, &view, settings),
         sample("first scene in f64", &scene, &view, exact),
         sample("near", &near, &view, settings),
@@ -109,7 +110,25 @@ pub fn samples() -> Vec<Sample> {
         sample("texture", &textured, &view, settings),
         sample("texture, nearest", &textured, &view, rough),
         sample("scattered triangles", &stage, &from_above, settings),
-    ]
+    ];
+    let bent = bent(&textured);
+    for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))
+    {
+        let rare = choice.of(&settings);
+        if rare != settings && rare.is_alike_everywhere() {
+            let name = format!("{} {}", axis.key, choice.word);
+            all.push(sample(&name, &bent, &view, rare));
+        }
+    }
+    all
+}
+
+/// The same, stretched, with a texture that has light on it.
+fn bent(scene: &Scene) -> Scene {
+    change(scene, |object| {
+        let stretch = DMat4::from_scale(DVec3::new(1.0, 0.4, 1.0));
+        object.placement = object.placement.replaced(*object.placement.now() * stretch);
+    })
 }
 
 /// The first scene with everything about its first object, which is cut by the near plane.

@@ -14,6 +14,9 @@ use super::interpolate::Interpolated;
 use super::plan::Turning;
 use super::real::{Kernel, Machine, Number, Power, Real, Triple};
 use super::region::Region;
+use super::ways::Ways;
+use super::ways::power::least_cosine;
+use crate::scene::{Normalising, SpecularPower};
 
 /// Places lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
 /// that the call of an effect costs nothing beside its work.
@@ -113,17 +116,17 @@ impl Matter {
         self.specular.iter().zip(lamp.color).any(|(ks, color)| ks * color != 0.0)
     }
 
-    /// Sets from where on a power counts as 0.
+    /// Sets from where on a power counts as 0, by the way that powers are taken.
     #[must_use]
-    pub fn with_floor(self, floor: f64) -> Self {
+    pub fn with_floor(self, floor: f64, way: SpecularPower) -> Self {
         // The cosine whose power is the floor; a little less, so that rounding leaves nothing out.
-        let least = if self.exponent > 0.0 { libm::exp2(floor / self.exponent) } else { 0.0 };
+        let least = least_cosine(way, self.exponent, floor);
         Self { floor, least_cosine: least * (1.0 - 1e-5), ..self }
     }
 }
 
 /// A lamp on a surface, in the numbers that light is computed in.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Shine<T> {
     /// I Ka.
     pub ambient: [T; 3],
@@ -147,6 +150,8 @@ pub struct Shine<T> {
     pub highlight: Power,
     /// See [`Matter::least_cosine`].
     pub least_cosine: T,
+    /// By which rare way, where it is one.
+    way: Option<Normalising>,
 }
 
 impl<T: Number> Shine<T> {
@@ -167,6 +172,16 @@ impl<T: Number> Shine<T> {
             gathered: Power::new(lamp.exponent, GATHERED_FLOOR),
             highlight: Power::new(matter.exponent, matter.floor),
             least_cosine: T::from_f64(matter.least_cosine),
+            way: None,
+        }
+    }
+
+    /// The same by the ways of a frame, with the power of the material's highlight.
+    #[must_use]
+    pub(super) fn by(ways: &Ways, lamp: &Lamp, matter: &Matter, highlight: &Power) -> Self {
+        match ways.rare_light::<T>() {
+            None => Self::new(lamp, matter),
+            way => Self { highlight: highlight.clone(), way, ..Self::new(lamp, matter) },
         }
     }
 }
@@ -409,7 +424,7 @@ const fn variant<E: Effect, H: Highlight>() -> Variant {
 
 /// Adds what an effect reflects at every place of a batch.
 fn shade<T: Number, E: Effect, H: Highlight>(level: Level, batch: &mut Batch<T>, shine: &Shine<T>) {
-    T::run(level, Shade::<T, E, H> { batch, shine, of: PhantomData });
+    T::run_by(level, shine.way, Shade::<T, E, H> { batch, shine, of: PhantomData });
 }
 
 struct Shade<'a, T, E, H> {

@@ -25,7 +25,7 @@ fn matter() -> Matter {
         exponent: 2.0,
         ..Matter::default()
     }
-    .with_floor(-24.0)
+    .with_floor(-24.0, SpecularPower::Library)
 }
 
 fn lamp() -> Lamp {

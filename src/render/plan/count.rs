@@ -57,7 +57,7 @@ impl FramePlan {
                 |(visibility, tile_plan), tile| {
                     let bounds = bounds_of(tile, self.size);
                     visibility.draw(level, self, frame, (tile, bounds));
-                    tile_plan.begin(self, visibility, bounds);
+                    tile_plan.begin((level, self), visibility, bounds);
                     self.count_tile(level, frame, (visibility, bounds), tile_plan)
                 },
             )
@@ -114,7 +114,7 @@ impl FramePlan {
     /// Whether the observer sees the back of a triangle.
     fn is_back(&self, frame: &Frame, draw: u32, number: u32) -> bool {
         let own = &self.draws[draw as usize];
-        let vertices = frame.vertices_of(self, draw);
+        let vertices = frame.corners_of(self, draw);
         let order = own.model.mesh.draw_order();
         let ids = order.vertices_of(number);
         let corners = ids.map(|vertex| vertices[vertex as usize]);

@@ -110,6 +110,7 @@ fn texture(it: &Facts<'_>) -> State {
     let filter = match it.settings.filter {
         Filter::Nearest => "nearest texel",
         Filter::Bilinear => "bilinear",
+        Filter::Trilinear => "trilinear",
     };
     let left_out = if !it.draw.filled {
         "edges only"

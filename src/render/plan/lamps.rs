@@ -48,7 +48,7 @@ pub(super) fn lamps(
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
             attenuation,
             cos_half_aperture: source.cos_half_aperture,
-            exponent: source.exponent,
+            exponent: source.exponent.min(LARGEST),
         });
         shining.push(Shining { id, name: light.name.clone(), effect: source.effect, lamp, shines });
     }
@@ -57,6 +57,9 @@ pub(super) fn lamps(
 
 /// How far off a lamp may be, in units of view space, so that in f32 its distance has a square.
 const REACH: f64 = 1e15;
+
+/// The largest exponent: what is off the axis is dark long before it.
+const LARGEST: f64 = 1e30;
 
 /// A lamp's place in view space and the coefficients by which it fades there. One that is farther than
 /// [`REACH`] is brought that near, and fades in proportion: seen from a view of some thousand units,

@@ -12,6 +12,7 @@ mod features;
 mod lamps;
 mod observer;
 mod planner;
+mod range;
 pub mod rules;
 mod surfaces;
 mod tile;
@@ -33,6 +34,7 @@ pub use self::turning::Turning;
 use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectUse, State, Thing};
 use super::effects::Lamp;
+use super::ways::Ways;
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::scene::{
@@ -54,6 +56,8 @@ pub struct FramePlan {
     pub(in crate::render) light_at: LightAt,
     /// What textures give between their texels.
     pub(in crate::render) filter: Filter,
+    /// Which ways are not those that every picture is drawn by.
+    pub(in crate::render) ways: Ways,
     /// Where the observer is and which way they look.
     pub(in crate::render) view_from_world: DMat4,
     /// `clip_from_view`.
@@ -106,7 +110,7 @@ impl FramePlan {
         settings: &Settings,
         size: Size,
     ) -> Self {
-        Self::planned(rules, Notes::default(), scene, view, settings, size).plan
+        Self::planned(rules, Notes::default, scene, view, settings, size).plan
     }
 
     /// The same plan as [`Self::new`], with every effect that it has and does without.
@@ -118,11 +122,28 @@ impl FramePlan {
         size: Size,
     ) -> (Self, Vec<EffectUse>) {
         let Planning { plan, notes } =
-            Self::planned(Rules::sound(), Notes::wanted(), scene, view, settings, size);
+            Self::planned(Rules::sound(), Notes::wanted, scene, view, settings, size);
         (plan, notes.into_uses())
     }
 
+    /// Plans in the numbers that are asked for, or in 64 bits where 32 have no room.
     fn planned(
+        rules: Arc<Rules>,
+        notes: fn() -> Notes,
+        scene: &Scene,
+        view: &View,
+        settings: &Settings,
+        size: Size,
+    ) -> Planning {
+        let as_asked = Self::planned_in(rules.clone(), notes(), scene, view, settings, size);
+        if settings.arithmetic == Arithmetic::F64 || as_asked.plan.has_room() {
+            return as_asked;
+        }
+        let settings = Settings { arithmetic: Arithmetic::F64, ..*settings };
+        Self::planned_in(rules, notes(), scene, view, &settings, size)
+    }
+
+    fn planned_in(
         rules: Arc<Rules>,
         notes: Notes,
         scene: &Scene,
@@ -141,6 +162,7 @@ impl FramePlan {
             arithmetic: settings.arithmetic,
             light_at: settings.light,
             filter: settings.filter,
+            ways: Ways::of(settings),
             view_from_world: observer.view_from_world,
             clip_from_view: observer.clip_from_view,
             line_width: if view.wide_lines { 2 } else { 1 },

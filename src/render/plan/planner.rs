@@ -14,9 +14,10 @@ use super::{Back, Draw, Lines, ObserverSpace, Pipeline, Planning};
 use crate::base::{Shared, color::Color, math};
 use crate::render::marks;
 use crate::render::region::Region;
+use crate::render::ways::Ways;
 use crate::scene::{
-    Fill, ItemId, LightAt, LightId, LightKind, Model, NormalLength, NormalSource, Object, ObjectId,
-    Observer, Scene, Settings, View,
+    Fill, ItemId, LightAt, LightId, LightKind, Model, NormalLength, NormalMatrix, NormalSource,
+    Object, ObjectId, Observer, Scene, Settings, VertexArithmetic, View,
 };
 
 /// What planning reads.
@@ -26,6 +27,12 @@ pub(super) struct Planner<'a> {
     pub(super) settings: &'a Settings,
     pub(super) observer: ObserverSpace,
     pub(super) shining: Vec<Shining>,
+}
+
+/// Where an object is, for the observer.
+struct Placement {
+    view_from_object: DMat4,
+    clip_from_object: DMat4,
 }
 
 impl Planner<'_> {
@@ -83,14 +90,17 @@ impl Planner<'_> {
 
     /// A draw of a mesh at a place, with everything about its surface still to be said.
     fn draw(&self, item: ItemId, model: &Shared<Model>, world_from_object: DMat4) -> Draw {
-        let view_from_object = self.observer.view_from_world * world_from_object;
+        let Placement { view_from_object, clip_from_object } = self.placement(world_from_object);
         let linear = DMat3::from_mat4(view_from_object);
         Draw {
             item,
             model: model.clone(),
-            clip_from_object: self.observer.clip_from_view * view_from_object,
+            clip_from_object,
             view_from_object,
-            view_from_normal: math::normal_matrix(linear),
+            view_from_normal: match self.settings.stretched {
+                NormalMatrix::Cofactor => math::normal_matrix(linear),
+                NormalMatrix::AsItIs => math::at_power_of_two(linear),
+            },
             mirrored: linear.determinant() < 0.0,
             back: Back::Left,
             normals: self.view.normals,
@@ -108,6 +118,18 @@ impl Planner<'_> {
         }
     }
 
+    /// The way of an object to the observer's spaces.
+    fn placement(&self, world_from_object: DMat4) -> Placement {
+        let ObserverSpace { view_from_world, clip_from_view, .. } = self.observer;
+        if self.settings.vertices == VertexArithmetic::F32 {
+            let view_from_object = view_from_world.as_mat4() * world_from_object.as_mat4();
+            let clip_from_object = (clip_from_view.as_mat4() * view_from_object).as_dmat4();
+            return Placement { view_from_object: view_from_object.as_dmat4(), clip_from_object };
+        }
+        let view_from_object = view_from_world * world_from_object;
+        Placement { view_from_object, clip_from_object: clip_from_view * view_from_object }
+    }
+
     /// Puts the draw of an object, or of a mark made into one, into the plan, unless nothing of it can
     /// be seen.
     fn add(&self, into: &mut Planning, object: &Object, mut draw: Draw) {
@@ -122,6 +144,9 @@ impl Planner<'_> {
             Some("has no faces")
         } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
             Some("its placement is flat: it has no inside and no outside")
+        } else if into.plan.ways.has_rare_geometry() {
+            // Where it is seen is not where it is.
+            None
         } else {
             rules.thing(&thing)
         };
@@ -160,7 +185,8 @@ impl Planner<'_> {
             let error = 2e-6 * exact.reach();
             return (Some(Region::placed(draw.view_from_object, corners, error)), false);
         }
-        if !self.observer.holds(draw.clip_from_object, corners) {
+        let sure = !Ways::of(self.settings).has_rare_geometry();
+        if !sure || !self.observer.holds(draw.clip_from_object, corners) {
             return (None, false);
         }
         (Some(self.observer.seen_region(draw.view_from_object, corners)), true)

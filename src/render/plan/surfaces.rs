@@ -90,7 +90,7 @@ impl Planner<'_> {
     /// The light of a material.
     fn lit(&self, into: &mut Planning, ground: &Ground<'_>, look: &PartLook<'_>) -> Shaded {
         let matter = coefficients(look);
-        let mut matter = matter.with_floor(self.floor(into, &matter));
+        let mut matter = matter.with_floor(self.floor(into, &matter), self.settings.power);
         let mut shaded = Shaded {
             matter,
             light: None,
@@ -232,7 +232,7 @@ impl Planner<'_> {
         }
         let cut_off = bounded::cut_off(stages, lit, region, power.min(1.0));
         if power < 1.0 {
-            return (matter.with_floor(floor), cut_off);
+            return (matter.with_floor(floor, self.settings.power), cut_off);
         }
         for stage in stages {
             stage.highlight = Form::Plain;
@@ -244,14 +244,20 @@ impl Planner<'_> {
     }
 }
 
-/// What a part reflects.
+/// The largest coefficient and exponent: beside anything else that light is, it is beyond measure,
+/// and it has room in 32 bits.
+const LARGEST: f64 = 1e30;
+
+/// What a part reflects. A file may say anything; an exponent below 0 would make a highlight of what
+/// is not one.
 fn coefficients(look: &PartLook<'_>) -> Matter {
     let material = look.material;
+    let held = |color: [f64; 3]| color.map(|k| k.clamp(-LARGEST, LARGEST));
     Matter {
-        ambient: material.ambient,
-        diffuse: material.diffuse,
-        specular: material.specular,
-        exponent: material.exponent,
+        ambient: held(material.ambient),
+        diffuse: held(material.diffuse),
+        specular: held(material.specular),
+        exponent: material.exponent.max(0.0).min(LARGEST),
         ..Matter::default()
     }
 }

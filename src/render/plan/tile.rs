@@ -4,6 +4,7 @@
 //! and all that the tile shows lies in it. A light that misses the piece is taken out of the lists of
 //! stages that the tile is coloured by; so no pixel asks.
 
+use fearless_simd::Level;
 use glam::DVec3;
 
 use super::rules::{Meeting, Reading};
@@ -55,7 +56,7 @@ impl TilePlan {
     /// Turns to a tile whose visibility is known.
     pub(in crate::render) fn begin(
         &mut self,
-        plan: &FramePlan,
+        (level, plan): (Level, &FramePlan),
         visibility: &Visibility,
         bounds: PixelBox,
     ) {
@@ -63,7 +64,7 @@ impl TilePlan {
         self.kept.clear();
         let tiled =
             |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
-        let depths = plan.pipelines.iter().any(tiled).then(|| visibility.depths());
+        let depths = plan.pipelines.iter().any(tiled).then(|| visibility.depths(level));
         self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));
         if self.region.is_some() {
             self.decided.resize(plan.pipelines.len(), None);

@@ -71,7 +71,7 @@ fn judge_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         .iter()
         .zip([
             ("RMSE", "The root of the mean square of the differences, in byte steps of 255"),
-            ("Largest", "The largest difference of a byte, in steps of 255"),
+            ("Max", "The largest difference of a byte, in steps of 255"),
             ("Bytes", "The part of the bytes that differ at all, however little"),
             ("FLIP", "How different the pictures look when one flips between them, from 0 to 1"),
         ])

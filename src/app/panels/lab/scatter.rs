@@ -1,7 +1,7 @@
 //! Time against error: each mark is a choice that a click makes live.
 
-use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
-use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, Span};
+use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 
 use crate::app::ask::Ask;
 use crate::app::panels::controls;
@@ -16,16 +16,22 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     };
     let chart = Chart::new(report);
     let transform = plot_ui(ui, &chart);
+    front_ui(ui, &chart, &transform);
     // What is drawn now and what is on the front lies above the rest.
     let mut marks: Vec<&Mark> = chart.marks.iter().collect();
     let is_now = |mark: &Mark| report.findings.points[mark.point].settings == state.settings;
     marks.sort_by_key(|mark| (is_now(mark), mark.on_front));
-    for mark in marks {
-        let at = transform.position_from_point(&PlotPoint::new(mark.at[0], mark.at[1]));
-        if mark_ui(ui, at, mark, is_now(mark), report).clicked() {
+    for mark in &marks {
+        if mark_ui(ui, place(mark, &transform), mark, is_now(mark), report).clicked() {
             asks.push(Ask::Settings(report.findings.points[mark.point].settings));
         }
     }
+    marks.reverse();
+    names_ui(ui, &marks, &transform);
+}
+
+fn place(mark: &Mark, transform: &PlotTransform) -> Pos2 {
+    transform.position_from_point(&PlotPoint::new(mark.at[0], mark.at[1]))
 }
 
 fn empty_ui(ui: &mut Ui, state: &State) {
@@ -42,7 +48,7 @@ fn empty_ui(ui: &mut Ui, state: &State) {
     ui.vertical_centered(|ui| ui.add(egui::Label::new(text).wrap()));
 }
 
-fn plot_ui(ui: &mut Ui, chart: &Chart) -> egui_plot::PlotTransform {
+fn plot_ui(ui: &mut Ui, chart: &Chart) -> PlotTransform {
     let marks = |ticks: &[(f64, String)]| -> Vec<GridMark> {
         ticks.iter().map(|(value, _)| GridMark { value: *value, step_size: 1.0 }).collect()
     };
@@ -50,7 +56,7 @@ fn plot_ui(ui: &mut Ui, chart: &Chart) -> egui_plot::PlotTransform {
         let tick = ticks.iter().find(|(value, _)| (value - at).abs() < 1e-9);
         tick.map(|(_, label)| label.clone()).unwrap_or_default()
     };
-    let (accent, noise) = (theme::accent(ui.visuals()), ui.visuals().weak_text_color());
+    let noise = ui.visuals().weak_text_color();
     let [left, right] = chart.x.range;
     let [low, high] = chart.y.range;
     let plot = Plot::new("time against error")
@@ -72,27 +78,62 @@ fn plot_ui(ui: &mut Ui, chart: &Chart) -> egui_plot::PlotTransform {
         .y_grid_spacer(|_| marks(&chart.y.ticks))
         .x_axis_formatter(|mark, _| label(&chart.x.ticks, mark.value))
         .y_axis_formatter(|mark, _| label(&chart.y.ticks, mark.value));
-    let front: Vec<[f64; 2]> = steps(chart);
     let shown = plot.show(ui, |plot| {
         plot.set_plot_bounds_x(left..=right);
         plot.set_plot_bounds_y(low..=high);
         let [from, to] = chart.floor;
-        let band = Span::new("noise", from..=to).fill(noise.gamma_multiply(0.25));
+        let band = Span::new("", from..=to).fill(noise.gamma_multiply(0.25));
         plot.span(band.border_width(0.0));
-        let line = Line::new("nothing is both faster and more exact", PlotPoints::from(front));
-        plot.line(line.color(accent).width(1.5).allow_hover(false));
     });
+    let middle = shown.transform.position_from_point_x(chart.floor.iter().sum::<f64>() / 2.0);
+    let top = pos2(middle, shown.transform.frame().top() + 2.0);
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    ui.painter().text(top, egui::Align2::CENTER_TOP, "noise", font, noise);
     shown.transform
 }
 
 /// The front as steps: between two points nothing was measured.
-fn steps(chart: &Chart) -> Vec<[f64; 2]> {
-    let mut line: Vec<[f64; 2]> = Vec::new();
-    for [x, y] in chart.front.iter().map(|mark| chart.marks[*mark].at) {
-        line.extend(line.last().map(|[_, before]| [x, *before]));
-        line.push([x, y]);
+fn front_ui(ui: &Ui, chart: &Chart, transform: &PlotTransform) {
+    let mut line: Vec<Pos2> = Vec::new();
+    for at in chart.front.iter().map(|mark| place(&chart.marks[*mark], transform)) {
+        line.extend(line.last().map(|before| pos2(at.x, before.y)));
+        line.push(at);
     }
-    line
+    let stroke = Stroke::new(1.5, theme::accent(ui.visuals()));
+    let _ = ui.painter().with_clip_rect(*transform.frame()).line(line, stroke);
+}
+
+/// Names beside marks, the first first, where there is room for them.
+fn names_ui(ui: &Ui, marks: &[&Mark], transform: &PlotTransform) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let mut taken: Vec<Rect> = marks
+        .iter()
+        .map(|mark| Rect::from_center_size(place(mark, transform), vec2(12.0, 12.0)))
+        .collect();
+    let named = |mark: &&&Mark| !matches!(mark.kind, MarkKind::Combination);
+    for mark in marks.iter().filter(named) {
+        let (at, visuals) = (place(mark, transform), ui.visuals());
+        let ink = if mark.on_front { visuals.text_color() } else { visuals.weak_text_color() };
+        let text = ui.painter().layout_no_wrap(mark.name.clone(), font.clone(), ink);
+        let size = text.size();
+        // Where the front runs, to the right and up, last.
+        let around = [
+            at + vec2(10.0, -size.y),
+            at + vec2(-10.0 - size.x, 0.0),
+            at + vec2(10.0, 0.0),
+            at + vec2(-12.0 - size.x, -size.y / 2.0),
+            at + vec2(-size.x / 2.0, 10.0),
+            at + vec2(-size.x / 2.0, -10.0 - size.y),
+        ];
+        let rects = around.map(|corner| Rect::from_min_size(corner, size));
+        let free = |rect: &Rect| {
+            transform.frame().contains_rect(*rect) && !taken.iter().any(|t| t.intersects(*rect))
+        };
+        if let Some(rect) = rects.into_iter().find(free) {
+            taken.push(rect);
+            ui.painter().galley(rect.min, text, ink);
+        }
+    }
 }
 
 fn mark_ui(ui: &Ui, at: Pos2, mark: &Mark, is_now: bool, report: &Report) -> Response {
@@ -110,7 +151,7 @@ fn mark_ui(ui: &Ui, at: Pos2, mark: &Mark, is_now: bool, report: &Report) -> Res
             painter.add(diamond(at, 7.0, ink));
         }
         MarkKind::Preset => {
-            let square = Rect::from_center_size(at, vec2(9.0, 9.0));
+            let square = Rect::from_center_size(at, vec2(10.0, 9.0));
             painter.rect_filled(square, 1.0, ink);
         }
         MarkKind::Axis => {
@@ -125,9 +166,6 @@ fn mark_ui(ui: &Ui, at: Pos2, mark: &Mark, is_now: bool, report: &Report) -> Res
     }
     if is_now {
         painter.circle_stroke(at, 10.0, Stroke::new(2.0, visuals.strong_text_color()));
-        let font = egui::TextStyle::Small.resolve(ui.style());
-        let below = at + vec2(0.0, 12.0);
-        painter.text(below, egui::Align2::CENTER_TOP, "now", font, visuals.strong_text_color());
     }
     controls::focus_ring(ui, rect.expand(3.0), &response);
     response.on_hover_ui(|ui| tip_ui(ui, mark, report))

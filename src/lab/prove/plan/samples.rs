@@ -271,5 +271,6 @@ fn settings(dice: &mut Dice) -> Settings {
         filter: dice.pick(&[Filter::Nearest, Filter::Bilinear]),
         specular: dice.pick(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
         leave_out: LeaveOut::Unseen,
+        ..Settings::default()
     }
 }

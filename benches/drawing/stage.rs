@@ -1,0 +1,79 @@
+//! A shape in the light of the first scene, seen by a camera that never stands still.
+
+use std::time::Duration;
+
+use criterion::Bencher;
+use glam::DVec3;
+use marraztu::base::Shared;
+use marraztu::base::image::Size;
+use marraztu::io;
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{
+    CameraId, Command, Item, ItemId, MaterialChoice, Model, Object, ObjectId, Placed, Pose,
+    PresetId, Scene, Settings, View,
+};
+
+/// As wide and high as most windows.
+pub(crate) const FULL: Size = Size { width: 1920, height: 1080 };
+
+/// What is drawn.
+pub(crate) struct Stage {
+    pub(crate) scene: Scene,
+    pub(crate) view: View,
+    pub(crate) settings: Settings,
+    pub(crate) size: Size,
+}
+
+impl Stage {
+    /// A model in ruby, twenty times as large as it is, so that it is lit as the first scene's are.
+    pub(crate) fn new(model: &Shared<Model>, size: Size) -> Self {
+        let (mut scene, view) = io::default_scene();
+        let ids: Vec<ObjectId> = scene.objects.ids().collect();
+        let removals = ids.into_iter().map(|id| Command::Remove(ItemId::Object(id)));
+        Command::Batch(removals.collect()).apply(&mut scene).expect("they are there");
+        let mut object = Object::new(model.clone(), MaterialChoice::Preset(PresetId::RUBY));
+        object.placement = Placed::new(glam::DMat4::from_scale(DVec3::splat(20.0)));
+        let item = Item::Object(ObjectId(0), Box::new(object));
+        Command::Insert { at: 0, item }.apply(&mut scene).expect("it fits");
+        let view = View { object: Some(ObjectId(0)), marks: false, ..view };
+        Self { scene, view, settings: Settings::default(), size }
+    }
+
+    /// The plan of frame `i`: each from a place of its own, so that nothing of the last can be kept.
+    #[expect(clippy::cast_precision_loss, reason = "few frames")]
+    pub(crate) fn plan(&self, i: u64) -> FramePlan {
+        let mut scene = self.scene.clone();
+        let id: CameraId = scene.cameras.first().expect("there is one");
+        let mut camera = scene.cameras.get(id).expect("it is there").clone();
+        let eye = DVec3::new(0.001 * (i % 1000) as f64, 0.0, 46.0);
+        camera.pose = Placed::new(Pose::facing_minus_z(eye));
+        let camera = Item::Camera(id, Box::new(camera));
+        Command::Replace(camera).apply(&mut scene).expect("it is there");
+        FramePlan::new(&scene, &self.view, &self.settings, self.size)
+    }
+
+    /// Draws frames, and adds up what `time` says of each.
+    pub(crate) fn drawn(
+        &self,
+        frames: u64,
+        mut time: impl FnMut(&Renderer) -> Duration,
+    ) -> Duration {
+        let mut renderer = Renderer::default();
+        renderer.render(&self.plan(frames));
+        (0..frames)
+            .map(|i| {
+                renderer.render(&self.plan(i));
+                time(&renderer)
+            })
+            .sum()
+    }
+
+    /// Measures whole frames, with their planning.
+    pub(crate) fn measure(&self, bencher: &mut Bencher<'_>) {
+        let (mut renderer, mut i) = (Renderer::default(), 0);
+        bencher.iter(|| {
+            i += 1;
+            renderer.render(&self.plan(i)).pixels()[0]
+        });
+    }
+}

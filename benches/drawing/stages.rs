@@ -1,0 +1,47 @@
+//! Each stage of a frame, for each shape: `stages/SHAPE/STAGE`.
+
+use std::time::{Duration, Instant};
+
+use criterion::Criterion;
+use marraztu::render::Stages;
+use marraztu::scene::{LightAt, Settings};
+
+use super::shapes;
+use super::stage::{FULL, Stage};
+
+type Row = (&'static str, fn(&Stages) -> Duration);
+
+const STAGES: [Row; 4] = [
+    ("vertices", |stages| stages.vertices),
+    ("set-up", |stages| stages.set_up),
+    ("light-of-vertices", |stages| stages.light),
+    ("tiles", |stages| stages.tiles),
+];
+
+pub(crate) fn measure(criterion: &mut Criterion) {
+    for shape in shapes::all() {
+        let mut group = criterion.benchmark_group(format!("stages/{}", shape.name));
+        let mut stage = Stage::new(&shape.model, FULL);
+        group.bench_function("plan", |bencher| {
+            bencher.iter_custom(|frames| {
+                let begun = Instant::now();
+                for i in 0..frames {
+                    std::hint::black_box(stage.plan(i));
+                }
+                begun.elapsed()
+            });
+        });
+        for (name, time) in STAGES {
+            // Light of vertices is evaluated only where it is asked for.
+            let light = if name == "light-of-vertices" { LightAt::Vertex } else { LightAt::Pixel };
+            stage.settings = Settings { light, ..Settings::default() };
+            group.bench_function(name, |bencher| {
+                bencher.iter_custom(|frames| stage.drawn(frames, |r| time(&r.stages())));
+            });
+        }
+        stage.view.fill = marraztu::scene::Fill::Edges;
+        group.bench_function("lines", |bencher| {
+            bencher.iter_custom(|frames| stage.drawn(frames, |r| r.stages().lines));
+        });
+    }
+}

@@ -1,0 +1,85 @@
+//! What is seen in a tile, pixel by pixel, by the way of covering and the format of depth that are
+//! chosen. Words come out as they do elsewhere, so all that follows goes on as it does.
+
+use super::Ways;
+use super::depth::key;
+use super::{cover, points};
+use crate::render::bins::Bins;
+use crate::render::coverage::PixelBox;
+use crate::render::frame::Frame;
+use crate::render::lines;
+use crate::render::plan::FramePlan;
+use crate::render::texels::is_opaque;
+use crate::render::tile::column_and_row;
+use crate::scene::{Coverage, DepthFormat};
+
+/// How many steps of a format of its own lines are nearer than the surfaces that they lie on.
+const LINES_NEARER: u32 = 2;
+
+/// Where a primitive is seen: column and row from the tile's first, what its word has above, its number.
+pub(in crate::render) type Put<'a> = &'a mut dyn FnMut([i32; 2], u32, u32);
+
+impl Ways {
+    /// Draws everything that reaches into a tile.
+    pub(in crate::render) fn paint(
+        &self,
+        plan: &FramePlan,
+        frame: &Frame,
+        (tile, bounds): (usize, PixelBox),
+        put: Put<'_>,
+    ) {
+        for bins in frame.bins() {
+            for number in &bins.tiles[tile].large {
+                self.triangle(plan, frame, (bins, *number), bounds, put);
+            }
+            self.lines(plan, bins, (tile, bounds), put);
+        }
+    }
+
+    fn triangle(
+        &self,
+        plan: &FramePlan,
+        frame: &Frame,
+        (bins, number): (&Bins, u32),
+        bounds: PixelBox,
+        put: Put<'_>,
+    ) {
+        let (plain, own) = bins.plain(number);
+        let clip = own.intersection(bounds);
+        let mut take = |x: i32, y: i32, depth: f32| {
+            if !plain.cutout || is_opaque(plan, frame, plain.number, [x, y]) {
+                put([x - bounds.left, y - bounds.top], key(self.depth, depth), plain.number);
+            }
+        };
+        match self.coverage {
+            Coverage::Exact => cover::exactly(plain, self.parts(), clip, &mut take),
+            Coverage::F32Edges => cover::in_32_bits(plain, clip, &mut take),
+            Coverage::ScanLines => cover::by_scan_lines(plain, clip, &mut take),
+            Coverage::Points => {
+                let (draw, start) = frame.draw_of(plain.number);
+                let draw = &plan.draws[draw as usize];
+                points::cover(plan, draw, plain.number - start.number, clip, &mut take);
+            }
+        }
+    }
+
+    fn lines(
+        &self,
+        plan: &FramePlan,
+        bins: &Bins,
+        (tile, bounds): (usize, PixelBox),
+        put: Put<'_>,
+    ) {
+        let nearer = if self.depth == DepthFormat::F32Reversed { 0 } else { LINES_NEARER };
+        let key = |depth: f32| key(self.depth, depth) + nearer;
+        bins.hits.each(tile, |place, depth, number| {
+            put(column_and_row(place as usize), key(f32::from_bits(depth)), number);
+        });
+        for place in &bins.tiles[tile].lines {
+            let line = &bins.lines[*place as usize];
+            lines::pixels(line, plan.line_width, bounds, |x, y, depth| {
+                put([x - bounds.left, y - bounds.top], key(depth), line.number);
+            });
+        }
+    }
+}

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""Breaks the program on purpose, one thing at a time, and sees which hard case notices.
+
+    tests/breakages/run.py [SHARD/SHARDS]     tries its part of table.toml, all without an argument
+    tests/breakages/run.py page               makes docs/breakages.md of what was tried
+
+Each breakage is made in a copy of the sources under target/breakages, never in the sources. What
+came of it is kept there, one line a breakage, so that shards may run one after the other or on
+several machines. A breakage that no longer fits the sources, or that is not compiled, is an error.
+"""
+import datetime
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+WORK = ROOT / "target" / "breakages"
+TABLE = tomllib.loads((ROOT / "tests/breakages/table.toml").read_text())["breakage"]
+
+
+def output(*command, **options):
+    return subprocess.run(command, capture_output=True, text=True, **options)
+
+
+def copy(to):
+    """Brings a copy of the sources up to date, without touching what is the same there."""
+    listed = output("git", "ls-files", "-co", "--exclude-standard", cwd=ROOT).stdout.split("\n")
+    for name in filter(None, listed):
+        source, target = ROOT / name, to / name
+        if not source.is_file():
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if not target.is_file() or target.read_bytes() != source.read_bytes():
+            shutil.copyfile(source, target)
+
+
+def tests(where, *names):
+    """The hard cases that fail, by name; None where nothing is compiled."""
+    run = output(
+        "cargo", "test", "--locked", "--target-dir", ROOT / "target", "--test", "hard_cases", "--", *names,
+        cwd=where,
+    )
+    if "Running tests/hard_cases" not in run.stderr:
+        sys.exit(f"run.py: not compiled:\n{run.stderr}")
+    failed = re.findall(r"^test (?:\w+::)*(\w+) \.\.\. FAILED", run.stdout, re.MULTILINE)
+    if run.returncode and not failed:
+        # The whole process ended: a crash is noticed, too.
+        failed = ["the process ended"]
+    return failed
+
+
+def broken(text, breakage):
+    if text.count(breakage["from"]) != 1:
+        sys.exit(f"run.py: {breakage['file']} does not have once what breaks case {breakage['case']}:"
+                 f" {breakage['what']}")
+    return text.replace(breakage["from"], breakage["to"])
+
+
+def attempt(shard, shards):
+    where = WORK / f"shard-{shard}"
+    copy(where)
+    for breakage in TABLE:
+        broken((ROOT / breakage["file"]).read_text(), breakage)
+    for i in range(shard - 1, len(TABLE), shards):
+        breakage = TABLE[i]
+        file = where / breakage["file"]
+        sound = file.read_text()
+        file.write_text(broken(sound, breakage))
+        try:
+            caught = tests(where, f"case_{breakage['case']}_")
+            # Not by the case that claims it: by any?
+            others = [] if caught else tests(where)
+        finally:
+            file.write_text(sound)
+        today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
+        commit = output("git", "describe", "--always", "--dirty", "--exclude", "*", cwd=ROOT).stdout.strip()
+        came = "caught" if caught else "only by others" if others else "SURVIVED"
+        line = "\t".join([today, commit, came, ", ".join(caught or others)])
+        (WORK / f"{key(breakage)}.tsv").write_text(line + "\n")
+        print(f"{i + 1}/{len(TABLE)} case {breakage['case']}: {breakage['what']}: {line}", flush=True)
+
+
+def key(breakage):
+    words = re.sub(r"[^a-z0-9]+", "-", breakage["what"].lower()).strip("-")
+    return f"{breakage['case']:02}-{words}"
+
+
+def page():
+    rows, missing = [], 0
+    for breakage in TABLE:
+        kept = WORK / f"{key(breakage)}.tsv"
+        day, commit, came, by = kept.read_text().strip("\n").split("\t") if kept.is_file() else ("", "", "not tried", "")
+        missing += came != "caught"
+        named = by.split(", ")[0].replace("_", " ")
+        more = by.count(",")
+        rows.append(f"| {breakage['case']} | {breakage['what']} | `{breakage['file'].removeprefix('src/')}` "
+                    f"| {came} | {named}{f' and {more} more' if more else ''} | {day} {commit} |")
+    text = f"""# Broken on purpose
+
+<!-- Made by tests/breakages/run.py page: change tests/breakages, and run it again. -->
+
+Tests are worth what they notice. Each row is a mistake that was made on purpose in a copy of the sources,
+alone, and the hard case that failed for it. The number is that of the case that has to notice.
+{len(TABLE)} breakages, {len(TABLE) - missing} caught by the case that claims them.
+
+`tests/breakages/run.py 1/4` tries a quarter of them, `tests/breakages/run.py page` makes this page.
+
+| case | broken | in | came of it | by | tried |
+|--:|---|---|---|---|---|
+""" + "\n".join(rows) + "\n"
+    (ROOT / "docs/breakages.md").write_text(text)
+    print(f"docs/breakages.md: {len(TABLE) - missing} of {len(TABLE)} caught")
+
+
+def main():
+    argument = sys.argv[1] if len(sys.argv) > 1 else "1/1"
+    if argument == "page":
+        return page()
+    shard, shards = map(int, argument.split("/"))
+    attempt(shard, shards)
+
+
+if __name__ == "__main__":
+    main()

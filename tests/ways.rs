@@ -1,0 +1,344 @@
+//! What each axis of accuracy makes of a picture, held to the figures that its table states.
+
+#![expect(clippy::cast_precision_loss, reason = "small numbers")]
+
+mod common;
+
+use common::{at, ball, covered, draw, edit, scene, square};
+use glam::{DMat4, DVec3};
+use marraztu::base::image::{Picture, Size};
+use marraztu::io::lesson_scene;
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{
+    ACCURACY_PRESETS, AXES, Arithmetic, Axis, Coverage, DepthFormat, Filter, Interpolation, Light,
+    LightId, LightKind, Material, MaterialChoice, NormalMatrix, ObjectId, Rounding, Scene,
+    Settings, SpecularPower, Subpixels, VertexArithmetic, View,
+};
+
+const FIRST: ObjectId = ObjectId(10);
+const SECOND: ObjectId = ObjectId(11);
+
+/// Light alone, which every surface sends back as it is.
+fn matt(color: [f64; 3]) -> MaterialChoice {
+    let [diffuse, specular] = [[0.0; 3]; 2];
+    MaterialChoice::Own(Material { ambient: color, diffuse, specular, exponent: 1.0 })
+}
+
+fn unmarked(view: View) -> View {
+    View { marks: false, ..view }
+}
+
+/// What each pixel of a picture shows.
+fn primitives(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Vec<u32> {
+    let mut renderer = Renderer::default();
+    renderer.render(&FramePlan::new(scene, view, settings, Size::new(side, side)));
+    renderer.primitives()
+}
+
+/// How many of two pictures' pixels show something else, of those that show anything.
+fn differing(a: &[u32], b: &[u32]) -> f64 {
+    let covered = b.iter().filter(|seen| **seen != 0).count();
+    a.iter().zip(b).filter(|(a, b)| a != b).count() as f64 / covered as f64
+}
+
+/// The largest difference of two pictures in steps of a byte.
+fn steps_apart(a: &Picture, b: &Picture) -> u8 {
+    let pairs = a.pixels().as_flattened().iter().zip(b.pixels().as_flattened());
+    pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+}
+
+#[test]
+fn every_choice_of_every_axis_changes_its_lesson_or_says_why_not() {
+    // At a size at which lessons are looked at, the coarsest choice is seen.
+    for axis in AXES {
+        let opened = lesson_scene(axis.lesson.scene).unwrap();
+        let picture = |settings: &Settings| draw(&opened.scene, &opened.view, settings, 300);
+        let usual = Settings::default();
+        let coarse = &axis.choices[0];
+        assert!(
+            picture(&coarse.of(&usual)) != picture(&axis.most_exact(&usual).of(&usual))
+                || ["arithmetic", "faint"].contains(&axis.key)
+                || axis.default_choice().word == coarse.word,
+            "{} {} is not seen in {}",
+            axis.key,
+            coarse.word,
+            axis.lesson.scene
+        );
+    }
+}
+
+#[test]
+fn highlights_are_as_wrong_as_their_powers() {
+    let opened = lesson_scene("ball").unwrap();
+    let mut scene = opened.scene;
+    edit(&mut scene, ObjectId(1), |object| {
+        let [ambient, diffuse] = [[0.0; 3]; 2];
+        let material = Material { ambient, diffuse, specular: [1.0; 3], exponent: 76.8 };
+        object.material = MaterialChoice::Own(material);
+    });
+    let picture = |power| {
+        let settings = Settings { power, ..Settings::default() };
+        draw(&scene, &opened.view, &settings, 400)
+    };
+    let exact = picture(SpecularPower::Library);
+    for (power, steps) in [
+        (SpecularPower::Schlick, 30..=52),
+        (SpecularPower::Table256, 20..=36),
+        (SpecularPower::Table1024, 0..=1),
+        (SpecularPower::Polynomial, 0..=1),
+        (SpecularPower::Squaring, 0..=1),
+    ] {
+        let apart = steps_apart(&picture(power), &exact);
+        assert!(steps.contains(&apart), "{power:?}: {apart}");
+    }
+}
+
+#[test]
+fn quick_roots_grain_highlights_and_newton_mends_them() {
+    use marraztu::scene::Normalising;
+    let opened = lesson_scene("ball").unwrap();
+    let picture = |normalising| {
+        let settings = Settings { normalising, ..Settings::default() };
+        draw(&opened.scene, &opened.view, &settings, 400)
+    };
+    let exact = picture(Normalising::Root);
+    assert!((1..=16).contains(&steps_apart(&picture(Normalising::Rsqrt), &exact)));
+    assert!(steps_apart(&picture(Normalising::Newton), &exact) <= 1);
+}
+
+/// A floor that leans by 45 degrees, pressed to a tenth: it nearly lies, and the sun is overhead.
+#[test]
+fn normals_placed_by_the_matrix_as_it_is_lean_by_79_degrees() {
+    let press = DMat4::from_scale(DVec3::new(1.0, 0.1, 1.0))
+        * DMat4::from_rotation_x(-0.25 * std::f64::consts::PI);
+    let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0) * press)]);
+    edit(&mut scene, FIRST, |object| {
+        let [ambient, specular] = [[0.0; 3]; 2];
+        let material = Material { ambient, diffuse: [1.0; 3], specular, exponent: 1.0 };
+        object.material = MaterialChoice::Own(material);
+    });
+    let lit: Vec<LightId> = scene.lights.iter().map(|(id, _)| id).collect();
+    for id in lit {
+        let mut light: Light = scene.lights.get(id).unwrap().clone();
+        light.on = matches!(light.kind, LightKind::Sun { .. });
+        let item = marraztu::scene::Item::Light(id, Box::new(light));
+        marraztu::scene::Command::Replace(item).apply(&mut scene).unwrap();
+    }
+    let angle = |stretched| {
+        let settings = Settings { stretched, ..Settings::default() };
+        let picture = draw(&scene, &unmarked(view.clone()), &settings, 100);
+        f64::from(picture.pixel(50, 50)[1]) / 255.0
+    };
+    let (right, wrong) = (angle(NormalMatrix::Cofactor), angle(NormalMatrix::AsItIs));
+    let apart = wrong.acos().to_degrees() - right.acos().to_degrees();
+    assert!((right - 100.0_f64 / 101.0_f64.sqrt() / 10.0).abs() < 0.004, "{right}");
+    assert!((apart - 78.58).abs() < 1.0, "{apart}");
+}
+
+#[test]
+fn cut_off_colours_are_half_a_step_too_dark_and_a_pattern_keeps_the_mean() {
+    let opened = lesson_scene("dusk").unwrap();
+    let sum = |settings: &Settings| {
+        let picture = draw(&opened.scene, &opened.view, settings, 256);
+        let shown = picture.pixels().iter().filter(|pixel| pixel[0] > 0);
+        let bytes = shown.map(|[r, g, b, _]| f64::from(*r) + f64::from(*g) + f64::from(*b));
+        bytes.sum::<f64>() / (3.0 * 256.0 * 256.0)
+    };
+    let usual = Settings::default();
+    let nearest = sum(&usual);
+    let truncated = sum(&Settings { rounding: Rounding::Truncated, ..usual }) - nearest;
+    let dithered = sum(&Settings { rounding: Rounding::Dithered, ..usual }) - nearest;
+    assert!((-0.55..-0.4).contains(&truncated), "{truncated}");
+    assert!(dithered.abs() < 0.01, "{dithered}");
+}
+
+#[test]
+fn rounding_is_the_same_wherever_light_is_evaluated_and_in_both_arithmetics() {
+    use marraztu::scene::LightAt;
+    let (scene, view) = scene(&[(ball(8), at(60.0, 0.0, 0.0, 0.0))]);
+    for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
+        for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+            let of = |rounding| {
+                let settings = Settings { light, arithmetic, rounding, ..Settings::default() };
+                draw(&scene, &unmarked(view.clone()), &settings, 96)
+            };
+            let nearest = of(Rounding::Nearest);
+            for rounding in [Rounding::Truncated, Rounding::Dithered] {
+                let other = of(rounding);
+                assert_eq!(steps_apart(&other, &nearest), 1, "{light:?} {arithmetic:?}");
+                let lower = nearest.pixels().iter().zip(other.pixels());
+                let is_lower = lower.filter(|(a, b)| a[0] < b[0]).count();
+                assert_eq!(is_lower > 0, rounding == Rounding::Dithered, "{light:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn each_four_bits_of_the_subpixel_grid_leave_fewer_wrong_pixels() {
+    let turn = at(110.0, 1.23, -4.56, 0.0) * DMat4::from_rotation_y(0.321);
+    let (scene, view) = scene(&[(ball(48), turn)]);
+    let view = unmarked(view);
+    let seen = |subpixels| {
+        let settings = Settings { subpixels, ..Settings::default() };
+        primitives(&scene, &view, &settings, 512)
+    };
+    let fine = seen(Subpixels::Bits12);
+    for (subpixels, least, most) in [
+        (Subpixels::Bits0, 0.06, 0.2),
+        (Subpixels::Bits4, 0.004, 0.015),
+        (Subpixels::Bits8, 0.0002, 0.002),
+    ] {
+        let wrong = differing(&seen(subpixels), &fine);
+        assert!((least..most).contains(&wrong), "{subpixels:?}: {wrong}");
+    }
+}
+
+#[test]
+fn far_from_the_origin_32_bits_lose_the_shape_of_things() {
+    let opened = lesson_scene("far").unwrap();
+    let seen = |vertices| {
+        let settings = Settings { vertices, ..Settings::default() };
+        primitives(&opened.scene, &opened.view, &settings, 400)
+    };
+    let exact = seen(VertexArithmetic::F64);
+    let composed = differing(&seen(VertexArithmetic::F32ComposedInF64), &exact);
+    let throughout = differing(&seen(VertexArithmetic::F32), &exact);
+    assert!(composed < 0.001, "{composed}");
+    assert!(throughout > 0.02, "{throughout}");
+}
+
+/// Case 29, drawn.
+#[test]
+fn points_every_tenth_of_a_unit_leave_holes_nearer_than_97_and_none_beyond() {
+    let pixel = |distance: f64| 2.0 * (2.0_f64.sqrt() - 1.0) * distance / 800.0;
+    let holes = |distance: f64| {
+        let place = at(10.0 * pixel(distance), 0.0, 0.0, 400.0 - distance);
+        let (scene, view) = scene(&[(square(), place)]);
+        let settings = Settings { coverage: Coverage::Points, ..Settings::default() };
+        let picture = draw(&scene, &unmarked(view), &settings, 800);
+        let seen = covered(&picture, &scene);
+        let inner = (391..409).flat_map(|y| (391..409).map(move |x| y * 800 + x));
+        inner.filter(|i| !seen[*i]).count()
+    };
+    for distance in [98.0, 400.0, 966.0] {
+        assert_eq!(holes(distance), 0, "at {distance}");
+    }
+    for distance in [60.0, 80.0] {
+        assert!(holes(distance) > 20, "at {distance}: {}", holes(distance));
+    }
+}
+
+#[test]
+fn rounded_rows_and_32_bit_edges_cover_what_is_covered_and_a_little_more() {
+    let (scene, view) = scene(&[(ball(12), at(90.0, 3.3, -7.7, 0.0))]);
+    let view = unmarked(view);
+    let seen = |coverage| {
+        let settings = Settings { coverage, ..Settings::default() };
+        covered(&draw(&scene, &view, &settings, 300), &scene)
+    };
+    let exact = seen(Coverage::Exact);
+    let count = |seen: &[bool]| seen.iter().filter(|seen| **seen).count() as f64;
+    for (coverage, most) in [(Coverage::ScanLines, 1.06), (Coverage::F32Edges, 1.0005)] {
+        let other = seen(coverage);
+        let lost = exact.iter().zip(&other).filter(|(exact, other)| **exact && !**other).count();
+        // What is rounded away at one side is put on at the other.
+        assert!(lost as f64 <= 0.01 * count(&exact), "{coverage:?}: {lost}");
+        let ratio = count(&other) / count(&exact);
+        assert!((0.9995..most).contains(&ratio), "{coverage:?}: {ratio}");
+    }
+}
+
+#[test]
+fn where_nothing_is_near_to_anything_every_format_of_depth_shows_the_same() {
+    let (scene, view) = marraztu::io::default_scene();
+    let seen = |depth| {
+        let settings = Settings { depth, ..Settings::default() };
+        primitives(&scene, &view, &settings, 400)
+    };
+    let usual = seen(DepthFormat::F32Reversed);
+    for depth in [DepthFormat::F32, DepthFormat::Bits24] {
+        let other = differing(&seen(depth), &usual);
+        assert!(other < 0.001, "{depth:?}: {other}");
+    }
+}
+
+/// Two squares that face the eye about 1000 away, the newer a little nearer.
+#[test]
+fn a_format_tells_surfaces_apart_that_are_farther_apart_than_its_step() {
+    let is_right = |apart: f64, depth| {
+        let far = (square(), at(100.0, 0.0, 0.0, -600.0));
+        let near = (square(), at(100.0, 0.0, 0.0, apart - 600.0));
+        let (mut scene, view) = scene(&[far, near]);
+        edit(&mut scene, FIRST, |object| object.material = matt([0.0, 0.0, 1.0]));
+        edit(&mut scene, SECOND, |object| object.material = matt([1.0, 0.0, 0.0]));
+        let settings = Settings { depth, ..Settings::default() };
+        let [r, _, b, _] = draw(&scene, &unmarked(view), &settings, 64).pixel(32, 32);
+        r > b
+    };
+    for (depth, step) in [
+        (DepthFormat::Bits16, 15.3),
+        (DepthFormat::Bits24, 0.060),
+        (DepthFormat::F32, 0.060),
+        (DepthFormat::F32Reversed, 5.8e-5),
+    ] {
+        assert!(is_right(1.2 * step, depth), "{depth:?}");
+        let finer = (1..20).map(|i| is_right(step * f64::from(i) / 40.0, depth));
+        assert!(finer.filter(|right| !right).count() > 5, "{depth:?}");
+    }
+}
+
+#[test]
+fn a_floor_bends_without_perspective() {
+    let opened = lesson_scene("floor").unwrap();
+    let picture = |interpolation| {
+        let settings = Settings { interpolation, ..Settings::default() };
+        draw(&opened.scene, &opened.view, &settings, 300)
+    };
+    let exact = picture(Interpolation::Perspective);
+    let wrong = |picture: &Picture| {
+        let pairs = picture.pixels().iter().zip(exact.pixels());
+        pairs.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 20)).count()
+    };
+    let shown = covered(&exact, &opened.scene).iter().filter(|seen| **seen).count();
+    let affine = wrong(&picture(Interpolation::Affine));
+    let sixteen = wrong(&picture(Interpolation::EverySixteen));
+    assert!(affine * 5 > shown, "{affine} of {shown}");
+    // Rows of this floor are all at one distance: sixteen pixels at a time lose nothing.
+    assert!(sixteen * 100 < shown, "{sixteen} of {shown}");
+}
+
+#[test]
+fn seen_from_afar_a_texture_is_its_mean() {
+    let opened = lesson_scene("floor").unwrap();
+    let row = |filter| {
+        let settings = Settings { filter, ..Settings::default() };
+        let picture = draw(&opened.scene, &opened.view, &settings, 200);
+        // Two rows below the far end of the floor, where a pixel covers many texels.
+        let first = (0..200).find(|y| picture.pixel(100, *y) != opened.scene.background.opaque());
+        let y = first.unwrap() + 1;
+        let spread: Vec<u8> = (95..105).map(|x| picture.pixel(x, y)[0]).collect();
+        spread.iter().max().unwrap() - spread.iter().min().unwrap()
+    };
+    assert!(row(Filter::Trilinear) * 3 < row(Filter::Nearest).max(3), "{}", row(Filter::Trilinear));
+}
+
+#[test]
+fn presets_of_history_show_their_faults_and_list_them() {
+    let history = ACCURACY_PRESETS.iter().filter(|preset| !preset.faults.is_empty());
+    let words: Vec<&str> = history.clone().map(|preset| preset.word).collect();
+    assert_eq!(words, ["ancestor-a", "ancestor-b"]);
+    let opened = lesson_scene("near").unwrap();
+    let usual =
+        covered(&draw(&opened.scene, &opened.view, &Settings::default(), 800), &opened.scene);
+    for preset in history {
+        let settings = preset.of(&Settings::default());
+        for (key, word) in preset.points {
+            assert_eq!(Axis::named(key).unwrap().chosen(&settings).word, *word);
+        }
+        let picture = draw(&opened.scene, &opened.view, &settings, 800);
+        let seen = covered(&picture, &opened.scene);
+        let holes = usual.iter().zip(&seen).filter(|(usual, seen)| **usual && !**seen).count();
+        assert_eq!(holes > 1000, settings.coverage == Coverage::Points, "{}", preset.word);
+    }
+}
