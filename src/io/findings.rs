@@ -126,6 +126,8 @@ kinds! {
     MapUnused: "a statement \"@\" is passed over: the only texture that is drawn is map_Kd", "# statements \"@\" are passed over: the only texture that is drawn is map_Kd";
     /// A texture that is not there.
     TextureMissing: "the texture \"@\" was not found", "the texture \"@\" was not found";
+    /// More textures than anyone names.
+    TextureMany: "a texture is passed over: ten thousand different ones are enough", "# textures are passed over: ten thousand different ones are enough";
     /// A texture that cannot be read.
     TextureUnreadable: "the texture cannot be read: @", "the texture cannot be read: @";
 }

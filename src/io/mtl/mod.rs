@@ -23,6 +23,9 @@ use crate::scene::{FileMaterial, NONE, Texture, Wrap};
 /// The most texels of all textures of a model: 2 GB.
 const MOST_TEXELS: usize = 1 << 29;
 
+/// How many different textures are looked for: each is a few looks at the disk.
+const MOST_NAMES: usize = 10_000;
+
 /// The materials of the files that a model names, in their order.
 #[derive(Debug, Default)]
 pub(super) struct Library {
@@ -34,6 +37,9 @@ pub(super) struct Library {
     /// The files that were read.
     read: BTreeSet<PathBuf>,
     texels: usize,
+    /// Where the textures are that were looked for, by the folder of the file that names them and
+    /// their name.
+    found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
     /// By path, wrapping, and the bits of offset and scale: what is the same is shared.
     textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
 }
@@ -100,8 +106,15 @@ impl Library {
         folders: [&Path; 2],
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Texture>> {
+        let key = (folders[0].to_owned(), map.name.clone());
+        if self.found.len() >= MOST_NAMES && !self.found.contains_key(&key) {
+            note(FindingKind::TextureMany, "");
+            return None;
+        }
         let mut locate = |folder| self.locator.locate(folder, &map.name);
-        let Some(path) = folders.into_iter().find_map(&mut locate) else {
+        let path =
+            self.found.entry(key).or_insert_with(|| folders.into_iter().find_map(&mut locate));
+        let Some(path) = path.clone() else {
             note(FindingKind::TextureMissing, &map.name);
             return None;
         };

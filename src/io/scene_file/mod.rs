@@ -105,6 +105,7 @@ pub fn to_text(
     let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
     // What is not finite could be written, and would not be read again.
     let again = file_scene(&text, "").map_err(|error| fail(error.to_string()))?;
+    open::check_counts(&again).map_err(fail)?;
     open::scene(&again, &StandIns).map_err(fail)?;
     Ok(text + "\n")
 }
@@ -146,6 +147,7 @@ pub(super) fn open_text(
 ) -> Result<Opened, SceneFileError> {
     let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
     let file = file_scene(text, name)?;
+    open::check_counts(&file).map_err(fail)?;
     let mut files = Files::new(folder, relocated);
     files.load(&file, name, progress)?;
     let (scene, view) = open::scene(&file, &files).map_err(fail)?;

@@ -18,6 +18,27 @@ use crate::scene::{
     SpotOwner, Steps, Texture, View,
 };
 
+/// The most things of a kind in a scene: each is looked up among all others.
+const MOST_ITEMS: usize = 10_000;
+
+/// Whether there are few enough things for a scene.
+///
+/// # Errors
+/// With the reason where there are not.
+pub(super) fn check_counts(file: &FileScene) -> Result<(), String> {
+    let counts = [
+        ("objects", file.objects.len()),
+        ("cameras", file.cameras.len()),
+        ("lights", file.lights.len()),
+    ];
+    match counts.into_iter().find(|(_, count)| *count > MOST_ITEMS) {
+        Some((what, count)) => {
+            Err(format!("it has {count} {what}, and {MOST_ITEMS} are the most that a scene has"))
+        }
+        None => Ok(()),
+    }
+}
+
 /// What a scene file needs from other files.
 pub(super) trait Needs {
     /// The model that the file means.
