@@ -235,22 +235,54 @@ impl<'a> Choice<'a> {
 
 /// Things that exclude one another, side by side. Gives the place of the one that was clicked.
 pub(super) fn choices(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usize> {
-    let size = vec2(ui.available_width(), theme::ROW);
+    choices_in(ui, choices, choices.len().max(1))
+}
+
+/// The same in as many rows as their names need.
+pub(super) fn choices_in_rows(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usize> {
+    let columns = columns(ui, choices);
+    choices_in(ui, choices, columns)
+}
+
+fn choices_in(ui: &mut Ui, choices: &[Choice<'_>], columns: usize) -> Option<usize> {
+    let rows = u16::try_from(choices.len().div_ceil(columns)).unwrap_or(1);
+    let size = vec2(ui.available_width(), f32::from(rows) * theme::ROW);
     let (all, _) = ui.allocate_exact_size(size, Sense::hover());
     ui.painter().rect_filled(all, 4.0, ui.visuals().widgets.inactive.bg_fill);
     let mut clicked = None;
-    let mut left = all.left();
+    let mut at = all.left_top();
     for (i, choice) in choices.iter().enumerate() {
-        let rest = u16::try_from(choices.len() - i).unwrap_or(1);
-        let width = ((all.right() - left) / f32::from(rest)).round();
-        let rect = Rect::from_min_size(pos2(left, all.top()), vec2(width, all.height()));
-        left += width;
+        let in_row = columns.min(choices.len() - i / columns * columns);
+        let rest = u16::try_from(in_row - i % columns).unwrap_or(1);
+        let width = ((all.right() - at.x) / f32::from(rest)).round();
+        let rect = Rect::from_min_size(at, vec2(width, theme::ROW));
+        at.x += width;
+        if rest == 1 {
+            at = pos2(all.left(), at.y + theme::ROW);
+        }
         if choice_ui(ui, rect, choice).clicked() && !choice.on {
             clicked = Some(i);
         }
     }
     clicked
 }
+
+/// How many choices stand side by side, so that each has room for its name.
+fn columns(ui: &Ui, choices: &[Choice<'_>]) -> usize {
+    let width = |choice: &Choice<'_>| {
+        text(ui, choice.label, TextStyle::Body, f32::INFINITY).size().x + 2.0 * ROOM
+    };
+    let widest = choices.iter().map(width).fold(1.0, f32::max);
+    let fits =
+        |n: &usize| u16::try_from(*n).is_ok_and(|n| f32::from(n) * widest <= ui.available_width());
+    let all = choices.len().max(1);
+    let most = (1..=all).rev().find(fits).unwrap_or(1);
+    // As even as may be.
+    all.div_ceil(all.div_ceil(most))
+}
+
+/// Beside the name of a choice, to each side.
+const ROOM: f32 = 4.0;
 
 fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>) -> Response {
     let enabled = choice.refused.is_none();
@@ -274,7 +306,7 @@ fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>) -> Response {
     let key = choice.key.clone().filter(|_| !choice.on).unwrap_or_default();
     let key = painter.layout_no_wrap(key, key_font, color);
     let gap = if key.size().x > 0.0 { 5.0 } else { 0.0 };
-    let room = rect.width() - 8.0;
+    let room = rect.width() - 2.0 * ROOM;
     let label = text(ui, choice.label, TextStyle::Body, room);
     // The key makes room first.
     let show_key = label.size().x + gap + key.size().x <= room;

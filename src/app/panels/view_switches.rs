@@ -3,7 +3,9 @@
 use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
 use super::color_picker::swatch;
-use super::controls::{self, Choice, action_switch, change, choices, row, section};
+use super::controls::{
+    self, Choice, action_switch, change, choices, choices_in_rows, row, section,
+};
 use crate::app::action::Action;
 use crate::app::ask::Ask;
 use crate::app::state::State;
@@ -214,7 +216,7 @@ fn settings_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         .zip(&hints)
         .map(|(preset, hint)| Choice::new("Accuracy", preset.label, preset.of(&now) == now, hint))
         .collect();
-    if let Some(clicked) = row(ui, "Accuracy", |ui| choices(ui, &presets)) {
+    if let Some(clicked) = row(ui, "Accuracy", |ui| choices_in_rows(ui, &presets)) {
         asks.push(Ask::Settings(ACCURACY_PRESETS[clicked].of(&now)));
     }
     for axis in AXES {
@@ -240,7 +242,7 @@ pub(super) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, asks: &mut Vec<As
         .zip(&hints)
         .map(|(choice, hint)| Choice::new(axis.label, choice.label, choice.is(&now), hint))
         .collect();
-    if let Some(clicked) = row(ui, axis.label, |ui| choices(ui, &all)) {
+    if let Some(clicked) = row(ui, axis.label, |ui| choices_in_rows(ui, &all)) {
         asks.push(Ask::Settings(axis.choices[clicked].of(&now)));
     }
 }
