@@ -14,8 +14,8 @@ type Row = (&'static str, fn(&Stages) -> Duration);
 const STAGES: [Row; 4] = [
     ("vertices", |stages| stages.vertices),
     ("set-up", |stages| stages.set_up),
-    ("light-of-vertices", |stages| stages.light),
     ("tiles", |stages| stages.tiles),
+    ("tiles-lit-at-vertices", |stages| stages.tiles),
 ];
 
 pub(crate) fn measure(criterion: &mut Criterion) {
@@ -32,8 +32,8 @@ pub(crate) fn measure(criterion: &mut Criterion) {
             });
         });
         for (name, time) in STAGES {
-            // Light of vertices is evaluated only where it is asked for.
-            let light = if name == "light-of-vertices" { LightAt::Vertex } else { LightAt::Pixel };
+            let at_vertices = name == "tiles-lit-at-vertices";
+            let light = if at_vertices { LightAt::Vertex } else { LightAt::Pixel };
             stage.settings = Settings { light, ..Settings::default() };
             group.bench_function(name, |bencher| {
                 bencher.iter_custom(|frames| stage.drawn(frames, |r| time(&r.stages())));

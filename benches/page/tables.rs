@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::measured::Measured;
 
-const STAGES: [&str; 6] = ["plan", "vertices", "set-up", "lines", "light-of-vertices", "tiles"];
+const STAGES: [&str; 6] = ["plan", "vertices", "set-up", "lines", "tiles", "tiles-lit-at-vertices"];
 
 /// Stages by shapes.
 pub(crate) fn stages(measured: &Measured) -> Result<String, String> {

@@ -111,10 +111,19 @@ pub(super) struct Work {
 /// A pixel, and what is seen there; `None` for the background.
 type Explained = (Blame, Option<String>);
 
-/// While it is measured, the window is drawn no sooner than so long after the last time.
+/// While it is measured, the window is drawn no sooner than so long after the last time, and so seldom
+/// that one pair of pictures at least is measured in between.
 const REST: Duration = Duration::from_millis(250);
 
+/// How many pairs have room between two drawings of the window.
+const PAIRS_BETWEEN: u32 = 3;
+
 impl Work {
+    /// How long the window is not drawn by itself.
+    fn rest_now(&self) -> Duration {
+        REST.max(PAIRS_BETWEEN * self.watch.pair())
+    }
+
     /// The window is being drawn as long as this lives.
     pub(super) fn touch(&self) -> Touch {
         self.watch.touch()
@@ -267,7 +276,7 @@ impl App {
             self.show_findings(findings);
         }
         match outcome {
-            Outcome::Running => return ctx.request_repaint_after(REST),
+            Outcome::Running => return ctx.request_repaint_after(self.lab.rest_now()),
             Outcome::Done(Ok(findings)) => self.show_findings(findings),
             Outcome::Done(Err(Unmeasured::Cancelled)) => {
                 self.state.tell(Some("Measuring was cancelled".to_owned()));

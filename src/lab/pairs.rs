@@ -41,6 +41,8 @@ struct Touches {
     /// Odd while the machine is used for something else.
     count: AtomicU64,
     last: Mutex<Option<Instant>>,
+    /// How long the last pair took, in milliseconds.
+    pair: AtomicU64,
 }
 
 /// The machine is used for something else as long as this lives.
@@ -63,6 +65,13 @@ impl Watch {
     pub fn touch(&self) -> Touch {
         self.touches.count.fetch_add(1, Ordering::Relaxed);
         Touch(Arc::clone(&self.touches))
+    }
+
+    /// How long the pairs that are measured now take: whoever touches more often than that disturbs
+    /// all of them.
+    #[must_use]
+    pub fn pair(&self) -> Duration {
+        Duration::from_millis(self.touches.pair.load(Ordering::Relaxed))
     }
 
     fn touches(&self) -> u64 {
@@ -166,7 +175,10 @@ pub fn abba(
         watch.settle();
         let before = watch.touches();
         let [a1, b1, b2, a2] = [run(0)?, run(1)?, run(1)?, run(0)?];
-        spent += a1 + b1 + b2 + a2;
+        let pair = a1 + b1 + b2 + a2;
+        spent += pair;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a time")]
+        watch.touches.pair.store(pair.ceil() as u64, Ordering::Relaxed);
         if watch.touches() == before && before.is_multiple_of(2) {
             ratios.push((b1 + b2) / (a1 + a2));
             of_a.extend([a1, a2]);

@@ -71,8 +71,9 @@ pub enum LightAt {
     Pixel,
 }
 
-/// In how many places of a pixel it is asked what is seen.
+/// In how many places of a pixel it is asked what is seen; written as a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(into = "u8", try_from = "u8")]
 pub enum Samples {
     /// In its middle.
     #[default]
@@ -83,6 +84,26 @@ pub enum Samples {
     Sixteen,
     /// In sixty-four: the reference.
     SixtyFour,
+}
+
+impl From<Samples> for u8 {
+    fn from(samples: Samples) -> Self {
+        match samples {
+            Samples::One => 1,
+            Samples::Four => 4,
+            Samples::Sixteen => 16,
+            Samples::SixtyFour => 64,
+        }
+    }
+}
+
+impl TryFrom<u8> for Samples {
+    type Error = String;
+
+    fn try_from(count: u8) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|samples| u8::from(*samples) == count);
+        found.ok_or_else(|| format!("a pixel has 1, 4, 16 or 64 samples, not {count}"))
+    }
 }
 
 impl Samples {

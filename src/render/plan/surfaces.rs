@@ -123,8 +123,11 @@ impl Planner<'_> {
 
     /// The power of 2 below which powers of highlights count as 0.
     fn floor(&self, into: &Planning, matter: &Matter) -> f64 {
+        // A highlight that is stronger than its light reaches further down.
+        let strongest = matter.specular.iter().fold(1.0_f64, |most, ks| most.max(ks.abs()));
+        let deeper = |floor: f64| (floor - libm::log2(strongest)).max(LOWEST);
         if self.settings.arithmetic == Arithmetic::F64 {
-            return -24.0;
+            return deeper(-24.0);
         }
         // By what the scene says, and not by what is left of it after leaving out.
         let with_highlight = |shining: &&Shining| {
@@ -137,7 +140,7 @@ impl Planner<'_> {
         let count = u32::try_from(count).unwrap_or(u32::MAX);
         // 2^-10 shared out among the highlights, so that all that is left out stays below a quarter of
         // a byte step.
-        -10.0 - libm::log2(f64::from(count))
+        deeper(-10.0 - libm::log2(f64::from(count)))
     }
 
     /// The lights that a material needs, in the order of the scene.
@@ -243,6 +246,9 @@ impl Planner<'_> {
         (matter, cut_off)
     }
 }
+
+/// The lowest floor that powers are computed down to.
+const LOWEST: f64 = -60.0;
 
 /// The largest coefficient and exponent: beside anything else that light is, it is beyond measure,
 /// and it has room in 32 bits.

@@ -61,7 +61,7 @@ pub(super) const RULES: Proof = Proof {
 };
 
 /// In so many lots every broken rule has to be caught.
-const PATIENCE: u64 = 625;
+const PATIENCE: u64 = 2500;
 
 /// The seeds of a lot.
 const fn seeds(lot: u64) -> std::ops::Range<u64> {
