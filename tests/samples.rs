@@ -1,9 +1,4 @@
-//! Pictures with several samples a pixel.
-//!
-//! Broken once each, to see it bite: a place of the tables, the sign of a shift, the box of small
-//! triangles that reaches to the middles alone, a block taken for whole that has a sample outside, the
-//! share of a sample, the sum begun twice for a background, and middles that are not held to what they
-//! show.
+//! Pictures with several samples a pixel, held to pictures with one that are drawn from each place.
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 
