@@ -253,7 +253,13 @@ impl Bench<'_> {
         let point = match known {
             Some(point) => point,
             None => {
-                let point = self.point(findings, base, (settings, reference), references)?;
+                let mut point = self.point(findings, base, (settings, reference), references)?;
+                if let Group::Axis(key) = group
+                    && reference != settings.reference()
+                {
+                    // The same settings may stand elsewhere, judged against another picture.
+                    point.name = format!("{key} {}", name.to_lowercase());
+                }
                 findings.points.push(point);
                 findings.points.len() - 1
             }

@@ -162,7 +162,8 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
             "normalising" | "rounding" => 1,
             _ => 40,
         };
-        assert!(error.largest >= least, "{}: {error:?}", axis.key);
+        // What moves is told as pixels that show something else.
+        assert!(error.largest >= least || error.coverage > 100, "{}: {error:?}", axis.key);
     }
 }
 

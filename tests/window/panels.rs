@@ -118,7 +118,9 @@ fn every_axis_of_accuracy_is_chosen_by_its_name() {
         ("Arithmetic: 64 bits", Settings { arithmetic: Arithmetic::F64, ..first }),
         ("Arithmetic: 32 bits", first),
     ] {
-        click(&mut editor, Role::RadioButton, label);
+        // Some of the panel is scrolled out of sight.
+        control(&editor, Role::RadioButton, label).click_accesskit();
+        editor.settle();
         assert_eq!(editor.state().settings, expected, "{label}");
     }
     assert_eq!(editor.steps(), 0, "accuracy is no step");

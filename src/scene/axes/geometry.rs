@@ -105,7 +105,7 @@ pub(super) const COVERAGE: Axis = Axis {
 pub(super) const INTERPOLATION: Axis = Axis {
     name: "interpolation",
     key: "interpolation",
-    label: "Between corners",
+    label: "Mixing",
     what: "How what corners carry gets to pixels",
     kind: AxisKind::Scored,
     choices: &[
