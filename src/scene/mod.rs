@@ -161,6 +161,21 @@ impl Scene {
         math::placed(axes, m.w_axis.truncate())
     }
 
+    /// From where and which way a spot shines now; `None` where its owner is not there.
+    #[must_use]
+    pub fn aim(&self, view: &View, owner: &SpotOwner) -> Option<Aim> {
+        let object = |id| self.objects.get(id).map(|o| Self::frame_of_object(o, view.time));
+        let camera = |id| self.cameras.get(id).map(|c| c.pose.now().world_from_camera());
+        let frame = match owner {
+            SpotOwner::SelectedObject => object(view.object?),
+            SpotOwner::SelectedCamera => camera(view.camera),
+            SpotOwner::Object(id) => object(*id),
+            SpotOwner::Camera(id) => camera(*id),
+            SpotOwner::Fixed(aim) => return Some(*aim.now()),
+        }?;
+        Some(Aim { position: frame.w_axis.truncate(), direction: -frame.z_axis.truncate() })
+    }
+
     /// `world_from_view` of whoever looks: the selected object's frame where the view says so and
     /// there is one, else the selected camera's.
     #[must_use]

@@ -10,6 +10,7 @@ pub mod double_double;
 pub mod exact;
 mod fans;
 mod far;
+mod hostile;
 pub mod pictures;
 pub mod plan;
 mod presses;

@@ -1,34 +1,23 @@
-//! Scenes of numbers that nobody means: not a number, infinite, subnormal, huge; flat placements,
-//! lamps on surfaces, cameras inside of things.
-//!
-//! They come in as a person's would, by meshes and commands, which may refuse them and then leave all
-//! as it was. What is let in is drawn: without a panic, the same on all instructions, with depths from
-//! 0 to 1, and never dark in f32 where f64 sees light.
+//! Scenes of numbers that nobody means, drawn: without a panic, the same on all instructions, with
+//! depths from 0 to 1, and never dark in f32 where f64 sees light.
 
 use fearless_simd::Level;
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use glam::DVec3;
 
 use super::dice::Dice;
+use super::hostile::Hostile;
 use super::{Proof, Tally};
-use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
-use crate::base::{Shared, math};
-use crate::edit::transform::{self, Sign};
-use crate::edit::{Stroke, place};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
-    Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
-    Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, NormalLength, Normals, Object, ObjectId, Observer, Orbit, Part,
-    Placed, Pose, PresetId, Projection, Samples, Scene, Settings, SourceCorner, SpecularForm, Spin,
-    SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
+    Aim, Arithmetic, Command, Item, Light, LightKind, MaterialChoice, Orbit, Placed, Scene,
+    Settings, SpotOwner, View,
 };
 
 pub(super) const PROOF: Proof = Proof {
     name: "scenes",
     claim: "scenes of hostile numbers are refused and left as they were, or drawn: no panic, the \
-            same bytes on all instructions, depths from 0 to 1, no light lost in 32 bits but for \
-            single pixels",
+            same bytes on all instructions, depths from 0 to 1, no light lost in 32 bits",
     unit: "scenes",
     lot: SCENES,
     tested: 30_000,
@@ -40,8 +29,7 @@ const SCENES: u64 = 100;
 
 fn check(lot: u64) -> Result<Tally, String> {
     let mut tally = Tally::default();
-    let renderers = [Level::baseline(), Level::new()].map(Renderer::new);
-    let [mut plain, mut best] = renderers;
+    let [mut plain, mut best] = [Level::baseline(), Level::new()].map(Renderer::new);
     for i in 0..SCENES {
         let mut hostile = Hostile::new(lot * SCENES + i);
         let (scene, view) = hostile.scene(&mut tally);
@@ -50,8 +38,8 @@ fn check(lot: u64) -> Result<Tally, String> {
         let plan = FramePlan::new(&scene, &view, &settings, size);
         let first = plain.render(&plan).clone();
         let fail = |what: String| Err(format!("scene {i}: {what}"));
-        if first != *best.render(&plan) {
-            return fail("instructions show".to_owned());
+        if let Some(at) = difference(&first, best.render(&plan)) {
+            return fail(format!("instructions show at {at:?}"));
         }
         for _ in 0..2 {
             let (x, y) = (hostile.dice.index(size.width), hostile.dice.index(size.height));
@@ -63,18 +51,34 @@ fn check(lot: u64) -> Result<Tally, String> {
         }
         if settings.arithmetic == Arithmetic::F32 {
             let settings = Settings { arithmetic: Arithmetic::F64, ..settings };
-            let exact = best.render(&FramePlan::new(&scene, &view, &settings, size));
-            let lost = lost(&first, exact);
-            if lost > 1 {
-                return fail(format!("{lost} pixels dark that should not be"));
-            }
-            tally.count("single pixels dark in 32 bits alone", lost as u64);
+            let mut in_f64 =
+                |scene: &Scene| best.render(&FramePlan::new(scene, &view, &settings, size)).clone();
+            let exact = in_f64(&scene);
             let differ = first.pixels().iter().zip(exact.pixels());
             tally.count("pixels", size.area() as u64);
             tally.count(
                 "pixels more than a step off",
                 differ.filter(|(a, b)| far(**a, **b)).count() as u64,
             );
+            let mut lost = lost(&first, &exact);
+            if !lost.is_empty() && !has_measure(&scene) {
+                tally.count("scenes too bright to be judged", 1);
+                lost.clear();
+            }
+            // On a border of light, where less than f32 can tell puts the light out in f64 as well.
+            tally.count("pixels on a border of light", lost.len() as u64);
+            let dice = &mut hostile.dice;
+            for _ in 0..NUDGES {
+                if lost.is_empty() {
+                    break;
+                }
+                let nudged = in_f64(&nudged(&scene, &view, dice));
+                lost.retain(|at| !is_dark(&nudged.pixels()[*at]));
+            }
+            if let Some(at) = lost.first() {
+                let at = (at % size.width, at / size.width);
+                return fail(format!("{} pixels dark that should not be, as {at:?}", lost.len()));
+            }
         }
         tally.count("scenes", 1);
         tally.count("pictures", 3);
@@ -82,345 +86,80 @@ fn check(lot: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// How many pixels are black in one picture and bright in the other: the trace of a number that was
+/// A pixel in which two pictures differ.
+fn difference(a: &Picture, b: &Picture) -> Option<(usize, usize)> {
+    let at = a.pixels().iter().zip(b.pixels()).position(|(a, b)| a != b)?;
+    Some((at % a.size().width, at / a.size().width))
+}
+
+/// The pixels that are dark in one picture and bright in the other: the trace of a number that was
 /// none.
-fn lost(fast: &Picture, exact: &Picture) -> usize {
-    let black = |pixel: &[u8; 4]| pixel[..3] == [0; 3];
+fn lost(fast: &Picture, exact: &Picture) -> Vec<usize> {
     let bright = |pixel: &[u8; 4]| pixel[..3].iter().any(|byte| *byte > 32);
-    fast.pixels().iter().zip(exact.pixels()).filter(|(a, b)| black(a) && bright(b)).count()
+    let both = fast.pixels().iter().zip(exact.pixels()).enumerate();
+    both.filter(|(_, (a, b))| is_dark(a) && bright(b)).map(|(at, _)| at).collect()
+}
+
+fn is_dark(pixel: &[u8; 4]) -> bool {
+    pixel[..3] == [0; 3]
 }
 
 fn far(a: [u8; 4], b: [u8; 4]) -> bool {
     a.into_iter().zip(b).any(|(a, b)| a.abs_diff(b) > 1)
 }
 
-/// A command is done, or refused with nothing changed.
-fn try_out(scene: &mut Scene, command: Command, tally: &mut Tally) {
-    let before = scene.clone();
-    if command.apply(scene).is_err() {
-        // In letters, for a number that is none is not equal to itself.
-        let unchanged = format!("{scene:?}") == format!("{before:?}");
-        assert!(unchanged, "a command that is refused changes nothing");
-        tally.count("refusals", 1);
-    }
+/// Whether nothing in a scene is so much brighter than white that a last place of 32 bits beside it is
+/// light.
+fn has_measure(scene: &Scene) -> bool {
+    const BRIGHT: f64 = 1e4;
+    let within = |numbers: &[f64]| numbers.iter().all(|k| k.abs() < BRIGHT);
+    scene.objects.iter().all(|(_, object)| {
+        let mesh = &object.model.mesh;
+        let colors = mesh.colors().iter().flatten().all(|k| f64::from(*k).abs() < BRIGHT);
+        let MaterialChoice::Own(material) = &object.material else { return colors };
+        let reflected = [material.ambient, material.diffuse, material.specular];
+        colors && reflected.iter().all(|color| within(color))
+    })
 }
 
-/// Magnitudes from the hard places.
-const HARD: [f64; 26] = [
-    0.0,
-    5e-324,
-    1e-310,
-    2.3e-308,
-    1e-46,
-    1e-40,
-    1.2e-38,
-    1e-23,
-    1e-12,
-    1e-6,
-    0.5,
-    1.0,
-    2.0,
-    10.0,
-    100.0,
-    400.0,
-    1e4,
-    1e6,
-    1e9,
-    1e15,
-    1e20,
-    3e38,
-    1e39,
-    1e154,
-    1e300,
-    f64::MAX,
-];
+/// How often lamps are moved to see whether light is on a border.
+const NUDGES: usize = 32;
 
-/// Makes hostile things.
-struct Hostile {
-    dice: Dice,
-    /// One of so many numbers is from the hard places.
-    rarity: u64,
-    /// Places of vertices in the world: lamps like to stand there.
-    surfaces: Vec<DVec3>,
-}
-
-impl Hostile {
-    fn new(seed: u64) -> Self {
-        let mut dice = Dice::new(seed);
-        let rarity = dice.one_of(&[2, 5, 20, 60, 1000]);
-        Self { dice, rarity, surfaces: vec![DVec3::ZERO] }
-    }
-
-    /// A number that should be from -`size` to `size`.
-    fn number(&mut self, size: f64) -> f64 {
-        if !self.dice.chance(self.rarity) {
-            return self.dice.real(-size, size);
-        }
-        let special = match self.dice.below(12) {
-            0 => f64::NAN,
-            1 => f64::INFINITY,
-            _ => self.dice.one_of(&HARD),
-        };
-        if self.dice.chance(2) { special } else { -special }
-    }
-
-    /// A number that should be from 0 to `size`.
-    fn amount(&mut self, size: f64) -> f64 {
-        let number = self.number(size);
-        if self.dice.chance(self.rarity) { number } else { number.abs() }
-    }
-
-    fn vector(&mut self, size: f64) -> DVec3 {
-        DVec3::new(self.number(size), self.number(size), self.number(size))
-    }
-
-    #[expect(clippy::cast_possible_truncation, reason = "the nearest number is meant")]
-    fn narrow<const N: usize>(&mut self, size: f64) -> [f32; N] {
-        std::array::from_fn(|_| self.number(size) as f32)
-    }
-
-    fn bool(&mut self) -> bool {
-        self.dice.chance(2)
-    }
-
-    fn scene(&mut self, tally: &mut Tally) -> (Scene, View) {
-        let mut scene = Scene::with_camera(self.camera(Pose::facing_minus_z(DVec3::Z * 400.0)));
-        for id in 1..=self.dice.between(1, 4).unsigned_abs() {
-            if let Some(object) = self.object() {
-                let item = Item::Object(ObjectId(id), Box::new(object));
-                try_out(&mut scene, Command::Insert { at: 0, item }, tally);
-            }
-        }
-        let on_surface = self.dice.one_of(&self.surfaces.clone());
-        for (slot, id) in (10..10 + self.dice.below(6)).zip(10..) {
-            let light = self.light(u32::try_from(slot).unwrap_or(0), on_surface);
-            let item = Item::Light(LightId(id), Box::new(light));
-            try_out(&mut scene, Command::Insert { at: 0, item }, tally);
-        }
-        if self.bool() {
-            let pose = self.pose(on_surface);
-            let camera = self.camera(pose);
-            let item = Item::Camera(CameraId(0), Box::new(camera));
-            try_out(&mut scene, Command::Replace(item), tally);
-        }
-        let view = self.view(&scene);
-        for _ in 0..self.dice.below(4) {
-            if let Some(command) = self.command(&scene, &view) {
-                try_out(&mut scene, command, tally);
-            }
-        }
-        (scene, view)
-    }
-
-    fn command(&mut self, scene: &Scene, view: &View) -> Option<Command> {
-        let object = view.object?;
-        let (v, stroke) =
-            (self.vector(10.0), self.dice.one_of(&[Stroke::First, Stroke::Continued]));
-        let axis = self.dice.one_of(&math::Axis::ALL);
-        match self.dice.below(7) {
-            0 => transform::translate(scene, view, v, stroke),
-            1 => transform::rotate(scene, view, v, self.number(7.0), stroke),
-            2 => transform::stretch(scene, view, v, stroke),
-            3 => place::object_scale(scene, view, object, v, stroke),
-            4 => place::object_turn(scene, view, object, v, stroke),
-            5 => place::object_translation(scene, view, object, v, stroke),
-            _ => transform::step(scene, view, axis, Sign::Positive, stroke),
-        }
-        .ok()
-    }
-
-    fn model(&mut self) -> Option<Shared<Model>> {
-        let vertices = self.dice.between(3, 12).unsigned_abs();
-        let (uvs, normals) = (self.dice.index(5), self.dice.index(5));
-        let mut source = MeshSource {
-            positions: (0..vertices).map(|_| self.narrow(60.0)).collect(),
-            uvs: (0..uvs).map(|_| self.narrow(3.0)).collect(),
-            normals: (0..normals).map(|_| self.narrow(1.0)).collect(),
-            parts: vec![Part { name: "part".to_owned(), material: None }],
-            ..MeshSource::default()
-        };
-        if self.bool() {
-            source.colors = (0..vertices).map(|_| self.narrow(1.0)).collect();
-        }
-        let index = |dice: &mut Dice, n: usize| match n {
-            0 => NONE,
-            n => u32::try_from(dice.index(n)).unwrap_or(NONE),
-        };
-        for _ in 0..self.dice.between(1, 6) {
-            let corners = self.dice.between(3, 6).unsigned_abs();
-            source.arities.push(corners);
-            source.polygon_parts.push(0);
-            for _ in 0..corners {
-                source.corners.push(SourceCorner {
-                    position: index(&mut self.dice, vertices as usize),
-                    uv: index(&mut self.dice, uvs),
-                    normal: index(&mut self.dice, normals),
-                });
-            }
-        }
-        let mesh = Mesh::new(source).ok()?;
-        Some(Shared::new(Model {
-            name: "hostile".to_owned(),
-            source: None,
-            options: LoadOptions::default(),
-            mesh,
-            materials: Vec::new(),
-            edge_color: None,
-        }))
-    }
-
-    fn object(&mut self) -> Option<Object> {
-        let model = self.model()?;
-        let material = match self.dice.below(3) {
-            0 => MaterialChoice::Preset(self.preset()),
-            _ => MaterialChoice::Own(self.material()),
-        };
-        let mut object = Object::new(model, material);
-        let placement = self.placement();
-        let mean = placement.transform_point3(object.model.mesh.polygon_centre(0));
-        self.surfaces.push(mean);
-        object.placement = Placed::new(placement);
-        if self.dice.chance(4) {
-            let axes = [self.bool(), self.bool(), self.bool()];
-            object.spin = Spin { axes, speed: self.number(90.0), since: self.number(1.0) };
-        }
-        object.surface =
-            self.dice.one_of(&[Surface::Material, Surface::Texture, Surface::TextureAndLight]);
-        if self.bool() {
-            object.texture = Some(self.texture());
-        }
-        object.two_sided = self.bool();
-        object.file_normals = self.bool();
-        object.tint = Color([255, 128, 9]);
-        Some(object)
-    }
-
-    fn preset(&mut self) -> PresetId {
-        let at = self.dice.index(PresetId::all().len());
-        PresetId::all().nth(at).unwrap_or(PresetId::SILVER)
-    }
-
-    fn material(&mut self) -> Material {
-        let mut color = || std::array::from_fn(|_| self.amount(1.0));
-        let (ambient, diffuse, specular) = (color(), color(), color());
-        Material { ambient, diffuse, specular, exponent: self.amount(128.0) }
-    }
-
-    fn texture(&mut self) -> Shared<Texture> {
-        let pixels = (0..6).map(|_| self.dice.bits().to_le_bytes());
-        let pixels = pixels.map(|[r, g, b, a, ..]| [r, g, b, a]).collect();
-        Shared::new(Texture {
-            source: std::path::PathBuf::new(),
-            picture: Picture::from_pixels(Size::new(3, 2), pixels).unwrap_or_default(),
-            wrap: self.dice.one_of(&[Wrap::Repeat, Wrap::Clamp]),
-            offset: [self.number(2.0), self.number(2.0)],
-            scale: [self.number(5.0), self.number(5.0)],
-        })
-    }
-
-    fn placement(&mut self) -> DMat4 {
-        let axes = match self.dice.below(4) {
-            0 => DMat3::from_cols(self.vector(1.0), self.vector(1.0), self.vector(1.0)),
-            1 => DMat3::from_diagonal(self.vector(3.0)),
-            2 => self.turn() * self.amount(3.0),
-            _ => self.turn(),
-        };
-        let column = |v: DVec3| v.extend(0.0);
-        let place: DVec4 = self.vector(150.0).extend(1.0);
-        DMat4::from_cols(column(axes.x_axis), column(axes.y_axis), column(axes.z_axis), place)
-    }
-
-    fn turn(&mut self) -> DMat3 {
-        let axis = math::unit(self.dice.vector(1.0)).unwrap_or(DVec3::Y);
-        math::rotation(axis, self.dice.real(0.0, 7.0))
-    }
-
-    fn pose(&mut self, on_surface: DVec3) -> Pose {
-        let eye = if self.dice.chance(3) { on_surface } else { self.vector(300.0) };
-        Pose { axes: self.turn(), ..Pose::facing_minus_z(eye) }
-    }
-
-    fn camera(&mut self, pose: Pose) -> Camera {
-        let mut lens = Lens {
-            half_angle: self.amount(89.0),
-            near: self.amount(2.0),
-            far: self.amount(4000.0),
-            half_size: self.amount(500.0),
-            parallel_near: self.number(10.0),
-            parallel_far: self.amount(4000.0),
-        };
-        if self.bool() || !lens.is_valid() {
-            lens = Lens::default();
-        }
-        Camera {
-            name: "camera".to_owned(),
-            visible: self.bool(),
-            model: crate::io::cam_model(),
-            material: MaterialChoice::Preset(PresetId::SILVER),
-            pose: Placed::new(pose),
-            lens,
-        }
-    }
-
-    fn light(&mut self, slot: u32, on_surface: DVec3) -> Light {
-        let place = if self.dice.chance(3) { on_surface } else { self.vector(200.0) };
-        let direction = if self.bool() { self.turn().x_axis } else { self.vector(1.0) };
-        let orbit = Orbit { on: self.bool(), speed: self.number(90.0), since: self.number(9.0) };
-        let owner = match self.dice.below(4) {
-            0 => SpotOwner::SelectedObject,
-            1 => SpotOwner::SelectedCamera,
-            2 => SpotOwner::Object(ObjectId(1)),
-            _ => SpotOwner::Fixed(Placed::new(Aim { position: place, direction })),
-        };
-        let kind = match self.dice.below(4) {
-            0 => LightKind::Ambient,
-            1 => LightKind::Sun { direction: Placed::new(direction) },
-            2 => LightKind::Bulb { position: Placed::new(place), orbit },
-            _ => LightKind::Spot {
-                owner,
-                half_aperture: self.amount(90.0),
-                exponent: self.amount(9.0),
+/// The scene with its lamps moved by a millionth part of how far things are from them and from the
+/// observer: some last places of 32 bits.
+fn nudged(scene: &Scene, view: &View, dice: &mut Dice) -> Scene {
+    const PART: f64 = 1.0 / (1 << 20) as f64;
+    let eye = scene.observer_frame(view).w_axis.truncate();
+    let nudge = |place: DVec3, dice: &mut Dice| {
+        let distance = (place - eye).length() + eye.length() + place.length();
+        place + dice.vector(1.0) * (PART * distance)
+    };
+    let mut scene = scene.clone();
+    let lights: Vec<_> = scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
+    for (id, light) in lights {
+        let kind = match &light.kind {
+            LightKind::Bulb { position, orbit } => LightKind::Bulb {
+                position: Placed::new(nudge(orbit.at(*position.now(), view.time), dice)),
+                orbit: Orbit { on: false, ..*orbit },
             },
+            LightKind::Spot { owner, half_aperture, exponent } => {
+                let Some(aim) = scene.aim(view, owner) else { continue };
+                let direction = aim.direction + dice.vector(1.0) * PART;
+                let aim = Aim { position: nudge(aim.position, dice), direction };
+                LightKind::Spot {
+                    owner: SpotOwner::Fixed(Placed::new(aim)),
+                    half_aperture: *half_aperture,
+                    exponent: *exponent,
+                }
+            }
+            LightKind::Sun { direction } => LightKind::Sun {
+                direction: Placed::new(*direction.now() + dice.vector(1.0) * PART),
+            },
+            LightKind::Ambient => continue,
         };
-        let mut light = Light::new("light", slot, kind);
-        if self.bool() {
-            light.attenuation = Attenuation {
-                constant: self.amount(1.0),
-                linear: self.amount(0.1),
-                quadratic: self.amount(0.1),
-            };
-        }
-        light.color = self.dice.one_of(&[Color::WHITE, Color::BLACK, Color([1, 200, 90])]);
-        light
+        let item = Item::Light(id, Box::new(Light { kind, ..light }));
+        // What is refused stays where it was.
+        let _ = Command::Replace(item).apply(&mut scene);
     }
-
-    fn view(&mut self, scene: &Scene) -> View {
-        let mut view = scene.first_view();
-        view.subject = Subject::Object;
-        view.transformation = Transformation::Scaling;
-        view.frame = self.dice.one_of(&[Frame::Local, Frame::Global]);
-        view.steps.scaling = self.number(2.0);
-        view.observer = self.dice.one_of(&[Observer::Camera, Observer::Camera, Observer::Object]);
-        view.projection = self.dice.one_of(&[Projection::Perspective, Projection::Orthographic]);
-        view.fill = self.dice.one_of(&[Fill::Filled, Fill::Filled, Fill::Edges]);
-        view.normals = self.dice.one_of(&[Normals::Vertex, Normals::Face]);
-        view.normal_length = self.dice.one_of(&[NormalLength::Units, NormalLength::BySize]);
-        (view.back_faces, view.edges_over_fill) = (self.bool(), self.dice.chance(4));
-        (view.face_normals, view.vertex_normals) = (self.dice.chance(4), self.dice.chance(4));
-        view.wide_lines = self.bool();
-        view.time = self.number(10.0);
-        view
-    }
-
-    fn settings(&mut self) -> Settings {
-        Settings {
-            arithmetic: self.dice.one_of(&[Arithmetic::F32, Arithmetic::F32, Arithmetic::F64]),
-            light: self.dice.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]),
-            samples: self.dice.one_of(&[Samples::One, Samples::One, Samples::Four]),
-            filter: self.dice.one_of(&[Filter::Nearest, Filter::Bilinear]),
-            specular: self.dice.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
-            leave_out: self.dice.one_of(&[LeaveOut::Unseen, LeaveOut::HalfStep]),
-            ..Settings::default()
-        }
-    }
+    scene
 }

@@ -1,13 +1,13 @@
 //! The lights of a frame, in the observer's terms.
 
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 use super::rules::LightFacts;
 use super::uses::{Effect, EffectUse, State};
 use super::{ObserverSpace, Planning};
 use crate::base::math;
 use crate::render::effects::{self, Entry, Lamp};
-use crate::scene::{Attenuation, LightId, LightKind, Scene, SpotOwner, View};
+use crate::scene::{Aim, Attenuation, LightId, LightKind, Scene, View};
 
 /// The lights that a frame evaluates, in the observer's space.
 pub(super) fn lamps(
@@ -121,7 +121,7 @@ fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
             Source { position: orbit.at(*position.now(), view.time), ..Source::new(&effects::BULB) }
         }
         LightKind::Spot { owner, half_aperture, exponent } => {
-            let (position, direction) = owner_aim(scene, view, owner)?;
+            let Aim { position, direction } = scene.aim(view, owner)?;
             Source {
                 position,
                 direction,
@@ -131,18 +131,4 @@ fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
             }
         }
     })
-}
-
-/// From where and which way a spot shines.
-fn owner_aim(scene: &Scene, view: &View, owner: &SpotOwner) -> Option<(DVec3, DVec3)> {
-    let along = |frame: DMat4| (frame.w_axis.truncate(), -frame.z_axis.truncate());
-    let object = |id| scene.objects.get(id).map(|o| along(Scene::frame_of_object(o, view.time)));
-    let camera = |id| scene.cameras.get(id).map(|c| along(c.pose.now().world_from_camera()));
-    match owner {
-        SpotOwner::SelectedObject => object(view.object?),
-        SpotOwner::SelectedCamera => camera(view.camera),
-        SpotOwner::Object(id) => object(*id),
-        SpotOwner::Camera(id) => camera(*id),
-        SpotOwner::Fixed(aim) => Some((aim.now().position, aim.now().direction)),
-    }
 }

@@ -254,16 +254,17 @@ const LOWEST: f64 = -60.0;
 /// and it has room in 32 bits.
 const LARGEST: f64 = 1e30;
 
-/// What a part reflects. A file may say anything; an exponent below 0 would make a highlight of what
-/// is not one.
+/// What a part reflects. A file may say anything: what is no number reflects nothing, and an exponent
+/// below 0 would make a highlight of what is not one.
 fn coefficients(look: &PartLook<'_>) -> Matter {
     let material = look.material;
-    let held = |color: [f64; 3]| color.map(|k| k.clamp(-LARGEST, LARGEST));
+    let number = |k: f64| if k.is_nan() { 0.0 } else { k };
+    let held = |color: [f64; 3]| color.map(|k| number(k).clamp(-LARGEST, LARGEST));
     Matter {
         ambient: held(material.ambient),
         diffuse: held(material.diffuse),
         specular: held(material.specular),
-        exponent: material.exponent.clamp(0.0, LARGEST),
+        exponent: number(material.exponent).clamp(0.0, LARGEST),
         ..Matter::default()
     }
 }

@@ -1,7 +1,7 @@
 //! The properties of a light.
 
 use egui::{ComboBox, Slider, Ui};
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 use super::super::color_picker::swatch;
 use super::super::controls::{Switch, change, row, section};
@@ -190,18 +190,8 @@ impl Shown<'_> {
 
     /// Where the spot is now, as a place and a direction of its own.
     fn aim(&self, owner: &SpotOwner) -> Aim {
-        let (scene, view) = (&self.state.scene, &self.state.view);
-        let object = |id| scene.objects.get(id).map(|o| Scene::frame_of_object(o, view.time));
-        let camera = |id| scene.cameras.get(id).map(|c| c.pose.now().world_from_camera());
-        let frame = match owner {
-            SpotOwner::SelectedObject => view.object.and_then(object),
-            SpotOwner::SelectedCamera => camera(view.camera),
-            SpotOwner::Object(id) => object(*id),
-            SpotOwner::Camera(id) => camera(*id),
-            SpotOwner::Fixed(aim) => return *aim.now(),
-        };
-        let frame = frame.unwrap_or(DMat4::IDENTITY);
-        Aim { position: frame.w_axis.truncate(), direction: -frame.z_axis.truncate() }
+        let nowhere = Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z };
+        self.state.scene.aim(&self.state.view, owner).unwrap_or(nowhere)
     }
 
     fn fading_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>) {
