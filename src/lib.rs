@@ -11,7 +11,7 @@
 //! * [`scene`]: what there is to draw, how it is looked at, and the commands that change it.
 //! * [`io`]: models, textures, scene files and pictures, to and from the disk.
 //! * [`edit`]: which command a key means, and the history of commands.
-//! * [`render`]: from a scene to a picture: plan, geometry, bins, tiles, stages.
+//! * [`render`]: from a scene to a picture: plan, geometry, visibility, shading.
 //! * [`lab`]: what drawing costs in time, and what accuracy costs.
 //! * [`app`]: the window. The only floor that knows of egui.
 

@@ -9,7 +9,7 @@ use glam::DMat4;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::lab::prove::stage::{self, Flat};
-use marraztu::render::coverage::Snapped;
+use marraztu::render::geometry::coverage::Snapped;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     ItemId, MeshSource, NONE, ObjectId, Part, Samples, Scene, Settings, SourceCorner, Surface, View,

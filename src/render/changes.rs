@@ -10,11 +10,10 @@ use std::collections::BTreeMap;
 
 use glam::DMat4;
 
-use super::bins::tiles_of;
-use super::coverage::PixelBox;
 use super::effects::{Lamp, Matter};
+use super::geometry::coverage::PixelBox;
+use super::geometry::tiles::{TILE, tiles_of};
 use super::plan::{Draw, FramePlan, Lines, Pipeline, Shaded};
-use super::tile::TILE;
 use crate::base::Shared;
 use crate::base::image::Size;
 use crate::scene::ItemId;

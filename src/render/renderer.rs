@@ -10,18 +10,19 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use fearless_simd::Level;
 use rayon::prelude::*;
 
-use super::bins::tiles_of;
 use super::changes::{Cause, Changes};
 use super::effects::Light;
-use super::frame::Frame;
-use super::light::Lit;
-use super::painter::{Band, Painter, TileSums, bounds_of};
-use super::places::passes;
+use super::geometry::frame::Frame;
+use super::geometry::places::passes;
+use super::geometry::tiles::{TILE, TILE_SIDE, tiles_of};
 use super::plan::{EffectUse, FramePlan};
-use super::shines::Shines;
+use super::shading::light::Lit;
+use super::shading::painter::{Band, Painter, TileSums, bounds_of};
+use super::shading::shines::Shines;
+use super::shading::surface::Scenery;
 use super::stages::{Laps, Stages};
-use super::surface::Scenery;
-use super::tile::{self, Seen, TILE, TILE_SIDE, Visibility};
+use super::visibility::tile::Visibility;
+use super::visibility::words::{self, Seen};
 use super::watch::Watch;
 use super::ways;
 use crate::base::color::Color;
@@ -209,7 +210,7 @@ impl Renderer {
         visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
         let word = visibility.word(self.level, x, y);
         let (draw, polygon) = self.seen(plan, word)?;
-        let depth = ways::depth::depth(plan.ways.depth, tile::key(word));
+        let depth = ways::depth::depth(plan.ways.depth, words::key(word));
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
@@ -274,7 +275,7 @@ impl Renderer {
 
     /// The draw and the polygon that a word of the visibility stands for.
     fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
-        match tile::seen(word) {
+        match words::seen(word) {
             Seen::Background => None,
             Seen::Triangle(number) => {
                 let (draw, start) = self.frame.draw_of(number);

@@ -3,7 +3,7 @@
 use super::{
     Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, most_of_channels, set,
 };
-use crate::render::real::Machine;
+use crate::render::numbers::real::Machine;
 use crate::render::region::Region;
 
 /// The same light at every place, whichever way it faces: Ia Ka.

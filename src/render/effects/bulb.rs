@@ -4,7 +4,7 @@ use super::{
     Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, most_left, phong, set,
 };
 use crate::render::plan::Turning;
-use crate::render::real::{Machine, Real as _, Triple};
+use crate::render::numbers::real::{Machine, Real as _, Triple};
 use crate::render::region::Region;
 
 /// A point that shines alike in all directions and fades with distance.

@@ -10,10 +10,10 @@ use std::marker::PhantomData;
 
 use fearless_simd::Level;
 
-use super::interpolate::Interpolated;
+use super::numbers::real::{Kernel, Machine, Number, Power, Real, Triple};
 use super::plan::Turning;
-use super::real::{Kernel, Machine, Number, Power, Real, Triple};
 use super::region::Region;
+use super::shading::located::Interpolated;
 use super::ways::Ways;
 use super::ways::power::least_cosine;
 use crate::scene::{Normalising, SpecularPower};

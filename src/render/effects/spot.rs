@@ -5,7 +5,7 @@ use super::{
     Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, most_left, phong, set,
 };
 use crate::render::plan::Turning;
-use crate::render::real::{Machine, Real};
+use crate::render::numbers::real::{Machine, Real};
 use crate::render::region::Region;
 
 /// A point that shines along an axis.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Effect, Highlight, Lamp, Matter, Reflected, Sample, Shine, lamp_needless, phong, set};
 use crate::render::plan::Turning;
-use crate::render::real::Machine;
+use crate::render::numbers::real::Machine;
 use crate::render::region::{EDGE_ON, Region};
 
 /// The same direction at every place, and no fading.

@@ -13,13 +13,14 @@ use super::draw::Form;
 use super::tile::TilePlan;
 use super::uses::{Effect, EffectUse};
 use super::{FramePlan, Pipeline, Shaded, Stage};
-use crate::render::bins::tiles_of;
-use crate::render::clip::{Screen, ScreenVertex, faces_observer};
-use crate::render::coverage::{PixelBox, doubled_area};
-use crate::render::frame::Frame;
-use crate::render::lines::LineNumber;
-use crate::render::painter::bounds_of;
-use crate::render::tile::{Seen, Visibility, seen};
+use crate::render::geometry::clip::{Screen, ScreenVertex, faces_observer};
+use crate::render::geometry::coverage::{PixelBox, doubled_area};
+use crate::render::geometry::frame::Frame;
+use crate::render::geometry::lines::LineNumber;
+use crate::render::geometry::tiles::tiles_of;
+use crate::render::shading::painter::bounds_of;
+use crate::render::visibility::tile::Visibility;
+use crate::render::visibility::words::{Seen, seen};
 use crate::scene::{ItemId, LightAt};
 
 /// The triangle that a word shows.

@@ -4,7 +4,7 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use crate::base::image::Size;
 use crate::base::math;
-use crate::render::clip::Screen;
+use crate::render::geometry::clip::Screen;
 use crate::render::region::Region;
 use crate::scene::{Lens, Projection, Scene, View};
 

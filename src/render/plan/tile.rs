@@ -9,9 +9,9 @@ use glam::DVec3;
 
 use super::rules::{Meeting, Reading};
 use super::{Eye, FramePlan, Pipeline, Shaded, Stage, bounded};
-use crate::render::coverage::PixelBox;
+use crate::render::geometry::coverage::PixelBox;
 use crate::render::region::Region;
-use crate::render::tile::Visibility;
+use crate::render::visibility::tile::Visibility;
 use crate::scene::{LeaveOut, Samples};
 
 /// What interpolating a depth, or one by w, in 32 bits may be wrong by, as a part of the largest.

@@ -6,8 +6,8 @@ use glam::DVec3;
 use super::{Back, Draw};
 use crate::base::image::Size;
 use crate::base::math;
-use crate::render::clip::{Screen, ScreenVertex};
-use crate::render::coverage::doubled_area;
+use crate::render::geometry::clip::{Screen, ScreenVertex};
+use crate::render::geometry::coverage::doubled_area;
 use crate::scene::{LightAt, Normals, dvec3};
 
 /// As many triangles or normals at most.

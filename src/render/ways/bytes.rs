@@ -7,11 +7,11 @@
 //! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973,
 //! of order 8.
 
-use crate::render::colors::Colors;
 use crate::render::effects::{BATCH, Batch, load};
-use crate::render::items::Items;
-use crate::render::real::{Kernel, Machine, Number, Triple};
-use crate::render::surface::Own;
+use crate::render::numbers::real::{Kernel, Machine, Number, Triple};
+use crate::render::shading::colors::Colors;
+use crate::render::shading::finish::Own;
+use crate::render::shading::items::Items;
 use crate::scene::Rounding;
 
 /// What is added to 255 c at a pixel before the rest is cut off.

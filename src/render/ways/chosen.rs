@@ -10,8 +10,8 @@ use fearless_simd::{Simd, SimdBase as _, f32x16};
 use super::power::Power;
 use super::root;
 use crate::render::effects::BATCH;
-use crate::render::pick::SLOTS;
-use crate::render::real::{Machine, Real, Triple};
+use crate::render::numbers::pick::SLOTS;
+use crate::render::numbers::real::{Machine, Real, Triple};
 use crate::scene::Normalising;
 
 /// Numbers that can be asked for a rare way.

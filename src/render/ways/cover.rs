@@ -9,7 +9,7 @@
 
 use super::setup::Plain;
 use crate::base::math::each;
-use crate::render::coverage::{PixelBox, Snapped, doubled_area};
+use crate::render::geometry::coverage::{PixelBox, Snapped, doubled_area};
 
 /// A pixel, by column and row, and its depth.
 type Take<'a> = &'a mut dyn FnMut(i32, i32, f32);
@@ -139,7 +139,7 @@ fn held(plain: &Plain) -> impl Fn(f32) -> f32 {
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
     use super::*;
-    use crate::render::coverage::{SUBPIXELS, Triangle};
+    use crate::render::geometry::coverage::{SUBPIXELS, Triangle};
 
     const CLIP: PixelBox = PixelBox { left: 0, top: 0, right: 40, bottom: 40 };
 

@@ -9,8 +9,8 @@
 
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
-use crate::render::real::Number;
-use crate::render::texture::sample;
+use crate::render::numbers::real::Number;
+use crate::render::shading::texture::sample;
 use crate::scene::{Filter, Texture};
 
 /// A texture at the size that it has, at half of that, and so on down to one texel.

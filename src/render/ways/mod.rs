@@ -19,7 +19,7 @@ mod vertices;
 
 pub use self::chosen::ByWay;
 pub(super) use self::chosen::Choosing;
-use super::real::Number;
+use super::numbers::real::Number;
 use crate::scene::{
     Coverage, DepthFormat, Interpolation, Normalising, Rounding, Settings, SpecularPower,
     Subpixels, VertexArithmetic,

@@ -4,13 +4,13 @@
 use super::Ways;
 use super::depth::key;
 use super::{cover, points};
-use crate::render::bins::Bins;
-use crate::render::coverage::PixelBox;
-use crate::render::frame::Frame;
-use crate::render::lines;
+use crate::render::geometry::bins::Bins;
+use crate::render::geometry::coverage::PixelBox;
+use crate::render::geometry::frame::Frame;
+use crate::render::geometry::lines;
+use crate::render::geometry::tiles::pixel_at;
 use crate::render::plan::FramePlan;
-use crate::render::texels::is_opaque;
-use crate::render::tile::pixel_at;
+use crate::render::shading::texels::is_opaque;
 use crate::scene::{Coverage, DepthFormat};
 
 /// How many steps of a format of its own lines are nearer than the surfaces that they lie on.

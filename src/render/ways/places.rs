@@ -7,11 +7,11 @@
 //! ends and evenly between. Abrash, "Graphics Programming Black Book", 1997, chapter 70.
 
 use super::Ways;
-use crate::render::clip::ScreenVertex;
-use crate::render::coverage::{SUBPIXELS, Snapped, doubled_area};
-use crate::render::faces::{Faced, Faces};
-use crate::render::interpolate::Located;
-use crate::render::items::Items;
+use crate::render::geometry::clip::ScreenVertex;
+use crate::render::geometry::coverage::{SUBPIXELS, Snapped, doubled_area};
+use crate::render::shading::faces::{Faced, Faces};
+use crate::render::shading::items::Items;
+use crate::render::shading::located::Located;
 use crate::scene::{Coverage, Interpolation};
 
 /// Pixels of a piece of a row.

@@ -9,7 +9,7 @@
 
 use glam::{DVec3, DVec4};
 
-use crate::render::coverage::{PixelBox, SUBPIXELS};
+use crate::render::geometry::coverage::{PixelBox, SUBPIXELS};
 use crate::render::plan::{Draw, Eye, FramePlan};
 
 /// The step, in units of the world.

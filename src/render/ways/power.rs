@@ -143,7 +143,7 @@ impl Power {
 
 #[expect(clippy::cast_possible_truncation, reason = "32 bits are meant")]
 fn in_32_bits(x: f64, power: &Power) -> f64 {
-    use crate::render::real::Real as _;
+    use crate::render::numbers::real::Real as _;
     f64::from((x as f32).power(power))
 }
 

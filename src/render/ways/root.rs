@@ -16,7 +16,7 @@ use fearless_simd::{Simd, SimdBase as _, f32x16};
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::{SimdCombine as _, SimdInto as _, SimdSplit as _, f32x4, f32x8};
 
-use crate::render::real::Real;
+use crate::render::numbers::real::Real;
 use crate::scene::Normalising;
 
 /// Below this, a number of 32 bits is not normal any more; above the other, it is infinite.

@@ -4,11 +4,11 @@
 use super::Ways;
 use super::vertices::{FINE_GUARD, Projected};
 use crate::base::image::Size;
-use crate::render::bins::Bins;
-use crate::render::clip::{Clip, Screen};
-use crate::render::coverage::{PixelBox, SUBPIXELS, Snapped, doubled_area};
+use crate::render::geometry::bins::Bins;
+use crate::render::geometry::clip::{Clip, Screen};
+use crate::render::geometry::coverage::{PixelBox, SUBPIXELS, Snapped, doubled_area};
+use crate::render::geometry::setup::{Kind, Setup};
 use crate::render::plan::{Back, Pipeline};
-use crate::render::setup::{Kind, Setup};
 use crate::scene::DrawTriangle;
 
 /// A triangle that is drawn pixel by pixel.

@@ -7,9 +7,9 @@
 use fearless_simd::Level;
 
 use super::Ways;
-use crate::render::clip::{Screen, ScreenVertex};
-use crate::render::coverage::{SUBPIXELS, Snapped};
-use crate::render::vertices;
+use crate::render::geometry::clip::{Screen, ScreenVertex};
+use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
+use crate::render::geometry::vertices;
 use crate::scene::{DrawOrder, Subpixels, VertexArithmetic};
 
 /// The guard band of fine corners, in pixels.

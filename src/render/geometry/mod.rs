@@ -1,0 +1,19 @@
+//! From the meshes of a plan to triangles and lines in the bins of tiles.
+//!
+//! A `frame` brings the `vertices` to the screen and cuts what reaches beyond it (`clip`); `setup` and
+//! `edges` then put what may be seen into `bins`, what is `small` as `hits`, pixel by pixel, at once.
+//! Which pixels are covered is said by [`coverage`] and `lines`, and where each stands by `tiles`.
+
+pub(super) mod bins;
+pub(super) mod clip;
+pub mod coverage;
+mod edges;
+mod facing;
+pub(super) mod frame;
+mod hits;
+pub(super) mod lines;
+pub(super) mod places;
+pub(super) mod setup;
+pub(super) mod small;
+pub(super) mod tiles;
+pub(super) mod vertices;

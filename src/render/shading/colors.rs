@@ -1,0 +1,223 @@
+//! Colours of some pixels, in the form in which they are wanted.
+//!
+//! A pixel that shows one thing is four bytes at once. One that shows several gets their mean: the colour
+//! of each is clamped and kept in parts of 2^-16 of a byte's step, before it is rounded down, and the
+//! parts are added up as whole numbers. So the sum does not depend on its order, and the mean of equal
+//! colours is the byte that each of them would be.
+
+use crate::render::effects::BATCH;
+use crate::render::geometry::tiles::BLOCK_PIXELS;
+use crate::render::numbers::real::{Machine, Triple};
+
+/// What colours are wanted for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Form {
+    /// To be shown.
+    #[default]
+    Pixels,
+    /// To be added up.
+    Parts,
+}
+
+/// Colours of a list of pixels.
+#[derive(Debug)]
+pub(in crate::render) struct Colors {
+    pub(super) form: Form,
+    /// Red, green, blue and 255 in the order of memory.
+    pub(super) pixels: [u32; BATCH],
+    /// Red, green and blue.
+    parts: [[u32; BATCH]; 3],
+}
+
+/// How many bits are behind the point of a part.
+const BITS: u32 = 16;
+
+impl Default for Colors {
+    fn default() -> Self {
+        Self { form: Form::Pixels, pixels: [0; BATCH], parts: [[0; BATCH]; 3] }
+    }
+}
+
+impl Colors {
+    /// Puts colours in, from `at` on.
+    #[inline(always)]
+    pub(super) fn store<M: Machine>(&mut self, machine: M, color: Triple<M::R>, at: usize) {
+        match self.form {
+            Form::Pixels => machine.store_pixels(color, &mut self.pixels, at),
+            Form::Parts => machine.store_parts(color, machine.lift(0.5), &mut self.parts, at),
+        }
+    }
+
+    /// The same, with a threshold for each in the place of one half, from where on it is rounded up.
+    #[inline(always)]
+    pub(in crate::render) fn store_by<M: Machine>(
+        &mut self,
+        machine: M,
+        color: Triple<M::R>,
+        threshold: M::R,
+        at: usize,
+    ) {
+        match self.form {
+            Form::Pixels => machine.store_pixels_by(color, threshold, &mut self.pixels, at),
+            Form::Parts => machine.store_parts(color, threshold, &mut self.parts, at),
+        }
+    }
+
+    /// Gives all of them one colour.
+    pub(super) fn fill(&mut self, color: [u8; 4]) {
+        match self.form {
+            Form::Pixels => self.pixels.fill(u32::from_le_bytes(color)),
+            Form::Parts => {
+                for (row, byte) in self.parts.iter_mut().zip(color) {
+                    row.fill(parts(byte));
+                }
+            }
+        }
+    }
+
+    /// Gives one of them a colour.
+    pub(super) fn set(&mut self, i: usize, color: [u8; 4]) {
+        match self.form {
+            Form::Pixels => self.pixels[i] = u32::from_le_bytes(color),
+            Form::Parts => {
+                for (row, byte) in self.parts.iter_mut().zip(color) {
+                    row[i] = parts(byte);
+                }
+            }
+        }
+    }
+
+    /// Gives each the colour that stands at its place now.
+    pub(super) fn hand_out(&mut self, places: &[i32; BATCH]) {
+        let hand_out = |row: &mut [u32; BATCH]| {
+            let before = *row;
+            for (color, place) in row.iter_mut().zip(places) {
+                *color = before[place.cast_unsigned() as usize % BATCH];
+            }
+        };
+        match self.form {
+            Form::Pixels => hand_out(&mut self.pixels),
+            Form::Parts => self.parts.iter_mut().for_each(hand_out),
+        }
+    }
+}
+
+/// A byte in parts, in the middle between its borders.
+const fn parts(byte: u8) -> u32 {
+    ((byte as u32) << BITS) + (1 << (BITS - 1))
+}
+
+/// The colours of a block's pixels, added up over their samples: at most 2^6, each below 2^24.
+#[derive(Clone, Debug)]
+pub(in crate::render) struct Sums([[u32; 4]; BLOCK_PIXELS]);
+
+impl Default for Sums {
+    fn default() -> Self {
+        Self([[0; 4]; BLOCK_PIXELS])
+    }
+}
+
+impl Sums {
+    /// Adds a colour, as often as some samples show it, at a place of the block.
+    #[inline(always)]
+    pub(super) fn add(&mut self, place: usize, color: [u8; 4], samples: i32) {
+        let sum = &mut self.0[place % BLOCK_PIXELS];
+        for (sum, byte) in sum.iter_mut().zip(color) {
+            *sum += parts(byte) * samples.cast_unsigned();
+        }
+    }
+
+    /// Adds a colour everywhere.
+    pub(super) fn add_everywhere(&mut self, color: [u8; 4], samples: i32) {
+        (0..BLOCK_PIXELS).for_each(|place| self.add(place, color, samples));
+    }
+
+    /// Adds the first of some colours, each at its place and as often as its samples show it.
+    #[inline(always)]
+    pub(super) fn add_all(&mut self, colors: &Colors, places: &[u8], samples: &[i32]) {
+        let [red, green, blue] = &colors.parts;
+        for (i, (place, samples)) in places.iter().zip(samples).enumerate() {
+            let sum = &mut self.0[usize::from(*place) % BLOCK_PIXELS];
+            let samples = samples.cast_unsigned();
+            let i = i % BATCH;
+            sum[0] += red[i] * samples;
+            sum[1] += green[i] * samples;
+            sum[2] += blue[i] * samples;
+        }
+    }
+
+    /// The means of 2^`log2` samples, as pixels, row by row.
+    #[inline(always)]
+    pub(super) fn means(&self, log2: u32) -> [u32; BLOCK_PIXELS] {
+        let shift = BITS + log2;
+        std::array::from_fn(|i| {
+            let [r, g, b, _] = self.0[i];
+            r >> shift | (g >> shift) << 8 | (b >> shift) << 16 | 255 << 24
+        })
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "below 2^24")]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+    use crate::render::numbers::real::{Exact, Number};
+    use crate::render::numbers::sixteen::Sixteen;
+
+    /// Colours of both forms, from numbers that are the same for all three channels.
+    fn both(numbers: &[f32; BATCH]) -> [Colors; 2] {
+        [Form::Pixels, Form::Parts].map(|form| {
+            let mut colors = Colors { form, ..Colors::default() };
+            dispatch!(Level::new(), simd => {
+                let machine = Sixteen(simd);
+                for at in (0..BATCH).step_by(16) {
+                    let number = machine.load(numbers, at);
+                    colors.store(machine, Triple([number; 3]), at);
+                }
+            });
+            colors
+        })
+    }
+
+    #[test]
+    fn the_mean_of_equal_colours_is_the_byte_that_each_of_them_is() {
+        let places: [u8; BATCH] = std::array::from_fn(|i| i.to_le_bytes()[0]);
+        for round in 0..2000_u16 {
+            // Around the borders between two bytes, below 0, above 1, and no numbers at all.
+            let numbers: [f32; BATCH] = std::array::from_fn(|i| match (round, i) {
+                (0, 0) => f32::NAN,
+                (0, _) => i as f32 - 30.0,
+                _ => (f32::from(round) * 64.0 + i as f32) / 128_000.0,
+            });
+            let [pixels, colors] = both(&numbers);
+            for (samples, log2) in [(4, 2), (64, 6)] {
+                let mut sums = Sums::default();
+                sums.add_all(&colors, &places, &[samples / 4; BATCH]);
+                sums.add_all(&colors, &places, &[samples / 4 * 3; BATCH]);
+                assert_eq!(sums.means(log2), pixels.pixels, "{numbers:?}");
+            }
+            let mut exact = Colors { form: Form::Parts, ..Colors::default() };
+            for (i, number) in numbers.iter().enumerate() {
+                exact.store(Exact, Triple([f64::from(*number); 3]), i);
+                assert_eq!((exact.parts[0][i] >> BITS) as u8, f64::from(*number).byte());
+            }
+        }
+    }
+
+    #[test]
+    fn a_mean_is_that_of_all_bytes_with_halves_rounded_up() {
+        for (few, many) in [(0, 255), (17, 18), (255, 254), (3, 3)] {
+            for share in 0..=4 {
+                let mut sums = Sums::default();
+                sums.add_everywhere([few; 4], share);
+                sums.add_everywhere([many; 4], 4 - share);
+                let sum = i32::from(few) * share + i32::from(many) * (4 - share);
+                let byte = u8::try_from((sum + 2) / 4).unwrap();
+                let want = u32::from_le_bytes([byte, byte, byte, 255]);
+                assert!(sums.means(2).iter().all(|mean| *mean == want));
+            }
+        }
+    }
+}

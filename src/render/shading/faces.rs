@@ -1,0 +1,350 @@
+//! What is known of the triangles that a block shows.
+//!
+//! Each triangle has a slot. Its corners on the screen and what it carries at them (normals, or light
+//! that is there already) are fetched once, row after row, so that the fetches overlap; then sixteen
+//! triangles at a time are made ready for the pixels that take from them.
+
+use fearless_simd::{
+    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16,
+};
+use glam::DVec3;
+
+use super::items::Items;
+use crate::base::math::each;
+use crate::render::geometry::clip::{Screen, ScreenVertex, faces_observer};
+use crate::render::geometry::coverage::{SUBPIXELS, Snapped, doubled_area};
+use crate::render::numbers::pick::SLOTS;
+use crate::render::numbers::real::{Kernel, Machine, Number, Triple};
+use crate::render::plan::{Back, Draw, Eye, FramePlan};
+use crate::scene::{DrawOrder, Normals};
+
+/// The largest doubled area, in square parts of a pixel, whose edge functions fit 31 bits wherever a
+/// pixel of the triangle is, and the longest side that leaves room for their products.
+const NARROW_AREA: f32 = (1 << 30) as f32;
+const NARROW_SIDE: i32 = 1 << 20;
+
+/// What is known of some triangles of one draw. See the [module](self).
+#[derive(Debug)]
+pub struct Faces<T> {
+    pub(super) count: usize,
+    /// Their numbers in the mesh.
+    pub(super) numbers: [u32; SLOTS],
+    /// Their places in the mesh's draw order, and their vertices there.
+    places: [u32; SLOTS],
+    ids: [[u32; 3]; SLOTS],
+    /// x, y, depth and one by w of each corner, as [`ScreenVertex::row`] has them.
+    vertices: [[[i32; 4]; SLOTS]; 3],
+    /// What each corner carries.
+    pub(super) carried: [[[T; 4]; SLOTS]; 3],
+    /// a, b and c of the edge functions that belong to the second and the third corner, for whole
+    /// pixels: e = a x + b y + c, but for multiples of 2^32.
+    pub(super) edges: [[[i32; SLOTS]; 3]; 2],
+    /// One by the doubled area.
+    pub(super) per_area: [f32; SLOTS],
+    /// One by w of each corner.
+    pub(in crate::render) by_w: [[T; SLOTS]; 3],
+    /// What the first corner carries, and what the second and third have more than it.
+    pub(super) values: [[[T; SLOTS]; 3]; 3],
+    /// z in view space of each corner; in parallel projection only.
+    pub(super) z: [[T; SLOTS]; 3],
+    /// Bit i: the triangle reaches beyond the planes that triangles are cut by.
+    pub(super) cut: u64,
+    /// Bit i: its edge functions do not fit 31 bits inside.
+    pub(super) wide: u64,
+    /// Bit i: the observer sees its back.
+    pub(super) back: u64,
+    /// The place of their draw in the plan.
+    draw: Option<u32>,
+}
+
+impl<T: Number> Default for Faces<T> {
+    fn default() -> Self {
+        let row = [T::default(); SLOTS];
+        Self {
+            count: 0,
+            numbers: [0; SLOTS],
+            places: [0; SLOTS],
+            ids: [[0; 3]; SLOTS],
+            vertices: [[[0; 4]; SLOTS]; 3],
+            carried: [[[T::default(); 4]; SLOTS]; 3],
+            edges: [[[0; SLOTS]; 3]; 2],
+            per_area: [0.0; SLOTS],
+            by_w: [row; 3],
+            values: [[row; 3]; 3],
+            z: [row; 3],
+            cut: 0,
+            wide: 0,
+            back: 0,
+            draw: None,
+        }
+    }
+}
+
+/// Numbers that faces are known in.
+pub trait Faced: Number {
+    /// Whether barycentric coordinates come from whole numbers and f64, one by one.
+    const EXACT: bool;
+    /// Makes the edge functions and one by w ready, where they are not yet.
+    fn prepare(level: Level, faces: &mut Faces<Self>);
+}
+
+impl<T: Faced> Faces<T> {
+    /// Forgets what the last block showed.
+    pub(super) const fn forget(&mut self) {
+        self.draw = None;
+    }
+
+    /// Takes the triangles of a list, all of one draw whose numbers begin at `base`. Says whether they
+    /// are others than those that are there already.
+    pub(super) fn take(&mut self, items: &Items, order: &DrawOrder, draw: u32, base: u32) -> bool {
+        let count = items.count;
+        let same = self.draw == Some(draw)
+            && count == 1
+            && self.count == 1
+            && self.numbers[0] == items.numbers[0] - base;
+        if same {
+            return false;
+        }
+        (self.draw, self.count) = (Some(draw), count);
+        for (slot, number) in items.numbers[..count].iter().enumerate() {
+            self.numbers[slot] = number - base;
+            self.places[slot] = order.place(number - base);
+        }
+        for slot in 0..count {
+            self.ids[slot] = order.triangles[self.places[slot] as usize].vertices;
+        }
+        true
+    }
+
+    /// Which sides are seen, where that matters.
+    pub(super) fn find_sides(&mut self, draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) {
+        self.back = 0;
+        if draw.back == Back::Left {
+            return;
+        }
+        let order = draw.model.mesh.draw_order();
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        for (slot, ids) in self.ids[..self.count].iter().enumerate() {
+            let own = each(*ids, |vertex| vertices[vertex as usize]);
+            let front = if own.iter().all(ScreenVertex::is_inside) {
+                doubled_area(own.map(|vertex| vertex.at())) < 0
+            } else {
+                faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
+            };
+            self.back |= u64::from(front == draw.mirrored) << slot;
+        }
+    }
+
+    /// Fetches the corners and makes them ready.
+    pub(super) fn locate(
+        &mut self,
+        level: Level,
+        draw: &Draw,
+        plan: &FramePlan,
+        vertices: &[ScreenVertex],
+    ) {
+        for (slot, [a, b, c]) in self.ids[..self.count].iter().copied().enumerate() {
+            self.vertices[0][slot] = vertices[a as usize].row();
+            self.vertices[1][slot] = vertices[b as usize].row();
+            self.vertices[2][slot] = vertices[c as usize].row();
+        }
+        T::prepare(level, self);
+        if !T::EXACT && plan.eye == Eye::Point {
+            return;
+        }
+        let order = draw.model.mesh.draw_order();
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        for (slot, ids) in self.ids[..self.count].iter().enumerate() {
+            for (corner, vertex) in ids.iter().copied().enumerate() {
+                let place = order.position(vertex);
+                if T::EXACT {
+                    self.by_w[corner][slot] = T::from_f64(1.0 / screen.clip(place)[3]);
+                }
+                if plan.eye == Eye::Parallel {
+                    let place = draw.view_from_object.transform_point3(DVec3::from_array(place));
+                    self.z[corner][slot] = T::from_f64(place.z);
+                }
+            }
+        }
+    }
+
+    /// Lets the corners carry their normals, turned where the back is seen and lit.
+    pub(super) fn carry_normals(&mut self, draw: &Draw) {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        let points = order.points(draw.normal_source);
+        for (slot, number) in self.numbers[..self.count].iter().enumerate() {
+            let normals = match draw.normals {
+                Normals::Face => {
+                    let polygon = mesh.triangles()[*number as usize].polygon;
+                    [mesh.polygon_normals()[polygon as usize]; 3]
+                }
+                Normals::Vertex => {
+                    let of = points.of(self.places[slot], self.ids[slot]);
+                    each(of, |point| points.normals[point as usize])
+                }
+            };
+            let turn = if self.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
+            for (carried, normal) in self.carried.iter_mut().zip(normals) {
+                let [x, y, z] = each(normal, |x| T::from_f64(f64::from(x * turn)));
+                carried[slot] = [x, y, z, T::default()];
+            }
+        }
+    }
+
+    /// Lets the corners carry the light of their vertices; `light` is asked for it by place, and by
+    /// whether it is that of the back.
+    #[inline(always)]
+    pub(super) fn carry_light(&mut self, draw: &Draw, mut light: impl FnMut(u32, bool) -> [T; 4]) {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        let points = order.points(draw.normal_source);
+        for (slot, number) in self.numbers[..self.count].iter().enumerate() {
+            let places = match draw.normals {
+                Normals::Face => mesh.triangles()[*number as usize].corners,
+                Normals::Vertex => points.of(self.places[slot], self.ids[slot]),
+            };
+            let back = self.back >> slot & 1 == 1;
+            for (carried, place) in self.carried.iter_mut().zip(places) {
+                carried[slot] = light(place, back);
+            }
+        }
+    }
+
+    /// Makes what the corners carry ready.
+    pub(super) fn spread(&mut self, level: Level) {
+        T::run(level, Spread(self));
+    }
+
+    /// The corners of a triangle, of those of its draw.
+    pub(in crate::render) fn corners_among(
+        &self,
+        slot: usize,
+        all: &[ScreenVertex],
+    ) -> [ScreenVertex; 3] {
+        self.ids[slot].map(|id| all[id as usize])
+    }
+
+    /// The corners of a triangle on the screen.
+    pub(super) fn corners(&self, slot: usize) -> [Snapped; 3] {
+        each([0, 1, 2], |i: usize| {
+            let [x, y, _, _] = self.vertices[i][slot];
+            Snapped { x, y }
+        })
+    }
+}
+
+/// From what corners carry to the first and the differences of the others.
+struct Spread<'a, T>(&'a mut Faces<T>);
+
+impl<T: Number> Kernel<T> for Spread<'_, T> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self(faces) = self;
+        for at in (0..faces.count).step_by(M::LANES) {
+            let a = carried(machine, &faces.carried[0], at);
+            let b = carried(machine, &faces.carried[1], at);
+            let c = carried(machine, &faces.carried[2], at);
+            for (rows, value) in faces.values.iter_mut().zip([a, b.minus(a), c.minus(a)]) {
+                machine.store(value.0[0], &mut rows[0], at);
+                machine.store(value.0[1], &mut rows[1], at);
+                machine.store(value.0[2], &mut rows[2], at);
+            }
+        }
+    }
+}
+
+/// What one corner of some triangles carries.
+#[inline(always)]
+fn carried<M: Machine>(machine: M, rows: &[[M::Number; 4]; SLOTS], at: usize) -> Triple<M::R> {
+    let [x, y, z, _] = machine.load_four(rows, at);
+    Triple([x, y, z])
+}
+
+/// Three numbers of the triangles that some pixels show.
+#[inline(always)]
+pub(super) fn picked<M: Machine, const PAGES: usize>(
+    machine: M,
+    [x, y, z]: &[[M::Number; SLOTS]; 3],
+    slots: M::Slots,
+) -> Triple<M::R> {
+    Triple([
+        machine.pick::<PAGES>(x, slots),
+        machine.pick::<PAGES>(y, slots),
+        machine.pick::<PAGES>(z, slots),
+    ])
+}
+
+impl Faced for f64 {
+    const EXACT: bool = true;
+
+    fn prepare(_: Level, faces: &mut Faces<Self>) {
+        faces.cut = 0;
+        for slot in 0..faces.count {
+            let beyond = faces.corners(slot).iter().any(|corner| corner.x == ScreenVertex::BEYOND);
+            faces.cut |= u64::from(beyond) << slot;
+        }
+        faces.wide = !faces.cut;
+    }
+}
+
+impl Faced for f32 {
+    const EXACT: bool = false;
+
+    fn prepare(level: Level, faces: &mut Faces<Self>) {
+        (faces.cut, faces.wide) = (0, 0);
+        dispatch!(level, simd => prepare(simd, faces));
+    }
+}
+
+/// The edge functions of sixteen triangles at a time.
+#[inline(always)]
+fn prepare<S: Simd>(simd: S, faces: &mut Faces<f32>) {
+    for at in (0..faces.count).step_by(16) {
+        let [x0, y0, _, w0] = load_four(simd, &faces.vertices[0], at);
+        let [x1, y1, _, w1] = load_four(simd, &faces.vertices[1], at);
+        let [x2, y2, _, w2] = load_four(simd, &faces.vertices[2], at);
+        for (row, w) in faces.by_w.iter_mut().zip([w0, w1, w2]) {
+            w.bitcast::<f32x16<S>>().store_slice(&mut row[at..at + 16]);
+        }
+        let beyond = x0.simd_eq(ScreenVertex::BEYOND)
+            | x1.simd_eq(ScreenVertex::BEYOND)
+            | x2.simd_eq(ScreenVertex::BEYOND);
+        let (ux, uy, vx, vy) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
+        let rough = ux.to_float::<f32x16<S>>() * vy.to_float::<f32x16<S>>()
+            - uy.to_float::<f32x16<S>>() * vx.to_float::<f32x16<S>>();
+        let large = rough.simd_gt(NARROW_AREA) | rough.simd_lt(-NARROW_AREA);
+        let (low, high) = (ux.min(uy).min(vx).min(vy), ux.max(uy).max(vx).max(vy));
+        let wide = large | low.simd_lt(-NARROW_SIDE) | high.simd_gt(NARROW_SIDE);
+        faces.cut |= beyond.to_bitmask() << at;
+        faces.wide |= (wide.to_bitmask() & !beyond.to_bitmask()) << at;
+
+        let area = ux * vy - uy * vx;
+        let per_area = f32x16::splat(simd, 1.0) / area.to_float::<f32x16<S>>();
+        per_area.store_slice(&mut faces.per_area[at..at + 16]);
+        // a (x - p.x) + b (y - p.y) with x and y in the middle of a pixel.
+        let (half, log2) = (SUBPIXELS / 2, SUBPIXELS.trailing_zeros());
+        let second = (vy, x0 - x2, half - x2, half - y2);
+        let third = (y0 - y1, ux, half - x0, half - y0);
+        for (rows, (a, b, x, y)) in faces.edges.iter_mut().zip([second, third]) {
+            (a << log2).store_slice(&mut rows[0][at..at + 16]);
+            (b << log2).store_slice(&mut rows[1][at..at + 16]);
+            (a * x + b * y).store_slice(&mut rows[2][at..at + 16]);
+        }
+    }
+}
+
+/// Four rows of whole numbers that lie side by side, from `at` on.
+#[inline(always)]
+fn load_four<S: Simd>(simd: S, rows: &[[i32; 4]; SLOTS], at: usize) -> [i32x16<S>; 4] {
+    let flat = rows[at..at + 16].as_flattened();
+    let first = i32x16::from_slice(simd, &flat[..16]);
+    let second = i32x16::from_slice(simd, &flat[16..32]);
+    let third = i32x16::from_slice(simd, &flat[32..48]);
+    let fourth = i32x16::from_slice(simd, &flat[48..]);
+    let (even_low, odd_low) = first.deinterleave(second);
+    let (even_high, odd_high) = third.deinterleave(fourth);
+    let (a, c) = even_low.deinterleave(even_high);
+    let (b, d) = odd_low.deinterleave(odd_high);
+    [a, b, c, d]
+}

@@ -1,0 +1,192 @@
+//! From pixels and the triangles that they show to what is there: place, normal, light.
+//!
+//! What the corners carry is mixed by where in its triangle each pixel lies ([`Located`]). A value that
+//! all corners share comes out as it went in, bit for bit, since only differences are weighted.
+//!
+//! The place of a pixel in space is the point of its ray at its depth, so that the direction to the
+//! observer is exact whatever the triangle.
+
+use fearless_simd::Level;
+use glam::DMat3;
+
+use super::colors::Colors;
+use super::faces::{Faces, picked};
+use super::items::Items;
+use super::located::Located;
+use crate::render::effects::{Batch, Rows, set, store};
+use crate::render::numbers::pick::{SLOTS, paged};
+use crate::render::numbers::real::{Kernel, Machine, Number, Real, Triple};
+use crate::render::plan::{Draw, Eye, FramePlan};
+
+/// What the corners carry, at some pixels.
+#[inline(always)]
+fn mixed<M: Machine, const PAGES: usize>(
+    machine: M,
+    rows: &[[[M::Number; SLOTS]; 3]; 3],
+    slots: M::Slots,
+    weights: [M::R; 2],
+) -> Triple<M::R> {
+    let a = picked::<M, PAGES>(machine, &rows[0], slots);
+    let b = picked::<M, PAGES>(machine, &rows[1], slots);
+    let c = picked::<M, PAGES>(machine, &rows[2], slots);
+    between([a, b, c], weights)
+}
+
+/// What the first corner carries, and the weighted differences of the others from it.
+#[inline(always)]
+pub(super) fn between<R: Real>([a, b, c]: [Triple<R>; 3], [second, third]: [R; 2]) -> Triple<R> {
+    a.plus(b.times(second)).plus(c.times(third))
+}
+
+/// Where what is mixed goes.
+#[derive(Debug)]
+pub(super) enum Mixed<'a, T> {
+    /// Light.
+    Rows(&'a mut Rows<T>),
+    /// Colours.
+    Colors(&'a mut Colors),
+}
+
+/// Mixes what the corners carry at every pixel.
+pub(super) fn mix<T: Number>(
+    level: Level,
+    items: &Items,
+    faces: &Faces<T>,
+    located: &Located<T>,
+    to: Mixed<'_, T>,
+) {
+    paged!(faces.count, PAGES => T::run(level, Mix::<T, PAGES> { items, faces, located, to }));
+}
+
+struct Mix<'a, T, const PAGES: usize> {
+    items: &'a Items,
+    faces: &'a Faces<T>,
+    located: &'a Located<T>,
+    to: Mixed<'a, T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { items, faces, located, mut to } = self;
+        for at in (0..items.len).step_by(M::LANES) {
+            let slots = machine.slots(&items.slots, at);
+            let weights =
+                [machine.load(&located.weights[0], at), machine.load(&located.weights[1], at)];
+            let value = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
+            match &mut to {
+                Mixed::Rows(rows) => store(machine, value, rows, at),
+                Mixed::Colors(colors) => colors.store(machine, value, at),
+            }
+        }
+    }
+}
+
+/// Place, normal and direction to the observer of every pixel, from normals that the corners carry.
+pub(super) fn surroundings<T: Number>(
+    level: Level,
+    (plan, draw): (&FramePlan, &Draw),
+    items: &Items,
+    faces: &Faces<T>,
+    located: &Located<T>,
+    batch: &mut Batch<T>,
+) {
+    let rays = Rays::new(plan);
+    let normals = matrix(draw.view_from_normal);
+    let way = plan.ways.rare_roots();
+    match (items.shared, way) {
+        (true, Some(_)) => {
+            let kernel = Surroundings::<T, 4, true> { items, faces, located, batch, rays, normals };
+            T::run_by(level, way, kernel);
+        }
+        (false, Some(_)) => {
+            let kernel =
+                Surroundings::<T, 4, false> { items, faces, located, batch, rays, normals };
+            T::run_by(level, way, kernel);
+        }
+        (true, None) => paged!(faces.count, PAGES => T::run(
+            level,
+            Surroundings::<T, PAGES, true> { items, faces, located, batch, rays, normals },
+        )),
+        (false, None) => paged!(faces.count, PAGES => T::run(
+            level,
+            Surroundings::<T, PAGES, false> { items, faces, located, batch, rays, normals },
+        )),
+    }
+}
+
+/// The columns of a matrix.
+fn matrix<T: Number>(m: DMat3) -> [[T; 3]; 3] {
+    [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(T::from_f64))
+}
+
+/// From a pixel to the way on which its surface lies: x = (column a + b), y = (row c + d), each times
+/// w in perspective, where -w is z.
+#[derive(Clone, Copy, Debug)]
+struct Rays<T> {
+    parallel: bool,
+    x: [T; 2],
+    y: [T; 2],
+}
+
+impl<T: Number> Rays<T> {
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn new(plan: &FramePlan) -> Self {
+        let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
+        let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+        Self {
+            parallel: plan.eye == Eye::Parallel,
+            x: [2.0 / width / px, -1.0 / px].map(T::from_f64),
+            y: [-2.0 / height / py, 1.0 / py].map(T::from_f64),
+        }
+    }
+}
+
+struct Surroundings<'a, T, const PAGES: usize, const SHARED: bool> {
+    items: &'a Items,
+    faces: &'a Faces<T>,
+    located: &'a Located<T>,
+    batch: &'a mut Batch<T>,
+    rays: Rays<T>,
+    normals: [[T; 3]; 3],
+}
+
+impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
+    for Surroundings<'_, T, PAGES, SHARED>
+{
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { items, faces, located, batch, rays, normals } = self;
+        let [nx, ny, nz] = normals;
+        let (nx, ny, nz) = (set(machine, nx), set(machine, ny), set(machine, nz));
+        for at in (0..items.len).step_by(M::LANES) {
+            let slots = machine.slots(&items.slots, at);
+            let weights =
+                [machine.load(&located.weights[0], at), machine.load(&located.weights[1], at)];
+            let Triple([x, y, z]) = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
+            let n = nx.times(x).plus(ny.times(y)).plus(nz.times(z)).unit();
+            store(machine, n, &mut batch.normal, at);
+
+            let (one, half) = (machine.lift(1.0), machine.lift(0.5));
+            let [column, row] = match SHARED {
+                true => {
+                    [machine.load(&located.places[0], at), machine.load(&located.places[1], at)]
+                }
+                false => [machine.whole(&items.x, at) + half, machine.whole(&items.y, at) + half],
+            };
+            let x = column * machine.set(rays.x[0]) + machine.set(rays.x[1]);
+            let y = row * machine.set(rays.y[0]) + machine.set(rays.y[1]);
+            if rays.parallel {
+                let Triple([z0, z1, z2]) = picked::<M, PAGES>(machine, &faces.z, slots);
+                let z = z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1];
+                store(machine, Triple([x, y, z]), &mut batch.position, at);
+                let zero = machine.lift(0.0);
+                store(machine, Triple([zero, zero, one]), &mut batch.to_eye, at);
+            } else {
+                let w = machine.load(&located.w, at);
+                store(machine, Triple([x * w, y * w, -w]), &mut batch.position, at);
+                store(machine, Triple([-x, -y, one]).unit(), &mut batch.to_eye, at);
+            }
+        }
+    }
+}

@@ -1,0 +1,371 @@
+//! Light that is evaluated at faces or at vertices, and taken from there by pixels.
+//!
+//! Vertices are lit when the first pixel asks for one of them, with those around it: what is turned
+//! away, behind something else or outside of the picture is never lit. Whichever thread asks first,
+//! the light is the same.
+
+use std::sync::OnceLock;
+
+use fearless_simd::Level;
+use glam::{DMat3, DVec3};
+
+use super::faces::Faces;
+use crate::base::math::each;
+use crate::render::effects::{BATCH, Batch, Light, Shine, load, set, store};
+use crate::render::numbers::real::{Kernel, Machine, Number, Real, Triple};
+use crate::render::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded, Stage};
+use crate::scene::{LightAt, Normalising, Normals, dvec3};
+
+/// Light at the vertices of a frame, and what it takes to light faces.
+#[derive(Debug, Default)]
+pub(in crate::render) struct Lit<T> {
+    tables: Vec<Table<T>>,
+    /// How many of the tables are of this frame.
+    used: usize,
+    /// For each draw the way to view space.
+    to_view: Vec<ToView<T>>,
+}
+
+/// The light of as many vertices as are lit together.
+type Lights<T> = [[T; 4]; BATCH];
+
+/// The light of one draw by one pipeline on one side, at its points or (with the normals of faces)
+/// at its corners.
+#[derive(Debug, Default)]
+pub(super) struct Table<T> {
+    draw: u32,
+    pipeline: u32,
+    /// The way to view space, with the normals of this side.
+    to_view: Option<ToView<T>>,
+    /// The colour of the surface, where light becomes colours, ready to be mixed: t D + S with one t
+    /// for all of the surface.
+    tint: Option<[T; 3]>,
+    /// Diffuse light; where `specular` is empty, the colour that both give.
+    diffuse: Vec<OnceLock<Lights<T>>>,
+    /// Specular light, which is there where diffuse light is.
+    specular: Vec<OnceLock<Lights<T>>>,
+}
+
+impl<T: Light> Lit<T> {
+    /// Makes ready for what the plan says is lit at vertices.
+    pub(in crate::render) fn prepare(&mut self, plan: &FramePlan) {
+        self.to_view.clear();
+        self.to_view.extend(plan.draws.iter().map(|draw| ToView::new(plan, draw)));
+        self.used = 0;
+        if plan.light_at != LightAt::Vertex {
+            return;
+        }
+        for (i, draw) in (0_u32..).zip(&plan.draws) {
+            for pipeline in 0..u32::try_from(plan.pipelines.len()).unwrap_or(u32::MAX) {
+                let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { continue };
+                if shaded.light.is_none() || !draw.part_pipelines.contains(&Some(pipeline)) {
+                    continue;
+                }
+                for back in [false, true] {
+                    if back && draw.back != Back::Lit {
+                        continue;
+                    }
+                    if self.used == self.tables.len() {
+                        self.tables.push(Table::default());
+                    }
+                    let table = &mut self.tables[self.used];
+                    (table.draw, table.pipeline) = (i, pipeline);
+                    self.used += 1;
+                    table.to_view = Some(self.to_view[i as usize].seen_from(back));
+                    table.clear(draw, shaded);
+                }
+            }
+        }
+    }
+
+    /// The light of a draw by a pipeline, on the front and on the back; the same where only one side
+    /// is lit.
+    pub(super) fn tables(&self, draw: u32, pipeline: u32) -> [&Table<T>; 2] {
+        let mut tables = self.tables[..self.used]
+            .iter()
+            .filter(|table| (table.draw, table.pipeline) == (draw, pipeline));
+        let front = tables.next().expect("what is lit at vertices was made ready");
+        [front, tables.next().unwrap_or(front)]
+    }
+
+    /// Puts the centres and the normals of some faces of a draw into a batch, in view space.
+    pub(super) fn place_faces(
+        &self,
+        level: Level,
+        (index, draw): (u32, &Draw),
+        faces: &Faces<T>,
+        batch: &mut Batch<T>,
+    ) {
+        let mesh = &draw.model.mesh;
+        let (centres, normals) = (mesh.polygon_centres(), mesh.polygon_normals());
+        for (slot, number) in faces.numbers[..faces.count].iter().enumerate() {
+            let polygon = mesh.triangles()[*number as usize].polygon as usize;
+            let turn =
+                if faces.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
+            put(batch, slot, centres[polygon], normals[polygon].map(|x| x * turn));
+        }
+        let to_view = self.to_view[index as usize];
+        T::run_by(level, to_view.way, Place { batch, to_view });
+    }
+}
+
+/// Writes a place and a normal of object space into a batch.
+#[inline(always)]
+fn put<T: Number>(batch: &mut Batch<T>, i: usize, position: [f32; 3], normal: [f32; 3]) {
+    for axis in 0..3 {
+        batch.position[axis][i] = T::from_f64(f64::from(position[axis]));
+        batch.normal[axis][i] = T::from_f64(f64::from(normal[axis]));
+    }
+}
+
+/// By what the vertices of a draw are lit.
+#[derive(Debug)]
+pub(super) struct Lighting<'a, T> {
+    pub(super) level: Level,
+    pub(super) draw: &'a Draw,
+    pub(super) stages: &'a [Stage],
+    pub(super) shines: &'a [Shine<T>],
+}
+
+impl<T: Light> Table<T> {
+    /// Whether there are colours in the place of diffuse light, and no other.
+    pub(super) const fn is_colored(&self) -> bool {
+        self.tint.is_some()
+    }
+
+    /// Takes all light away, and makes room for that of a draw.
+    fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
+        let count = place_count(draw).div_ceil(BATCH);
+        let colored = shaded.texture.is_none() && !shaded.vertex_colors;
+        self.tint = colored.then(|| shaded.tint.map(T::from_f64));
+        self.diffuse.clear();
+        self.diffuse.resize_with(count, OnceLock::new);
+        self.specular.clear();
+        self.specular.resize_with(if colored { 0 } else { count }, OnceLock::new);
+    }
+
+    /// The diffuse light at a place, or its colour. What it takes to light it is done in `batch`.
+    #[inline(always)]
+    pub(super) fn diffuse(
+        &self,
+        place: u32,
+        lighting: &Lighting<'_, T>,
+        batch: &mut Batch<T>,
+    ) -> [T; 4] {
+        let (chunk, at) = (place as usize / BATCH, place as usize % BATCH);
+        match self.diffuse[chunk].get() {
+            Some(lights) => lights[at],
+            None => self.light(chunk, lighting, batch)[at],
+        }
+    }
+
+    /// The specular light at a place whose diffuse light was asked for before.
+    #[inline(always)]
+    pub(super) fn specular(&self, place: u32) -> [T; 4] {
+        let lights = self.specular[place as usize / BATCH].get();
+        lights.expect("it comes with diffuse light")[place as usize % BATCH]
+    }
+
+    /// Lights the places that are lit together, unless another thread does.
+    #[cold]
+    #[inline(never)]
+    fn light(&self, chunk: usize, lighting: &Lighting<'_, T>, batch: &mut Batch<T>) -> &Lights<T> {
+        let Lighting { level, draw, stages, shines } = *lighting;
+        let to_view = self.to_view.expect("it was made ready");
+        self.diffuse[chunk].get_or_init(|| {
+            put_places(draw, chunk * BATCH, batch);
+            T::run_by(level, to_view.way, Place { batch, to_view });
+            batch.darken();
+            run(stages, shines, level, batch);
+            let mut diffuse = [[T::default(); 4]; BATCH];
+            let mut specular = [[T::default(); 4]; BATCH];
+            let (tint, batch) = (self.tint, &*batch);
+            T::run(level, Keep { batch, tint, to: [&mut diffuse, &mut specular] });
+            if let Some(place) = self.specular.get(chunk) {
+                // Whoever lights the diffuse light of these is alone.
+                place.get_or_init(|| specular);
+            }
+            diffuse
+        })
+    }
+}
+
+/// How many places of a draw are lit: its points or, with the normals of faces, its corners.
+fn place_count(draw: &Draw) -> usize {
+    let mesh = &draw.model.mesh;
+    match draw.normals {
+        Normals::Vertex => mesh.draw_order().points(draw.normal_source).normals.len(),
+        Normals::Face => mesh.corners().len(),
+    }
+}
+
+/// Puts places of a draw into a batch, from `first` on.
+fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
+    let mesh = &draw.model.mesh;
+    batch.len = (place_count(draw) - first).min(BATCH);
+    match draw.normals {
+        Normals::Vertex => {
+            let order = mesh.draw_order();
+            let points = order.points(draw.normal_source);
+            let own = first..first + batch.len;
+            let (vertices, normals) = (&points.vertices[own.clone()], &points.normals[own]);
+            let places = batch.position.iter_mut().zip([&order.x, &order.y, &order.z]);
+            for (to, from) in places {
+                for (to, vertex) in to.iter_mut().zip(vertices) {
+                    *to = T::from_f64(f64::from(from[*vertex as usize]));
+                }
+            }
+            let [x, y, z] = &mut batch.normal;
+            for (((x, y), z), normal) in x.iter_mut().zip(y).zip(z).zip(normals) {
+                [*x, *y, *z] = each(*normal, |n| T::from_f64(f64::from(n)));
+            }
+        }
+        Normals::Face => {
+            let mut polygon = polygon_of_corner(draw, first);
+            for i in 0..batch.len {
+                while !mesh.corners_of(polygon).contains(&(first + i)) {
+                    polygon += 1;
+                }
+                let position = mesh.corners()[first + i].position as usize;
+                put(batch, i, mesh.positions()[position], mesh.polygon_normals()[polygon as usize]);
+            }
+        }
+    }
+}
+
+/// The polygon that a corner belongs to.
+fn polygon_of_corner(draw: &Draw, corner: usize) -> u32 {
+    let mesh = &draw.model.mesh;
+    let (mut low, mut high) =
+        (0, u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers"));
+    while high - low > 1 {
+        let middle = low.midpoint(high);
+        if mesh.corners_of(middle).start <= corner { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Keeps the light of a batch: D and S, or with a `tint` t the colour t D + S in the place of D.
+struct Keep<'a, T> {
+    batch: &'a Batch<T>,
+    tint: Option<[T; 3]>,
+    to: [&'a mut Lights<T>; 2],
+}
+
+impl<T: Number> Kernel<T> for Keep<'_, T> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { batch, tint, to: [diffuse, specular] } = self;
+        let zero = machine.lift(0.0);
+        for at in (0..batch.len).step_by(M::LANES) {
+            let Triple([r, g, b]) = load(machine, &batch.diffuse, at);
+            let s = load(machine, &batch.specular, at);
+            if let Some(tint) = tint {
+                let Triple([tr, tg, tb]) = set(machine, tint);
+                let Triple([r, g, b]) = Triple([tr * r, tg * g, tb * b]).plus(s);
+                machine.store_four([r, g, b, zero], diffuse, at);
+            } else {
+                let Triple([sr, sg, sb]) = s;
+                machine.store_four([r, g, b, zero], diffuse, at);
+                machine.store_four([sr, sg, sb, zero], specular, at);
+            }
+        }
+    }
+}
+
+/// How far off a vertex is lit, in units of view space.
+const FARTHEST: f64 = 1e15;
+
+/// From object space to view space. What is far from the origin is first brought near it, so that
+/// f32 keeps its digits.
+#[derive(Clone, Copy, Debug)]
+struct ToView<T> {
+    middle: [T; 3],
+    middle_in_view: [T; 3],
+    linear: [[T; 3]; 3],
+    normals: [[T; 3]; 3],
+    eye: Eye,
+    /// By which rare way, where it is one.
+    way: Option<Normalising>,
+}
+
+impl<T: Number> ToView<T> {
+    fn new(plan: &FramePlan, draw: &Draw) -> Self {
+        let bounds = draw.model.mesh.bounds();
+        // A number of f32, so that taking it away is exact where it matters.
+        let middle =
+            bounds.map_or(DVec3::ZERO, |bounds| dvec3(bounds.centre().as_vec3().to_array()));
+        let numbers = |v: DVec3| v.to_array().map(T::from_f64);
+        let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(numbers);
+        Self {
+            middle: numbers(middle),
+            middle_in_view: numbers(draw.view_from_object.transform_point3(middle)),
+            linear: columns(DMat3::from_mat4(draw.view_from_object)),
+            normals: columns(draw.view_from_normal),
+            eye: plan.eye,
+            way: plan.ways.rare_roots(),
+        }
+    }
+
+    /// The same for one side of the surface.
+    fn seen_from(self, back: bool) -> Self {
+        let normals =
+            if back { self.normals.map(|column| column.map(|x| -x)) } else { self.normals };
+        Self { normals, ..self }
+    }
+}
+
+/// Vectors times a matrix, which is given by its columns.
+#[inline(always)]
+fn turned<M: Machine>(
+    machine: M,
+    [a, b, c]: [[M::Number; 3]; 3],
+    Triple([x, y, z]): Triple<M::R>,
+) -> Triple<M::R> {
+    let (a, b, c) = (set(machine, a), set(machine, b), set(machine, c));
+    a.times(x).plus(b.times(y)).plus(c.times(z))
+}
+
+/// Brings the places of a batch from object space to view space.
+struct Place<'a, T> {
+    batch: &'a mut Batch<T>,
+    to_view: ToView<T>,
+}
+
+impl<T: Number> Kernel<T> for Place<'_, T> {
+    #[inline(always)]
+    fn run<M: Machine<Number = T>>(self, machine: M) {
+        let Self { batch, to_view } = self;
+        let (middle, origin) = (set(machine, to_view.middle), set(machine, to_view.middle_in_view));
+        for at in (0..batch.len).step_by(M::LANES) {
+            let near = load(machine, &batch.position, at).minus(middle);
+            // What lies beyond everything that can be seen is brought near enough for its distance to
+            // a lamp to have a square.
+            let (low, high) = (machine.lift(-FARTHEST), machine.lift(FARTHEST));
+            let held = |x: M::R| Real::min(Real::max(x, low), high);
+            let [x, y, z] = turned(machine, to_view.linear, near).plus(origin).0;
+            let position = Triple([held(x), held(y), held(z)]);
+            let normal = turned(machine, to_view.normals, load(machine, &batch.normal, at)).unit();
+            let zero = machine.lift(0.0);
+            let to_eye = match to_view.eye {
+                Eye::Point => Triple([zero, zero, zero]).minus(position).unit(),
+                Eye::Parallel => Triple([zero, zero, machine.lift(1.0)]),
+            };
+            store(machine, position, &mut batch.position, at);
+            store(machine, normal, &mut batch.normal, at);
+            store(machine, to_eye, &mut batch.to_eye, at);
+        }
+    }
+}
+
+/// Adds up the light of some stages at every place of a batch.
+pub(super) fn run<T: Light>(
+    stages: &[Stage],
+    shines: &[Shine<T>],
+    level: Level,
+    batch: &mut Batch<T>,
+) {
+    for (stage, shine) in stages.iter().zip(shines) {
+        T::add_light(stage.variant(), level, batch, shine);
+    }
+}

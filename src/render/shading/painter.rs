@@ -1,0 +1,255 @@
+//! Paints tiles: what is seen in a tile, its colours, and the copy into the picture.
+//!
+//! A painter stays with its thread from frame to frame, so that a frame allocates and clears nothing
+//! for its tiles. A tile that showed nothing but the background and still does is not touched. Tiles
+//! are painted straight into the picture, or, where another thread is at work in the same rows or the
+//! picture ends inside of the tile, beside it and copied.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::colors::Sums;
+use super::resolve::Samples;
+use super::surface::{Out, Scenery, Shader};
+use super::whole::{Blocks, Canvas};
+use crate::base::color::Color;
+use crate::base::image::Size;
+use crate::render::effects::Light;
+use crate::render::geometry::coverage::PixelBox;
+use crate::render::geometry::places::{ALL, FOUR};
+use crate::render::geometry::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::render::plan::FramePlan;
+use crate::render::visibility::tile::Visibility;
+
+/// The pixels of a tile; tiles are counted along rows.
+pub(in crate::render) fn bounds_of(tile: usize, size: Size) -> PixelBox {
+    let [columns, _] = tiles_of(size);
+    let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
+    let (left, top) = (tile % columns * TILE, tile / columns * TILE);
+    let [right, bottom] = [size.width, size.height]
+        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+    let picture = PixelBox { left: 0, top: 0, right, bottom };
+    PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
+}
+
+/// The rows of the picture that a row of tiles lies in.
+#[derive(Debug)]
+pub(in crate::render) struct Band<'a> {
+    pub(in crate::render) pixels: &'a mut [[u8; 4]],
+    /// For each of its tiles the colour that fills it as a whole, where one is known to.
+    pub(in crate::render) filled: &'a mut [Option<Color>],
+}
+
+/// A band that nobody else has.
+fn locked<'a, 'b>(band: &'a Mutex<Band<'b>>) -> MutexGuard<'a, Band<'b>> {
+    band.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Pixels to a side of a block.
+const ROW: usize = BLOCK as usize;
+/// Blocks in a row of a tile.
+const BLOCKS: usize = TILE_SIDE / ROW;
+
+/// The colours of a tile over several passes, block by block; nothing before the first.
+pub(in crate::render) type TileSums = Mutex<Vec<Sums>>;
+
+/// Where a block of a tile begins.
+const fn corner_in_tile(block: usize) -> [usize; 2] {
+    [block % BLOCKS * ROW, block / BLOCKS * ROW]
+}
+
+/// Draws one tile after another.
+#[derive(Debug)]
+pub(in crate::render) struct Painter<T> {
+    shader: Shader<T>,
+    visibility: Visibility,
+    samples: Samples,
+    /// A tile beside the picture.
+    pixels: Vec<[u8; 4]>,
+}
+
+impl<T: Light> Default for Painter<T> {
+    fn default() -> Self {
+        Self {
+            shader: Shader::default(),
+            visibility: Visibility::default(),
+            samples: Samples::default(),
+            pixels: vec![[0; 4]; TILE_SIDE * TILE_SIDE],
+        }
+    }
+}
+
+impl<T: Light> Painter<T> {
+    /// Gets ready for another frame.
+    pub(in crate::render) const fn begin(&mut self) {
+        self.shader.begin();
+    }
+
+    /// Paints a tile of the picture, whose band is given.
+    pub(in crate::render) fn paint(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        tile: usize,
+        band: &Mutex<Band<'_>>,
+    ) {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let (size, background) = (plan.size, plan.background);
+        let bounds = bounds_of(tile, size);
+        if !frame.is_empty(tile) {
+            self.visibility.draw(level, plan, frame, (tile, bounds));
+        }
+        if frame.is_empty(tile) || self.visibility.is_empty() {
+            return Self::fill(tile, size, background, &mut locked(band));
+        }
+        self.shader.tile.begin((level, plan), &self.visibility, bounds);
+        let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
+        let (column, place) = Self::place(tile, size);
+        if let (true, Ok(mut band)) = (whole, band.try_lock()) {
+            // Straight into the picture, where nobody else is at work in these rows.
+            let Band { pixels, filled } = &mut *band;
+            let mut canvas = Canvas { pixels: &mut pixels[place.start..], stride: size.width };
+            let shows = self.blocks(scenery, bounds, &mut canvas);
+            filled[column] = Some(background).filter(|_| !shows);
+            return;
+        }
+        let mut pixels = std::mem::take(&mut self.pixels);
+        let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
+        let shows = self.blocks(scenery, bounds, &mut canvas);
+        self.pixels = pixels;
+        let mut band = locked(band);
+        if shows {
+            self.copy(tile, size, &mut band);
+        } else {
+            Self::fill(tile, size, background, &mut band);
+        }
+    }
+
+    /// Colours the blocks of a tile; says whether it shows anything but the background.
+    fn blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        bounds: PixelBox,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let mut whole = self.visibility.whole_blocks();
+        if whole != u64::MAX {
+            for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
+                row[..TILE_SIDE].fill(scenery.plan.background.opaque());
+            }
+        }
+        let mut shows = whole != 0;
+        for block in 0..BLOCK_PIXELS {
+            if let Some(number) = self.visibility.whole(block) {
+                if whole >> block & 1 != 0 {
+                    let which = (block..BLOCK_PIXELS)
+                        .filter(|other| self.visibility.whole(*other) == Some(number))
+                        .fold(0, |which, other| which | 1 << other);
+                    whole &= !which;
+                    let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
+                    self.shader.whole_blocks(scenery, number, blocks, canvas);
+                }
+            } else if self.visibility.shows(block) {
+                let corner = self.visibility.corner(block);
+                let at = canvas.place(corner_in_tile(block));
+                shows |= if scenery.frame.places().are_many() {
+                    self.block_of_samples(scenery, (block, corner), canvas, at)
+                } else {
+                    let words = self.visibility.block(block);
+                    self.shader.block(scenery, words, corner, (canvas, at))
+                };
+            }
+        }
+        shows
+    }
+
+    /// Colours a block whose pixels have four samples.
+    fn block_of_samples(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        (block, corner): (usize, [i32; 2]),
+        canvas: &mut Canvas<'_>,
+        at: usize,
+    ) -> bool {
+        let Self { shader, visibility, samples, .. } = self;
+        let planes = visibility.planes(block);
+        if samples.compare(scenery.level, planes) {
+            return shader.block(scenery, &planes[0], corner, (canvas, at));
+        }
+        let mut sums = Sums::default();
+        let shows = shader.add_samples(scenery, (samples, planes), corner, &mut sums);
+        canvas.put(at, &sums.means(FOUR.ilog2()));
+        shows
+    }
+
+    /// Adds the colours of four samples of a tile to those of others.
+    pub(in crate::render) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &TileSums) {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
+        to.resize(BLOCK_PIXELS, Sums::default());
+        let empty = frame.is_empty(tile);
+        let bounds = bounds_of(tile, plan.size);
+        let Self { shader, visibility, samples, .. } = self;
+        if !empty {
+            visibility.draw(level, plan, frame, (tile, bounds));
+            shader.tile.begin((level, plan), visibility, bounds);
+        }
+        for (block, to) in to.iter_mut().enumerate() {
+            if empty || !visibility.shows(block) {
+                to.add_everywhere(plan.background.opaque(), ALL);
+                continue;
+            }
+            let corner = visibility.corner(block);
+            if let Some(number) = visibility.whole(block) {
+                shader.whole_block(scenery, number, corner, &mut Out::Sums(to));
+            } else {
+                let planes = visibility.planes(block);
+                samples.compare(level, planes);
+                shader.add_samples(scenery, (samples, planes), corner, to);
+            }
+        }
+    }
+
+    /// Puts the means of all samples of a tile into its band of the picture.
+    pub(in crate::render) fn put_means(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        tile: usize,
+        of: &TileSums,
+        band: &Mutex<Band<'_>>,
+    ) {
+        let of = of.lock().unwrap_or_else(PoisonError::into_inner);
+        let FramePlan { size, samples, .. } = *scenery.plan;
+        let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
+        for (block, sums) in of.iter().enumerate() {
+            let at = canvas.place(corner_in_tile(block));
+            canvas.put(at, &sums.means(samples.count().ilog2()));
+        }
+        self.copy(tile, size, &mut locked(band));
+    }
+
+    /// Copies the tile beside the picture into its band.
+    fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
+        let (column, place) = Self::place(tile, size);
+        band.filled[column] = None;
+        for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width)) {
+            to[place.clone()].copy_from_slice(&from[..place.len()]);
+        }
+    }
+
+    /// Fills a tile with a colour, where it is not filled with it.
+    fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
+        let (column, place) = Self::place(tile, size);
+        if band.filled[column] != Some(color) {
+            band.filled[column] = Some(color);
+            for row in band.pixels.chunks_mut(size.width) {
+                row[place.clone()].fill(color.opaque());
+            }
+        }
+    }
+
+    /// Which tile of its band it is, and its columns of the picture.
+    fn place(tile: usize, size: Size) -> (usize, std::ops::Range<usize>) {
+        let column = tile % size.width.div_ceil(TILE_SIDE);
+        let left = column * TILE_SIDE;
+        (column, left..size.width.min(left + TILE_SIDE))
+    }
+}

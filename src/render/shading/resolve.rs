@@ -1,0 +1,181 @@
+//! From four samples of a block's pixels to the mean of their colours.
+//!
+//! Most blocks of a picture show the same in all samples of each pixel, and cost no more than with one
+//! sample. Elsewhere a pixel is lit once for each triangle that any of its samples shows: first what the
+//! first samples show, all pixels together; then, in lists of sixty-four, what others show besides.
+
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
+
+use super::colors::Sums;
+use super::surface::{Out, Scenery, Shader};
+use crate::render::effects::Light;
+use crate::render::geometry::places::FOUR;
+use crate::render::geometry::tiles::BLOCK_PIXELS;
+use crate::render::visibility::words::{Planes, Seen, seen_number};
+
+/// The number that the word of the background has.
+const BACKGROUND: u32 = u32::MAX;
+
+/// What the samples of a block's pixels show.
+#[derive(Debug)]
+pub(super) struct Samples {
+    /// The numbers of what they show, as words hold them.
+    numbers: [[u32; BLOCK_PIXELS]; FOUR],
+    /// For each sample, how many from it on show what it shows; of no meaning where it is not among the
+    /// `new`.
+    shares: [[i32; BLOCK_PIXELS]; FOUR],
+    /// The pixels where a sample shows what none before it does.
+    new: [u64; FOUR],
+}
+
+impl Default for Samples {
+    fn default() -> Self {
+        let numbers = [[BACKGROUND; BLOCK_PIXELS]; FOUR];
+        Self { numbers, shares: [[0; BLOCK_PIXELS]; FOUR], new: [0; FOUR] }
+    }
+}
+
+impl Samples {
+    /// Compares the samples of each pixel. Says whether all pixels show one thing each.
+    pub(super) fn compare(&mut self, level: Level, planes: &Planes) -> bool {
+        dispatch!(level, simd => self.compare_in(simd, planes));
+        self.new[1..] == [0; FOUR - 1]
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+    fn compare_in<S: Simd>(&mut self, simd: S, planes: &Planes) {
+        for (numbers, words) in self.numbers.iter_mut().zip(planes) {
+            for (number, word) in numbers.iter_mut().zip(words) {
+                *number = !(*word as u32);
+            }
+        }
+        self.new = [u64::MAX, 0, 0, 0];
+        let (none, one) = (i32x16::splat(simd, 0), i32x16::splat(simd, 1));
+        for at in (0..BLOCK_PIXELS).step_by(16) {
+            let of = |sample: usize| {
+                let numbers: &[i32; BLOCK_PIXELS] = bytemuck::cast_ref(&self.numbers[sample]);
+                i32x16::from_slice(simd, &numbers[at..at + 16])
+            };
+            let (a, b, c, d) = (of(0), of(1), of(2), of(3));
+            let (ab, ac, ad) = (a.simd_eq(b), a.simd_eq(c), a.simd_eq(d));
+            let (bc, bd, cd) = (b.simd_eq(c), b.simd_eq(d), c.simd_eq(d));
+            let count = |alike: fearless_simd::mask32x16<S>| alike.select(one, none);
+            let shares = [
+                one + count(ab) + count(ac) + count(ad),
+                one + count(bc) + count(bd),
+                one + count(cd),
+                one,
+            ];
+            for (row, shares) in self.shares.iter_mut().zip(shares) {
+                shares.store_slice(&mut row[at..at + 16]);
+            }
+            self.new[1] |= (!ab).to_bitmask() << at;
+            self.new[2] |= (!(ac | bc)).to_bitmask() << at;
+            self.new[3] |= (!(ad | bd | cd)).to_bitmask() << at;
+        }
+    }
+}
+
+impl<T: Light> Shader<T> {
+    /// Adds up the colours of a block, the corner of which is its upper left pixel, whose samples were
+    /// compared. Says whether any of them shows more than the background.
+    pub(super) fn add_samples(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        (samples, planes): (&Samples, &Planes),
+        corner: [i32; 2],
+        sums: &mut Sums,
+    ) -> bool {
+        let mut shown = self.items.list(scenery.level, &planes[0], corner);
+        if shown.triangles != 0 {
+            self.items.share(&samples.shares[0]);
+            self.color_items(scenery, corner, &mut Out::Sums(sums));
+        }
+        let mut others = !shown.triangles;
+        while others != 0 {
+            let place = others.trailing_zeros() as usize;
+            others &= others - 1;
+            let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
+            add_other(scenery, number, place, share, sums);
+        }
+        self.items.begin_shared();
+        let mut pixels = samples.new[1] | samples.new[2] | samples.new[3];
+        while pixels != 0 {
+            let place = pixels.trailing_zeros() as usize;
+            pixels &= pixels - 1;
+            for sample in 1..FOUR {
+                if samples.new[sample] >> place & 1 == 0 {
+                    continue;
+                }
+                let number = samples.numbers[sample][place];
+                let share = samples.shares[sample][place];
+                if !matches!(seen_number(number), Seen::Triangle(_)) {
+                    shown.lines |= u64::from(number != BACKGROUND) << place;
+                    add_other(scenery, number, place, share, sums);
+                    continue;
+                }
+                shown.triangles |= 1 << place;
+                self.items.add(number, corner, place, share);
+                if self.items.is_full() {
+                    self.color_items(scenery, corner, &mut Out::Sums(sums));
+                    self.items.begin_shared();
+                }
+            }
+        }
+        if self.items.len > 0 {
+            self.color_items(scenery, corner, &mut Out::Sums(sums));
+        }
+        (shown.triangles | shown.lines) != 0
+    }
+}
+
+/// Adds what is no triangle: a line, or the background.
+fn add_other<T>(scenery: &Scenery<'_, T>, number: u32, place: usize, share: i32, sums: &mut Sums) {
+    let color = match seen_number(number) {
+        Seen::Line(line) => scenery.frame.line_color(scenery.plan, line),
+        _ => scenery.plan.background.opaque(),
+    };
+    sums.add(place, color, share);
+}
+
+#[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_sample_counts_once_with_the_first_that_shows_the_same() {
+        let mut state = 1_u64;
+        for _ in 0..500 {
+            let planes: Planes = std::array::from_fn(|_| {
+                std::array::from_fn(|_| {
+                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                    match state >> 62 {
+                        0 => 0,
+                        number => (state >> 20) << 32 | u64::from(!u32::try_from(number).unwrap()),
+                    }
+                })
+            });
+            let number = |sample: usize, place: usize| !(planes[sample][place] as u32);
+            let mut samples = Samples::default();
+            let alike = samples.compare(Level::new(), &planes);
+            for place in 0..BLOCK_PIXELS {
+                for sample in 0..FOUR {
+                    let own = number(sample, place);
+                    assert_eq!(samples.numbers[sample][place], own);
+                    let new = (0..sample).all(|earlier| number(earlier, place) != own);
+                    assert_eq!(samples.new[sample] >> place & 1 == 1, new);
+                    let share = (sample..FOUR).filter(|later| number(*later, place) == own).count();
+                    assert!(!new || samples.shares[sample][place] == share as i32);
+                }
+            }
+            assert_eq!(
+                alike,
+                planes.iter().all(|plane| {
+                    (0..BLOCK_PIXELS).all(|place| plane[place] as u32 == planes[0][place] as u32)
+                })
+            );
+        }
+    }
+}

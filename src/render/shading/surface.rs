@@ -1,0 +1,490 @@
+//! From what is seen to colours.
+//!
+//! A block's pixels are listed by the triangles that they show ([`Items`]). What is known of these is
+//! fetched once for each triangle ([`Faces`]), taken from there by the pixels ([`Located`]), lit
+//! ([`Batch`]), and made bytes. Light that is evaluated at faces is evaluated at the faces of the
+//! block; no pixel asks where it lies.
+
+use fearless_simd::Level;
+
+use super::colors::{Colors, Form, Sums};
+use super::faces::Faces;
+use super::finish::{Finish, Own};
+use super::groups::{Group, group_of, one_group};
+use super::interpolate::{Mixed, mix, surroundings};
+use super::items::Items;
+use super::light::{Lighting, Lit, Table, run};
+use super::located::Located;
+use super::shines::Shines;
+use super::texels::{color, uv, uv_ways};
+use super::texture;
+use super::whole::{Blocks, Canvas};
+use crate::base::color::Color;
+use crate::render::effects::{BATCH, Batch, Light, Rows};
+use crate::render::geometry::frame::Frame;
+use crate::render::geometry::places::ALL;
+use crate::render::geometry::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::render::numbers::pick::SLOTS;
+use crate::render::plan::{Back, FramePlan, Pipeline, Shaded, Stage, TilePlan};
+use crate::render::visibility::words::{Seen, seen};
+use crate::render::ways::bytes::{FinishBy, thresholds};
+use crate::scene::{LightAt, Rounding};
+
+/// What colouring pixels reads.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::render) struct Scenery<'a, T> {
+    pub(in crate::render) level: Level,
+    pub(in crate::render) plan: &'a FramePlan,
+    pub(in crate::render) frame: &'a Frame,
+    pub(in crate::render) lit: &'a Lit<T>,
+    pub(in crate::render) shines: &'a Shines<T>,
+}
+
+/// Colours pixels. Each thread has its own.
+#[derive(Debug)]
+pub(super) struct Shader<T> {
+    /// The lights of the tile that is coloured.
+    pub(super) tile: TilePlan,
+    pub(super) items: Items,
+    faces: Faces<T>,
+    located: Located<T>,
+    batch: Batch<T>,
+    texels: Rows<T>,
+    colors: Colors,
+}
+
+/// Where colours of a block go.
+#[derive(Debug)]
+pub(super) enum Out<'a, 'b> {
+    /// Into a tile, from a place on.
+    Tile(&'a mut Canvas<'b>, usize),
+    /// To what other samples show.
+    Sums(&'a mut Sums),
+}
+
+/// What mixing the light of vertices gave.
+#[derive(Clone, Copy, Debug)]
+enum Mixture {
+    /// The bytes of the pixels.
+    Bytes,
+    /// Their colours, as diffuse light.
+    Colors,
+    /// Diffuse and specular light.
+    Light,
+}
+
+impl<T: Light> Default for Shader<T> {
+    fn default() -> Self {
+        Self {
+            tile: TilePlan::default(),
+            items: Items::default(),
+            faces: Faces::default(),
+            located: Located::default(),
+            batch: Batch::default(),
+            texels: [[T::default(); BATCH]; 3],
+            colors: Colors::default(),
+        }
+    }
+}
+
+impl<T: Light> Shader<T> {
+    /// Gets ready for another frame.
+    pub(super) const fn begin(&mut self) {
+        self.faces.forget();
+    }
+
+    /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on. What
+    /// shows the background is left as it is; says whether anything else is shown.
+    pub(super) fn block(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        words: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+        (canvas, at): (&mut Canvas<'_>, usize),
+    ) -> bool {
+        let shown = self.items.list(scenery.level, words, corner);
+        let mut lines = shown.lines;
+        while lines != 0 {
+            let i = lines.trailing_zeros() as usize;
+            lines &= lines - 1;
+            if let Seen::Line(line) = seen(words[i]) {
+                canvas.pixels[at + canvas.place(in_block(i))] =
+                    scenery.frame.line_color(scenery.plan, line);
+            }
+        }
+        if shown.triangles != 0 {
+            self.color_items(scenery, corner, &mut Out::Tile(canvas, at));
+        }
+        (shown.triangles | shown.lines) != 0
+    }
+
+    /// Colours the pixels of the list.
+    pub(super) fn color_items(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
+        if let Some(group) = one_group(scenery, &self.items) {
+            self.color_group(scenery, &group, out);
+        } else {
+            self.color_groups(scenery, corner, out);
+        }
+    }
+
+    /// Colours the pixels of a block that one triangle covers as a whole.
+    pub(super) fn whole_block(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        number: u32,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
+        self.items.list_whole(number, corner);
+        self.items.shares = [ALL; BLOCK_PIXELS];
+        self.color_group(scenery, &group_of(scenery, number), out);
+    }
+
+    /// Colours pixels that are coloured together.
+    fn color_group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, out: &mut Out<'_, '_>) {
+        self.colors.form = match out {
+            Out::Tile(..) => Form::Pixels,
+            Out::Sums(_) => Form::Parts,
+        };
+        self.group(scenery, group);
+        match out {
+            Out::Tile(canvas, at) => self.copy(canvas, *at),
+            Out::Sums(sums) => {
+                let Items { len, places, shares, .. } = &self.items;
+                sums.add_all(&self.colors, &places[..*len], &shares[..*len]);
+            }
+        }
+    }
+
+    /// Colours the pixels of blocks that one triangle covers as a whole.
+    pub(super) fn whole_blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        number: u32,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) {
+        let group = group_of(scenery, number);
+        let [x, y] = blocks.corner;
+        self.items.list_whole(number, [x, y]);
+        if self.mix_blocks(scenery, &group, blocks, canvas) {
+            return;
+        }
+        blocks.each(|[column, row]| {
+            self.items.list_whole(number, [x + column, y + row]);
+            let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
+            let at = canvas.place(place);
+            self.color_group(scenery, &group, &mut Out::Tile(canvas, at));
+        });
+    }
+
+    /// Colours the pixels of blocks that one triangle covers as a whole in one pass, where all that is
+    /// to do is to mix the colours of its corners. Says whether it is.
+    fn mix_blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let Scenery { level, plan, lit, .. } = *scenery;
+        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
+            return false;
+        };
+        let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
+        if !mixed || group.draw.back == Back::Red || plan.ways.mixes_one_by_one() {
+            return false;
+        }
+        let tables = lit.tables(group.draw_index, group.pipeline);
+        if !tables[0].is_colored() {
+            return false;
+        }
+        if self.take(scenery, group, true) {
+            self.carry_diffuse(scenery, group, shaded, tables);
+            self.faces.spread(level);
+        }
+        T::mix_blocks(level, &self.faces, blocks, canvas)
+    }
+
+    /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
+    /// ways.
+    fn color_groups(&mut self, scenery: &Scenery<'_, T>, corner: [i32; 2], out: &mut Out<'_, '_>) {
+        let mut done = [false; SLOTS];
+        let all = std::mem::take(&mut self.items);
+        for slot in 0..all.count {
+            if done[slot] {
+                continue;
+            }
+            let group = group_of(scenery, all.numbers[slot]);
+            let end = scenery.frame.draw_of(all.numbers[slot]).1.end;
+            let mut keep = [false; SLOTS];
+            for (other, number) in all.numbers[..all.count].iter().enumerate().skip(slot) {
+                keep[other] = (group.base..end).contains(number)
+                    && group.draw.pipeline_of(number - group.base) == group.pipeline;
+                done[other] |= keep[other];
+            }
+            self.items.take_from(&all, &keep, corner);
+            self.color_group(scenery, &group, out);
+        }
+        self.items = all;
+    }
+
+    /// Copies the colours into the tile.
+    fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
+        if self.items.is_whole() {
+            canvas.put(at, &self.colors.pixels);
+        } else {
+            let places = &self.items.places[..self.items.len];
+            for (i, color) in places.iter().zip(&self.colors.pixels) {
+                let place = canvas.place(in_block(usize::from(*i)));
+                canvas.pixels[at + place] = color.to_le_bytes();
+            }
+        }
+    }
+
+    fn group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>) {
+        match &scenery.plan.pipelines[group.pipeline as usize] {
+            Pipeline::Flat(color) => self.colors.fill(color.opaque()),
+            Pipeline::Shaded(shaded) => {
+                self.shaded(scenery, group, shaded);
+                if group.draw.back == Back::Red {
+                    self.redden();
+                }
+            }
+        }
+    }
+
+    /// Backs that are red are red.
+    fn redden(&mut self) {
+        for (i, slot) in self.items.slots[..self.items.len].iter().enumerate() {
+            if self.faces.back >> slot & 1 == 1 {
+                self.colors.set(i, Color::BACK_FACE.opaque());
+            }
+        }
+    }
+
+    fn shaded(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+        let Scenery { level, plan, .. } = *scenery;
+        let draw = group.draw;
+        let textured = shaded.texture.is_some() || shaded.vertex_colors;
+        let rounding = plan.ways.rounding;
+        // Every pixel has its own colour.
+        let each = textured || rounding == Rounding::Dithered;
+        let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
+        let places = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
+        let new = self.take(scenery, group, places);
+        if places {
+            self.located.find(level, &self.items, &self.faces, (plan, draw));
+            if plan.ways.has_rare_places() {
+                let corners = scenery.frame.corners_of(plan, group.draw_index);
+                plan.ways.locate(&self.items, &self.faces, corners, &mut self.located);
+            }
+        }
+        self.batch.len = self.items.len;
+        let mut tint = shaded.tint;
+        match light {
+            None => {}
+            Some((LightAt::Pixel, _)) => self.light_pixels(scenery, group, shaded, new),
+            Some((LightAt::Vertex, _)) => match self.mix_light(scenery, group, shaded, new) {
+                Mixture::Bytes => return,
+                Mixture::Colors => tint = [1.0; 3],
+                Mixture::Light => {}
+            },
+            Some((LightAt::Face, stages)) => self.light_faces(scenery, group, stages, each),
+        }
+        if textured {
+            self.texels(scenery, group, shaded);
+        }
+        let Self { batch, texels, colors, .. } = self;
+        let own = if textured { Own::Texels(texels) } else { Own::Tint(tint.map(T::from_f64)) };
+        let lit = light.is_some();
+        if rounding == Rounding::Nearest {
+            T::run(level, Finish { batch, lit, own, colors });
+        } else {
+            let thresholds = &thresholds(rounding, &self.items);
+            T::run(level, FinishBy { batch, lit, own, thresholds, colors });
+        }
+        if !(places || each) {
+            self.colors.hand_out(&self.items.slots);
+        }
+    }
+
+    /// Takes the triangles of the list, and where they are if the pixels have `places`. Says whether
+    /// they are others than before.
+    fn take(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, places: bool) -> bool {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let Group { draw, draw_index, base, .. } = *group;
+        let order = draw.model.mesh.draw_order();
+        let new = self.faces.take(&self.items, order, draw_index, base);
+        if new {
+            let vertices = frame.vertices_of(plan, draw_index);
+            self.faces.find_sides(draw, plan, frame.corners_of(plan, draw_index));
+            if places {
+                self.faces.locate(level, draw, plan, vertices);
+            }
+        }
+        new
+    }
+
+    /// Light at every pixel.
+    fn light_pixels(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        new: bool,
+    ) {
+        let Scenery { level, plan, shines, .. } = *scenery;
+        let Self { tile, items, faces, located, batch, .. } = self;
+        let light = tile.light(plan, group.pipeline, shaded);
+        if light.places {
+            if new {
+                faces.carry_normals(group.draw);
+                faces.spread(level);
+            }
+            surroundings(level, (plan, group.draw), items, faces, located, batch);
+        } else {
+            // What they carry is not taken, so it is not there.
+            faces.forget();
+        }
+        batch.darken();
+        let shines = shines.of(group.pipeline);
+        match light.kept {
+            None => run(light.stages, shines, level, batch),
+            Some(kept) => {
+                for place in kept {
+                    let at = *place as usize..=*place as usize;
+                    run(&light.stages[at.clone()], &shines[at], level, batch);
+                }
+            }
+        }
+    }
+
+    /// Light of the vertices, mixed at every pixel.
+    fn mix_light(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        new: bool,
+    ) -> Mixture {
+        let Scenery { level, plan, .. } = *scenery;
+        let tables = scenery.lit.tables(group.draw_index, group.pipeline);
+        if new || !tables[0].is_colored() {
+            self.carry_diffuse(scenery, group, shaded, tables);
+            self.faces.spread(level);
+        }
+        let Self { items, faces, located, batch, colors, .. } = self;
+        let colored = tables[0].is_colored();
+        if colored && plan.ways.rounding == Rounding::Nearest {
+            mix(level, items, faces, located, Mixed::Colors(colors));
+            return Mixture::Bytes;
+        }
+        mix(level, items, faces, located, Mixed::Rows(&mut batch.diffuse));
+        batch.len = items.len;
+        if colored {
+            batch.specular = [[T::default(); BATCH]; 3];
+            return Mixture::Colors;
+        }
+        faces.carry_light(
+            group.draw,
+            #[inline(always)]
+            |place, back| tables[usize::from(back)].specular(place),
+        );
+        faces.spread(level);
+        mix(level, items, faces, located, Mixed::Rows(&mut batch.specular));
+        Mixture::Light
+    }
+
+    /// Lets the faces carry the diffuse light of their corners, or their colours.
+    fn carry_diffuse(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+        tables: [&Table<T>; 2],
+    ) {
+        let Self { faces, batch, .. } = self;
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let shines = scenery.shines.of(group.pipeline);
+        let lighting = Lighting { level: scenery.level, draw: group.draw, stages, shines };
+        faces.carry_light(
+            group.draw,
+            #[inline(always)]
+            |place, back| tables[usize::from(back)].diffuse(place, &lighting, batch),
+        );
+    }
+
+    /// Light of the faces: at every pixel where they have `places`, else face by face.
+    fn light_faces(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        stages: &[Stage],
+        places: bool,
+    ) {
+        let Scenery { level, lit, shines, .. } = *scenery;
+        let Self { items, faces, batch, .. } = self;
+        batch.len = faces.count;
+        lit.place_faces(level, (group.draw_index, group.draw), faces, batch);
+        batch.darken();
+        run(stages, shines.of(group.pipeline), level, batch);
+        if places {
+            for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
+                let of_faces = *row;
+                for (own, slot) in row.iter_mut().zip(&items.slots[..items.len]) {
+                    *own = of_faces[slot.cast_unsigned() as usize];
+                }
+            }
+            batch.len = items.len;
+        }
+    }
+
+    /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
+    fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+        let (plan, draw) = (scenery.plan, group.draw);
+        let mips = shaded.texture.as_ref().and_then(|texture| scenery.shines.mips_of(texture));
+        let Self { items, faces, located, texels, .. } = self;
+        for (row, tint) in texels.iter_mut().zip(shaded.tint) {
+            row.fill(T::from_f64(tint));
+        }
+        for i in 0..items.len {
+            let number = faces.numbers[items.slots[i].cast_unsigned() as usize];
+            let weights = located.weights(i);
+            if let Some(texture) = &shaded.texture
+                && let Some(uv) = uv(draw, number, weights)
+            {
+                let texel = match mips {
+                    None => texture::sample::<T>(texture, uv, plan.filter),
+                    Some(mips) => mips.sample(
+                        uv,
+                        uv_ways(
+                            (plan, scenery.frame),
+                            group.draw_index,
+                            number,
+                            [items.x[i], items.y[i]],
+                        ),
+                    ),
+                };
+                for (row, part) in texels.iter_mut().zip(texel) {
+                    row[i] = row[i] * part;
+                }
+            }
+            if shaded.vertex_colors {
+                for (row, part) in texels.iter_mut().zip(color(draw, number, weights)) {
+                    row[i] = row[i] * T::from_f64(part);
+                }
+            }
+        }
+    }
+}
+
+/// Column and row of pixel `i` of a block.
+const fn in_block(i: usize) -> [usize; 2] {
+    [i % BLOCK as usize, i / BLOCK as usize]
+}

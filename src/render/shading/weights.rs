@@ -1,0 +1,87 @@
+//! Where a pixel lies in one triangle, in f64: for what is looked at one by one, and for triangles that
+//! were cut.
+
+use glam::DVec3;
+
+use crate::base::math::each;
+use crate::render::geometry::clip::{Screen, ScreenVertex, homogeneous_weights};
+use crate::render::geometry::coverage::{SUBPIXELS, Triangle};
+use crate::render::plan::{Draw, FramePlan};
+
+/// The parts that the corners of one triangle have in a place of a pixel, shifted by so many parts of
+/// a pixel from its middle, with perspective, in f64.
+pub(super) fn weights(
+    plan: &FramePlan,
+    draw: &Draw,
+    vertices: &[ScreenVertex],
+    number: u32,
+    (pixel, shift): ([i32; 2], [i32; 2]),
+) -> DVec3 {
+    let order = draw.model.mesh.draw_order();
+    let ids = order.vertices_of(number);
+    let own = each(ids, |vertex| vertices[vertex as usize]);
+    if !own.iter().all(ScreenVertex::is_inside) {
+        return cut_weights(plan, draw, number, (pixel, shift));
+    }
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
+    if plan.ways.has_rare_places() {
+        let by_w = w.map(|w| 1.0 / w);
+        let corners = own.map(|vertex| vertex.at());
+        let ([second, third], _) = plan.ways.parts_at(corners, by_w, (pixel, shift), false);
+        return DVec3::new(1.0 - second - third, second, third);
+    }
+    let triangle = Triangle::new(own.map(|vertex| vertex.at().seen_from(shift)));
+    let [second, third] = triangle.map_or([0.0; 2], |triangle| barycentric(&triangle, pixel));
+    let by_w = DVec3::new(1.0 - second - third, second, third) / DVec3::from_array(w);
+    by_w / by_w.element_sum()
+}
+
+/// The second and third barycentric coordinate of a pixel, linear on the screen.
+#[inline(always)]
+#[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+pub(super) fn barycentric(triangle: &Triangle, [x, y]: [i32; 2]) -> [f64; 2] {
+    let [_, second, third] = triangle.edges_at(x, y);
+    let per_area = 1.0 / triangle.doubled_area() as f64;
+    [second as f64 * per_area, third as f64 * per_area]
+}
+
+/// The parts of a cut triangle's corners in a place of a pixel, as for [`weights`].
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+pub(super) fn cut_weights(
+    plan: &FramePlan,
+    draw: &Draw,
+    number: u32,
+    (pixel, shift): ([i32; 2], [i32; 2]),
+) -> DVec3 {
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let order = draw.model.mesh.draw_order();
+    let vertices = order.vertices_of(number);
+    let clip = vertices.map(|vertex| screen.clip(order.position(vertex)));
+    let at =
+        |axis: usize| f64::from(pixel[axis]) + 0.5 + f64::from(shift[axis]) / f64::from(SUBPIXELS);
+    let x = at(0) / plan.size.width as f64 * 2.0 - 1.0;
+    let y = 1.0 - at(1) / plan.size.height as f64 * 2.0;
+    homogeneous_weights(clip, [x, y])
+}
+
+/// The w of clip space that a cut triangle has in a pixel where its corners have these parts.
+pub(super) fn cut_w(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> f64 {
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let order = draw.model.mesh.draw_order();
+    let w = order.vertices_of(number).map(|vertex| screen.clip(order.position(vertex))[3]);
+    weights.dot(DVec3::from_array(w))
+}
+
+/// Where the point of a cut triangle whose corners have these parts lies in the picture, in pixels. What
+/// lies in the observer's own plane is nowhere: then it is some place.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+pub(super) fn cut_place(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> [f64; 2] {
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let order = draw.model.mesh.draw_order();
+    let corners = order.vertices_of(number).map(|vertex| screen.clip(order.position(vertex)));
+    let [x, y, w] = [0, 1, 3].map(|i| weights.dot(DVec3::from_array(corners.map(|c| c[i]))));
+    let w = if w == 0.0 { 1.0 } else { w };
+    let half = [plan.size.width as f64 / 2.0, plan.size.height as f64 / 2.0];
+    [(x / w + 1.0) * half[0], (1.0 - y / w) * half[1]]
+}
