@@ -29,7 +29,7 @@ def output(*command, **options):
 # What the window and the command line are made of, and what only their tests and benchmarks use.
 UPPER_FLOORS = ("src/app/", "src/command_line/", "src/main.rs", "benches/", "fuzz/", "docs/")
 THEIR_CRATES = ("clap", "criterion", "eframe", "egui", "egui_kittest", "egui_plot",
-                "epaint_default_fonts", "indicatif", "rfd")
+                "indicatif", "rfd")
 
 
 def lower_floors(name, text):
