@@ -37,6 +37,12 @@ impl Bounds {
         self.max - self.min
     }
 
+    /// The place in the box that is nearest to a place.
+    #[must_use]
+    pub fn nearest_to(&self, place: DVec3) -> DVec3 {
+        place.max(self.min).min(self.max)
+    }
+
     /// Its eight corners.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {

@@ -276,8 +276,8 @@ impl<T: Number> Kernel<T> for Keep<'_, T> {
 /// How far off a vertex is lit, in units of view space.
 const FARTHEST: f64 = 1e15;
 
-/// From object space to view space. What is far from the origin is first brought near it, so that
-/// f32 keeps its digits.
+/// From object space to view space. What is seen is first brought near the origin, so that f32 keeps its
+/// digits.
 #[derive(Clone, Copy, Debug)]
 struct ToView<T> {
     middle: [T; 3],
@@ -291,10 +291,7 @@ struct ToView<T> {
 
 impl<T: Number> ToView<T> {
     fn new(plan: &FramePlan, draw: &Draw) -> Self {
-        let bounds = draw.model.mesh.bounds();
-        // A number of f32, so that taking it away is exact where it matters.
-        let middle =
-            bounds.map_or(DVec3::ZERO, |bounds| dvec3(bounds.centre().as_vec3().to_array()));
+        let middle = near_observer(draw);
         let numbers = |v: DVec3| v.to_array().map(T::from_f64);
         let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(numbers);
         Self {
@@ -313,6 +310,17 @@ impl<T: Number> ToView<T> {
             if back { self.normals.map(|column| column.map(|x| -x)) } else { self.normals };
         Self { normals, ..self }
     }
+}
+
+/// The place within the bounds of a draw's mesh that is nearest to the observer, in object space. What is
+/// seen is near to it, wherever the mesh has its origin, and however far off other parts of it are.
+///
+/// It is a place of f32, so that taking it away is exact where that matters.
+fn near_observer(draw: &Draw) -> DVec3 {
+    let Some(bounds) = draw.model.mesh.bounds() else { return DVec3::ZERO };
+    let observer = draw.view_from_object.inverse().w_axis.truncate();
+    let near = if observer.is_finite() { bounds.nearest_to(observer) } else { bounds.centre() };
+    dvec3(near.as_vec3().to_array())
 }
 
 /// Vectors times a matrix, which is given by its columns.
