@@ -13,7 +13,7 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, 
 use glam::{DMat3, DVec3};
 
 use super::colors::Colors;
-use super::coverage::Triangle;
+use super::coverage::{SUBPIXELS, Triangle};
 use super::effects::{BATCH, Batch, Rows, set, store};
 use super::faces::{Faced, Faces, barycentric, cut_place, cut_w, cut_weights};
 use super::items::Items;
@@ -426,11 +426,16 @@ impl<T: Number> Rays<T> {
     fn new(plan: &FramePlan) -> Self {
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
         let (width, height) = (plan.size.width as f64, plan.size.height as f64);
-        Self {
-            parallel: plan.eye == Eye::Parallel,
-            x: [2.0 / width / px, -1.0 / px].map(T::from_f64),
-            y: [-2.0 / height / py, 1.0 / py].map(T::from_f64),
+        let mut x = [2.0 / width / px, -1.0 / px];
+        let mut y = [-2.0 / height / py, 1.0 / py];
+        // What is looked at lies beside the middle of its pixel.
+        for (way, shift) in [&mut x, &mut y].into_iter().zip(plan.shift) {
+            if shift != 0 {
+                way[1] += way[0] * f64::from(shift) / f64::from(SUBPIXELS);
+            }
         }
+        let parallel = plan.eye == Eye::Parallel;
+        Self { parallel, x: x.map(T::from_f64), y: y.map(T::from_f64) }
     }
 }
 

@@ -58,6 +58,11 @@ impl<'a> Setup<'a> {
         Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
     }
 
+    /// The same for vertices as they are seen from a place that is shifted by so many parts of a pixel.
+    pub(super) fn seen_from(self, shift: [i32; 2]) -> Self {
+        Self { screen: self.screen.seen_from(shift), ..self }
+    }
+
     /// Puts some of the draw's triangles into bins.
     pub(super) fn run(
         &self,

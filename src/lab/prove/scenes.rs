@@ -45,7 +45,10 @@ fn check(lot: u64) -> Result<Tally, String> {
     for i in 0..SCENES {
         let mut hostile = Hostile::new(lot * SCENES + i);
         let (scene, view) = hostile.scene(&mut tally);
-        let settings = hostile.settings();
+        let mut settings = hostile.settings();
+        if (settings.light, settings.samples) == (LightAt::Pixel, Samples::Four) && i % 2 == 0 {
+            settings.light = LightAt::Sample;
+        }
         let size = Size::new(1 + hostile.dice.index(40), 1 + hostile.dice.index(40));
         let plan = FramePlan::new(&scene, &view, &settings, size);
         let first = plain.render(&plan).clone();

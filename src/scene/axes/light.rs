@@ -1,6 +1,6 @@
 //! Axes of light.
 
-use super::sense::{has_even_power, if_any, is_lit, is_mirroring};
+use super::sense::{has_even_power, has_several_samples, if_any, is_lit, is_mirroring};
 use super::{Axis, AxisKind, Choice, Lesson};
 use crate::scene::{Arithmetic, LeaveOut, LightAt, Normalising, SpecularForm, SpecularPower};
 
@@ -19,7 +19,11 @@ pub(super) const SHADING: Axis = Axis {
             "highlights smaller than a polygon dim or vanish"),
         choice!("pixel" "Pixel" light = LightAt::Pixel,
             "Light is evaluated at each pixel (Phong).",
-            "none"),
+            "none with one sample; with several, highlights narrower than a pixel"),
+        choice!("sample" "Sample" light = LightAt::Sample,
+            "Light is evaluated in each place of a pixel that is looked at: a picture for each.",
+            "none",
+            |_, _| Ok(()), has_several_samples),
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
