@@ -109,6 +109,8 @@ pub struct Lesson {
     pub shows: &'static str,
     /// The small scene, carried by the program, in which the difference is plain to see.
     pub scene: &'static str,
+    /// The word of the choice that is drawn with there, where it is not the coarsest.
+    pub choice: Option<&'static str>,
 }
 
 /// Every axis, in the order in which they are shown.
@@ -141,6 +143,13 @@ impl Axis {
     #[must_use]
     pub fn choice(&self, word: &str) -> Option<&'static Choice> {
         self.choices.iter().find(|choice| choice.word == word)
+    }
+
+    /// What its lesson begins with: the choice that goes most plainly wrong there.
+    #[must_use]
+    pub fn lesson_choice(&self) -> &'static Choice {
+        let named = self.lesson.choice.and_then(|word| self.choice(word));
+        named.unwrap_or(&self.choices[0])
     }
 
     /// What these settings have chosen.
