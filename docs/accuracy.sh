@@ -13,6 +13,12 @@ python3 - "$work/table.csv" <<'PYTHON'
 import csv, pathlib, sys
 
 rows = list(csv.DictReader(open(sys.argv[1])))
+def front(row):
+    if row["front"] != "true":
+        return ""
+    return "among samples" if row["against"] == "apart" else "yes"
+
+
 lines = ["| choice | time | half of the pairs | largest error | RMSE | bytes that differ | pixels covered otherwise | on the front |",
          "|---|--:|--:|--:|--:|--:|--:|---|"]
 seen = set()
@@ -26,7 +32,7 @@ for row in rows:
     time = f"{float(row['ratio']):.2f}" + ("" if row["verdict"] != "alike" or name == "Default" else " (alike)")
     lines.append(f"| {name} | {time} | {float(row['ratio_lower']):.2f} to {float(row['ratio_upper']):.2f} "
                  f"| {row['largest']} | {float(row['rmse']):.2g} | {100 * float(row['differing']):.2g}% "
-                 f"| {row['coverage']} | {'yes' if row['front'] == 'true' else ''} |")
+                 f"| {row['coverage']} | {front(row)} |")
 readme = pathlib.Path("README.md")
 text = readme.read_text()
 begin, end = "<!-- laboratory: made by docs/accuracy.sh -->\n", "<!-- laboratory: end -->"

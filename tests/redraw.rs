@@ -171,7 +171,10 @@ impl Desk {
             0 => {
                 self.size = Size::new(130 + 40 * dice.below(6), 70 + 40 * dice.below(6));
             }
-            1 => settings.light = dice.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]),
+            1 => {
+                let all = [LightAt::Face, LightAt::Vertex, LightAt::Pixel, LightAt::Sample];
+                settings.light = dice.one_of(&all);
+            }
             2 => {
                 settings.filter = dice.one_of(&[Filter::Nearest, Filter::Bilinear]);
                 settings.samples =

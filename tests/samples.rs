@@ -1,18 +1,22 @@
-//! Pictures with several samples a pixel, held to pictures with one that are drawn from each place.
+//! Pictures with several samples a pixel, held to pictures with one that are drawn from each place, and
+//! to pictures that are eight times as large.
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
+#![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 
 mod common;
 
 use common::{at, ball, draw, edit, model_of, scene, square};
 use glam::DMat4;
+use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::lab::prove::stage::{self, Flat};
 use marraztu::render::geometry::coverage::Snapped;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    ItemId, MeshSource, NONE, ObjectId, Part, Samples, Scene, Settings, SourceCorner, Surface, View,
+    Arithmetic, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice, MeshSource,
+    NONE, ObjectId, Part, Samples, Scene, Settings, SourceCorner, Surface, Texture, View, Wrap,
 };
 
 const SIDE: usize = 128;
@@ -94,6 +98,20 @@ fn drawn(triangles: &[Flat], view: impl Fn(View) -> View, settings: &Settings) -
     Renderer::default().render(&plan).clone()
 }
 
+/// Wants each byte of a picture to be the mean of some pixels, with halves to either side.
+#[track_caller]
+fn wants_means(picture: &Picture, pixels: &[Vec<[u8; 4]>], what: &str) {
+    assert_eq!(picture.pixels().len(), pixels.len());
+    for (i, (pixel, all)) in picture.pixels().iter().zip(pixels).enumerate() {
+        let count = all.len() as u32;
+        for (channel, byte) in pixel[..3].iter().enumerate() {
+            let sum: u32 = all.iter().map(|pixel| u32::from(pixel[channel])).sum();
+            let off = (count * u32::from(*byte)).abs_diff(sum);
+            assert!(2 * off <= count, "{what} {i}: {byte} for {sum} / {count}");
+        }
+    }
+}
+
 /// Sum by sum against one picture for each place, drawn with all corners moved the other way.
 #[test]
 fn a_pixel_is_the_mean_of_what_is_seen_from_its_places() {
@@ -104,25 +122,230 @@ fn a_pixel_is_the_mean_of_what_is_seen_from_its_places() {
     for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
         for (round, view) in views.into_iter().enumerate() {
             let triangles = scattered(150, 3 + round as u64);
-            let places = places(samples);
-            let mut sums = vec![[0_u32; 3]; SIDE * SIDE];
-            for place in &places {
-                let one = drawn(&seen_from(&triangles, *place), view, &Settings::default());
-                for (sum, pixel) in sums.iter_mut().zip(one.pixels()) {
-                    for (sum, byte) in sum.iter_mut().zip(pixel) {
-                        *sum += u32::from(*byte);
-                    }
-                }
+            let mut seen = vec![Vec::new(); SIDE * SIDE];
+            for place in places(samples) {
+                let one = drawn(&seen_from(&triangles, place), view, &Settings::default());
+                seen.iter_mut().zip(one.pixels()).for_each(|(all, pixel)| all.push(*pixel));
             }
             let settings = Settings { samples, ..Settings::default() };
             let picture = drawn(&triangles, view, &settings);
-            let count = places.len() as u32;
-            for (i, (sum, pixel)) in sums.iter().zip(picture.pixels()).enumerate() {
-                for (sum, byte) in sum.iter().zip(pixel) {
-                    // Half of a step to either side.
-                    let off = (count * u32::from(*byte)).abs_diff(*sum);
-                    assert!(2 * off <= count, "{samples:?} {i}: {byte} for {sum} / {count}");
-                }
+            wants_means(&picture, &seen, &format!("{samples:?}"));
+        }
+    }
+}
+
+/// Triangles with a normal and a place on a texture at each corner, lit by a sun alone: what is seen of
+/// them depends on where in them it is looked, and on nothing else.
+fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
+    let (mut scene, view) = stage::scene(&[triangles.to_vec()], side);
+    let mut random = numbers(5);
+    let mut source = MeshSource {
+        parts: vec![Part { name: "shiny".to_owned(), material: None }],
+        uvs: vec![[0.0, 0.0], [2.0, 0.0], [0.0, 3.0]],
+        ..MeshSource::default()
+    };
+    for triangle in triangles {
+        for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
+            let i = source.positions.len() as u32;
+            source.corners.push(SourceCorner { position: i, uv: i % 3, normal: i });
+            source.positions.push(stage::place(corner, distance, side).as_vec3().to_array());
+            let [x, y] = [random(200), random(200)].map(|x| x as f32 / 100.0 - 1.0);
+            source.normals.push([x, y, 0.8]);
+        }
+        source.arities.push(3);
+        source.polygon_parts.push(0);
+    }
+    let model = model_of("shiny", source);
+    let texels = (0..36).map(|_| [random(255) as u8, 200, random(255) as u8, 255]);
+    let texture = Texture {
+        source: std::path::PathBuf::new(),
+        picture: Picture::from_pixels(Size::new(6, 6), texels.collect()).unwrap(),
+        wrap: Wrap::Repeat,
+        offset: [0.0; 2],
+        scale: [1.0; 2],
+    };
+    edit(&mut scene, ObjectId(1), |object| {
+        object.model = model;
+        object.texture = Some(Shared::new(texture));
+        object.surface = Surface::TextureAndLight;
+        object.file_normals = true;
+        object.material = MaterialChoice::Own(Material {
+            ambient: [0.1; 3],
+            diffuse: [0.5; 3],
+            specular: [0.6; 3],
+            exponent: 40.0,
+        });
+    });
+    let suns =
+        Light::five().into_iter().filter(|light| matches!(light.kind, LightKind::Sun { .. }));
+    scene.lights = (500..).map(LightId).zip(suns).collect();
+    scene.background = Color([9, 99, 199]);
+    (scene, view)
+}
+
+fn rendered((scene, view): &(Scene, View), settings: &Settings, side: usize) -> Picture {
+    draw(scene, view, settings, side)
+}
+
+/// The pixels of a picture that is eight times as large which lie in each of a small one.
+fn in_boxes(large: &Picture, side: usize) -> Vec<Vec<[u8; 4]>> {
+    let of = |i: usize| {
+        let place = move |k: usize| (i % side * 8 + k % 8, i / side * 8 + k / 8);
+        (0..64).map(place).map(|(x, y)| large.pixel(x, y)).collect()
+    };
+    (0..side * side).map(of).collect()
+}
+
+/// Sum by sum, as above; and for the grid of sixty-four against the pixels of a larger picture.
+#[test]
+fn each_sample_is_lit_where_it_lies() {
+    let with_edges = |view: View| View { edges_over_fill: true, ..view };
+    let filled = |view: View| view;
+    let views: [fn(View) -> View; 2] = [filled, with_edges];
+    let pixels = Settings::default();
+    let each = Settings { light: LightAt::Sample, ..pixels };
+    for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
+        for (round, view) in views.into_iter().enumerate() {
+            let triangles = scattered(60, 11 + round as u64);
+            let stage = |triangles: &[Flat], side| {
+                let (scene, own) = shiny(triangles, side);
+                (scene, view(own))
+            };
+            let mut seen = vec![Vec::new(); SIDE * SIDE];
+            for place in places(samples) {
+                let one = rendered(&stage(&seen_from(&triangles, place), SIDE), &pixels, SIDE);
+                seen.iter_mut().zip(one.pixels()).for_each(|(all, pixel)| all.push(*pixel));
+            }
+            let small = stage(&triangles, SIDE);
+            let picture = rendered(&small, &Settings { samples, ..each }, SIDE);
+            wants_means(&picture, &seen, &format!("{samples:?}"));
+            let once = rendered(&small, &Settings { samples, ..pixels }, SIDE);
+            let apart = picture.pixels().iter().zip(once.pixels()).filter(|(a, b)| a != b).count();
+            assert!(apart > 500, "light is evaluated once a pixel: but for {apart}");
+        }
+    }
+    // Without lines, which are a pixel wide whatever its size.
+    let triangles = scattered(60, 11);
+    let larger = |corner: Snapped| Snapped { x: 8 * corner.x, y: 8 * corner.y };
+    let large: Vec<Flat> =
+        triangles.iter().map(|it| Flat { corners: it.corners.map(larger), ..*it }).collect();
+    let large = rendered(&shiny(&large, 8 * SIDE), &pixels, 8 * SIDE);
+    let samples = Samples::SixtyFour;
+    let small = rendered(&shiny(&triangles, SIDE), &Settings { samples, ..each }, SIDE);
+    wants_means(&small, &in_boxes(&large, SIDE), "eight times as large");
+}
+
+/// In perspective corners of the larger picture are snapped eight times as finely, so that samples next to
+/// an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the whole. Where one
+/// triangle is seen, at most one.
+#[test]
+fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
+    const SMALL: usize = 48;
+    let leaning = at(60.0, 20.0, 8.0, 20.0) * DMat4::from_rotation_y(0.7);
+    // Something of it is behind the observer.
+    let cut = at(40.0, -8.0, -20.0, 390.0) * DMat4::from_rotation_x(-1.2);
+    let models = [(square(), leaning), (ball(5), at(50.0, -30.0, 10.0, 60.0)), (square(), cut)];
+    let (scene, view) = scene(&models);
+    let view = View { marks: false, ..view };
+    let mut renderer = Renderer::default();
+    for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+        let settings = Settings { arithmetic, ..Settings::default() };
+        let plan = FramePlan::new(&scene, &view, &settings, Size::new(8 * SMALL, 8 * SMALL));
+        let large = in_boxes(renderer.render(&plan), SMALL);
+        let shown = renderer.primitives();
+        let samples = Samples::SixtyFour;
+        let settings = Settings { samples, light: LightAt::Sample, ..settings };
+        let plan = FramePlan::new(&scene, &view, &settings, Size::new(SMALL, SMALL));
+        let small = renderer.render(&plan);
+        let (mut squares, mut inside) = (0.0, 0);
+        for (i, (pixel, all)) in small.pixels().iter().zip(&large).enumerate() {
+            let primitive =
+                |k: usize| shown[(i / SMALL * 8 + k / 8) * 8 * SMALL + i % SMALL * 8 + k % 8];
+            let alone = (0..64).all(|k| primitive(k) == primitive(0));
+            inside += usize::from(alone && primitive(0) != 0);
+            for channel in 0..3 {
+                let mean = all.iter().map(|it| f64::from(it[channel])).sum::<f64>() / 64.0;
+                let off = (f64::from(pixel[channel]) - mean).abs();
+                // Half a step is rounding.
+                let most = if alone { 1.0 } else { 4.0 };
+                assert!(off <= most + 0.5, "{arithmetic:?} {i}: {} for {mean}", pixel[channel]);
+                squares += (off - 0.5).max(0.0).powi(2);
+            }
+        }
+        let rms = (squares / (3 * SMALL * SMALL) as f64).sqrt();
+        assert!(rms < 0.05 && inside > 300, "{rms} {inside}");
+    }
+}
+
+#[test]
+fn the_only_sample_of_a_pixel_is_its_middle() {
+    let (scene, view) = marraztu::io::default_scene();
+    let plan = |light| {
+        let settings = Settings { light, ..Settings::default() };
+        FramePlan::new(&scene, &view, &settings, Size::new(50, 50))
+    };
+    assert_eq!(plan(LightAt::Sample), plan(LightAt::Pixel));
+}
+
+#[test]
+fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
+    let (mut scene, view) = scene(&[(ball(6), at(60.0, -40.0, 20.0, 30.0))]);
+    let size = Size::new(150, 100);
+    let planned = |scene: &Scene, light| {
+        let settings = Settings { samples: Samples::Four, light, ..Settings::default() };
+        FramePlan::new(scene, &view, &settings, size)
+    };
+    let picked = |renderer: &mut Renderer| -> Vec<Option<ItemId>> {
+        let all = (0..size.area()).step_by(7);
+        all.map(|i| renderer.hit(i % 150, i / 150).map(|hit| hit.item)).collect()
+    };
+    let mut renderer = Renderer::default();
+    renderer.render(&planned(&scene, LightAt::Sample));
+    let mut other = Renderer::default();
+    other.render(&planned(&scene, LightAt::Pixel));
+    let seen = picked(&mut other);
+    assert_eq!(picked(&mut renderer), seen);
+    assert_eq!(renderer.primitives(), other.primitives());
+    // A look, drawn again in the tiles that it reaches.
+    edit(&mut scene, ObjectId(10), |object| {
+        object.material = MaterialChoice::Preset(marraztu::scene::PresetId::EMERALD);
+    });
+    let wanted = Renderer::default().render(&planned(&scene, LightAt::Sample)).clone();
+    let changes = renderer.redraw(&planned(&scene, LightAt::Sample), &|| true).unwrap();
+    assert!(changes.tiles() > 0 && changes.tiles() < changes.tiles_in_all());
+    assert!(*renderer.picture() == wanted);
+    // Whenever it is given up, what is picked is of the last picture, and the next one is right.
+    edit(&mut scene, ObjectId(10), |object| {
+        object.placement = marraztu::scene::Placed::new(at(50.0, 0.0, 0.0, 30.0));
+    });
+    let moved = planned(&scene, LightAt::Sample);
+    for patience in [0, 1, 5, 20, 60] {
+        let asked = std::sync::atomic::AtomicUsize::new(0);
+        let wanted = || asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed) < patience;
+        if renderer.redraw(&moved, &wanted).is_err() {
+            assert_eq!(picked(&mut renderer), seen, "{patience}");
+        }
+    }
+    renderer.redraw(&moved, &|| true).unwrap();
+    assert!(renderer.picture() == Renderer::default().render(&moved));
+    assert!(picked(&mut renderer) != seen);
+}
+
+#[test]
+fn lit_samples_are_the_same_on_all_instructions_and_by_any_number_of_threads() {
+    let (scene, view) = fan();
+    let settings =
+        Settings { samples: Samples::Sixteen, light: LightAt::Sample, ..Settings::default() };
+    let lit = shiny(&scattered(40, 23), SIDE);
+    for (scene, view) in [(scene, view), lit] {
+        let plan = FramePlan::new(&scene, &view, &settings, Size::new(SIDE, SIDE));
+        let mut wanted = None;
+        for level in marraztu::lab::prove::pictures::levels() {
+            for threads in [1, 3] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let picture = pool.install(|| Renderer::new(level).render(&plan).clone());
+                let wanted = wanted.get_or_insert_with(|| picture.clone());
+                assert!(*wanted == picture, "{level:?} {threads}");
             }
         }
     }
@@ -197,13 +420,15 @@ fn fan() -> (Scene, View) {
 fn no_colour_leaves_the_range_of_its_corners() {
     let (scene, view) = fan();
     for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
-        for arithmetic in [marraztu::scene::Arithmetic::F32, marraztu::scene::Arithmetic::F64] {
-            let settings = Settings { samples, arithmetic, ..Settings::default() };
+        let lights = [LightAt::Pixel, LightAt::Sample];
+        let all = [Arithmetic::F32, Arithmetic::F64].into_iter();
+        for (arithmetic, light) in all.flat_map(|it| lights.map(|light| (it, light))) {
+            let settings = Settings { samples, arithmetic, light, ..Settings::default() };
             let picture = draw(&scene, &view, &settings, 160);
             let differ = |pixel: &&[u8; 4]| pixel[0] != 120;
             assert!(picture.pixels().iter().filter(differ).count() > 2000);
             let outside = picture.pixels().iter().find(|pixel| !(80..=160).contains(&pixel[0]));
-            assert_eq!(outside, None, "{samples:?} {arithmetic:?}");
+            assert_eq!(outside, None, "{samples:?} {arithmetic:?} {light:?}");
         }
     }
 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Answers: what do the small scenes show that teach one axis of accuracy each?
 
-Run as `python3 assets/lessons/make.py`: it writes ball.obj, plate.obj, wheel.obj and tiles.png beside itself.
+Run as `python3 assets/lessons/make.py`: it writes ball.obj, cushion.obj, plate.obj, wheel.obj and tiles.png beside itself.
 
 The decision: each thing is as coarse as it can be while one still knows what it is, so that a fault of drawing is large:
-a ball of 16 by 8 patches, whose highlight falls inside a patch; a square plate; a wheel of 48 spokes, thinner than a pixel at their ends; a picture of 16 by 16 texels.
+a ball of 16 by 8 patches, whose highlight falls inside a patch; a cushion of nine patches, whose middle one alone
+faces the eye; a square plate; a wheel of 48 spokes, thinner than a pixel at their ends; a picture of 16 by 16 texels.
 
 Space: right-handed, Y up, counter-clockwise faces seen from outside. Standard library only, no chance.
 """
@@ -45,6 +46,29 @@ def ball(radius=50, rings=8, segments=16):
         faces.append((at(rings - 1, segment), len(points), at(rings - 1, segment + 1)))
         lines += ["f " + " ".join(f"{i}//{i}" for i in face) + "\n" for face in faces]
     (HERE / "ball.obj").write_text("".join(lines), encoding="ascii", newline="\n")
+
+
+def cushion(half=52, inner=34, height=22):
+    """A cushion of nine patches that faces +Z: its normals lean outwards at every corner, and at none towards +Z."""
+    lines = [HEAD.format("cushion: nine patches that face +Z", "cushion")]
+    places = (-half, -inner, inner, half)
+    points, normals = [], []
+    for y in places:
+        for x in places:
+            rim = max(abs(x), abs(y)) == half
+            points.append((x, y, 0 if rim else height))
+            # As those of a ball about a place behind it.
+            nx, ny, nz = x, y, 40 if rim else 62
+            length = (nx * nx + ny * ny + nz * nz) ** 0.5
+            normals.append((nx / length, ny / length, nz / length))
+    lines += ["v " + " ".join(number(c) for c in p) + "\n" for p in points]
+    lines += ["vn " + " ".join(number(c) for c in n) + "\n" for n in normals]
+    for row in range(3):
+        for column in range(3):
+            first = 1 + 4 * row + column
+            face = (first, first + 1, first + 5, first + 4)
+            lines.append("f " + " ".join(f"{i}//{i}" for i in face) + "\n")
+    (HERE / "cushion.obj").write_text("".join(lines), encoding="ascii", newline="\n")
 
 
 def plate(half=50):
@@ -99,6 +123,7 @@ def tiles(side=16):
 
 if __name__ == "__main__":
     ball()
+    cushion()
     plate()
     wheel()
     tiles()

@@ -49,6 +49,8 @@ pub struct Laboratory {
     pub blame: Option<Vec<String>>,
     /// The axis whose lesson is shown.
     pub lesson: &'static Axis,
+    /// What is shown beside the scatter.
+    pub side: Side,
     /// The scene, the view and the size that were measured.
     measured: Option<(Scene, View, Size)>,
 }
@@ -66,9 +68,20 @@ impl Default for Laboratory {
             picking: false,
             blame: None,
             lesson: &AXES[0],
+            side: Side::Table,
             measured: None,
         }
     }
+}
+
+/// What is shown beside the scatter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Every choice with its figures.
+    #[default]
+    Table,
+    /// What each axis teaches.
+    Lessons,
 }
 
 /// What is asked of the laboratory.
@@ -88,7 +101,9 @@ pub enum LabAsk {
     Pick(bool),
     /// Explain this pixel.
     Blame([usize; 2]),
-    /// Show the lesson of this axis, by its key.
+    /// Show this beside the scatter.
+    Side(Side),
+    /// Show the lesson of this axis, by its key, and the laboratory where it is not shown.
     Lesson(&'static str),
     /// Open the scene of this lesson.
     ShowLesson(&'static str),
@@ -201,7 +216,12 @@ impl App {
             LabAsk::Compare(compare) => lab.compare = compare,
             LabAsk::Pick(picking) => lab.picking = picking,
             LabAsk::Blame(at) => self.explain(ctx, at),
-            LabAsk::Lesson(key) => lab.lesson = Axis::named(key).unwrap_or(lab.lesson),
+            LabAsk::Side(side) => lab.side = side,
+            LabAsk::Lesson(key) => {
+                lab.lesson = Axis::named(key).unwrap_or(lab.lesson);
+                lab.side = Side::Lessons;
+                self.state.shown.laboratory = true;
+            }
             LabAsk::ShowLesson(key) => {
                 self.unless_unsaved(ctx, super::dialogs::After::Lesson(key));
             }
@@ -332,10 +352,10 @@ impl App {
         let Some(axis) = Axis::named(key) else { return };
         match io::lesson_scene(axis.lesson.scene) {
             Ok(opened) => {
-                let settings = axis.choices[0].of(&Settings::default());
+                let settings = axis.lesson_choice().of(&Settings::default());
                 let mut state = State { settings, ..State::new(opened.scene, opened.view) };
                 selection::settle(&state.scene, &mut state.view);
-                state.lab.lesson = axis;
+                (state.lab.lesson, state.lab.side) = (axis, Side::Lessons);
                 state.lab.compare = Compare::Split(0.5);
                 state.tell(Some(format!("Lesson: {}", axis.name)));
                 self.replace(state);

@@ -50,7 +50,7 @@ impl Economy {
     /// Settings and size of the picture.
     pub(super) fn applied(self, settings: Settings, size: Size) -> (Settings, Size) {
         let light = match settings.light {
-            LightAt::Pixel if self.vertex_light => LightAt::Vertex,
+            LightAt::Pixel | LightAt::Sample if self.vertex_light => LightAt::Vertex,
             light => light,
         };
         let filter = if self.nearest_texels { Filter::Nearest } else { settings.filter };
@@ -85,7 +85,7 @@ impl Wealth {
     fn limited(self, economy: Economy) -> Economy {
         let Settings { light, filter, .. } = self.settings;
         Economy {
-            vertex_light: economy.vertex_light && light == LightAt::Pixel,
+            vertex_light: economy.vertex_light && matches!(light, LightAt::Pixel | LightAt::Sample),
             nearest_texels: economy.nearest_texels && self.textured && filter != Filter::Nearest,
             half_size: economy.half_size,
         }

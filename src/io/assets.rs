@@ -45,6 +45,7 @@ static CAM: Asset = Asset::new("cam", include_bytes!("../../assets/cam.obj"));
 static X_WING: Asset = Asset::new("x_wing", include_bytes!("../../assets/x_wing.obj"));
 static R_FALKE: Asset = Asset::new("r_falke", include_bytes!("../../assets/r_falke.obj"));
 static BALL: Asset = Asset::new("ball", include_bytes!("../../assets/lessons/ball.obj"));
+static CUSHION: Asset = Asset::new("cushion", include_bytes!("../../assets/lessons/cushion.obj"));
 static PLATE: Asset = Asset::new("plate", include_bytes!("../../assets/lessons/plate.obj"));
 static WHEEL: Asset = Asset::new("wheel", include_bytes!("../../assets/lessons/wheel.obj"));
 
@@ -60,7 +61,7 @@ pub fn cam_model() -> Shared<Model> {
 /// A model that the program carries, by its name.
 #[must_use]
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
-    let all = [&CAM, &X_WING, &R_FALKE, &BALL, &PLATE, &WHEEL];
+    let all = [&CAM, &X_WING, &R_FALKE, &BALL, &CUSHION, &PLATE, &WHEEL];
     all.into_iter().find(|asset| asset.name == name).map(Asset::model)
 }
 

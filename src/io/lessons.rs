@@ -15,6 +15,7 @@ const LESSONS: &[(&str, &str)] = &[
     ("far", include_str!("../../assets/lessons/far.marraztu")),
     ("fence", include_str!("../../assets/lessons/fence.marraztu")),
     ("floor", include_str!("../../assets/lessons/floor.marraztu")),
+    ("highlight", include_str!("../../assets/lessons/highlight.marraztu")),
     ("near", include_str!("../../assets/lessons/near.marraztu")),
     ("plate", include_str!("../../assets/lessons/plate.marraztu")),
     ("pressed", include_str!("../../assets/lessons/pressed.marraztu")),

@@ -7,7 +7,7 @@
 use serde::Serialize;
 
 use super::easel::Easel;
-use crate::scene::{AXES, AxisKind, Settings};
+use crate::scene::{AXES, Axis, AxisKind, Settings};
 
 /// One pixel, and where its error comes from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -55,7 +55,12 @@ pub fn blame(easel: &mut dyn Easel, settings: &Settings, at: [usize; 2]) -> Opti
     let (exact, exact_primitive) = look(&settings.reference())?;
     let (ours, primitive) = look(settings)?;
     let mut shares = Vec::new();
-    for axis in AXES.iter().filter(|axis| axis.kind == AxisKind::Scored) {
+    let judged = |axis: &&Axis| match axis.kind {
+        AxisKind::Scored => true,
+        AxisKind::ScoredApart => !axis.default_choice().is(settings),
+        AxisKind::Model => false,
+    };
+    for axis in AXES.iter().filter(judged) {
         let (chosen, best) = (axis.chosen(settings), axis.most_exact(settings));
         if chosen.word == best.word {
             continue;

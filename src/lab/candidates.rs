@@ -1,5 +1,6 @@
 //! Which settings are measured: each axis by itself, the presets, and a fair number of combinations.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::pairs::Limits;
@@ -98,7 +99,7 @@ pub fn candidates(
     let (sensible, senseless): (Vec<&Axis>, Vec<&Axis>) =
         axes.iter().partition(|axis| (axis.sense)(scene, view).is_ok());
     for axis in &sensible {
-        for choice in offered(axis, scene, view) {
+        for choice in offered(axis, (scene, view), &base) {
             add(Group::Axis(axis.key), choice.label.to_owned(), choice.of(&base));
         }
     }
@@ -106,9 +107,8 @@ pub fn candidates(
         add(Group::Preset, preset.label.to_owned(), preset.of(current));
     }
     add(Group::Current, current.in_words(), *current);
-    let combinations = combinations(&base, &sensible, scene, view);
-    let count = combinations.len();
-    for settings in combinations.into_iter().take(most_combinations) {
+    let (combinations, count) = combinations(&base, &sensible, (scene, view), most_combinations);
+    for settings in combinations {
         add(Group::Combination, settings.in_words(), settings);
     }
     for axis in senseless {
@@ -117,7 +117,7 @@ pub fn candidates(
     }
     for axis in &sensible {
         for choice in axis.choices {
-            if let Err(reason) = (choice.sense)(scene, view) {
+            if let Err(reason) = choice.is_of_its_own(scene, view, &base) {
                 let (what, reason) = (format!("{} {}", axis.key, choice.word), reason.to_owned());
                 found.left_out.push(LeftOut { what, reason });
             }
@@ -132,38 +132,116 @@ pub fn candidates(
     found
 }
 
-/// The choices of an axis that are something of their own in a scene.
-fn offered(axis: &Axis, scene: &Scene, view: &View) -> impl Iterator<Item = &'static Choice> {
-    axis.choices.iter().filter(|choice| (choice.sense)(scene, view).is_ok())
+/// The choices of an axis that are something of their own in a scene, the rest as in these settings.
+fn offered<'a>(
+    axis: &'static Axis,
+    (scene, view): (&'a Scene, &'a View),
+    settings: &'a Settings,
+) -> impl Iterator<Item = &'static Choice> + 'a {
+    axis.choices.iter().filter(|choice| choice.is_of_its_own(scene, view, settings).is_ok())
 }
 
-/// Settings that differ from `base` in two or more scored axes: first all that differ in two, then in
-/// three, and so on.
+/// A choice that combinations are made of, with the place of its axis.
+type Pick = (usize, &'static Choice);
+
+/// Settings that differ from `base` in two or more axes but models, at most so many, and how many there
+/// are of those that were listed: first all that differ in two, then in three, and so on.
+///
+/// Of those that differ in as many the next is the one whose axes were taken least often before, so that
+/// few are spread over all axes, too.
 fn combinations(
     base: &Settings,
     axes: &[&'static Axis],
-    scene: &Scene,
-    view: &View,
-) -> Vec<Settings> {
-    let scored = axes.iter().filter(|axis| axis.kind == AxisKind::Scored);
-    let mut all: Vec<(usize, Settings)> = vec![(0, *base)];
-    for axis in scored {
-        let others = |settings: &Settings| -> Vec<&'static Choice> {
-            offered(axis, scene, view).filter(|choice| !choice.is(settings)).collect()
+    seen: (&Scene, &View),
+    most: usize,
+) -> (Vec<Settings>, usize) {
+    let picks: Vec<Pick> = (0..axes.len())
+        .flat_map(|i| axes[i].choices.iter().map(move |choice| (i, choice)))
+        .filter(|(i, choice)| is_combined(axes[*i], choice, base, seen))
+        .collect();
+    let of = |combination: &[Pick]| {
+        combination.iter().fold(*base, |settings, (_, choice)| choice.of(&settings))
+    };
+    let mut all: Vec<Vec<Pick>> = picks.iter().map(|pick| vec![*pick]).collect();
+    let (mut chosen, mut count, mut spread) = (Vec::new(), 0, Spread::default());
+    while chosen.len() < most && !all.is_empty() {
+        let grown = all.iter().flat_map(|combination| {
+            let last = combination.last().map_or(0, |(axis, _)| *axis);
+            let later = picks.iter().filter(move |(axis, _)| *axis > last);
+            later.map(move |pick| [combination.as_slice(), &[*pick]].concat())
+        });
+        all = grown.take(MOST).collect();
+        let is_new = |combination: &&Vec<Pick>| {
+            let settings = of(combination);
+            combination.iter().all(|(_, choice)| (choice.among)(&settings).is_ok())
         };
-        let grown: Vec<(usize, Settings)> = all
-            .iter()
-            .flat_map(|(count, settings)| {
-                let grown = others(settings).into_iter();
-                grown.map(|choice| (count + 1, choice.of(settings))).collect::<Vec<_>>()
-            })
-            .take(MOST)
-            .collect();
-        all.extend(grown);
+        let mut left: Vec<&Vec<Pick>> = all.iter().filter(is_new).collect();
+        count += left.len();
+        while chosen.len() < most && !left.is_empty() {
+            let next = (0..left.len()).min_by_key(|i| spread.weight(left[*i]));
+            let next = left.remove(next.expect("some are left"));
+            spread.add(next);
+            chosen.push(of(next));
+        }
     }
-    all.retain(|(count, _)| *count >= 2);
-    all.sort_by_key(|(count, _)| *count);
-    all.into_iter().map(|(_, settings)| settings).collect()
+    (chosen, count)
+}
+
+/// Whether combinations have this choice: not what is no choice of its own, models, the samples that all
+/// others are judged against, and what is history.
+fn is_combined(
+    axis: &Axis,
+    choice: &Choice,
+    base: &Settings,
+    (scene, view): (&Scene, &View),
+) -> bool {
+    let judges = axis.kind == AxisKind::ScoredApart && choice.word == axis.most_exact(base).word;
+    axis.kind != AxisKind::Model
+        && !judges
+        && !choice.is(base)
+        && !HISTORICAL.contains(&(axis.key, choice.word))
+        && (choice.sense)(scene, view).is_ok()
+}
+
+/// Ways that are offered for what they teach.
+const HISTORICAL: [(&str, &str); 6] = [
+    ("coverage", "points"),
+    ("coverage", "scan-lines"),
+    ("interpolation", "affine"),
+    ("interpolation", "every-sixteen"),
+    ("stretched", "as-it-is"),
+    ("rounding", "truncated"),
+];
+
+/// How often axes, sets of them, and choices were taken.
+#[derive(Default)]
+struct Spread {
+    axes: BTreeMap<usize, usize>,
+    sets: BTreeMap<Vec<usize>, usize>,
+    choices: BTreeMap<(usize, &'static str), usize>,
+}
+
+impl Spread {
+    /// How often what a combination is made of was taken: that of its axes counts first.
+    fn weight(&self, combination: &[Pick]) -> [usize; 3] {
+        let axes = combination.iter().filter_map(|(axis, _)| self.axes.get(axis));
+        let choices = combination.iter().filter_map(|(i, it)| self.choices.get(&(*i, it.word)));
+        let set = self.sets.get(&set(combination)).copied().unwrap_or_default();
+        [axes.sum(), set, choices.sum()]
+    }
+
+    fn add(&mut self, combination: &[Pick]) {
+        *self.sets.entry(set(combination)).or_default() += 1;
+        for (axis, choice) in combination {
+            *self.axes.entry(*axis).or_default() += 1;
+            *self.choices.entry((*axis, choice.word)).or_default() += 1;
+        }
+    }
+}
+
+/// The axes of a combination.
+fn set(combination: &[Pick]) -> Vec<usize> {
+    combination.iter().map(|(axis, _)| *axis).collect()
 }
 
 /// With many axes there are more combinations than can be listed.
@@ -183,4 +261,77 @@ pub fn axes_named<'a>(
 #[must_use]
 pub fn all_axes() -> Vec<&'static Axis> {
     AXES.iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In the first scene, with so many combinations.
+    fn combined(most: usize) -> Vec<Settings> {
+        let (scene, view) = crate::io::default_scene();
+        let found = candidates(&scene, &view, &Settings::default(), &all_axes(), most);
+        let all = found.all.into_iter().filter(|it| it.group == Group::Combination);
+        all.map(|it| it.settings).collect()
+    }
+
+    /// The words of these settings that are not the default's, by their axes.
+    fn words(settings: &Settings) -> Vec<(&'static str, &'static str)> {
+        let words = AXES.iter().map(|axis| (axis, axis.chosen(settings).word));
+        let own = words.filter(|(axis, word)| *word != axis.default_choice().word);
+        own.map(|(axis, word)| (axis.key, word)).collect()
+    }
+
+    #[test]
+    fn few_combinations_are_spread_over_all_axes_and_none_is_history() {
+        let all = combined(Thoroughness::QUICK.combinations);
+        assert_eq!(all.len(), Thoroughness::QUICK.combinations);
+        let words: Vec<_> = all.iter().map(words).collect();
+        // What is not made of ways of history alone, means something in the first scene, and is no model.
+        let of_axes = |key: &str| words.iter().flatten().filter(|(axis, _)| *axis == key).count();
+        for key in [
+            "shading",
+            "arithmetic",
+            "power",
+            "normalising",
+            "faint",
+            "vertices",
+            "subpixels",
+            "coverage",
+            "depth",
+            "samples",
+            "rounding",
+        ] {
+            assert!((1..=4).contains(&of_axes(key)), "{key} in {words:?}");
+        }
+        for key in ["interpolation", "stretched", "filter", "specular"] {
+            assert_eq!(of_axes(key), 0, "{key} in {words:?}");
+        }
+        for settings in combined(400) {
+            assert!(words_are_of_today(&settings), "{}", settings.in_words());
+        }
+    }
+
+    fn words_are_of_today(settings: &Settings) -> bool {
+        words(settings).iter().all(|word| !HISTORICAL.contains(word))
+    }
+
+    #[test]
+    fn ways_of_history_are_choices_of_the_table() {
+        for (key, word) in HISTORICAL {
+            assert!(Axis::named(key).and_then(|axis| axis.choice(word)).is_some(), "{key} {word}");
+        }
+    }
+
+    #[test]
+    fn no_combination_is_listed_twice_or_differs_in_one_axis_alone() {
+        let all = combined(200);
+        assert_eq!(all.len(), 200);
+        for (i, settings) in all.iter().enumerate() {
+            assert!(words(settings).len() >= 2, "{}", settings.in_words());
+            assert!(!all[..i].contains(settings), "{}", settings.in_words());
+            let one = settings.samples == crate::scene::Samples::One;
+            assert!(!one || settings.light != crate::scene::LightAt::Sample);
+        }
+    }
 }

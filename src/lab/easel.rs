@@ -5,7 +5,7 @@ use fearless_simd::Level;
 use super::error::Shot;
 use crate::base::image::{Picture, Size};
 use crate::render::{FramePlan, Renderer};
-use crate::scene::{Scene, Settings, View};
+use crate::scene::{Samples, Scene, Settings, View};
 
 /// Draws one scene, seen one way, in one size, with any settings.
 pub trait Easel {
@@ -20,7 +20,8 @@ pub trait Easel {
     fn shot(&mut self, settings: &Settings) -> Shot {
         self.draw(settings);
         let primitives = self.primitives();
-        Shot::new(self.picture().clone(), primitives)
+        let shot = Shot::new(self.picture().clone(), primitives);
+        if settings.samples == Samples::One { shot } else { shot.mixed() }
     }
 }
 

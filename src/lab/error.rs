@@ -1,7 +1,9 @@
 //! How far a picture is from the reference.
 //!
 //! Colour is judged where both pictures show the same primitive. Where they do not, a colour says
-//! nothing of how light was computed: those pixels are counted apart, as coverage.
+//! nothing of how light was computed: those pixels are counted apart, as coverage. Where the reference
+//! has several samples a pixel may show several primitives, and how they are mixed is what is judged: then
+//! every pixel is.
 
 use serde::Serialize;
 
@@ -14,6 +16,8 @@ pub struct Shot {
     picture: Picture,
     /// Which primitive each pixel shows.
     primitives: Vec<u32>,
+    /// Whether a pixel may show several.
+    mixed: bool,
     seen: Seen,
 }
 
@@ -93,7 +97,13 @@ impl Shot {
     pub fn new(picture: Picture, primitives: Vec<u32>) -> Self {
         assert_eq!(picture.pixels().len(), primitives.len(), "every pixel shows something");
         let seen = Seen::new(&picture);
-        Self { picture, primitives, seen }
+        Self { picture, primitives, mixed: false, seen }
+    }
+
+    /// The same where pixels have several samples, so that each may show several primitives.
+    #[must_use]
+    pub fn mixed(self) -> Self {
+        Self { mixed: true, ..self }
     }
 
     /// The picture.
@@ -109,7 +119,8 @@ impl Shot {
         let (mut largest, mut squares, mut differing, mut alike) = (0, 0_u64, 0_usize, 0_usize);
         let pixels = self.picture.pixels().iter().zip(reference.picture.pixels());
         let primitives = self.primitives.iter().zip(&reference.primitives);
-        for ((a, b), _) in pixels.zip(primitives).filter(|(_, (a, b))| a == b) {
+        let judged = |a: &u32, b: &u32| reference.mixed || a == b;
+        for ((a, b), _) in pixels.zip(primitives).filter(|(_, (a, b))| judged(a, b)) {
             alike += 3;
             for step in (0..3).map(|i| a[i].abs_diff(b[i])) {
                 largest = largest.max(step);
@@ -170,6 +181,16 @@ mod tests {
         // 20 log10(255 / (5/3)) = 20 log10(153)
         assert!((error.psnr.unwrap() - 43.693_828_6).abs() < 1e-6);
         assert!(error.flip > 0.0);
+    }
+
+    #[test]
+    fn against_several_samples_every_pixel_is_judged() {
+        let reference = shot(PIXELS, [1, 0, 2, 2]).mixed();
+        let mut pixels = PIXELS;
+        pixels[3] = [7, 7, 8, 255];
+        let error = shot(pixels, [1, 0, 2, 1]).error(&reference);
+        assert_eq!((error.largest, error.coverage), (1, 0));
+        assert!((error.differing - 1.0 / 12.0).abs() < 1e-12);
     }
 
     #[test]

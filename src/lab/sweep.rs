@@ -67,16 +67,50 @@ pub struct Measured {
     pub ratio: Ratio,
     /// Whether that means anything.
     pub verdict: Verdict,
-    /// Whether their model is the one that is drawn now: only then can they stand in for it.
-    pub scored: bool,
-    /// How far the picture is from the reference of its own model, and for an axis that is scored apart
-    /// from that of its own.
+    /// What the picture is judged against: only points judged alike can stand in for one another.
+    pub against: Against,
+    /// How far it is from that.
     pub error: Error,
     /// The settings of that reference.
     #[serde(skip)]
     pub reference: Settings,
     /// The picture's hash, as 16 hexadecimal digits.
     pub hash: String,
+}
+
+/// What a picture is judged against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Against {
+    /// The reference of the default.
+    Default,
+    /// That of an axis that is scored apart: most samples a pixel, each lit.
+    Apart,
+    /// The reference of another model than the one that is drawn now.
+    Model,
+}
+
+impl Against {
+    /// In a word.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Default => "default",
+            Self::Apart => "apart",
+            Self::Model => "model",
+        }
+    }
+
+    /// Which of them a reference is; the default's is given.
+    fn of(reference: &Settings, default: &Settings) -> Self {
+        if reference == default {
+            Self::Default
+        } else if reference.modelled_as(default) == *reference {
+            Self::Apart
+        } else {
+            Self::Model
+        }
+    }
 }
 
 /// Whether a ratio means anything.
@@ -293,8 +327,6 @@ impl Bench<'_> {
         let exact = references.iter().find(|(settings, _)| *settings == reference);
         let (_, exact) = exact.expect("it was drawn if it was not there");
         let shot = self.easel.shot(&settings);
-        // The first is the reference of the default.
-        let scored = references.first().is_some_and(|(settings, _)| *settings == reference);
         let error = shot.error(exact);
         Ok(Measured {
             name: settings.in_words(),
@@ -302,7 +334,8 @@ impl Bench<'_> {
             ms,
             verdict: Verdict::of(&ratio.quartiles, findings.floor),
             ratio,
-            scored,
+            // The first is the reference of the default.
+            against: Against::of(&reference, &references[0].0),
             error,
             reference,
             hash: format!("{:016x}", hash(shot.picture())),

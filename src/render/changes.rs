@@ -142,6 +142,8 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         arithmetic,
         light_at,
         samples,
+        lit_by_sample,
+        shift: _,
         filter,
         ways,
         view_from_world,
@@ -160,6 +162,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
     let settings = *arithmetic != before.arithmetic
         || *light_at != before.light_at
         || *samples != before.samples
+        || *lit_by_sample != before.lit_by_sample
         || *filter != before.filter
         || *ways != before.ways
         || *line_width != before.line_width

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::changes::{Cause, Changes};
 use super::effects::Light;
 use super::geometry::frame::Frame;
-use super::geometry::places::passes;
+use super::geometry::places::{Places, passes, shifts};
 use super::geometry::tiles::{TILE, TILE_SIDE, tiles_of};
 use super::plan::{EffectUse, FramePlan};
 use super::shading::light::Lit;
@@ -115,7 +115,8 @@ impl Renderer {
             if watch.is_given_up() {
                 return Err(GivenUp);
             }
-            (self.finished, self.built) = (true, true);
+            // What each sample sees was brought onto the screen by itself.
+            (self.finished, self.built) = (true, !plan.lit_by_sample);
         }
         self.plan = Some(plan.clone());
         Ok(changes)
@@ -135,24 +136,59 @@ impl Renderer {
         self.stages = Stages::default();
         let passes = passes(plan.samples);
         let mut sums = Vec::new();
-        if passes.len() > 1 {
+        if passes.len() > 1 || plan.lit_by_sample {
+            // Whenever this is given up, the frame holds what is on none of the finished pictures.
+            self.built = false;
             let [columns, rows] = tiles_of(plan.size);
             let tiles = usize::try_from(columns * rows).expect("not negative");
             sums.resize_with(tiles, TileSums::default);
         }
+        if plan.lit_by_sample {
+            return self.draw_each_sample(plan, changes, &sums, watch);
+        }
         // The first pass comes last, so that its frame is what is asked of what is seen.
         for (i, places) in passes.iter().enumerate().rev() {
-            if !self.built || passes.len() > 1 {
+            if !self.built {
                 self.stages += self.frame.build(self.level, plan, *places, watch);
             }
             if watch.is_given_up() {
                 return;
             }
-            let pass = Pass { sums: &sums, is_last: i == 0 };
-            match plan.arithmetic {
-                Arithmetic::F32 => self.draw::<f32>(plan, changes, &pass, watch),
-                Arithmetic::F64 => self.draw::<f64>(plan, changes, &pass, watch),
+            self.draw_pass(plan, changes, &Pass { sums: &sums, is_last: i == 0 }, watch);
+        }
+    }
+
+    /// Draws a picture for each sample, as if it were the middle of its pixel, and gives the means of them
+    /// all.
+    fn draw_each_sample(
+        &mut self,
+        plan: &FramePlan,
+        changes: &Changes,
+        sums: &[TileSums],
+        watch: &Watch<'_>,
+    ) {
+        let shifts = shifts(plan.samples);
+        let last = shifts.len() - 1;
+        for (i, shift) in shifts.enumerate() {
+            let own = plan.seen_from(shift);
+            self.stages += self.frame.build(self.level, &own, Places::default(), watch);
+            if watch.is_given_up() {
+                return;
             }
+            self.draw_pass(&own, changes, &Pass { sums, is_last: i == last }, watch);
+        }
+    }
+
+    fn draw_pass(
+        &mut self,
+        plan: &FramePlan,
+        changes: &Changes,
+        pass: &Pass<'_>,
+        watch: &Watch<'_>,
+    ) {
+        match plan.arithmetic {
+            Arithmetic::F32 => self.draw::<f32>(plan, changes, pass, watch),
+            Arithmetic::F64 => self.draw::<f64>(plan, changes, pass, watch),
         }
     }
 

@@ -69,6 +69,8 @@ pub enum LightAt {
     /// At each pixel, with interpolated normals (Phong).
     #[default]
     Pixel,
+    /// At each of the places in a pixel that are looked at, as at a pixel's middle.
+    Sample,
 }
 
 /// In how many places of a pixel it is asked what is seen; written as a number.

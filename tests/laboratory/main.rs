@@ -8,5 +8,6 @@
 mod bench;
 mod planted;
 mod program;
+mod promise;
 mod told;
 mod words;

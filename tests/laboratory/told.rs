@@ -2,8 +2,10 @@
 
 use marraztu::lab::candidates::Group;
 use marraztu::lab::error::Measure;
-use marraztu::lab::report::{Budgets, Chart, MarkKind, Report, csv, png, svg, text};
-use marraztu::scene::{AXES, Axis};
+use marraztu::lab::report::{Budgets, Chart, MarkKind, Report, csv, png, svg, tabs, text};
+use marraztu::lab::sweep::Against;
+use marraztu::lab::sweep::Row;
+use marraztu::scene::{AXES, Axis, Choice, LightAt, Samples, Settings};
 
 use crate::bench::{FalseClock, FalseEasel, found};
 
@@ -28,7 +30,8 @@ fn the_table_has_a_row_for_every_choice_of_every_axis() {
     let (text, csv) = (text(&report), csv(&report));
     for axis in AXES {
         assert!(text.contains(&format!("--{}", axis.key)), "{text}");
-        for choice in axis.choices {
+        let own = |choice: &&Choice| (choice.among)(&Settings::default()).is_ok();
+        for choice in axis.choices.iter().filter(own) {
             let rows = report.findings.rows.iter();
             let row =
                 rows.clone().find(|r| r.group == Group::Axis(axis.key) && r.name == choice.label);
@@ -42,6 +45,11 @@ fn the_table_has_a_row_for_every_choice_of_every_axis() {
     for line in lines {
         let quotes = line.split('"').step_by(2).map(|plain| plain.matches(',').count());
         assert_eq!(quotes.sum::<usize>() + 1, columns, "{line}");
+    }
+    // The same fields with tabs between, of which none has a comma where there are no quotes.
+    for (line, of_csv) in tabs(&report).lines().zip(csv.lines()) {
+        assert_eq!(line.split('\t').count(), columns, "{line}");
+        assert_eq!(line.replace('\t', ","), of_csv.replace('"', ""));
     }
 }
 
@@ -89,6 +97,55 @@ fn a_chart_puts_an_error_of_0_under_all_others_and_slow_right_of_fast() {
             assert!(scale.range[0] < at && at < scale.range[1], "{}", mark.name);
         }
     }
+}
+
+/// The point of a row.
+fn point(report: &Report, key: &'static str, name: &str) -> usize {
+    let is_it = |row: &&Row| row.group == Group::Axis(key) && row.name == name;
+    report.findings.rows.iter().find(is_it).unwrap().point
+}
+
+#[test]
+fn several_samples_are_judged_against_sixty_four_each_lit_and_have_a_front_of_their_own() {
+    let report = report();
+    let all = [Samples::One, Samples::Four, Samples::Sixteen, Samples::SixtyFour];
+    for (samples, name) in all.into_iter().zip(["1", "4", "16", "64"]) {
+        let i = point(&report, "samples", name);
+        let found = &report.findings.points[i];
+        assert_eq!((found.settings.samples, found.against), (samples, Against::Apart), "{name}");
+        let reference = found.reference;
+        assert_eq!((reference.samples, reference.light), (Samples::SixtyFour, LightAt::Sample));
+        assert!(!report.front().contains(&i), "{name}");
+    }
+    let apart = report.front_apart();
+    assert!(!apart.is_empty());
+    assert!(apart.iter().all(|i| report.findings.points[*i].against == Against::Apart));
+    let chart = Chart::new(&report);
+    let mark = &chart.marks[point(&report, "samples", "4")];
+    assert_eq!((mark.kind, mark.name.as_str()), (MarkKind::Apart, "samples 4"));
+    let (text, svg) = (text(&report), svg(&report).unwrap());
+    assert!(text.contains("samples a pixel (against 64 samples, each lit), --samples"), "{text}");
+    assert!(svg.contains("samples 4 ") || svg.contains("samples 4:"), "{svg}");
+    assert!(svg.contains("(against 64 samples)") && !svg.contains("samples 4 (a model"), "{svg}");
+}
+
+#[test]
+fn what_covers_other_pixels_is_on_no_front_but_that_of_flip() {
+    let subpixels = Axis::named("subpixels").unwrap();
+    let coarse = subpixels.choice("bits-0").map(|choice| (subpixels, choice));
+    // All take as long and look the same.
+    let findings = found(&mut FalseClock::new(None), &mut FalseEasel::new(None, coarse));
+    let mut report = Report { findings, ..report() };
+    let coarse = point(&report, "subpixels", "0");
+    assert_eq!(report.findings.points[coarse].error.coverage, 1);
+    for measure in Measure::ALL {
+        report.measure = measure;
+        assert_eq!(report.is_scored(coarse), measure == Measure::Flip, "{measure:?}");
+        assert!(report.is_scored(0));
+        assert_eq!(report.front().contains(&coarse), measure == Measure::Flip, "{measure:?}");
+    }
+    report.measure = Measure::Rmse;
+    assert!(svg(&report).unwrap().contains("covers other pixels: not scored"));
 }
 
 #[test]

@@ -12,6 +12,9 @@ use marraztu::app::action::Action;
 use marraztu::app::ask::Ask;
 use marraztu::app::comparison::Compare;
 use marraztu::app::laboratory::Laboratory;
+use marraztu::base::image::Picture;
+use marraztu::lab::report::tabs;
+use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
 
 use crate::editor::Editor;
@@ -57,6 +60,19 @@ fn measured() -> Editor {
     editor
 }
 
+/// What a button puts on the clipboard.
+fn copied(editor: &mut Editor, button: &str) -> Option<String> {
+    control(editor, Role::Button, button).click();
+    (0..4).find_map(|_| {
+        editor.harness.step();
+        let commands = &editor.harness.output().platform_output.commands;
+        commands.iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        })
+    })
+}
+
 #[test]
 fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
     let mut editor = measured();
@@ -66,6 +82,8 @@ fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
         [size.width, size.height]
     });
     assert!(!lab(&editor).is_stale(editor.state()));
+    assert_eq!(copied(&mut editor, "Copy table"), Some(tabs(&report)));
+    assert_eq!(copied(&mut editor, "Copy command"), Some(report.command.clone()));
     for point in &report.findings.points {
         let mark = format!("Draw with {}", point.name);
         // Marks may lie over one another.
@@ -150,8 +168,8 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
         for sentence in [axis.lesson.what, axis.lesson.coarse, axis.lesson.shows] {
             assert!(editor.shows(sentence), "{sentence}");
         }
-        click(&mut editor, Role::Button, "Show me");
-        assert!(axis.choices[0].is(&editor.state().settings), "{}", axis.key);
+        click(&mut editor, Role::Button, "Take me there");
+        assert!(axis.lesson_choice().is(&editor.state().settings), "{}", axis.key);
         assert_eq!((axis.sense)(&editor.scene(), &editor.view()), Ok(()));
         until(&mut editor, "the comparison", |e| lab(e).judged.is_some());
         let error = lab(&editor).judged.unwrap().error;
@@ -168,17 +186,69 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
 }
 
 #[test]
+fn the_help_menu_leads_to_every_lesson() {
+    let mut editor = Editor::of_size(1300.0, 760.0);
+    assert!(!editor.state().shown.laboratory);
+    for axis in [&AXES[0], &AXES[AXES.len() - 1]] {
+        click(&mut editor, Role::Button, "Help");
+        click(&mut editor, Role::MenuItem, "Lessons");
+        editor.harness.run_steps(30);
+        for other in AXES {
+            assert!(editor.harness.query_by_role_and_label(Role::MenuItem, other.name).is_some());
+        }
+        click(&mut editor, Role::MenuItem, axis.name);
+        editor.harness.run_steps(30);
+        assert!(editor.state().shown.laboratory);
+        assert_eq!(lab(&editor).lesson.key, axis.key);
+        for sentence in [axis.lesson.what, axis.lesson.coarse, axis.lesson.shows] {
+            assert!(editor.shows(sentence), "{sentence}");
+        }
+        control(&editor, Role::Button, "Take me there");
+    }
+    click(&mut editor, Role::RadioButton, "Laboratory: Table");
+    assert!(editor.shows("Nothing is measured yet."));
+}
+
+/// The compare line cuts the bright spot in half: light at vertices misses the one half, and the other is
+/// the exact picture's.
+#[test]
+fn the_bright_spot_of_the_first_lesson_lies_on_the_compare_line() {
+    let mut editor = editor();
+    click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
+    click(&mut editor, Role::Button, "light evaluated");
+    click(&mut editor, Role::Button, "Take me there");
+    assert_eq!(editor.state().settings.light, LightAt::Vertex);
+    assert_eq!(lab(&editor).compare, Compare::Split(0.5));
+    let (scene, view) = (editor.scene(), editor.view());
+    let size = editor.state().statistics.size;
+    let drawn = |light| {
+        let settings = Settings { light, ..Settings::default() };
+        let plan = FramePlan::new(&scene, &view, &settings, size);
+        Renderer::default().render(&plan).clone()
+    };
+    let (vertex, pixel) = (drawn(LightAt::Vertex), drawn(LightAt::Pixel));
+    let bright = |picture: &Picture| -> Vec<usize> {
+        let pixels = picture.pixels().iter().enumerate();
+        pixels.filter(|(_, pixel)| pixel[1] > 200).map(|(i, _)| i % size.width).collect()
+    };
+    let columns = bright(&pixel);
+    assert!(columns.len() > 100 && bright(&vertex).is_empty(), "{}", columns.len());
+    let left = columns.iter().filter(|x| **x < size.width / 2).count();
+    assert!((left * 2).abs_diff(columns.len()) * 10 < columns.len(), "{left} of {}", columns.len());
+}
+
+#[test]
 fn the_scene_of_a_lesson_takes_no_unsaved_work_with_it() {
     let mut editor = editor();
     editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
     let before = editor.scene();
     click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
     click(&mut editor, Role::Button, "texture filter");
-    click(&mut editor, Role::Button, "Show me");
+    click(&mut editor, Role::Button, "Take me there");
     assert!(editor.scene() == before);
     click(&mut editor, Role::Button, "Cancel");
     assert!(editor.scene() == before);
-    click(&mut editor, Role::Button, "Show me");
+    click(&mut editor, Role::Button, "Take me there");
     click(&mut editor, Role::Button, "Discard");
     assert_eq!(editor.state().settings.filter, Filter::Nearest);
     assert!(editor.shows("plate"));

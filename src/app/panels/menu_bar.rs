@@ -4,7 +4,9 @@ use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
 use crate::app::action::{Action, Group};
 use crate::app::ask::Ask;
+use crate::app::laboratory::LabAsk;
 use crate::app::state::State;
+use crate::scene::AXES;
 
 /// The actions of [`Group::Window`] that have a menu of their own.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
@@ -35,7 +37,11 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             items(ui, state, asks, Group::Window.actions().filter(own));
             submenu(ui, "Theme", |ui| items(ui, state, asks, THEMES));
         });
-        menu(ui, "Help", |ui| items(ui, state, asks, HELP));
+        menu(ui, "Help", |ui| {
+            items(ui, state, asks, HELP);
+            ui.separator();
+            submenu(ui, "Lessons", |ui| lessons_ui(ui, asks));
+        });
     });
 }
 
@@ -68,6 +74,18 @@ fn items(
 ) {
     for action in actions {
         asks.extend(action.menu_item(ui, state).map(Ask::from));
+    }
+}
+
+/// What each axis of accuracy teaches; a click shows it in the laboratory.
+fn lessons_ui(ui: &mut Ui, asks: &mut Vec<Ask>) {
+    for axis in AXES {
+        let response = ui.button(axis.name);
+        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, axis.name));
+        if response.on_hover_text(axis.lesson.what).clicked() {
+            asks.push(Ask::Lab(LabAsk::Lesson(axis.key)));
+            ui.close();
+        }
     }
 }
 

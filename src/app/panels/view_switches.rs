@@ -228,10 +228,11 @@ fn settings_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
 pub(super) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, asks: &mut Vec<Ask>) {
     let now = state.settings;
     let senseless = (axis.sense)(&state.scene, &state.view).err();
+    let own = |choice: &crate::scene::Choice| choice.is_of_its_own(&state.scene, &state.view, &now);
     let hints: Vec<String> = axis
         .choices
         .iter()
-        .map(|choice| match senseless.or_else(|| (choice.sense)(&state.scene, &state.view).err()) {
+        .map(|choice| match senseless.or_else(|| own(choice).err()) {
             Some(why) => format!("{} Changes nothing now: {why}.", choice.what),
             None => format!("{} Error: {}.", choice.what, choice.error),
         })

@@ -340,10 +340,15 @@ impl Hostile {
     }
 
     pub(super) fn settings(&mut self) -> Settings {
+        let samples = self.dice.one_of(&[Samples::One, Samples::One, Samples::Four]);
+        let mut light = self.dice.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]);
+        if light == LightAt::Pixel && samples != Samples::One && self.bool() {
+            light = LightAt::Sample;
+        }
         Settings {
             arithmetic: self.dice.one_of(&[Arithmetic::F32, Arithmetic::F32, Arithmetic::F64]),
-            light: self.dice.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]),
-            samples: self.dice.one_of(&[Samples::One, Samples::One, Samples::Four]),
+            light,
+            samples,
             filter: self.dice.one_of(&[Filter::Nearest, Filter::Bilinear]),
             specular: self.dice.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
             leave_out: self.dice.one_of(&[LeaveOut::Unseen, LeaveOut::HalfStep]),

@@ -94,6 +94,7 @@ pub fn samples() -> Vec<Sample> {
         ..view.clone()
     };
     let of = |samples| Settings { samples, ..settings };
+    let each_lit = Settings { light: LightAt::Sample, ..of(Samples::Four) };
     let half = Settings { specular: SpecularForm::HalfVector, ..settings };
     let (textured, rough) = (textured(&near), Settings { filter: Filter::Nearest, ..settings });
     let (stage, from_above) = stage::scene(&[scattered()], SIDE);
@@ -113,6 +114,7 @@ pub fn samples() -> Vec<Sample> {
         sample("scattered triangles", &stage, &from_above, settings),
         sample("four samples", &near, &drawn, of(Samples::Four)),
         sample("sixteen samples", &stage, &from_above, of(Samples::Sixteen)),
+        sample("four samples, each lit", &near, &drawn, each_lit),
     ];
     let bent = bent(&textured);
     for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))

@@ -17,6 +17,8 @@ pub enum MarkKind {
     Axis,
     /// Several axes.
     Combination,
+    /// Judged against the most samples a pixel, each lit.
+    Apart,
     /// Another model, which cannot stand in for this one.
     Model,
 }
@@ -30,7 +32,7 @@ pub struct Mark {
     pub at: [f64; 2],
     /// What it stands for.
     pub kind: MarkKind,
-    /// Whether no other beats it.
+    /// Whether no other that is judged against the same picture beats it.
     pub on_front: bool,
     /// Whether the picture is drawn so now.
     pub current: bool,
@@ -60,6 +62,8 @@ pub struct Chart {
     pub marks: Vec<Mark>,
     /// The places of the front in `marks`, from left to right.
     pub front: Vec<usize>,
+    /// The same of what is judged against the most samples.
+    pub front_apart: Vec<usize>,
     /// From where to where on `x` nothing differs from the default but by noise.
     pub floor: [f64; 2],
 }
@@ -69,7 +73,7 @@ impl Chart {
     #[must_use]
     pub fn new(report: &Report) -> Self {
         let points = report.points();
-        let front = report.front();
+        let (front, front_apart) = (report.front(), report.front_apart());
         let (current, default_ms) = (report.current(), points.first().map_or(1.0, |p| p.time));
         let floor = [1.0 - report.findings.floor, 1.0 + report.findings.floor]
             .map(|part| libm::log10(default_ms * part.max(0.01)));
@@ -83,11 +87,12 @@ impl Chart {
                 if point.error > 0.0 { libm::log10(point.error) } else { zero },
             ],
             kind: report.kind(i),
-            on_front: front.contains(&i),
+            on_front: front.contains(&i) || front_apart.contains(&i),
             current: current == Some(i),
             name: report.findings.points[i].name.clone(),
         });
-        Self { x, y, marks: marks.collect(), front, floor }
+        let marks = marks.collect();
+        Self { x, y, marks, front, front_apart, floor }
     }
 }
 

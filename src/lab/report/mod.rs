@@ -8,11 +8,11 @@ use serde::Serialize;
 
 pub use self::chart::{Chart, Mark, MarkKind, Scale};
 pub use self::plot::{PlotError, png, svg};
-pub use self::table::{brief, csv, heading, text};
+pub use self::table::{brief, csv, heading, tabs, text};
 use super::candidates::Group;
 use super::error::Measure;
 use super::front::{Point, fastest_within, front, most_exact_within};
-use super::sweep::{Findings, Row};
+use super::sweep::{Against, Findings, Row};
 
 /// What is told, and of what.
 #[derive(Clone, Debug, Serialize)]
@@ -55,30 +55,61 @@ impl Report {
         points.map(|p| Point { time: p.ms, error: self.measure.of(&p.error) }).collect()
     }
 
+    /// Whether the error of a point says all that it is off by. Where it shows other triangles at more
+    /// pixels than the default does, all errors but that of FLIP pass over these.
+    #[must_use]
+    pub fn is_scored(&self, point: usize) -> bool {
+        let points = &self.findings.points;
+        let passed_over = match points[point].against {
+            Against::Default => points[0].error.coverage,
+            Against::Apart | Against::Model => 0,
+        };
+        self.measure == Measure::Flip || points[point].error.coverage <= passed_over
+    }
+
     /// The points that can stand in for one another, with their places among all.
-    fn scored(&self) -> (Vec<usize>, Vec<Point>) {
+    fn scored(&self, against: Against) -> (Vec<usize>, Vec<Point>) {
         let all = self.points().into_iter().enumerate();
-        all.filter(|(i, _)| self.findings.points[*i].scored).unzip()
+        let is_one = |i: usize| self.findings.points[i].against == against && self.is_scored(i);
+        all.filter(|(i, _)| is_one(*i)).unzip()
+    }
+
+    /// The places of the points that are worth choosing of those that are judged against the same picture,
+    /// the fastest first.
+    fn front_of(&self, against: Against) -> Vec<usize> {
+        let (places, points) = self.scored(against);
+        front(&points).into_iter().map(|i| places[i]).collect()
     }
 
     /// The places of the points that are worth choosing, the fastest first.
     #[must_use]
     pub fn front(&self) -> Vec<usize> {
-        let (places, points) = self.scored();
-        front(&points).into_iter().map(|i| places[i]).collect()
+        self.front_of(Against::Default)
+    }
+
+    /// The same of those that are judged against the most samples, each lit.
+    #[must_use]
+    pub fn front_apart(&self) -> Vec<usize> {
+        self.front_of(Against::Apart)
+    }
+
+    /// The places of both.
+    #[must_use]
+    pub fn fronts(&self) -> Vec<usize> {
+        [self.front(), self.front_apart()].concat()
     }
 
     /// The fastest point whose error is at most the budget's; `None` where there is no such budget.
     #[must_use]
     pub fn fastest(&self) -> Option<Option<usize>> {
-        let (places, points) = self.scored();
+        let (places, points) = self.scored(Against::Default);
         self.budgets.error.map(|most| fastest_within(&points, most).map(|i| places[i]))
     }
 
     /// The most exact point within the budget of time; `None` where there is no such budget.
     #[must_use]
     pub fn most_exact(&self) -> Option<Option<usize>> {
-        let (places, points) = self.scored();
+        let (places, points) = self.scored(Against::Default);
         self.budgets.ms.map(|most| most_exact_within(&points, most).map(|i| places[i]))
     }
 
@@ -119,10 +150,13 @@ impl Report {
     /// before a combination.
     fn kind(&self, point: usize) -> MarkKind {
         let rows = || self.findings.rows.iter().filter(|row| row.point == point);
+        let against = self.findings.points[point].against;
         if point == 0 {
             MarkKind::Default
-        } else if !self.findings.points[point].scored {
+        } else if against == Against::Model {
             MarkKind::Model
+        } else if against == Against::Apart {
+            MarkKind::Apart
         } else if rows().any(|row| row.group == Group::Preset) {
             MarkKind::Preset
         } else if rows().any(|row| matches!(row.group, Group::Axis(_))) {

@@ -91,8 +91,10 @@ fn draw<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, report: &Report) -> D
     area.draw(&Text::new(title, (PLOT[0], 16), font(17)))?;
     scales(area, &chart)?;
     let at = |mark: usize| place(&chart, chart.marks[mark].at);
-    let front: Vec<(i32, i32)> = chart.front.iter().map(|mark| at(*mark)).collect();
-    area.draw(&PathElement::new(steps(&front), FRONT.stroke_width(2)))?;
+    for (front, width) in [(&chart.front_apart, 1), (&chart.front, 2)] {
+        let front: Vec<(i32, i32)> = front.iter().map(|mark| at(*mark)).collect();
+        area.draw(&PathElement::new(steps(&front), FRONT.stroke_width(width)))?;
+    }
     for mark in (0..chart.marks.len()).rev() {
         self::mark(area, &chart, mark, at(mark))?;
     }
@@ -173,6 +175,10 @@ fn mark<DB: DrawingBackend>(
         }
         MarkKind::Axis => area.draw(&Circle::new((x, y), 5, ink.filled())),
         MarkKind::Combination => area.draw(&Circle::new((x, y), 3, ink.filled())),
+        MarkKind::Apart => {
+            let corners = vec![(x, y - 6), (x + 6, y + 4), (x - 6, y + 4)];
+            area.draw(&Polygon::new(corners, ink.filled()))
+        }
         MarkKind::Model => area.draw(&Circle::new((x, y), 5, ink.stroke_width(1))),
     }
 }
@@ -181,7 +187,7 @@ const fn color(kind: MarkKind) -> RGBColor {
     match kind {
         MarkKind::Default => INK,
         MarkKind::Preset => PRESET,
-        MarkKind::Axis => AXIS,
+        MarkKind::Axis | MarkKind::Apart => AXIS,
         MarkKind::Combination | MarkKind::Model => GREY,
     }
 }
@@ -226,6 +232,8 @@ fn legend<DB: DrawingBackend>(
         let now = match (mark.current, mark.kind) {
             (true, _) => " (now)",
             (false, MarkKind::Model) => " (a model: not scored)",
+            (false, MarkKind::Apart) => " (against 64 samples)",
+            _ if !report.is_scored(mark.point) => " (covers other pixels: not scored)",
             _ => "",
         };
         let (ms, error) = (brief(points[i].time), brief(points[i].error));
@@ -233,6 +241,6 @@ fn legend<DB: DrawingBackend>(
         area.draw(&Text::new(name, (LEGEND + 22, y), at(HPos::Left, VPos::Top, &style)))?;
         y += LINE;
     }
-    let notes = "green: no other is both faster and more exact; grey band: noise";
+    let notes = "green: no other is both faster and more exact; triangles and thin line: against 64 samples, each lit; grey band: noise";
     area.draw(&Text::new(notes, (PLOT[0], PLOT[3] + 44), small.color(&GREY)))
 }

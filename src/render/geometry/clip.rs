@@ -90,6 +90,8 @@ pub(in crate::render) struct Screen {
     /// Half of the picture's width and height.
     pub(in crate::render) half: [f64; 2],
     guard: [f64; 2],
+    /// By how many parts of a pixel what is cut is moved the other way once it is snapped.
+    shift: [i32; 2],
 }
 
 impl Screen {
@@ -100,7 +102,18 @@ impl Screen {
             rows: clip_from_object.transpose().to_cols_array_2d(),
             half,
             guard: half.map(|half| GUARD / half - 1.0),
+            shift: [0; 2],
         }
+    }
+
+    /// The same, where what is cut is seen from a place that is shifted by so many parts of a pixel.
+    pub(super) const fn seen_from(self, shift: [i32; 2]) -> Self {
+        Self { shift, ..self }
+    }
+
+    /// By how many parts of a pixel the place is shifted from which what is cut is seen.
+    pub(in crate::render) const fn shift(&self) -> [i32; 2] {
+        self.shift
     }
 
     /// The same with a guard band of so many pixels.
@@ -167,7 +180,8 @@ impl Screen {
 
     /// What is left of a triangle of clip space: the corners of a convex polygon.
     pub(super) fn cut(&self, corners: [Clip; 3]) -> Vec<ScreenVertex> {
-        self.cut_in_clip(corners).into_iter().map(|corner| self.project(corner)).collect()
+        let corners = self.cut_in_clip(corners).into_iter();
+        corners.map(|corner| self.project(corner).seen_from(self.shift)).collect()
     }
 
     /// The same before it is brought to the screen.
@@ -210,7 +224,7 @@ impl Screen {
                 (false, false) => return None,
             }
         }
-        Some([self.project(a), self.project(b)])
+        Some([a, b].map(|end| self.project(end).seen_from(self.shift)))
     }
 }
 

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::bins::Bins;
 use super::clip::{Screen, ScreenVertex};
+use super::coverage::SUBPIXELS;
 use super::edges::{self, EdgeSetup};
 use super::facing::Facing;
 use super::lines::LineNumber;
@@ -98,19 +99,22 @@ struct Held {
     clip_from_object: DMat4,
     size: Size,
     ways: Ways,
+    shift: [i32; 2],
     vertex: usize,
 }
 
 impl Held {
     fn new(draw: &Draw, plan: &FramePlan, vertex: usize) -> Self {
-        let (clip_from_object, FramePlan { size, ways, .. }) = (draw.clip_from_object, plan);
-        Self { model: draw.model.clone(), clip_from_object, size: *size, ways: *ways, vertex }
+        let FramePlan { size, ways, shift, .. } = *plan;
+        let (model, clip_from_object) = (draw.model.clone(), draw.clip_from_object);
+        Self { model, clip_from_object, size, ways, shift, vertex }
     }
 
     fn is_of(&self, draw: &Draw, plan: &FramePlan, vertex: usize) -> bool {
         Shared::same(&self.model, &draw.model)
             && alike_matrices(&self.clip_from_object, &draw.clip_from_object)
-            && (self.size, self.ways, self.vertex) == (plan.size, plan.ways, vertex)
+            && (self.size, self.ways, self.shift) == (plan.size, plan.ways, plan.shift)
+            && self.vertex == vertex
     }
 }
 
@@ -184,6 +188,7 @@ impl Frame {
                     } else {
                         plan.ways.transform(level, &screen, order, first, own);
                     }
+                    see_from(own, plan.shift);
                 }
                 at += own.len();
                 (out, next) = (others, next + 1);
@@ -216,6 +221,7 @@ impl Frame {
             let own = &mut self.fine[start.vertex..start.vertex_end];
             own.par_chunks_mut(CHUNK).enumerate().for_each(|(i, out)| {
                 plan.ways.transform_finely(&screen, order, i * CHUNK, out);
+                see_from(out, plan.shift.map(|shift| shift * (plan.ways.parts() / SUBPIXELS)));
             });
         }
     }
@@ -407,6 +413,7 @@ impl<'a> Parts<'a> {
             What::Triangles => {
                 let pipelines = &self.plan.pipelines;
                 let setup = Setup::new(draw, pipelines, vertices, size, self.starts[i].number);
+                let setup = setup.seen_from(self.plan.shift);
                 let triangles = chunk(&mesh.draw_order().triangles, from);
                 if self.plan.ways.draws_one_by_one() {
                     self.plan.ways.set_up(&setup, triangles, pipelines, (size, bins));
@@ -434,7 +441,7 @@ impl<'a> Parts<'a> {
     fn edge_setup(&self, i: usize) -> EdgeSetup<'a> {
         let plan = self.plan;
         let (draw, first) = (&plan.draws[i], self.starts[i].line);
-        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let screen = Screen::new(draw.clip_from_object, plan.size).seen_from(plan.shift);
         let (vertices, outlines) = (self.vertices_of(i), self.outlines_of(i));
         EdgeSetup { draw, vertices, screen, outlines, first, width: plan.line_width }
     }
@@ -449,6 +456,15 @@ impl<'a> Parts<'a> {
         let Draw { model, lines, .. } = &self.plan.draws[draw];
         let count = if lines.edges { model.mesh.polygon_count() } else { 0 };
         &self.outlines[self.starts[draw].outline..][..count]
+    }
+}
+
+/// Moves vertices to where they are seen from a place that is shifted by so many parts of a pixel.
+fn see_from(vertices: &mut [ScreenVertex], shift: [i32; 2]) {
+    if shift != [0; 2] {
+        for vertex in vertices.iter_mut().filter(|vertex| vertex.is_inside()) {
+            *vertex = vertex.seen_from(shift);
+        }
     }
 }
 

@@ -83,6 +83,13 @@ pub(in crate::render) const fn passes(samples: Samples) -> &'static [Places] {
     }
 }
 
+/// How far each sample of a pixel with so many lies from its middle, in parts of a pixel.
+pub(in crate::render) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]> {
+    let passes = passes(samples);
+    let count = passes[0].count();
+    (0..passes.len() * count).map(move |i| passes[i / count].shifts[i % count])
+}
+
 const QUARTERS: [Places; 1] = [Places::new([[6, 2], [14, 6], [2, 10], [10, 14]])];
 
 /// Vulkan's sixteen, in an order in which each four lie around the middle, the nearest first.

@@ -27,7 +27,7 @@ pub(in crate::render) struct Setup<'a> {
     pub(in crate::render) draw: &'a Draw,
     pub(in crate::render) order: &'a DrawOrder,
     pub(super) vertices: &'a [ScreenVertex],
-    pub(super) screen: Screen,
+    pub(in crate::render) screen: Screen,
     /// The number of the draw's first triangle in the frame.
     pub(in crate::render) base: u32,
     /// Whether some triangles are not drawn or have holes: then each is asked.
@@ -56,6 +56,11 @@ impl<'a> Setup<'a> {
             });
         let screen = Screen::new(draw.clip_from_object, size);
         Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
+    }
+
+    /// The same for vertices as they are seen from a place that is shifted by so many parts of a pixel.
+    pub(super) fn seen_from(self, shift: [i32; 2]) -> Self {
+        Self { screen: self.screen.seen_from(shift), ..self }
     }
 
     /// Puts some of the draw's triangles into bins.

@@ -100,7 +100,7 @@ fn normals(it: &Facts<'_>) -> State {
         _ if !it.draw.filled => "edges only",
         LightAt::Face => "light is evaluated at faces",
         LightAt::Vertex => "light is evaluated at vertices",
-        LightAt::Pixel => "no light reads them",
+        LightAt::Pixel | LightAt::Sample => "no light reads them",
     };
     let per_pixel = it.settings.light == LightAt::Pixel;
     any(it, |shaded| per_pixel && shaded.places, whose.into()).unwrap_or(State::exact(left_out))

@@ -56,6 +56,11 @@ pub struct FramePlan {
     pub(in crate::render) light_at: LightAt,
     /// In how many places of a pixel it is asked what is seen.
     pub(in crate::render) samples: Samples,
+    /// Whether each of them is lit, as if it were the middle of a pixel: then `light_at` says pixels.
+    pub(in crate::render) lit_by_sample: bool,
+    /// How far from the middles of pixels it is looked, in parts of a pixel: where there is a picture for
+    /// each sample, in the plan of one of those.
+    pub(in crate::render) shift: [i32; 2],
     /// What textures give between their texels.
     pub(in crate::render) filter: Filter,
     /// Which ways are not those that every picture is drawn by.
@@ -154,6 +159,9 @@ impl FramePlan {
         size: Size,
     ) -> Planning {
         let observer = ObserverSpace::new(scene, view, size);
+        let by_sample = settings.light == LightAt::Sample;
+        let light = if by_sample { LightAt::Pixel } else { settings.light };
+        let settings = &Settings { light, ..*settings };
         let plan = Self {
             size,
             background: scene.background,
@@ -164,6 +172,8 @@ impl FramePlan {
             arithmetic: settings.arithmetic,
             light_at: settings.light,
             samples: settings.samples,
+            lit_by_sample: by_sample && settings.samples != Samples::One,
+            shift: [0; 2],
             filter: settings.filter,
             ways: Ways::of(settings),
             view_from_world: observer.view_from_world,
@@ -192,6 +202,12 @@ impl FramePlan {
             });
         }
         into
+    }
+
+    /// The plan of the picture that is seen where samples lie that are shifted by so many parts of a pixel
+    /// from the middles of their pixels.
+    pub(super) fn seen_from(&self, shift: [i32; 2]) -> Self {
+        Self { shift, ..self.clone() }
     }
 
     /// Pixels.

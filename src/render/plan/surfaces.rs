@@ -90,7 +90,8 @@ impl Planner<'_> {
     /// The light of a material.
     fn lit(&self, into: &mut Planning, ground: &Ground<'_>, look: &PartLook<'_>) -> Shaded {
         let matter = coefficients(look);
-        let mut matter = matter.with_floor(self.floor(into, &matter), self.settings.power);
+        let floor = self.floor(into, ground.region.as_ref(), &matter);
+        let mut matter = matter.with_floor(floor, self.settings.power);
         let mut shaded = Shaded {
             matter,
             light: None,
@@ -122,13 +123,7 @@ impl Planner<'_> {
     }
 
     /// The power of 2 below which powers of highlights count as 0.
-    fn floor(&self, into: &Planning, matter: &Matter) -> f64 {
-        // A highlight that is stronger than its light reaches further down.
-        let strongest = matter.specular.iter().fold(1.0_f64, |most, ks| most.max(ks.abs()));
-        let deeper = |floor: f64| (floor - libm::log2(strongest)).max(LOWEST);
-        if self.settings.arithmetic == Arithmetic::F64 {
-            return deeper(-24.0);
-        }
+    fn floor(&self, into: &Planning, region: Option<&Region>, matter: &Matter) -> f64 {
         // By what the scene says, and not by what is left of it after leaving out.
         let with_highlight = |shining: &&Shining| {
             let lamp = &into.plan.lamps[shining.lamp as usize];
@@ -136,7 +131,19 @@ impl Planner<'_> {
                 && matter.mirrors(lamp)
                 && (shining.effect.needless)(lamp, matter).is_none()
         };
-        let count = self.shining.iter().filter(with_highlight).count().max(1);
+        let lit = || self.shining.iter().filter(with_highlight);
+        // A highlight that is stronger than its light reaches further down, and so does one of a light
+        // that is stronger where it arrives than where it begins.
+        let strongest = matter.specular.iter().fold(1.0_f64, |most, ks| most.max(ks.abs()));
+        let arriving = lit().fold(1.0_f64, |most, shining| {
+            let lamp = &into.plan.lamps[shining.lamp as usize];
+            most.max((shining.effect.arrives)(lamp, region))
+        });
+        let deeper = |floor: f64| (floor - libm::log2(strongest * arriving)).max(LOWEST);
+        if self.settings.arithmetic == Arithmetic::F64 {
+            return deeper(-24.0);
+        }
+        let count = lit().count().max(1);
         let count = u32::try_from(count).unwrap_or(u32::MAX);
         // 2^-10 shared out among the highlights, so that all that is left out stays below a quarter of
         // a byte step.

@@ -64,7 +64,7 @@ impl TilePlan {
         self.kept.clear();
         let tiled =
             |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
-        let middles = plan.samples == Samples::One;
+        let middles = plan.samples == Samples::One || plan.lit_by_sample;
         let tiled = middles && plan.pipelines.iter().any(tiled);
         let depths = tiled.then(|| visibility.depths(level));
         self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));

@@ -14,6 +14,7 @@ use super::faces::{Faces, picked};
 use super::items::Items;
 use super::located::Located;
 use crate::render::effects::{Batch, Rows, set, store};
+use crate::render::geometry::coverage::SUBPIXELS;
 use crate::render::numbers::pick::{SLOTS, paged};
 use crate::render::numbers::real::{Kernel, Machine, Number, Real, Triple};
 use crate::render::plan::{Draw, Eye, FramePlan};
@@ -134,11 +135,16 @@ impl<T: Number> Rays<T> {
     fn new(plan: &FramePlan) -> Self {
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
         let (width, height) = (plan.size.width as f64, plan.size.height as f64);
-        Self {
-            parallel: plan.eye == Eye::Parallel,
-            x: [2.0 / width / px, -1.0 / px].map(T::from_f64),
-            y: [-2.0 / height / py, 1.0 / py].map(T::from_f64),
+        let mut x = [2.0 / width / px, -1.0 / px];
+        let mut y = [-2.0 / height / py, 1.0 / py];
+        // What is looked at lies beside the middle of its pixel.
+        for (way, shift) in [&mut x, &mut y].into_iter().zip(plan.shift) {
+            if shift != 0 {
+                way[1] += way[0] * f64::from(shift) / f64::from(SUBPIXELS);
+            }
         }
+        let parallel = plan.eye == Eye::Parallel;
+        Self { parallel, x: x.map(T::from_f64), y: y.map(T::from_f64) }
     }
 }
 

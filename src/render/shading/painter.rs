@@ -180,11 +180,37 @@ impl<T: Light> Painter<T> {
         shows
     }
 
-    /// Adds the colours of four samples of a tile to those of others.
+    /// Adds the colours of a tile of a picture that one sample of its pixels sees to those of others.
+    fn add_picture(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &mut [Sums]) {
+        let Scenery { level, plan, frame, .. } = *scenery;
+        let bounds = bounds_of(tile, plan.size);
+        if !frame.is_empty(tile) {
+            self.visibility.draw(level, plan, frame, (tile, bounds));
+        }
+        if frame.is_empty(tile) || self.visibility.is_empty() {
+            let background = plan.background.opaque();
+            return to.iter_mut().for_each(|to| to.add_everywhere(background, 1));
+        }
+        self.shader.tile.begin((level, plan), &self.visibility, bounds);
+        let mut pixels = std::mem::take(&mut self.pixels);
+        let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
+        self.blocks(scenery, bounds, &mut canvas);
+        for (block, to) in to.iter_mut().enumerate() {
+            let rows = canvas.pixels[canvas.place(corner_in_tile(block))..].chunks(TILE_SIDE);
+            let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
+            own.enumerate().for_each(|(place, color)| to.add(place, *color, 1));
+        }
+        self.pixels = pixels;
+    }
+
+    /// Adds the colours of four samples of a tile, or of the one that is looked at, to those of others.
     pub(in crate::render) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &TileSums) {
         let Scenery { level, plan, frame, .. } = *scenery;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
         to.resize(BLOCK_PIXELS, Sums::default());
+        if !frame.places().are_many() {
+            return self.add_picture(scenery, tile, &mut to);
+        }
         let empty = frame.is_empty(tile);
         let bounds = bounds_of(tile, plan.size);
         let Self { shader, visibility, samples, .. } = self;

@@ -289,7 +289,9 @@ impl<T: Light> Shader<T> {
         let mut tint = shaded.tint;
         match light {
             None => {}
-            Some((LightAt::Pixel, _)) => self.light_pixels(scenery, group, shaded, new),
+            Some((LightAt::Pixel | LightAt::Sample, _)) => {
+                self.light_pixels(scenery, group, shaded, new);
+            }
             Some((LightAt::Vertex, _)) => match self.mix_light(scenery, group, shaded, new) {
                 Mixture::Bytes => return,
                 Mixture::Colors => tint = [1.0; 3],

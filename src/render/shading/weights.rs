@@ -58,6 +58,7 @@ pub(super) fn cut_weights(
     let order = draw.model.mesh.draw_order();
     let vertices = order.vertices_of(number);
     let clip = vertices.map(|vertex| screen.clip(order.position(vertex)));
+    let shift = [0, 1].map(|axis| shift[axis] + plan.shift[axis]);
     let at =
         |axis: usize| f64::from(pixel[axis]) + 0.5 + f64::from(shift[axis]) / f64::from(SUBPIXELS);
     let x = at(0) / plan.size.width as f64 * 2.0 - 1.0;

@@ -62,6 +62,7 @@ impl Ways {
                 let (draw, start) = frame.draw_of(plain.number);
                 let draw = &plan.draws[draw as usize];
                 let number = plain.number - start.number;
+                let shift = [0, 1].map(|axis| shift[axis] + plan.shift[axis]);
                 points::cover(plan, draw, number, (clip, shift), &mut take);
             }
         }

@@ -105,7 +105,8 @@ impl Ways {
         let pixels = corners.map(|corner| corner.at);
         let depths = corners.map(|corner| corner.depth);
         let plain = Plain { corners: snapped, pixels, depths, number, cutout };
-        bins.add_plain(plain, around(&pixels));
+        let plain = plain.seen_from(setup.screen.shift(), self.parts());
+        bins.add_plain(plain, around(&plain.pixels));
     }
 }
 

@@ -37,6 +37,7 @@ pub(super) const VERTICES: Axis = Axis {
         shows: "On a ball that lies 5,000,000 from the origin, as does the camera: compare 32 bits and 64, \
             then move.",
         scene: "far",
+        choice: None,
     },
 };
 
@@ -68,6 +69,7 @@ pub(super) const SUBPIXELS: Axis = Axis {
             move slowly jump from pixel to pixel.",
         shows: "On the thin spokes of the wheel: with 0 bits they break into steps.",
         scene: "wheel",
+        choice: None,
     },
 };
 
@@ -99,6 +101,7 @@ pub(super) const COVERAGE: Axis = Axis {
             afar; rounded rows make everything a little too large.",
         shows: "On the ball that is close to the eye: choose Points and look through it.",
         scene: "near",
+        choice: None,
     },
 };
 
@@ -133,6 +136,7 @@ pub(super) const INTERPOLATION: Axis = Axis {
             moves.",
         shows: "On a long floor that is laid with pictures: compare Affine and Exact.",
         scene: "floor",
+        choice: None,
     },
 };
 
@@ -160,5 +164,6 @@ pub(super) const STRETCHED: Axis = Axis {
             a flat thing as if it were long.",
         shows: "On a ball that is pressed flat: compare its upper side with As it is and with Cofactor.",
         scene: "pressed",
+        choice: None,
     },
 };

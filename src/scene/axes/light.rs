@@ -1,6 +1,6 @@
 //! Axes of light.
 
-use super::sense::{has_even_power, if_any, is_lit, is_mirroring};
+use super::sense::{has_even_power, has_several_samples, if_any, is_lit, is_mirroring};
 use super::{Axis, AxisKind, Choice, Lesson};
 use crate::scene::{Arithmetic, LeaveOut, LightAt, Normalising, SpecularForm, SpecularPower};
 
@@ -19,16 +19,22 @@ pub(super) const SHADING: Axis = Axis {
             "highlights smaller than a polygon dim or vanish"),
         choice!("pixel" "Pixel" light = LightAt::Pixel,
             "Light is evaluated at each pixel (Phong).",
-            "none"),
+            "none with one sample; with several, highlights narrower than a pixel"),
+        choice!("sample" "Sample" light = LightAt::Sample,
+            "Light is evaluated in each place of a pixel that is looked at: a picture for each.",
+            "none",
+            |_, _| Ok(()), has_several_samples),
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
-        what: "Light can be worked out once a polygon, once a corner, or once a pixel.",
+        what: "Light can be worked out once a polygon, once a corner, once a pixel, or in each place \
+            of a pixel that is looked at.",
         coarse: "Between corners colours are only mixed, so a highlight that falls inside a \
             polygon is missed, and one on a corner is smeared along its edges.",
-        shows: "Shiny surfaces of few polygons show it most: compare the bright spot on the \
-            ball with Vertex and with Pixel.",
-        scene: "ball",
+        shows: "On the bright spot in the middle of the cushion, which no corner sees: the line of \
+            the comparison cuts it in half.",
+        scene: "highlight",
+        choice: Some("vertex"),
     },
 };
 
@@ -53,6 +59,7 @@ pub(super) const ARITHMETIC: Axis = Axis {
             where the exact value lies next to the border between two steps.",
         shows: "Nowhere without help: look at the picture of the error, amplified 256 times.",
         scene: "ball",
+        choice: None,
     },
 };
 
@@ -92,6 +99,7 @@ pub(super) const POWER: Axis = Axis {
             curve has no power in it and a wider foot.",
         shows: "On the bright spot of the ball: compare 256 and Own, then Schlick.",
         scene: "ball",
+        choice: None,
     },
 };
 
@@ -120,6 +128,7 @@ pub(super) const NORMALISING: Axis = Axis {
             power makes much of that: highlights get grainy, on each make of CPU in its own way.",
         shows: "On the bright spot of the ball, in the picture of the error, amplified 16 times.",
         scene: "ball",
+        choice: None,
     },
 };
 
@@ -146,6 +155,7 @@ pub(super) const FAINT: Axis = Axis {
         shows: "Nowhere without help: look at the picture of the error, amplified 256 times, where \
             highlights fade out.",
         scene: "ball",
+        choice: None,
     },
 };
 
@@ -171,5 +181,6 @@ pub(super) const SPECULAR: Axis = Axis {
             as wide, and it stretches where light grazes.",
         shows: "On the rim of a shiny ball lit from behind, and in the size of every highlight.",
         scene: "ball",
+        choice: None,
     },
 };

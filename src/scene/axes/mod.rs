@@ -15,6 +15,12 @@ macro_rules! choice {
         $word:literal $label:literal $field:ident = $value:expr, $what:literal, $error:literal,
         $sense:expr
     ) => {
+        choice!($word $label $field = $value, $what, $error, $sense, |_| Ok(()))
+    };
+    (
+        $word:literal $label:literal $field:ident = $value:expr, $what:literal, $error:literal,
+        $sense:expr, $among:expr
+    ) => {
         Choice {
             word: $word,
             label: $label,
@@ -23,6 +29,7 @@ macro_rules! choice {
             set: |settings| settings.$field = $value,
             is: |settings| settings.$field == $value,
             sense: $sense,
+            among: $among,
         }
     };
 }
@@ -85,6 +92,8 @@ pub struct Choice {
     pub error: &'static str,
     /// Whether it is anything of its own in a scene that is seen so, and why not.
     pub sense: fn(&Scene, &View) -> Result<(), &'static str>,
+    /// Whether it is anything of its own beside what such settings choose on other axes, and why not.
+    pub among: fn(&Settings) -> Result<(), &'static str>,
     set: fn(&mut Settings),
     is: fn(&Settings) -> bool,
 }
@@ -100,6 +109,8 @@ pub struct Lesson {
     pub shows: &'static str,
     /// The small scene, carried by the program, in which the difference is plain to see.
     pub scene: &'static str,
+    /// The word of the choice that is drawn with there, where it is not the coarsest.
+    pub choice: Option<&'static str>,
 }
 
 /// Every axis, in the order in which they are shown.
@@ -134,6 +145,13 @@ impl Axis {
         self.choices.iter().find(|choice| choice.word == word)
     }
 
+    /// What its lesson begins with: the choice that goes most plainly wrong there.
+    #[must_use]
+    pub fn lesson_choice(&self) -> &'static Choice {
+        let named = self.lesson.choice.and_then(|word| self.choice(word));
+        named.unwrap_or(&self.choices[0])
+    }
+
     /// What these settings have chosen.
     #[must_use]
     pub fn chosen(&self, settings: &Settings) -> &'static Choice {
@@ -147,10 +165,12 @@ impl Axis {
         self.chosen(&Settings::default())
     }
 
-    /// The most exact choice; of a model, the one that the settings have.
+    /// The most exact choice that is anything of its own beside the others of these settings; of a model,
+    /// the one that they have.
     #[must_use]
     pub fn most_exact(&self, settings: &Settings) -> &'static Choice {
-        match (self.kind, self.choices.last()) {
+        let own = |choice: &&Choice| (choice.among)(settings).is_ok();
+        match (self.kind, self.choices.iter().rfind(own)) {
             (AxisKind::Scored | AxisKind::ScoredApart, Some(last)) => last,
             _ => self.chosen(settings),
         }
@@ -158,6 +178,20 @@ impl Axis {
 }
 
 impl Choice {
+    /// Whether it is anything of its own in a scene that is seen so, drawn with such settings otherwise,
+    /// and why not.
+    ///
+    /// # Errors
+    /// The reason.
+    pub fn is_of_its_own(
+        &self,
+        scene: &Scene,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<(), &'static str> {
+        (self.sense)(scene, view).and_then(|()| (self.among)(settings))
+    }
+
     /// The settings with this choice made.
     #[must_use]
     pub fn of(&self, settings: &Settings) -> Settings {

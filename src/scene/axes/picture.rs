@@ -33,6 +33,7 @@ pub(super) const DEPTH: Axis = Axis {
         shows: "On two plates that lean against each other 1000 away: with 16 bits where they meet is \
             anybody's guess.",
         scene: "fence",
+        choice: None,
     },
 };
 
@@ -62,5 +63,6 @@ pub(super) const ROUNDING: Axis = Axis {
         shows: "On a wall in dim light: bands with Nearest, none with Dither when it is looked at from \
             afar.",
         scene: "dusk",
+        choice: None,
     },
 };

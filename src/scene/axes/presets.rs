@@ -119,7 +119,8 @@ impl Preset {
 
 impl Settings {
     /// The reference: every axis at its most exact. Models stay as they are chosen, and so does an axis
-    /// that is scored apart where it is at its default.
+    /// that is scored apart where it is at its default: pictures with several samples are judged against
+    /// the one with most of them, each lit.
     #[must_use]
     pub fn reference(&self) -> Self {
         AXES.iter().fold(*self, |settings, axis| match axis.kind {
@@ -132,8 +133,9 @@ impl Settings {
     /// whatever it is scored by.
     #[must_use]
     pub fn reference_on(&self, key: &str) -> Self {
-        let reference = self.reference();
-        Axis::named(key).map_or(reference, |axis| axis.most_exact(&reference).of(&reference))
+        // First, for what is most exact elsewhere may depend on it.
+        let exact = Axis::named(key).map_or(*self, |axis| axis.most_exact(self).of(self));
+        exact.reference()
     }
 
     /// These settings with the models that others have chosen.

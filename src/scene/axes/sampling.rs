@@ -33,5 +33,6 @@ pub(super) const SAMPLES: Axis = Axis {
         shows: "On every outline, most where it is almost level or almost upright, and where the \
             colours on both sides differ.",
         scene: "ball",
+        choice: None,
     },
 };

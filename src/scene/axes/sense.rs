@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::base::math::power_of_two_near;
-use crate::scene::{Object, ObjectId, Scene, Surface, View};
+use crate::scene::{Object, ObjectId, Samples, Scene, Settings, Surface, View};
 
 /// The objects that are shown.
 fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> {
@@ -58,6 +58,11 @@ pub(super) fn if_any_object(
     reason: &'static str,
 ) -> Result<(), &'static str> {
     if shown(scene, view).any(is) { Ok(()) } else { Err(reason) }
+}
+
+/// Whether pixels are looked at in several places.
+pub(super) fn has_several_samples(settings: &Settings) -> Result<(), &'static str> {
+    if settings.samples == Samples::One { Err("a pixel has one sample") } else { Ok(()) }
 }
 
 /// Any object.

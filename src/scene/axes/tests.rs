@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{Arithmetic, Filter, LeaveOut, LightAt, SpecularForm, SpecularPower};
+use crate::scene::{Arithmetic, Filter, LeaveOut, LightAt, Samples, SpecularForm, SpecularPower};
 
 #[test]
 fn each_choice_is_read_back_as_it_was_set_and_touches_no_other_axis() {
@@ -30,6 +30,20 @@ fn the_reference_is_exact_in_everything_and_keeps_the_models() {
     assert_eq!(reference.power, SpecularPower::Library);
     assert_eq!(reference.leave_out, LeaveOut::Unseen);
     assert_eq!(reference.specular, SpecularForm::HalfVector);
+}
+
+#[test]
+fn several_samples_are_judged_against_the_most_of_them_each_lit() {
+    let one = Settings::default();
+    for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
+        let reference = Settings { samples, ..one }.reference();
+        assert_eq!((reference.samples, reference.light), (Samples::SixtyFour, LightAt::Sample));
+        assert_eq!(reference, one.reference_on("samples"));
+    }
+    let sample = Axis::named("shading").unwrap().choice("sample").unwrap();
+    assert_eq!((sample.among)(&one), Err("a pixel has one sample"));
+    assert_eq!((sample.among)(&Settings { samples: Samples::Four, ..one }), Ok(()));
+    assert_eq!(sample.of(&one).reference(), one.reference());
 }
 
 #[test]

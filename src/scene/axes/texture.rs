@@ -31,5 +31,6 @@ pub(super) const FILTER: Axis = Axis {
         shows: "Look at a texture from so near that a texel covers many pixels, then from so far that a \
             pixel covers many texels.",
         scene: "plate",
+        choice: None,
     },
 };

@@ -11,7 +11,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::Measure;
-use crate::lab::report::{Budgets, Report, brief};
+use crate::lab::report::{Budgets, Report, brief, tabs};
 
 /// Shows it; what is asked for is added to `asks`.
 pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
@@ -191,6 +191,10 @@ fn command_ui(ui: &mut Ui, report: &Report) {
         if ui.button("Copy command").on_hover_text("What measures this without a window").clicked()
         {
             ui.ctx().copy_text(report.command.clone());
+        }
+        let hint = "The whole table, with tabs between its fields, as spreadsheets take it";
+        if ui.button("Copy table").on_hover_text(hint).clicked() {
+            ui.ctx().copy_text(tabs(report));
         }
         let command = egui::Label::new(RichText::new(&report.command).monospace()).truncate();
         ui.add(command).on_hover_text(&report.command);

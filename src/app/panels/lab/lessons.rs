@@ -25,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         ui.add_space(theme::GAP);
         ui.horizontal(|ui| {
             let hint = "Opens a small scene in which the difference is plain to see";
-            if ui.button("Show me").on_hover_text(hint).clicked() {
+            if ui.button("Take me there").on_hover_text(hint).clicked() {
                 asks.push(Ask::Lab(LabAsk::ShowLesson(axis.key)));
             }
             axis_ui(ui, axis, state, asks);

@@ -8,23 +8,16 @@ mod lessons;
 mod scatter;
 mod table;
 
-use egui::{Id, Layout, Rect, Ui, UiBuilder, vec2};
+use egui::{Layout, Rect, Ui, UiBuilder, vec2};
 
 use super::controls::{Choice, choices};
 use crate::app::ask::Ask;
+use crate::app::laboratory::{LabAsk, Side};
 use crate::app::state::State;
 use crate::app::theme;
 
 /// How wide what is asked is.
 const ASKED: f32 = 264.0;
-
-/// What is shown at the right.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Side {
-    #[default]
-    Table,
-    Lessons,
-}
 
 /// Shows it; what is asked for is added to `asks`.
 pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
@@ -51,15 +44,13 @@ fn within(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
 }
 
 fn right_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
-    let id = Id::unique("side of the laboratory");
-    let side: Side = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let side = state.lab.side;
     let all = [
         Choice::new("Laboratory", "Table", side == Side::Table, "Every choice with its figures"),
         Choice::new("Laboratory", "Lessons", side == Side::Lessons, "What each axis teaches"),
     ];
     if let Some(clicked) = choices(ui, &all) {
-        let side = [Side::Table, Side::Lessons][clicked];
-        ui.data_mut(|data| data.insert_temp(id, side));
+        asks.push(Ask::Lab(LabAsk::Side([Side::Table, Side::Lessons][clicked])));
     }
     match side {
         Side::Table => table::show(ui, state, asks),

@@ -16,7 +16,8 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     };
     let chart = Chart::new(report);
     let transform = plot_ui(ui, &chart);
-    front_ui(ui, &chart, &transform);
+    front_ui(ui, &chart, (&chart.front_apart, 1.0), &transform);
+    front_ui(ui, &chart, (&chart.front, 1.5), &transform);
     // What is drawn now and what is on the front lies above the rest.
     let mut marks: Vec<&Mark> = chart.marks.iter().collect();
     let is_now = |mark: &Mark| report.findings.points[mark.point].settings == state.settings;
@@ -92,14 +93,14 @@ fn plot_ui(ui: &mut Ui, chart: &Chart) -> PlotTransform {
     shown.transform
 }
 
-/// The front as steps: between two points nothing was measured.
-fn front_ui(ui: &Ui, chart: &Chart, transform: &PlotTransform) {
+/// A front as steps: between two points nothing was measured.
+fn front_ui(ui: &Ui, chart: &Chart, (front, width): (&[usize], f32), transform: &PlotTransform) {
     let mut line: Vec<Pos2> = Vec::new();
-    for at in chart.front.iter().map(|mark| place(&chart.marks[*mark], transform)) {
+    for at in front.iter().map(|mark| place(&chart.marks[*mark], transform)) {
         line.extend(line.last().map(|before| pos2(at.x, before.y)));
         line.push(at);
     }
-    let stroke = Stroke::new(1.5, theme::accent(ui.visuals()));
+    let stroke = Stroke::new(width, theme::accent(ui.visuals()));
     let _ = ui.painter().with_clip_rect(*transform.frame()).line(line, stroke);
 }
 
@@ -160,6 +161,9 @@ fn mark_ui(ui: &Ui, at: Pos2, mark: &Mark, is_now: bool, report: &Report) -> Res
         MarkKind::Combination => {
             painter.circle_filled(at, 2.5, ink);
         }
+        MarkKind::Apart => {
+            painter.add(triangle(at, 5.5, ink));
+        }
         MarkKind::Model => {
             painter.circle_stroke(at, 4.5, Stroke::new(1.0, ink));
         }
@@ -174,6 +178,12 @@ fn mark_ui(ui: &Ui, at: Pos2, mark: &Mark, is_now: bool, report: &Report) -> Res
 fn diamond(at: Pos2, size: f32, ink: Color32) -> Shape {
     let corner = |x: f32, y: f32| at + vec2(x, y) * size;
     let corners = vec![corner(0.0, -1.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(-1.0, 0.0)];
+    Shape::convex_polygon(corners, ink, Stroke::NONE)
+}
+
+fn triangle(at: Pos2, size: f32, ink: Color32) -> Shape {
+    let corner = |x: f32, y: f32| at + vec2(x, y) * size;
+    let corners = vec![corner(0.0, -1.0), corner(1.0, 0.7), corner(-1.0, 0.7)];
     Shape::convex_polygon(corners, ink, Stroke::NONE)
 }
 
@@ -198,8 +208,19 @@ fn tip_ui(ui: &mut Ui, mark: &Mark, report: &Report) {
     if mark.on_front {
         ui.label("Nothing else is both faster and more exact.");
     }
-    if mark.kind == MarkKind::Model {
-        ui.label("Another model: judged against its own exact picture, and not scored.");
+    match mark.kind {
+        MarkKind::Model => {
+            ui.label("Another model: judged against its own exact picture, and not scored.");
+        }
+        MarkKind::Apart => {
+            ui.label("Judged against 64 samples a pixel, each lit: a front of its own.");
+        }
+        _ if !report.is_scored(mark.point) => {
+            ui.label(
+                "Shows other triangles at some pixels, which FLIP alone judges: on no front here.",
+            );
+        }
+        _ => {}
     }
     ui.weak("Click to draw the picture so.");
 }

@@ -79,7 +79,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut last = String::new();
-        let front = report.front();
+        let front = report.fronts();
         for row in report.rows() {
             let heading = heading(row);
             if heading != last {

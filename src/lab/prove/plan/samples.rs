@@ -274,7 +274,7 @@ fn samples(dice: &mut Dice) -> Samples {
 
 fn settings(dice: &mut Dice) -> Settings {
     let at = [LightAt::Face, LightAt::Vertex, LightAt::Pixel, LightAt::Pixel, LightAt::Pixel];
-    Settings {
+    let settings = Settings {
         arithmetic: if dice.percent(8) { Arithmetic::F64 } else { Arithmetic::F32 },
         light: dice.pick(&at),
         samples: samples(dice),
@@ -282,5 +282,9 @@ fn settings(dice: &mut Dice) -> Settings {
         specular: dice.pick(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
         leave_out: LeaveOut::Unseen,
         ..Settings::default()
-    }
+    };
+    // As many pictures as samples: now and then.
+    let several = [Samples::Four, Samples::Sixteen].contains(&settings.samples);
+    let each = several && settings.light == LightAt::Pixel && dice.percent(30);
+    if each { Settings { light: LightAt::Sample, ..settings } } else { settings }
 }
