@@ -2,6 +2,7 @@
 """Breaks the program on purpose, one thing at a time, and sees which hard case notices.
 
     tests/breakages/run.py [SHARD/SHARDS]     tries its part of table.toml, all without an argument
+    tests/breakages/run.py case NUMBER...     tries those that these cases claim
     tests/breakages/run.py page               makes docs/breakages.md of what was tried
 
 Each breakage is made in a copy of the sources under target/breakages, never in the sources. The copy
@@ -90,12 +91,10 @@ def broken(text, breakage):
     return text.replace(breakage["from"], breakage["to"])
 
 
-def attempt(shard, shards):
-    where = WORK / f"shard-{shard}"
+def attempt(mine, where):
     copy(where)
     for breakage in TABLE:
         broken((ROOT / breakage["file"]).read_text(), breakage)
-    mine = range(shard - 1, len(TABLE), shards)
     if failed := tests(where, *(f"case_{TABLE[i]['case']}_" for i in mine)):
         sys.exit(f"run.py: fails unbroken: {', '.join(failed)}")
     for i in mine:
@@ -150,11 +149,14 @@ alone, and the hard case that failed for it. The number is that of the case that
 
 
 def main():
-    argument = sys.argv[1] if len(sys.argv) > 1 else "1/1"
+    argument, *numbers = sys.argv[1:] or ["1/1"]
     if argument == "page":
         return page()
+    if argument == "case":
+        mine = [i for i, breakage in enumerate(TABLE) if str(breakage["case"]) in numbers]
+        return attempt(mine, WORK / "shard-1")
     shard, shards = map(int, argument.split("/"))
-    attempt(shard, shards)
+    attempt(range(shard - 1, len(TABLE), shards), WORK / f"shard-{shard}")
 
 
 if __name__ == "__main__":

@@ -98,18 +98,21 @@ fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
     // The line of ancestor A's fault, seen from the origin: one end is 2 behind the eye, the other 1
     // in front of it. At the near plane, 1/2 in front, it is at y = -0.3: 1/6 of the way.
     let (behind, front) = (DVec3::new(0.5, 0.2, 2.0), DVec3::new(0.5, -0.4, -1.0));
-    let corners = [behind, front, DVec3::new(0.5, -2.0, -1.0)];
-    let positions = corners.map(|corner| corner.as_vec3().to_array());
-    let (mut scene, view) =
-        scene(&[(model("line", &positions, &[&[0, 1, 2], &[2, 1, 0]]), DMat4::IDENTITY)]);
-    let mut camera = scene.selected_camera(&view).clone();
-    camera.pose = Placed::new(Pose::facing_minus_z(DVec3::ZERO));
-    camera.lens.half_angle = 60.0;
-    camera.lens.near = 0.5;
-    scene.cameras = List::from_iter([(view.camera, camera)]);
-    edit(&mut scene, ObjectId(10), |object| object.edge_color = Color::WHITE);
-    let view = View { marks: false, fill: Fill::Edges, ..view };
-    let picture = draw(&scene, &view, &Settings::default(), SIDE);
+    let third = DVec3::new(0.5, -2.0, -1.0);
+    // Whichever end comes first.
+    let pictures = [[behind, front, third], [front, behind, third]].map(|corners| {
+        let positions = corners.map(|corner| corner.as_vec3().to_array());
+        let line = model("line", &positions, &[&[0, 1, 2], &[2, 1, 0]]);
+        let (mut scene, view) = scene(&[(line, DMat4::IDENTITY)]);
+        let mut camera = scene.selected_camera(&view).clone();
+        camera.pose = Placed::new(Pose::facing_minus_z(DVec3::ZERO));
+        camera.lens.half_angle = 60.0;
+        camera.lens.near = 0.5;
+        scene.cameras = List::from_iter([(view.camera, camera)]);
+        edit(&mut scene, ObjectId(10), |object| object.edge_color = Color::WHITE);
+        let view = View { marks: false, fill: Fill::Edges, ..view };
+        draw(&scene, &view, &Settings::default(), SIDE)
+    });
     let eye = Eye { side: SIDE, at: DVec3::ZERO, tangent: 3.0_f64.sqrt() };
     let cut = DVec3::new(0.5, -0.3, -0.5);
     let ([x0, y0], [x1, y1]) = (eye.pixel(front), eye.pixel(cut));
@@ -121,14 +124,18 @@ fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
         let t = ((px * dx + py * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
         (px - t * dx).hypot(py - t * dy)
     };
-    let drawn = (0..SIDE * SIDE)
-        .filter(|i| picture.pixels()[*i] == [255; 4])
-        .map(|i| (i % SIDE, i / SIDE))
-        // The edge to the third corner goes down from the front one.
-        .filter(|(x, _)| *x as f64 > x0 + 1.0);
-    let (count, ours) =
-        drawn.fold((0, 0.0_f64), |(n, worst), (x, y)| (n + 1, worst.max(off(x, y))));
-    assert!(count > 10, "the line is drawn");
+    let mut ours = 0.0_f64;
+    for picture in &pictures {
+        let drawn = (0..SIDE * SIDE)
+            .filter(|i| picture.pixels()[*i] == [255; 4])
+            .map(|i| (i % SIDE, i / SIDE))
+            // The edge to the third corner goes down from the front one.
+            .filter(|(x, _)| *x as f64 > x0 + 1.0);
+        let (count, worst) =
+            drawn.fold((0, 0.0_f64), |(n, worst), (x, y)| (n + 1, worst.max(off(x, y))));
+        assert!(count > 10, "the line is drawn");
+        ours = ours.max(worst);
+    }
     Figure {
         case: 12,
         what: "a line from (0.5, 0.2, 2) to (0.5, -0.4, -1)",
