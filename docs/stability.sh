@@ -1,18 +1,26 @@
 #!/usr/bin/env bash
-# Makes docs/stability.md again, of what tests and proofs measure: docs/stability.sh [PROGRAM]
+# Makes docs/stability.md again, of what tests and proofs measure: docs/stability.sh [PROGRAM [FOLDER]]
 #
-# The proofs run in the numbers that the page promises, which takes some minutes.
+# The proofs run in the numbers that the page promises, which takes some minutes. What FOLDER has of an
+# earlier run is not measured again: `figures`, filled by the hard cases with MARRAZTU_FIGURES and by
+# `marraztu prove --figures`, and `proofs`, which that printed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 page=docs/stability.md
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-mkdir "$work/figures"
 [ $# -gt 0 ] || cargo build --release --locked
 program=${1:-target/release/marraztu}
-MARRAZTU_FIGURES="$work/figures" cargo test --release --locked --test hard_cases >"$work/tests" ||
-  { cat "$work/tests" >&2; exit 1; }
-"$program" prove --figures "$work/figures" >"$work/proofs"
+if [ $# -gt 1 ]; then
+  work=$2
+else
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+fi
+if [ ! -d "$work/figures" ]; then
+  mkdir -p "$work/figures"
+  MARRAZTU_FIGURES="$work/figures" cargo test --locked --test hard_cases >"$work/tests" ||
+    { cat "$work/tests" >&2; exit 1; }
+fi
+[ -f "$work/proofs" ] || "$program" prove --figures "$work/figures" >"$work/proofs"
 cat "$work"/figures/[0-9]*.tsv >"$work/figures.tsv"
 
 # Our figure of a case, by what is measured, with its unit.
