@@ -288,6 +288,34 @@ fn folded(corners: [DVec3; 3], covered: &[bool]) -> usize {
 }
 
 #[test]
+fn case_16_what_is_farther_off_than_whole_numbers_reach_is_cut() {
+    let mut dice = Dice::new(116);
+    let (mut wrong, mut seen, mut naive) = (0, 0, 0);
+    for _ in 0..60 {
+        // One corner in view, the others some ten million pixels off.
+        let off = |dice: &mut Dice| dice.vector(1.0) * DVec3::new(7e6, 7e6, 50.0);
+        let corners = [dice.vector(30.0), off(&mut dice), off(&mut dice)];
+        let corners = corners.map(|c| (c + DVec3::Z * 300.0).as_vec3().as_dvec3());
+        let (scene, view) = alone(corners);
+        let picture = draw(&scene, &view, &Settings::default(), SIDE);
+        let covered = covered(&picture, &scene);
+        seen += covered.iter().filter(|seen| **seen).count();
+        wrong += wrong_pixels(corners, &picture, &covered);
+        naive += corners.iter().filter(|c| c.abs().max_element() > 1e6).count();
+    }
+    assert!(seen > 10_000, "{seen} pixels");
+    Figure {
+        case: 16,
+        what: "wrong pixels of triangles whose corners are ten million pixels off",
+        naive: Some(("corners that 32 bits have no room for, of 180", naive as f64)),
+        ours: wrong as f64,
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
+#[test]
 fn case_16_corners_a_million_pixels_off_leave_no_hole_and_no_double() {
     const SIDE: usize = 512;
     let mut dice = Dice::new(16);
