@@ -7,7 +7,7 @@
 mod common;
 
 use common::{at, ball, draw, edit, model_of, scene, square};
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -15,8 +15,9 @@ use marraztu::lab::prove::stage::{self, Flat};
 use marraztu::render::coverage::Snapped;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Arithmetic, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice, MeshSource,
-    NONE, ObjectId, Part, Samples, Scene, Settings, SourceCorner, Surface, Texture, View, Wrap,
+    Aim, Arithmetic, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,
+    MeshSource, NONE, ObjectId, Part, Placed, Projection, Samples, Scene, Settings, SourceCorner,
+    SpotOwner, Surface, Texture, View, Wrap,
 };
 
 const SIDE: usize = 128;
@@ -277,6 +278,48 @@ fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     }
 }
 
+/// A cone without falloff ends at once: a pixel on its border is as bright as the part of its samples that
+/// lie in it. Two of 64 may be rounded to the other side.
+#[test]
+fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
+    const SMALL: usize = 48;
+    let (mut scene, view) =
+        scene(&[(square(), at(90.0, 3.0, 2.0, 0.0) * DMat4::from_rotation_y(0.3))]);
+    let view = View { marks: false, ..view };
+    let aim = Aim { position: DVec3::new(5.0, 1.0, 120.0), direction: DVec3::NEG_Z };
+    let owner = SpotOwner::Fixed(Placed::new(aim));
+    let kind = LightKind::Spot { owner, half_aperture: 25.0, exponent: 0.0 };
+    scene.lights = [(LightId(900), Light::new("spot", 1, kind))].into_iter().collect();
+    edit(&mut scene, ObjectId(10), |object| {
+        object.material = MaterialChoice::Own(Material {
+            ambient: [0.0; 3],
+            diffuse: [0.9; 3],
+            specular: [0.0; 3],
+            exponent: 1.0,
+        });
+    });
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        let view = View { projection, ..view.clone() };
+        let large = in_boxes(&draw(&scene, &view, &Settings::default(), 8 * SMALL), SMALL);
+        let settings =
+            Settings { samples: Samples::SixtyFour, light: LightAt::Sample, ..Settings::default() };
+        let small = draw(&scene, &view, &settings, SMALL);
+        let mut border = 0;
+        for (i, (pixel, all)) in small.pixels().iter().zip(&large).enumerate() {
+            let lit = all.iter().filter(|it| it[0] > 0).count();
+            // All of the pixel's samples are of the square.
+            if all.iter().any(|it| *it == scene.background.opaque()) {
+                continue;
+            }
+            border += usize::from((8..56).contains(&lit));
+            let mean = all.iter().map(|it| f64::from(it[0])).sum::<f64>() / 64.0;
+            let off = (f64::from(pixel[0]) - mean).abs();
+            assert!(off <= 2.0 * 255.0 / 64.0 + 1.0, "{projection:?} {i}: {} for {mean}", pixel[0]);
+        }
+        assert!(border > 20, "{projection:?}: {border}");
+    }
+}
+
 #[test]
 fn the_only_sample_of_a_pixel_is_its_middle() {
     let (scene, view) = marraztu::io::default_scene();
@@ -316,7 +359,7 @@ fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
     assert!(*renderer.picture() == wanted);
     // Whenever it is given up, what is picked is of the last picture, and the next one is right.
     edit(&mut scene, ObjectId(10), |object| {
-        object.placement = marraztu::scene::Placed::new(at(50.0, 0.0, 0.0, 30.0));
+        object.placement = Placed::new(at(50.0, 0.0, 0.0, 30.0));
     });
     let moved = planned(&scene, LightAt::Sample);
     for patience in [0, 1, 5, 20, 60] {
