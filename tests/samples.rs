@@ -320,6 +320,24 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
     }
 }
 
+/// On a stage all of these put every corner where it belongs, so what is lit there is the same but for the
+/// rounding of numbers.
+#[test]
+fn finer_and_coarser_corners_light_samples_alike_where_both_are_exact() {
+    let (scene, view) = shiny(&scattered(40, 31), SIDE);
+    let lit = Settings { samples: Samples::Four, light: LightAt::Sample, ..Settings::default() };
+    let wanted = draw(&scene, &view, &lit, SIDE);
+    for (key, word) in
+        [("subpixels", "bits-12"), ("vertices", "f32"), ("vertices", "f32-composed-in-f64")]
+    {
+        let choice = Axis::named(key).and_then(|axis| axis.choice(word)).unwrap();
+        let got = draw(&scene, &view, &choice.of(&lit), SIDE);
+        let pairs = got.pixels().as_flattened().iter().zip(wanted.pixels().as_flattened());
+        let apart = pairs.map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(apart <= Some(1), "{key} {word}: {apart:?}");
+    }
+}
+
 /// Where colours change with primitives alone, each sample shows the same whether it is lit or not: by every
 /// way of bringing things onto the screen, lines among them, and what is cut.
 #[test]
