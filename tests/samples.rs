@@ -7,7 +7,7 @@
 mod common;
 
 use common::{at, ball, draw, edit, model_of, scene, square};
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -15,8 +15,9 @@ use marraztu::lab::prove::stage::{self, Flat};
 use marraztu::render::geometry::coverage::Snapped;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Arithmetic, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice, MeshSource,
-    NONE, ObjectId, Part, Samples, Scene, Settings, SourceCorner, Surface, Texture, View, Wrap,
+    Aim, Arithmetic, Axis, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,
+    MeshSource, NONE, NormalLength, ObjectId, Part, Placed, Projection, Samples, Scene, Settings,
+    SourceCorner, SpotOwner, Surface, Texture, View, Wrap,
 };
 
 const SIDE: usize = 128;
@@ -277,6 +278,103 @@ fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     }
 }
 
+/// A cone without falloff ends at once: a pixel on its border is as bright as the part of its samples that
+/// lie in it. Two of 64 may be rounded to the other side.
+#[test]
+fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
+    const SMALL: usize = 48;
+    let (mut scene, view) =
+        scene(&[(square(), at(90.0, 3.0, 2.0, 0.0) * DMat4::from_rotation_y(0.3))]);
+    let view = View { marks: false, ..view };
+    let aim = Aim { position: DVec3::new(5.0, 1.0, 120.0), direction: DVec3::NEG_Z };
+    let owner = SpotOwner::Fixed(Placed::new(aim));
+    let kind = LightKind::Spot { owner, half_aperture: 25.0, exponent: 0.0 };
+    scene.lights = [(LightId(900), Light::new("spot", 1, kind))].into_iter().collect();
+    edit(&mut scene, ObjectId(10), |object| {
+        object.material = MaterialChoice::Own(Material {
+            ambient: [0.0; 3],
+            diffuse: [0.9; 3],
+            specular: [0.0; 3],
+            exponent: 1.0,
+        });
+    });
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        let view = View { projection, ..view.clone() };
+        let large = in_boxes(&draw(&scene, &view, &Settings::default(), 8 * SMALL), SMALL);
+        let settings =
+            Settings { samples: Samples::SixtyFour, light: LightAt::Sample, ..Settings::default() };
+        let small = draw(&scene, &view, &settings, SMALL);
+        let mut border = 0;
+        for (i, (pixel, all)) in small.pixels().iter().zip(&large).enumerate() {
+            let lit = all.iter().filter(|it| it[0] > 0).count();
+            // All of the pixel's samples are of the square.
+            if all.iter().any(|it| *it == scene.background.opaque()) {
+                continue;
+            }
+            border += usize::from((8..56).contains(&lit));
+            let mean = all.iter().map(|it| f64::from(it[0])).sum::<f64>() / 64.0;
+            let off = (f64::from(pixel[0]) - mean).abs();
+            assert!(off <= 2.0 * 255.0 / 64.0 + 1.0, "{projection:?} {i}: {} for {mean}", pixel[0]);
+        }
+        assert!(border >= 10, "{projection:?}: {border}");
+    }
+}
+
+/// On a stage all of these put every corner where it belongs, so what is lit there is the same but for the
+/// rounding of numbers.
+#[test]
+fn finer_and_coarser_corners_light_samples_alike_where_both_are_exact() {
+    let (scene, view) = shiny(&scattered(40, 31), SIDE);
+    let lit = Settings { samples: Samples::Four, light: LightAt::Sample, ..Settings::default() };
+    let wanted = draw(&scene, &view, &lit, SIDE);
+    for (key, word) in
+        [("subpixels", "bits-12"), ("vertices", "f32"), ("vertices", "f32-composed-in-f64")]
+    {
+        let choice = Axis::named(key).and_then(|axis| axis.choice(word)).unwrap();
+        let got = draw(&scene, &view, &choice.of(&lit), SIDE);
+        let pairs = got.pixels().as_flattened().iter().zip(wanted.pixels().as_flattened());
+        let apart = pairs.map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(apart <= Some(1), "{key} {word}: {apart:?}");
+    }
+}
+
+/// Where colours change with primitives alone, each sample shows the same whether it is lit or not: by every
+/// way of bringing things onto the screen, lines among them, and what is cut.
+#[test]
+fn lit_samples_see_the_primitives_that_others_see() {
+    let leaning = at(60.0, 20.0, 8.0, 20.0) * DMat4::from_rotation_y(0.7);
+    let cut = at(40.0, -8.0, -20.0, 390.0) * DMat4::from_rotation_x(-1.2);
+    let models = [(square(), leaning), (ball(5), at(50.0, -30.0, 10.0, 60.0)), (square(), cut)];
+    let (mut scene, view) = scene(&models);
+    for (id, tint) in (10..).zip([[255, 0, 0], [0, 255, 0], [200, 200, 0]]) {
+        edit(&mut scene, ObjectId(id), |object| {
+            (object.surface, object.tint) = (Surface::Texture, Color(tint));
+            object.edge_color = Color([0, 0, 255]);
+        });
+    }
+    let view = View {
+        edges_over_fill: true,
+        vertex_normals: true,
+        normal_length: NormalLength::BySize,
+        ..view
+    };
+    let mut looked_at = 0;
+    for key in ["vertices", "subpixels", "coverage", "depth"] {
+        for choice in Axis::named(key).unwrap().choices {
+            let others = Settings { samples: Samples::Four, ..choice.of(&Settings::default()) };
+            let lit = Settings { light: LightAt::Sample, ..others };
+            let [others, lit] = [others, lit].map(|settings| draw(&scene, &view, &settings, 80));
+            let pairs = others.pixels().as_flattened().iter().zip(lit.pixels().as_flattened());
+            // A mean half-way between two bytes may be rounded either way.
+            let apart = pairs.map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(apart <= Some(1), "{key} {}: {apart:?}", choice.word);
+            let mixed = |pixel: &&[u8; 4]| pixel[2] != 0 && pixel[2] != 255;
+            looked_at += lit.pixels().iter().filter(mixed).count();
+        }
+    }
+    assert!(looked_at > 5000, "{looked_at}");
+}
+
 #[test]
 fn the_only_sample_of_a_pixel_is_its_middle() {
     let (scene, view) = marraztu::io::default_scene();
@@ -316,7 +414,7 @@ fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
     assert!(*renderer.picture() == wanted);
     // Whenever it is given up, what is picked is of the last picture, and the next one is right.
     edit(&mut scene, ObjectId(10), |object| {
-        object.placement = marraztu::scene::Placed::new(at(50.0, 0.0, 0.0, 30.0));
+        object.placement = Placed::new(at(50.0, 0.0, 0.0, 30.0));
     });
     let moved = planned(&scene, LightAt::Sample);
     for patience in [0, 1, 5, 20, 60] {

@@ -233,7 +233,7 @@ fn legend<DB: DrawingBackend>(
             (true, _) => " (now)",
             (false, MarkKind::Model) => " (a model: not scored)",
             (false, MarkKind::Apart) => " (against 64 samples)",
-            _ if !report.is_scored(mark.point) => " (covers other pixels: not scored)",
+            _ if !report.is_scored(mark.point) => " (other pixels)",
             _ => "",
         };
         let (ms, error) = (brief(points[i].time), brief(points[i].error));
