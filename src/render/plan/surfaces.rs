@@ -15,7 +15,7 @@ use crate::base::{Shared, color::Color};
 use crate::render::effects::Matter;
 use crate::render::region::Region;
 use crate::scene::{
-    Arithmetic, ItemId, LeaveOut, Object, PartLook, SpecularForm, Surface, Texture, Wrap,
+    Arithmetic, ItemId, LeaveOut, LightAt, Object, PartLook, SpecularForm, Surface, Texture, Wrap,
 };
 
 /// What the surfaces of an object have in common.
@@ -135,10 +135,16 @@ impl Planner<'_> {
         // A highlight that is stronger than its light reaches further down, and so does one of a light
         // that is stronger where it arrives than where it begins.
         let strongest = matter.specular.iter().fold(1.0_f64, |most, ks| most.max(ks.abs()));
-        let arriving = lit().fold(1.0_f64, |most, shining| {
+        // Not at vertices: one that a lamp stands on has light beyond measure, and so little of it as is cut
+        // off here would be all that its polygons show.
+        let arriving = |shining: &Shining| {
             let lamp = &into.plan.lamps[shining.lamp as usize];
-            most.max((shining.effect.arrives)(lamp, region))
-        });
+            (shining.effect.arrives)(lamp, region)
+        };
+        let arriving = match self.settings.light {
+            LightAt::Face | LightAt::Vertex => 1.0,
+            LightAt::Pixel | LightAt::Sample => lit().map(arriving).fold(1.0, f64::max),
+        };
         let deeper = |floor: f64| (floor - libm::log2(strongest * arriving)).max(LOWEST);
         if self.settings.arithmetic == Arithmetic::F64 {
             return deeper(-24.0);
