@@ -138,14 +138,24 @@ fn draw_counted(counted: Counted) -> Result<(), Failure> {
     instructions::draw(frame).map_err(|error| Failure::Absent(error.to_string()))
 }
 
+/// How often each frame is counted: memory lies elsewhere in every process, and what is copied from
+/// there takes a few instructions more or less.
+const COUNTS: usize = 5;
+
+/// How many instructions that makes at the most: less than one for a hundred pixels.
+const SPREAD: u64 = 160;
+
 /// Counts the instructions of two frames that should have as many.
 fn same_instructions() -> Result<(), Failure> {
-    let (plain, off) = (counted("plain")?, counted("lights-off")?);
+    let least = |frame| {
+        (0..COUNTS).try_fold(u64::MAX, |least, _| counted(frame).map(|count| least.min(count)))
+    };
+    let (plain, off) = (least("plain")?, least("lights-off")?);
     tell(&format!(
         "instructions: {plain} for a frame, {off} with {} lights that are off",
         instructions::LIGHTS_OFF
     ))?;
-    if plain == off {
+    if plain.abs_diff(off) <= SPREAD {
         return Ok(());
     }
     say("error", &"lights that are off cost instructions");

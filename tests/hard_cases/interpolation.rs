@@ -8,12 +8,12 @@ use marraztu::lab::prove::stage::{self, Flat};
 use marraztu::render::Renderer;
 use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
 use marraztu::scene::{
-    Arithmetic, Filter, MeshSource, NONE, ObjectId, Part, Settings, SourceCorner, Surface, Texture,
-    View, Wrap,
+    Arithmetic, Filter, LightAt, Material, MaterialChoice, MeshSource, NONE, ObjectId, Part,
+    Settings, SourceCorner, Surface, Texture, View, Wrap,
 };
 
 use super::clipping::{ruler, textured};
-use super::common::{draw, edit, model_of, scene};
+use super::common::{draw, edit, model, model_of, scene};
 use super::figures::Figure;
 use super::oracle::{Eye, inside_by, meet};
 
@@ -239,6 +239,46 @@ fn case_40_a_constant_stays_that_constant_in_perspective_too() {
         }
     }
     assert!(off < 1e-6, "{off} texels of 2^-22");
+}
+
+#[test]
+fn case_40_the_same_light_at_all_corners_stays_that_light() {
+    let mut dice = Dice::new(42);
+    let (mut uneven, mut naive) = (0, 0);
+    for byte in 0..255_u8 {
+        // On the border between two bytes, where the last place decides.
+        let factor = (f64::from(byte) + 0.5) / 255.0;
+        let corners =
+            [0, 1, 2].map(|_| (dice.vector(1.0) * DVec3::new(90.0, 90.0, 300.0)).as_vec3());
+        let face = model("face", &corners.map(|c| c.to_array()), &[&[0, 1, 2], &[2, 1, 0]]);
+        let (mut scene, view) = scene(&[(face, DMat4::IDENTITY)]);
+        edit(&mut scene, ObjectId(10), |object| {
+            let (ambient, none) = ([factor; 3], [0.0; 3]);
+            let dull = Material { ambient, diffuse: none, specular: none, exponent: 1.0 };
+            object.material = MaterialChoice::Own(dull);
+        });
+        let settings = Settings { light: LightAt::Vertex, ..Settings::default() };
+        let picture = draw(&scene, &View { marks: false, ..view }, &settings, 64);
+        let background = scene.background.opaque();
+        let shown = picture.pixels().iter().filter(|pixel| **pixel != background);
+        let bytes: Vec<u8> = shown.map(|pixel| pixel[0]).collect();
+        uneven += bytes.iter().filter(|byte| **byte != bytes[0]).count();
+        let single = factor as f32;
+        for _ in 0..200 {
+            let [b, c] = [0, 1].map(|_| dice.part() as f32 / 2.0);
+            let mixed = single * (1.0 - b - c) + single * b + single * c;
+            naive += usize::from((mixed * 255.0 + 0.5) as u8 != (single * 255.0 + 0.5) as u8);
+        }
+    }
+    Figure {
+        case: 40,
+        what: "pixels of evenly lit triangles with another byte, on the border between two",
+        naive: Some(("corners weighted in f32, not their differences, of 51,000", naive as f64)),
+        ours: uneven as f64,
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
 }
 
 #[test]
