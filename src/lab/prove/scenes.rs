@@ -2,7 +2,7 @@
 //! depths from 0 to 1, and never dark in f32 where f64 sees light.
 
 use fearless_simd::Level;
-use glam::DVec3;
+use glam::{DMat4, DVec3, DVec4};
 
 use super::dice::Dice;
 use super::hostile::Hostile;
@@ -122,11 +122,12 @@ fn has_measure(scene: &Scene) -> bool {
     })
 }
 
-/// How often lamps are moved to see whether light is on a border.
+/// How often lamps and objects are moved to see whether light is on a border.
 const NUDGES: usize = 32;
 
 /// The scene with its lamps moved by a millionth part of how far things are from them and from the
-/// observer: some last places of 32 bits.
+/// observer, and its objects turned and stretched by as much: some last places of 32 bits. Where placing
+/// makes an object almost flat, that is what is left of the direction of its normals.
 fn nudged(scene: &Scene, view: &View, dice: &mut Dice) -> Scene {
     const PART: f64 = 1.0 / (1 << 20) as f64;
     let eye = scene.observer_frame(view).w_axis.truncate();
@@ -135,6 +136,14 @@ fn nudged(scene: &Scene, view: &View, dice: &mut Dice) -> Scene {
         place + dice.vector(1.0) * (PART * distance)
     };
     let mut scene = scene.clone();
+    let objects: Vec<_> = scene.objects.iter().map(|(id, object)| (id, object.clone())).collect();
+    for (id, mut object) in objects {
+        let mut axis = |v: DVec4| v * (DVec3::ONE + dice.vector(1.0) * PART).extend(1.0);
+        let m = object.placement.now();
+        let m = DMat4::from_cols(axis(m.x_axis), axis(m.y_axis), axis(m.z_axis), m.w_axis);
+        object.placement = Placed::new(m);
+        let _ = Command::Replace(Item::Object(id, Box::new(object))).apply(&mut scene);
+    }
     let lights: Vec<_> = scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
     for (id, light) in lights {
         let kind = match &light.kind {
