@@ -384,6 +384,51 @@ fn soften(scene: &mut Scene) {
 }
 
 #[test]
+fn case_48_a_highlight_ends_where_a_round_surface_turns_away() {
+    const RADIUS: f64 = 100.0;
+    let ball = ball(48);
+    let picture = |lamps: &[Lamp]| {
+        let (mut scene, view) = scene(&[(ball.clone(), at(RADIUS, 0.0, 0.0, 0.0))]);
+        soften(&mut scene);
+        with_lamps(&mut scene, lamps);
+        draw(&scene, &View { marks: false, light: None, ..view }, &Settings::default(), SIDE)
+    };
+    let dark = picture(&[Lamp::Ambient]);
+    let eye = Eye::first(SIDE);
+    // The normal where a ray meets the ball.
+    let normal = |i: usize| {
+        let ray = unit(eye.ray(i % SIDE, i / SIDE));
+        let along = -eye.at.dot(ray);
+        let half = RADIUS * RADIUS - (eye.at + ray * along).length_squared();
+        (half > 0.0).then(|| (eye.at + ray * (along - half.sqrt())) / RADIUS)
+    };
+    let mut dice = Dice::new(148);
+    let (mut differ, mut naive) = (0, 0);
+    for _ in 0..20 {
+        let to_light =
+            unit(DVec3::new(dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-0.9, 0.3)));
+        let lit = picture(&[Lamp::Ambient, Lamp::Sun(-to_light)]);
+        for i in 0..SIDE * SIDE {
+            // A polygon of the ball leans from its surface by 0.03 at most.
+            let Some(n) = normal(i).filter(|n| n.dot(to_light) < -0.05) else { continue };
+            differ += usize::from(lit.pixels()[i] != dark.pixels()[i]);
+            let mirrored = n * (2.0 * n.dot(to_light)) - to_light;
+            let v = unit(-eye.ray(i % SIDE, i / SIDE));
+            naive += usize::from(0.5 * mirrored.dot(v).max(0.0).powi(2) > 1.0 / 255.0);
+        }
+    }
+    Figure {
+        case: 48,
+        what: "pixels of a ball's dark side that a lamp changes",
+        naive: Some(("a highlight wherever R.V is above 0", naive as f64)),
+        ours: differ as f64,
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
+#[test]
 fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
     let dark = {
         let (mut scene, view) = lit_square(&[Lamp::Ambient]);
