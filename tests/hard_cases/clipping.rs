@@ -301,7 +301,9 @@ fn case_16_what_is_farther_off_than_whole_numbers_reach_is_cut() {
         let covered = covered(&picture, &scene);
         seen += covered.iter().filter(|seen| **seen).count();
         wrong += wrong_pixels(corners, &picture, &covered);
-        naive += corners.iter().filter(|c| c.abs().max_element() > 1e6).count();
+        let beyond = |x: &f64| (x * f64::from(SUBPIXELS)).abs() > f64::from(i32::MAX);
+        let eye = Eye::first(SIDE);
+        naive += corners.iter().filter(|corner| eye.pixel(**corner).iter().any(beyond)).count();
     }
     assert!(seen > 10_000, "{seen} pixels");
     Figure {

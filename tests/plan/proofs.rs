@@ -19,6 +19,15 @@ fn what_is_planned_is_what_is_drawn_when_nothing_is_left_out() {
     assert!(tally.counts["pixels that show something"] > 2_000_000, "they show little: {tally}");
 }
 
+/// A face with a corner beyond what 32 bits hold, seen in parallel; a lamp that stands in a vertex.
+#[test]
+fn lots_in_which_a_claim_once_failed_hold() {
+    for (name, lot) in [("scenes", 2456), ("plan", 4569)] {
+        let seen = Proof::named(name).unwrap().run(lot..lot + 1, &|_| {});
+        assert_eq!(seen.err(), None, "{name}");
+    }
+}
+
 #[test]
 fn every_broken_rule_is_caught() {
     let proof = Proof::named("rules").unwrap();
