@@ -52,6 +52,31 @@ fn every_way_of_lighting_is_the_same_to_a_step_in_both_arithmetics() {
     }
 }
 
+/// A mesh of which one corner is far beyond all others: what is seen of it is lit as if it were not there.
+#[test]
+fn a_stray_corner_takes_no_light_from_the_rest_in_either_arithmetic() {
+    let far = [1e15_f32, 1e15, -1e15];
+    let near = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+    let positions: Vec<[f32; 3]> =
+        near.into_iter().chain([far, far.map(|x| x + 1e9), far.map(|x| x * 1.5)]).collect();
+    let stray = model("stray", &positions, &[&[0, 1, 2, 3], &[4, 5, 6]]);
+    for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
+        for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+            let settings = Settings { light, arithmetic, ..Settings::default() };
+            let picture = |model: &Shared<Model>| {
+                let (scene, view) = scene(&[(model.clone(), at(60.0, 10.0, 5.0, 0.0))]);
+                draw(&scene, &without_marks(view), &settings, 64)
+            };
+            let (with, without) = (picture(&stray), picture(&square()));
+            let middle = |picture: &Picture| picture.pixel(34, 30);
+            assert!(middle(&without)[0] > 20, "the square is lit: {:?}", middle(&without));
+            let apart =
+                middle(&with).iter().zip(middle(&without)).map(|(a, b)| a.abs_diff(b)).max();
+            assert!(apart <= Some(1), "{light:?} {arithmetic:?}: {apart:?}");
+        }
+    }
+}
+
 #[test]
 fn the_first_scene_is_the_same_to_a_step_in_both_arithmetics_and_everywhere_at_its_borders() {
     let (scene, view) = marraztu::io::default_scene();
