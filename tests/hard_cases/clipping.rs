@@ -196,6 +196,52 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
     .hold();
 }
 
+#[test]
+fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
+    // Edges up to 10^13 long through the near plane, where the last place of the part that is kept
+    // is a pixel: the same face, once as it is and once the other way round.
+    let mut dice = Dice::new(131);
+    let (mut wrong, mut parted, mut pixels) = (0, 0, 0);
+    for _ in 0..400 {
+        let long = dice.one_of(&[1.0, 1e4, 1e9, 1e13]);
+        let mut corner = |side: f64, before: bool| {
+            let z = dice.real(0.0, 30.0 * long) * if before { -1.0 } else { 1.0 };
+            let off = dice.real(-9.0, 9.0) * long;
+            DVec3::new(off + side, dice.real(-9.0, 9.0) * long, z + 399.0)
+        };
+        let corners = [corner(-30.0, true), corner(0.0, false), corner(30.0, true)];
+        let positions = corners.map(|corner| corner.as_vec3().to_array());
+        let shown = |face: &[u32]| {
+            let (mut scene, view) = scene(&[(model("face", &positions, &[face]), DMat4::IDENTITY)]);
+            edit(&mut scene, ObjectId(10), |object| object.two_sided = true);
+            let view = View { marks: false, ..view };
+            let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(64, 64));
+            let mut renderer = Renderer::default();
+            renderer.render(&plan);
+            let seen = |i: usize| renderer.hit(i % 64, i / 64).is_some();
+            (0..64 * 64).map(seen).collect::<Vec<_>>()
+        };
+        let (one, other) = (shown(&[0, 1, 2]), shown(&[2, 1, 0]));
+        pixels += one.iter().filter(|seen| **seen).count();
+        wrong += one.iter().zip(&other).filter(|(a, b)| a != b).count();
+        let doubles = positions.map(|p| DVec3::from(p.map(f64::from)));
+        parted += usize::from(parts_where_cut_by_direction(doubles[0], doubles[1]));
+    }
+    assert!(pixels > 10_000, "{pixels} pixels were looked at");
+    Figure {
+        case: 13,
+        what: "pixels that a cut face has only one way round, of 400 faces",
+        naive: Some((
+            "edges whose cut has other bits from its other end, of 400",
+            f64::from(u32::try_from(parted).unwrap()),
+        )),
+        ours: f64::from(u32::try_from(wrong).unwrap()),
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
 /// Whether the place where an edge is cut has other bits when it is computed from its other end.
 fn parts_where_cut_by_direction(a: DVec3, b: DVec3) -> bool {
     let (da, db) = (399.0 - a.z, 399.0 - b.z);

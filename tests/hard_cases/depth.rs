@@ -169,8 +169,13 @@ fn exact_depth(flat: &Flat, x: i32, y: i32) -> f64 {
 
 /// The same by a plane through the corners, in f32.
 fn planar_depth(flat: &Flat, x: i32, y: i32) -> f64 {
-    let [p, q, r] = flat.corners.map(|c| [c.x as f32 / 256.0, c.y as f32 / 256.0]);
-    let [a, b, c] = flat.distances.map(|d| (1.0 - d / FAR) as f32);
+    planar(flat.corners, flat.distances.map(|d| (1.0 - d / FAR) as f32), x, y)
+}
+
+/// What is given at the corners of a triangle, at a pixel's middle, by a plane through them in f32.
+pub(super) fn planar(corners: [Snapped; 3], values: [f32; 3], x: i32, y: i32) -> f64 {
+    let [p, q, r] = corners.map(|c| [c.x as f32 / 256.0, c.y as f32 / 256.0]);
+    let [a, b, c] = values;
     let (e, f) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
     let area = e[0] * f[1] - e[1] * f[0];
     let dx = ((b - a) * f[1] - (c - a) * e[1]) / area;
@@ -233,6 +238,49 @@ fn case_33_on_slivers_depth_is_right_to_two_last_places_and_within_the_corners()
         ours,
         bound: 2.0,
         unit: "ulp of the largest corner",
+    }
+    .hold();
+}
+
+#[test]
+fn case_33_no_depth_of_a_small_triangle_is_beyond_those_of_its_corners() {
+    // In each field of eight pixels a triangle with its corners on the middles of pixels, where two
+    // edge functions are 0 and the third is the whole area.
+    const SIDE: usize = 512;
+    let mut dice = Dice::new(330);
+    let mut flats = Vec::new();
+    for field in 0..64 * 64 {
+        let (x, y) = (field % 64 * 8, field / 64 * 8);
+        let mut middle = |from: i32| (from + dice.between(0, 7)) * SUBPIXELS + SUBPIXELS / 2;
+        let corners = [0; 3].map(|_| Snapped { x: middle(x), y: middle(y) });
+        let distances = [0; 3].map(|_| f64::from(dice.between(0, 1 << 12)) / 4.0);
+        flats.push(Flat { corners, distances });
+    }
+    let (mut scene, view) = stage::scene(&[flats.clone()], SIDE);
+    edit(&mut scene, ObjectId(1), |object| object.two_sided = true);
+    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
+    let mut renderer = Renderer::default();
+    renderer.render(&plan);
+    let (mut ours, mut naive, mut pixels) = (0, 0, 0);
+    for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+        let Some(hit) = renderer.hit(x, y) else { continue };
+        let flat = &flats[y / 8 * 64 + x / 8];
+        let depths = flat.distances.map(|d| 1.0 - d / FAR);
+        let (least, most) =
+            depths.iter().fold((1.0_f64, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
+        let beyond = |depth: f64| usize::from(!(least..=most).contains(&depth));
+        ours += beyond(f64::from(hit.depth));
+        naive += beyond(planar_depth(flat, x as i32, y as i32));
+        pixels += 1;
+    }
+    assert!(pixels > 10_000, "{pixels} pixels were looked at");
+    Figure {
+        case: 33,
+        what: "pixels of small triangles with depths beyond their corners'",
+        naive: Some(("a plane equation in f32", f64::from(u32::try_from(naive).unwrap()))),
+        ours: f64::from(u32::try_from(ours).unwrap()),
+        bound: 0.0,
+        unit: "pixels",
     }
     .hold();
 }

@@ -14,6 +14,7 @@ use marraztu::scene::{
 
 use super::clipping::{ruler, textured};
 use super::common::{draw, edit, model, model_of, scene};
+use super::depth::planar;
 use super::figures::Figure;
 use super::oracle::{Eye, inside_by, meet};
 
@@ -79,27 +80,35 @@ fn case_37_a_texture_lies_still_on_a_wall_that_runs_away() {
 #[test]
 fn case_38_no_colour_is_beyond_those_of_the_corners() {
     let mut dice = Dice::new(38);
-    let (mut beyond, mut pixels) = (0, 0);
+    let (mut beyond, mut naive, mut pixels) = (0, 0.0_f64, 0);
     for _ in 0..400 {
         let side = SIDE as i32 * SUBPIXELS;
         let mut corner = || Snapped { x: dice.between(-999, side), y: dice.between(-999, side) };
         let (p, q) = (corner(), corner());
         let beside = Snapped { x: p.x + dice.between(-2, 2), y: p.y + dice.between(-2, 2) };
         let corners = [p, q, beside];
-        // Colours from 100/255 to 101/255.
-        let colors = [0, 1, 2].map(|_| [dice.between(100, 101) as f32 / 255.0; 3]);
+        let bytes = [0, 1, 2].map(|_| dice.between(100, 101));
+        let within = bytes[0].min(bytes[1]).min(bytes[2])..=bytes[0].max(bytes[1]).max(bytes[2]);
+        let colors = bytes.map(|byte| [byte as f32 / 255.0; 3]);
         let picture = painted(corners, colors, SIDE);
-        let shown = picture.pixels().iter().filter(|pixel| pixel[..3] != [0; 3]);
-        for pixel in shown {
+        let channel = colors.map(|color| color[0]);
+        for (i, pixel) in picture.pixels().iter().enumerate() {
+            if pixel[..3] == [0; 3] {
+                continue;
+            }
             pixels += 1;
-            beyond += usize::from(pixel[..3].iter().any(|byte| !(100..=101).contains(byte)));
+            beyond +=
+                usize::from(pixel[..3].iter().any(|byte| !within.contains(&i32::from(*byte))));
+            let planar = planar(corners, channel, (i % SIDE) as i32, (i / SIDE) as i32);
+            let (least, most) = (f64::from(*within.start()), f64::from(*within.end()));
+            naive = naive.max(least - planar * 255.0).max(planar * 255.0 - most);
         }
     }
     assert!(pixels > 100, "{pixels}");
     Figure {
         case: 38,
         what: "pixels of slivers with colours beyond their corners'",
-        naive: None,
+        naive: Some(("a plane equation in f32: byte steps beyond", naive)),
         ours: beyond as f64,
         bound: 0.0,
         unit: "pixels",
@@ -388,15 +397,4 @@ fn between([p, q, r]: [Snapped; 3], u: [f32; 3], x: i32, y: i32) -> f64 {
     let parts = [edge(q, r), edge(r, p), edge(p, q)];
     let sum: f64 = parts.iter().sum();
     parts.iter().zip(u).map(|(part, u)| part * f64::from(u)).sum::<f64>() / sum
-}
-
-/// The same by a plane equation in f32.
-fn planar(corners: [Snapped; 3], u: [f32; 3], x: i32, y: i32) -> f64 {
-    let [p, q, r] = corners.map(|c| [c.x as f32 / 256.0, c.y as f32 / 256.0]);
-    let (e, f) = ([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
-    let area = e[0] * f[1] - e[1] * f[0];
-    let dx = ((u[1] - u[0]) * f[1] - (u[2] - u[0]) * e[1]) / area;
-    let dy = ((u[2] - u[0]) * e[0] - (u[1] - u[0]) * f[0]) / area;
-    let constant = u[0] - dx * p[0] - dy * p[1];
-    f64::from(constant + dx * (x as f32 + 0.5) + dy * (y as f32 + 0.5))
 }

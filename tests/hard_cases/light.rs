@@ -203,6 +203,7 @@ fn case_43_a_cosine_above_one_does_no_harm() {
     // more.
     let mut dark = 0;
     let mut pixels = 0;
+    let mut bright = 0;
     for i in 0..40 {
         let turn = DMat4::from_rotation_y(f64::from(i) * 0.02) * DMat4::from_rotation_x(0.013);
         let place = turn * at(90.0, 0.0, 0.0, 0.0);
@@ -221,12 +222,18 @@ fn case_43_a_cosine_above_one_does_no_harm() {
         });
         scene.cameras = List::from_iter([(view.camera, camera)]);
         let view = View { marks: false, light: None, ..view };
+        // With an exponent of 10^7 a cosine of a last place above 1 is light three times too bright.
+        let mut piercing = scene.clone();
+        let sharp = stuff(&Matter { exponent: 1e7, ..matter });
+        edit(&mut piercing, ObjectId(10), |object| object.material = sharp.clone());
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
             let settings = Settings { arithmetic, ..Settings::default() };
             let middle = draw(&scene, &view, &settings, 33).pixel(16, 16)[0];
             // 1 / (1 + 5e-6 300 + 5e-6 300^2) = 0.689 of 255 is 175.7.
             dark += usize::from(!(170..=178).contains(&middle));
             pixels += 1;
+            let shown = draw(&piercing, &view, &settings, 33);
+            bright += shown.pixels().iter().filter(|pixel| pixel[0] > 178).count();
         }
     }
     assert_eq!(pixels, 80);
@@ -237,6 +244,15 @@ fn case_43_a_cosine_above_one_does_no_harm() {
         ours: dark as f64,
         bound: 0.0,
         unit: "times",
+    }
+    .hold();
+    Figure {
+        case: 43,
+        what: "pixels brighter than the lamp, with an exponent of 10^7",
+        naive: None,
+        ours: bright as f64,
+        bound: 0.0,
+        unit: "pixels",
     }
     .hold();
 }
@@ -526,16 +542,23 @@ fn case_50_the_order_of_lights_does_not_show() {
         lamps.push(Lamp::Bulb(DVec3::Z * 150.0 + dice.vector(120.0)));
     }
     let (mut scene, view) = scene(&[(ball(16), at(120.0, 0.0, 0.0, 0.0))]);
-    let matter = Matter { ambient: 0.03, diffuse: 0.11, specular: 0.07, exponent: 9.0 };
-    edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
+    // Three channels with their own digits: one in a hundred thousand bytes stands so near to the
+    // border of the next that the last place of a sum decides.
+    let material = Material {
+        ambient: [0.03, 0.041, 0.023],
+        diffuse: [0.11, 0.13, 0.17],
+        specular: [0.07, 0.05, 0.09],
+        exponent: 9.0,
+    };
+    edit(&mut scene, ObjectId(10), |object| object.material = MaterialChoice::Own(material));
     with_lamps(&mut scene, &lamps);
     let view = View { marks: false, light: None, ..view };
-    let first = draw(&scene, &view, &Settings::default(), 256);
+    let first = draw(&scene, &view, &Settings::default(), 512);
     let mut differ = 0;
     for _ in 0..30 {
         let id = ItemId::Light(LightId(1 + dice.below(10) as u32));
         Command::Reorder { id, to: dice.index(10) }.apply(&mut scene).unwrap();
-        let now = draw(&scene, &view, &Settings::default(), 256);
+        let now = draw(&scene, &view, &Settings::default(), 512);
         differ += first.pixels().iter().zip(now.pixels()).filter(|(a, b)| a != b).count();
     }
     // Sums of ten numbers of f32, in two orders.

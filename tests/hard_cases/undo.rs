@@ -49,8 +49,14 @@ fn case_63_deletion_and_return_and_joined_drags_bring_back_every_stack() {
             history.perform(scene, command, Gesture::Part(number), "Turn").unwrap();
         }
     };
+    let stack = |scene: &Scene, view: &View| {
+        scene.objects.get(view.object.unwrap()).unwrap().placement.clone()
+    };
     for number in 0..5 {
+        let still = stack(&scene, &view);
         drag(&mut history, &mut scene, &view, number);
+        // A hundred parts are one step, and under it lies what was there before.
+        assert!(stack(&scene, &view).undone() == Some(still), "drag {number}");
         seen.push(scene.clone());
         let before = scene.clone();
         let id = [ObjectId(3), ObjectId(1), ObjectId(2)][usize::from(number > 2)];
