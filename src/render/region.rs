@@ -14,6 +14,10 @@ const ROUNDING: f64 = 2e-6;
 /// What the computed cosine of an angle may be wrong by: some 10 times as much as was ever seen.
 const COSINE_ROUNDING: f64 = 4e-6;
 
+/// The part of its distance by which a region's middle has to lie off a cone's axis: nearer to it, the
+/// way there from the axis is rounding.
+const LEAST_ASIDE: f64 = 1e-6;
+
 /// The cosine up to which light along a face may be taken to come from either side of it.
 pub(super) const EDGE_ON: f64 = 1e-4;
 
@@ -112,8 +116,9 @@ impl Region {
             self.corners.iter().all(|corner| apart(corner) > error)
         };
         let middle = self.corners.iter().sum::<DVec3>() / 8.0 - apex;
-        let aside = (middle - axis * axis.dot(middle)).try_normalize();
-        beyond(-axis) || aside.is_some_and(|aside| beyond(aside * wider - axis * sine))
+        let aside = middle - axis * axis.dot(middle);
+        let off_axis = aside.length() / middle.length();
+        beyond(-axis) || off_axis > LEAST_ASIDE && beyond(aside.normalize() * wider - axis * sine)
     }
 }
 
@@ -139,6 +144,23 @@ mod tests {
         assert!(!region.misses_cone(DVec3::ZERO, DVec3::X, border - 1e-3));
         assert!(region.misses_cone(DVec3::ZERO, DVec3::X, border + 1e-3));
         assert!(region.misses_cone(DVec3::ZERO, -DVec3::X, 0.1), "it shines the other way");
+    }
+
+    #[test]
+    fn no_cone_whose_axis_goes_through_the_middle_misses() {
+        for i in 0..1000 {
+            let angle = |step: f64| (f64::from(i) * step).rem_euclid(6.0);
+            let axis =
+                DVec3::new(libm::cos(angle(0.7)), libm::sin(angle(0.7)), libm::sin(angle(1.3)));
+            let (axis, far) = (axis.normalize(), 300.0);
+            let region = cube(axis * far, 0.5);
+            assert!(!region.misses_cone(DVec3::ZERO, axis, 0.9999), "{axis}");
+            // As much off the axis as rounding is, or more.
+            for off in [1e-13, 1e-10, 1e-7, 1e-3] {
+                let turned = (axis + DVec3::new(off, -off, off)).normalize();
+                assert!(!region.misses_cone(DVec3::ZERO, turned, 0.9999), "{axis} {off}");
+            }
+        }
     }
 
     #[test]

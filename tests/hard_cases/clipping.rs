@@ -198,18 +198,21 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
 
 #[test]
 fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
-    // Edges up to 10^13 long through the near plane, where the last place of the part that is kept
-    // is a pixel: the same face, once as it is and once the other way round.
+    // The near plane cuts edges off within the view that come from up to 10^13 behind it, where the
+    // last place of their length is a pixel: the same face, as it is and the other way round.
     let mut dice = Dice::new(131);
     let (mut wrong, mut parted, mut pixels) = (0, 0, 0);
     for _ in 0..400 {
         let long = dice.one_of(&[1.0, 1e4, 1e9, 1e13]);
-        let mut corner = |side: f64, before: bool| {
-            let z = dice.real(0.0, 30.0 * long) * if before { -1.0 } else { 1.0 };
-            let off = dice.real(-9.0, 9.0) * long;
-            DVec3::new(off + side, dice.real(-9.0, 9.0) * long, z + 399.0)
-        };
-        let corners = [corner(-30.0, true), corner(0.0, false), corner(30.0, true)];
+        let mut beside =
+            |wide: f64| DVec3::new(dice.real(-wide, wide), dice.real(-wide, wide), 399.0);
+        let corners = [beside(0.8), beside(9.0 * long), beside(0.8)];
+        let [near, far] = [dice.real(0.05, 0.9), long * dice.real(1.0, 30.0)];
+        let corners = [
+            corners[0] - DVec3::Z * near,
+            corners[1] + DVec3::Z * far,
+            corners[2] - DVec3::Z * (1.0 - near),
+        ];
         let positions = corners.map(|corner| corner.as_vec3().to_array());
         let shown = |face: &[u32]| {
             let (mut scene, view) = scene(&[(model("face", &positions, &[face]), DMat4::IDENTITY)]);

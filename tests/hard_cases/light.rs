@@ -1,6 +1,6 @@
 //! Light, against the page's equation along rays.
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DQuat, DVec3};
 use marraztu::base::image::{Picture, Size};
 use marraztu::edit::{Stroke, place};
 use marraztu::lab::prove::dice::Dice;
@@ -8,9 +8,9 @@ use marraztu::lab::prove::pictures::levels;
 use marraztu::render::numbers::real::{Power, Real as _};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Aim, Arithmetic, Command, ItemId, Light, LightAt, LightId, LightKind, List, Material,
-    MaterialChoice, MeshSource, NONE, ObjectId, Orbit, Part, Placed, Scene, Settings, SourceCorner,
-    SpotOwner, View,
+    Aim, Arithmetic, Command, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,
+    MeshSource, NONE, ObjectId, Orbit, Part, Placed, Scene, Settings, SourceCorner, SpotOwner,
+    View,
 };
 
 use super::common::{at, ball, draw, edit, model_of, scene, square};
@@ -199,28 +199,22 @@ fn case_43_a_cosine_above_one_does_no_harm() {
         v.dot(v).acos().is_nan()
     });
     let naive = above.count();
-    // A spot from the eye straight at a square, and its highlight: both cosines are 1, or a little
-    // more.
+    // A spot from the eye along the ray of a pixel, straight at a square, and its highlight: both
+    // cosines are 1 there, or a little more.
+    const PICTURE: usize = 33;
+    let eye = Eye::first(PICTURE);
     let mut dark = 0;
     let mut pixels = 0;
     let mut bright = 0;
-    for i in 0..40 {
-        let turn = DMat4::from_rotation_y(f64::from(i) * 0.02) * DMat4::from_rotation_x(0.013);
-        let place = turn * at(90.0, 0.0, 0.0, 0.0);
+    for _ in 0..40 {
+        let (x, y) = (dice.index(PICTURE), dice.index(PICTURE));
+        let ray = unit(eye.ray(x, y));
+        let turn = DMat4::from_quat(DQuat::from_rotation_arc(DVec3::Z, -ray));
+        let place = DMat4::from_translation(eye.at + ray * 300.0) * turn * at(90.0, 0.0, 0.0, 0.0);
         let (mut scene, view) = scene(&[(square(), place)]);
         let matter = Matter { ambient: 0.0, diffuse: 0.0, specular: 1.0, exponent: 1.0 };
         edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
-        let normal = unit(turn.transform_vector3(DVec3::Z));
-        let lamp = Lamp::Spot(normal * 300.0, -normal, 1.0, 1000.0);
-        with_lamps(&mut scene, &[lamp]);
-        // The eye is where the lamp is, so that R.V is 1 where the axis meets the square.
-        let mut camera = scene.selected_camera(&view).clone();
-        camera.pose = Placed::new(marraztu::scene::Pose {
-            eye: normal * 300.0,
-            axes: glam::DMat3::from_mat4(turn),
-            mode: marraztu::scene::CameraMode::Fly,
-        });
-        scene.cameras = List::from_iter([(view.camera, camera)]);
+        with_lamps(&mut scene, &[Lamp::Spot(eye.at, ray, 1.0, 1000.0)]);
         let view = View { marks: false, light: None, ..view };
         // With an exponent of 10^7 a cosine of a last place above 1 is light three times too bright.
         let mut piercing = scene.clone();
@@ -228,11 +222,11 @@ fn case_43_a_cosine_above_one_does_no_harm() {
         edit(&mut piercing, ObjectId(10), |object| object.material = sharp.clone());
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
             let settings = Settings { arithmetic, ..Settings::default() };
-            let middle = draw(&scene, &view, &settings, 33).pixel(16, 16)[0];
+            let middle = draw(&scene, &view, &settings, PICTURE).pixel(x, y)[0];
             // 1 / (1 + 5e-6 300 + 5e-6 300^2) = 0.689 of 255 is 175.7.
             dark += usize::from(!(170..=178).contains(&middle));
             pixels += 1;
-            let shown = draw(&piercing, &view, &settings, 33);
+            let shown = draw(&piercing, &view, &settings, PICTURE);
             bright += shown.pixels().iter().filter(|pixel| pixel[0] > 178).count();
         }
     }
