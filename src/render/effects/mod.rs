@@ -55,6 +55,21 @@ impl<T: Copy + Default> Batch<T> {
     }
 }
 
+impl<T: Number> Batch<T> {
+    /// Puts some places in, from `at` on.
+    #[inline(always)]
+    pub(super) fn put<M: Machine<Number = T>>(
+        &mut self,
+        machine: M,
+        sample: Sample<M::R>,
+        at: usize,
+    ) {
+        store(machine, sample.position, &mut self.position, at);
+        store(machine, sample.normal, &mut self.normal, at);
+        store(machine, sample.to_eye, &mut self.to_eye, at);
+    }
+}
+
 /// A place on a surface, or several.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<R> {

@@ -29,7 +29,7 @@ use self::lamps::lamps;
 pub(super) use self::observer::ObserverSpace;
 use self::planner::Planner;
 use self::rules::Rules;
-pub(super) use self::tile::TilePlan;
+pub(super) use self::tile::{TileLight, TilePlan};
 pub use self::turning::Turning;
 use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectUse, State, Thing};

@@ -40,12 +40,22 @@ impl<T: Light> Kernel<T> for Finish<'_, T> {
         for at in (0..batch.len).step_by(M::LANES) {
             let mut color = own.at(machine, at);
             if lit {
-                let (Triple([r, g, b]), Triple([tr, tg, tb])) =
-                    (load(machine, &batch.diffuse, at), color);
-                let specular = load(machine, &batch.specular, at);
-                color = Triple([tr * r, tg * g, tb * b]).plus(specular);
+                color = reflected(machine, color, batch, at);
             }
             colors.store(machine, color, at);
         }
     }
+}
+
+/// t D + S at some places.
+#[inline(always)]
+pub(super) fn reflected<M: Machine>(
+    machine: M,
+    Triple([tr, tg, tb]): Triple<M::R>,
+    batch: &Batch<M::Number>,
+    at: usize,
+) -> Triple<M::R> {
+    let Triple([r, g, b]) = load(machine, &batch.diffuse, at);
+    let specular = load(machine, &batch.specular, at);
+    Triple([tr * r, tg * g, tb * b]).plus(specular)
 }

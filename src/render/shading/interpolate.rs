@@ -13,7 +13,7 @@ use super::colors::Colors;
 use super::faces::{Faces, picked};
 use super::items::Items;
 use super::located::Located;
-use crate::render::effects::{Batch, Rows, set, store};
+use crate::render::effects::{Batch, Rows, Sample, set, store};
 use crate::render::geometry::coverage::SUBPIXELS;
 use crate::render::numbers::pick::{SLOTS, paged};
 use crate::render::numbers::real::{Kernel, Machine, Number, Real, Triple};
@@ -92,26 +92,24 @@ pub(super) fn surroundings<T: Number>(
     located: &Located<T>,
     batch: &mut Batch<T>,
 ) {
-    let rays = Rays::new(plan);
-    let normals = matrix(draw.view_from_normal);
+    let look = Look::new(plan, draw);
     let way = plan.ways.rare_roots();
     match (items.shared, way) {
         (true, Some(_)) => {
-            let kernel = Surroundings::<T, 4, true> { items, faces, located, batch, rays, normals };
+            let kernel = Surroundings::<T, 4, true> { items, faces, located, batch, look };
             T::run_by(level, way, kernel);
         }
         (false, Some(_)) => {
-            let kernel =
-                Surroundings::<T, 4, false> { items, faces, located, batch, rays, normals };
+            let kernel = Surroundings::<T, 4, false> { items, faces, located, batch, look };
             T::run_by(level, way, kernel);
         }
         (true, None) => paged!(faces.count, PAGES => T::run(
             level,
-            Surroundings::<T, PAGES, true> { items, faces, located, batch, rays, normals },
+            Surroundings::<T, PAGES, true> { items, faces, located, batch, look },
         )),
         (false, None) => paged!(faces.count, PAGES => T::run(
             level,
-            Surroundings::<T, PAGES, false> { items, faces, located, batch, rays, normals },
+            Surroundings::<T, PAGES, false> { items, faces, located, batch, look },
         )),
     }
 }
@@ -148,13 +146,51 @@ impl<T: Number> Rays<T> {
     }
 }
 
+/// How the observer looks at a draw.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Look<T> {
+    rays: Rays<T>,
+    /// The columns of the matrix that turns normals into view space.
+    normals: [[T; 3]; 3],
+}
+
+impl<T: Number> Look<T> {
+    pub(super) fn new(plan: &FramePlan, draw: &Draw) -> Self {
+        Self { rays: Rays::new(plan), normals: matrix(draw.view_from_normal) }
+    }
+
+    /// Place, normal and direction to the observer of some pixels, from the normal there in object space,
+    /// where in the picture they are looked at, and their w; in parallel projection `z` is asked.
+    #[inline(always)]
+    pub(super) fn at<M: Machine<Number = T>>(
+        &self,
+        machine: M,
+        Triple([x, y, z]): Triple<M::R>,
+        [column, row]: [M::R; 2],
+        w: M::R,
+        depth: impl FnOnce() -> M::R,
+    ) -> Sample<M::R> {
+        let Self { rays, normals: [nx, ny, nz] } = *self;
+        let (nx, ny, nz) = (set(machine, nx), set(machine, ny), set(machine, nz));
+        let normal = nx.times(x).plus(ny.times(y)).plus(nz.times(z)).unit();
+        let (zero, one) = (machine.lift(0.0), machine.lift(1.0));
+        let x = column * machine.set(rays.x[0]) + machine.set(rays.x[1]);
+        let y = row * machine.set(rays.y[0]) + machine.set(rays.y[1]);
+        let (position, to_eye) = if rays.parallel {
+            (Triple([x, y, depth()]), Triple([zero, zero, one]))
+        } else {
+            (Triple([x * w, y * w, -w]), Triple([-x, -y, one]).unit())
+        };
+        Sample { position, normal, to_eye }
+    }
+}
+
 struct Surroundings<'a, T, const PAGES: usize, const SHARED: bool> {
     items: &'a Items,
     faces: &'a Faces<T>,
     located: &'a Located<T>,
     batch: &'a mut Batch<T>,
-    rays: Rays<T>,
-    normals: [[T; 3]; 3],
+    look: Look<T>,
 }
 
 impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
@@ -162,37 +198,30 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
 {
     #[inline(always)]
     fn run<M: Machine<Number = T>>(self, machine: M) {
-        let Self { items, faces, located, batch, rays, normals } = self;
-        let [nx, ny, nz] = normals;
-        let (nx, ny, nz) = (set(machine, nx), set(machine, ny), set(machine, nz));
+        let Self { items, faces, located, batch, look } = self;
         for at in (0..items.len).step_by(M::LANES) {
             let slots = machine.slots(&items.slots, at);
             let weights =
                 [machine.load(&located.weights[0], at), machine.load(&located.weights[1], at)];
-            let Triple([x, y, z]) = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
-            let n = nx.times(x).plus(ny.times(y)).plus(nz.times(z)).unit();
-            store(machine, n, &mut batch.normal, at);
-
-            let (one, half) = (machine.lift(1.0), machine.lift(0.5));
-            let [column, row] = match SHARED {
+            let normal = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
+            let half = machine.lift(0.5);
+            let place = match SHARED {
                 true => {
                     [machine.load(&located.places[0], at), machine.load(&located.places[1], at)]
                 }
                 false => [machine.whole(&items.x, at) + half, machine.whole(&items.y, at) + half],
             };
-            let x = column * machine.set(rays.x[0]) + machine.set(rays.x[1]);
-            let y = row * machine.set(rays.y[0]) + machine.set(rays.y[1]);
-            if rays.parallel {
-                let Triple([z0, z1, z2]) = picked::<M, PAGES>(machine, &faces.z, slots);
-                let z = z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1];
-                store(machine, Triple([x, y, z]), &mut batch.position, at);
-                let zero = machine.lift(0.0);
-                store(machine, Triple([zero, zero, one]), &mut batch.to_eye, at);
-            } else {
-                let w = machine.load(&located.w, at);
-                store(machine, Triple([x * w, y * w, -w]), &mut batch.position, at);
-                store(machine, Triple([-x, -y, one]).unit(), &mut batch.to_eye, at);
-            }
+            let w = machine.load(&located.w, at);
+            let sample = look.at(machine, normal, place, w, || {
+                depth_between(picked::<M, PAGES>(machine, &faces.z, slots), weights)
+            });
+            batch.put(machine, sample, at);
         }
     }
+}
+
+/// z between corners, in parallel projection.
+#[inline(always)]
+pub(super) fn depth_between<R: Real>(Triple([z0, z1, z2]): Triple<R>, weights: [R; 2]) -> R {
+    z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1]
 }

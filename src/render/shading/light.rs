@@ -13,7 +13,7 @@ use super::faces::Faces;
 use crate::base::math::each;
 use crate::render::effects::{BATCH, Batch, Light, Shine, load, set, store};
 use crate::render::numbers::real::{Kernel, Machine, Number, Real, Triple};
-use crate::render::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded, Stage};
+use crate::render::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded, Stage, TileLight};
 use crate::scene::{LightAt, Normalising, Normals, dvec3};
 
 /// Light at the vertices of a frame, and what it takes to light faces.
@@ -375,5 +375,20 @@ pub(super) fn run<T: Light>(
 ) {
     for (stage, shine) in stages.iter().zip(shines) {
         T::add_light(stage.variant(), level, batch, shine);
+    }
+}
+
+impl TileLight<'_> {
+    /// Adds up the light that reaches a tile at every place of a batch.
+    pub(super) fn shine<T: Light>(&self, shines: &[Shine<T>], level: Level, batch: &mut Batch<T>) {
+        match self.kept {
+            None => run(self.stages, shines, level, batch),
+            Some(kept) => {
+                for place in kept {
+                    let at = *place as usize..=*place as usize;
+                    run(&self.stages[at.clone()], &shines[at], level, batch);
+                }
+            }
+        }
     }
 }

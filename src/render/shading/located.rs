@@ -10,8 +10,8 @@ use glam::DVec3;
 use super::faces::{Faced, Faces, picked};
 use super::items::Items;
 use super::weights::{barycentric, cut_place, cut_w, cut_weights};
-use super::whole::{self, Blocks, Canvas, Linear as _, Wide};
-use crate::render::effects::{BATCH, set};
+use super::whole::{self, BlockLight, Blocks, Canvas, Linear as _, Wide};
+use crate::render::effects::{BATCH, Batch, set};
 use crate::render::geometry::coverage::Triangle;
 use crate::render::numbers::pick::{SLOTS, paged, pick};
 use crate::render::numbers::real::{Kernel, Machine, Number, Triple};
@@ -48,6 +48,15 @@ pub trait Interpolated: Faced {
     /// Mixes the colours that the corners of one triangle carry in blocks of a tile that it covers as
     /// a whole, where that can be done in one pass; says whether it can.
     fn mix_blocks(level: Level, faces: &Faces<Self>, blocks: Blocks, to: &mut Canvas<'_>) -> bool;
+    /// Lights the pixels of blocks of a tile that one triangle covers as a whole, where that can be done
+    /// in one pass a block; says whether it can.
+    fn light_blocks(
+        level: Level,
+        faces: &Faces<Self>,
+        blocks: Blocks,
+        light: (BlockLight<'_, Self>, &mut Batch<Self>),
+        to: &mut Canvas<'_>,
+    ) -> bool;
 }
 
 impl<T: Interpolated> Located<T> {
@@ -131,6 +140,16 @@ impl Interpolated for f64 {
     fn mix_blocks(_: Level, _: &Faces<Self>, _: Blocks, _: &mut Canvas<'_>) -> bool {
         false
     }
+
+    fn light_blocks(
+        _: Level,
+        _: &Faces<Self>,
+        _: Blocks,
+        _: (BlockLight<'_, Self>, &mut Batch<Self>),
+        _: &mut Canvas<'_>,
+    ) -> bool {
+        false
+    }
 }
 
 impl Interpolated for f32 {
@@ -157,6 +176,16 @@ impl Interpolated for f32 {
 
     fn mix_blocks(level: Level, faces: &Faces<Self>, blocks: Blocks, to: &mut Canvas<'_>) -> bool {
         whole::mix(level, faces, blocks, to)
+    }
+
+    fn light_blocks(
+        level: Level,
+        faces: &Faces<Self>,
+        blocks: Blocks,
+        light: (BlockLight<'_, Self>, &mut Batch<Self>),
+        to: &mut Canvas<'_>,
+    ) -> bool {
+        whole::light(level, faces, blocks, light, to)
     }
 }
 

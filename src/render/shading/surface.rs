@@ -11,14 +11,14 @@ use super::colors::{Colors, Form, Sums};
 use super::faces::Faces;
 use super::finish::{Finish, Own};
 use super::groups::{Group, group_of, one_group};
-use super::interpolate::{Mixed, mix, surroundings};
+use super::interpolate::{Look, Mixed, mix, surroundings};
 use super::items::Items;
 use super::light::{Lighting, Lit, Table, run};
 use super::located::Located;
 use super::shines::Shines;
 use super::texels::{color, uv, uv_ways};
 use super::texture;
-use super::whole::{Blocks, Canvas};
+use super::whole::{BlockLight, Blocks, Canvas};
 use crate::base::color::Color;
 use crate::render::effects::{BATCH, Batch, Light, Rows};
 use crate::render::geometry::frame::Frame;
@@ -172,7 +172,9 @@ impl<T: Light> Shader<T> {
         let group = group_of(scenery, number);
         let [x, y] = blocks.corner;
         self.items.list_whole(number, [x, y]);
-        if self.mix_blocks(scenery, &group, blocks, canvas) {
+        if self.mix_blocks(scenery, &group, blocks, canvas)
+            || self.light_blocks(scenery, &group, blocks, canvas)
+        {
             return;
         }
         blocks.each(|[column, row]| {
@@ -209,6 +211,45 @@ impl<T: Light> Shader<T> {
             self.faces.spread(level);
         }
         T::mix_blocks(level, &self.faces, blocks, canvas)
+    }
+
+    /// Colours the pixels of blocks that one triangle covers as a whole, a block at a time without a
+    /// list, where they are lit and nothing else is done to them. Says whether it is so.
+    fn light_blocks(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let Scenery { level, plan, shines, .. } = *scenery;
+        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
+            return false;
+        };
+        let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
+        let textured = shaded.texture.is_some() || shaded.vertex_colors;
+        let rare = plan.ways.has_rare_places()
+            || plan.ways.rare_roots().is_some()
+            || plan.ways.rounding != Rounding::Nearest;
+        if shaded.light.is_none() || !pixels || textured || rare || group.draw.back == Back::Red {
+            return false;
+        }
+        let new = self.take(scenery, group, true);
+        let Self { tile, faces, batch, .. } = self;
+        let lights = tile.light(plan, group.pipeline, shaded);
+        if !lights.places {
+            faces.forget();
+        } else if new {
+            faces.carry_normals(group.draw);
+            faces.spread(level);
+        }
+        let light = BlockLight {
+            look: lights.places.then(|| Look::new(plan, group.draw)),
+            tint: shaded.tint.map(T::from_f64),
+            lights,
+            shines: shines.of(group.pipeline),
+        };
+        T::light_blocks(level, faces, blocks, (light, batch), canvas)
     }
 
     /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
@@ -355,16 +396,7 @@ impl<T: Light> Shader<T> {
             faces.forget();
         }
         batch.darken();
-        let shines = shines.of(group.pipeline);
-        match light.kept {
-            None => run(light.stages, shines, level, batch),
-            Some(kept) => {
-                for place in kept {
-                    let at = *place as usize..=*place as usize;
-                    run(&light.stages[at.clone()], &shines[at], level, batch);
-                }
-            }
-        }
+        light.shine(shines.of(group.pipeline), level, batch);
     }
 
     /// Light of the vertices, mixed at every pixel.

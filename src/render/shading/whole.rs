@@ -10,14 +10,16 @@ use fearless_simd::{
 };
 
 use super::faces::Faces;
-use super::interpolate::between;
+use super::finish::reflected;
+use super::interpolate::{Look, between, depth_between};
 use super::located::with_perspective;
-use crate::render::effects::set;
+use crate::render::effects::{Batch, Shine, set};
 use crate::render::geometry::coverage::Triangle;
-use crate::render::geometry::tiles::BLOCK;
+use crate::render::geometry::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::numbers::pick::SLOTS;
 use crate::render::numbers::real::{Machine as _, Triple};
 use crate::render::numbers::sixteen::Sixteen;
+use crate::render::plan::TileLight;
 
 /// The pixels of a tile: rows that begin `stride` pixels apart.
 #[derive(Debug)]
@@ -184,6 +186,31 @@ impl<S: Simd> Linear<S> for Wide<'_, S> {
     }
 }
 
+/// Does something with where pixels lie in the first of some triangles. Says whether that is known: not
+/// where it reaches beyond the planes that triangles are cut by.
+macro_rules! with_linear {
+    ($level:expr, $faces:expr, $simd:ident, $linear:ident => $what:expr) => {{
+        let faces: &Faces<f32> = $faces;
+        if faces.cut & 1 != 0 {
+            false
+        } else if faces.wide & 1 == 0 {
+            dispatch!($level, $simd => {
+                let $linear = Narrow::new($simd, faces);
+                $what
+            });
+            true
+        } else if let Some(triangle) = &Triangle::new(faces.corners(0)) {
+            dispatch!($level, $simd => {
+                let $linear = Wide::new($simd, triangle);
+                $what
+            });
+            true
+        } else {
+            false
+        }
+    }};
+}
+
 /// Mixes the colours that the first of some triangles carries in blocks that it covers as a whole.
 /// Says whether that can be done so: not where it reaches beyond the planes that triangles are cut by.
 pub(super) fn mix(
@@ -192,18 +219,96 @@ pub(super) fn mix(
     blocks: Blocks,
     canvas: &mut Canvas<'_>,
 ) -> bool {
-    if faces.cut & 1 != 0 {
-        return false;
-    }
-    if faces.wide & 1 == 0 {
-        dispatch!(level, simd => mixed(simd, faces, Narrow::new(simd, faces), blocks, canvas));
-        return true;
-    }
-    let triangle = Triangle::new(faces.corners(0));
-    if let Some(triangle) = &triangle {
-        dispatch!(level, simd => mixed(simd, faces, Wide::new(simd, triangle), blocks, canvas));
-    }
-    triangle.is_some()
+    with_linear!(level, faces, simd, linear => mixed(simd, faces, linear, blocks, canvas))
+}
+
+/// What lights the pixels of some blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct BlockLight<'a, T> {
+    /// How they are looked at; `None` where no light asks.
+    pub(super) look: Option<Look<T>>,
+    /// The colour of the surface itself.
+    pub(super) tint: [T; 3],
+    pub(super) lights: TileLight<'a>,
+    /// What the lights do to the surface.
+    pub(super) shines: &'a [Shine<T>],
+}
+
+/// Lights blocks that the first of some triangles covers as a whole, whose corners carry normals. Says
+/// whether that can be done so, as [`mix`] does.
+pub(super) fn light(
+    level: Level,
+    faces: &Faces<f32>,
+    blocks: Blocks,
+    (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
+    canvas: &mut Canvas<'_>,
+) -> bool {
+    with_linear!(level, faces, simd, linear => {
+        lit(simd, faces, linear, blocks, (light, &mut *batch), canvas);
+    })
+}
+
+#[inline(always)]
+fn lit<S: Simd>(
+    simd: S,
+    faces: &Faces<f32>,
+    linear: impl Linear<S>,
+    blocks: Blocks,
+    (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
+    canvas: &mut Canvas<'_>,
+) {
+    let machine = Sixteen(simd);
+    let BlockLight { look, tint, lights, shines } = light;
+    let by_w = of_first(machine, &faces.by_w);
+    let z = of_first(machine, &faces.z);
+    let corners = corners(machine, faces);
+    let tint = set(machine, tint);
+    let across = i32x16::from_slice(simd, &ACROSS);
+    let down = i32x16::from_slice(simd, &DOWN);
+    let [left, top] = blocks.corner;
+    batch.len = BLOCK_PIXELS;
+    let mut is_lit = false;
+    blocks.each(
+        #[inline(always)]
+        |[column, row]| {
+            let [x, y] = [left + column, top + row];
+            if let Some(look) = &look {
+                for (pair, linear) in linear.block(simd, [x, y]).into_iter().enumerate() {
+                    let (weights, w) = with_perspective(machine, linear, by_w);
+                    let y = y + 2 * pair as i32;
+                    let place = [across + x, down + y].map(|i| i.to_float::<f32x16<S>>() + 0.5);
+                    let normal = between(corners, weights);
+                    let sample = look.at(machine, normal, place, w, || depth_between(z, weights));
+                    batch.put(machine, sample, 16 * pair);
+                }
+            }
+            if look.is_some() || !is_lit {
+                is_lit = true;
+                batch.darken();
+                lights.shine(shines, simd.level(), batch);
+            }
+            let mut at = canvas.place([column as usize, row as usize]);
+            for pair in 0..PAIRS {
+                let mut pixels = [0; 16];
+                machine.store_pixels(reflected(machine, tint, batch, 16 * pair), &mut pixels, 0);
+                canvas.put(at, &pixels);
+                at += 2 * canvas.stride;
+            }
+        },
+    );
+}
+
+/// Three numbers of the first of some triangles, the same for all lanes.
+#[inline(always)]
+fn of_first<S: Simd>(machine: Sixteen<S>, rows: &[[f32; SLOTS]; 3]) -> Triple<f32x16<S>> {
+    set(machine, [rows[0][0], rows[1][0], rows[2][0]])
+}
+
+/// What the corners of the first of some triangles carry.
+#[inline(always)]
+fn corners<S: Simd>(machine: Sixteen<S>, faces: &Faces<f32>) -> [Triple<f32x16<S>>; 3] {
+    let [a, b, c] = &faces.values;
+    [of_first(machine, a), of_first(machine, b), of_first(machine, c)]
 }
 
 #[inline(always)]
@@ -215,10 +320,8 @@ fn mixed<S: Simd>(
     canvas: &mut Canvas<'_>,
 ) {
     let machine = Sixteen(simd);
-    let of_first = |rows: &[[f32; SLOTS]; 3]| set(machine, [rows[0][0], rows[1][0], rows[2][0]]);
-    let by_w: Triple<f32x16<S>> = of_first(&faces.by_w);
-    let [a, b, c] = &faces.values;
-    let corners = [of_first(a), of_first(b), of_first(c)];
+    let by_w = of_first(machine, &faces.by_w);
+    let corners = corners(machine, faces);
     let [left, top] = blocks.corner;
     blocks.each(
         #[inline(always)]
