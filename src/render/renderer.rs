@@ -316,7 +316,7 @@ impl Renderer {
             Seen::Triangle(number) => {
                 let (draw, start) = self.frame.draw_of(number);
                 let mesh = &plan.draws[draw as usize].model.mesh;
-                Some((draw, mesh.triangles()[(number - start.number) as usize].polygon))
+                Some((draw, mesh.polygon_of(number - start.number)))
             }
             Seen::Line(line) => self.frame.line_seen(plan, line),
         }

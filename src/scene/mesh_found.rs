@@ -13,13 +13,23 @@ use super::mesh_edges::{Edge, Edges};
 use super::mesh_points::shown_normal;
 use super::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
 
+/// A polygon that is lit as a whole. What is fetched together lies together, in one line of the cache.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(32))]
+pub struct Facet {
+    /// The mean of its corners.
+    pub centre: [f32; 3],
+    /// See [`Mesh::polygon_normals`].
+    pub normal: [f32; 3],
+}
+
 /// What was asked for.
 #[derive(Default)]
 pub(super) struct Found {
     corners: OnceLock<Vec<Corner>>,
     triangles: OnceLock<Vec<Triangle>>,
     normals: OnceLock<Vec<[f32; 3]>>,
-    centres: OnceLock<Vec<[f32; 3]>>,
+    facets: OnceLock<Vec<Facet>>,
     edges: OnceLock<Edges>,
     order: OnceLock<DrawOrder>,
     edge_order: OnceLock<EdgeOrder>,
@@ -46,6 +56,22 @@ impl Mesh {
         once::<Vec<_>>(&self.found.triangles, || triangles(&self.outlines()))
     }
 
+    /// The polygon that a triangle belongs to.
+    #[inline(always)]
+    #[must_use]
+    pub fn polygon_of(&self, triangle: u32) -> u32 {
+        if self.has_triangles_only() {
+            return triangle;
+        }
+        self.triangles()[triangle as usize].polygon
+    }
+
+    /// Whether each polygon is one triangle.
+    #[inline(always)]
+    fn has_triangles_only(&self) -> bool {
+        self.triangle_count() == self.polygon_count()
+    }
+
     /// How many triangles there are.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
@@ -54,8 +80,7 @@ impl Mesh {
 
     /// The corners of a triangle, as places in [`Self::corners`].
     pub(super) fn triangle(&self, number: usize) -> [usize; 3] {
-        if self.triangle_count() == self.polygon_count() {
-            // Each polygon is one.
+        if self.has_triangles_only() {
             return [3 * number, 3 * number + 1, 3 * number + 2];
         }
         self.triangles()[number].corners.map(|corner| corner as usize)
@@ -71,13 +96,16 @@ impl Mesh {
         })
     }
 
-    /// The means of the corners of all polygons.
+    /// What it takes to light each polygon as a whole.
     #[must_use]
-    pub fn polygon_centres(&self) -> &[[f32; 3]] {
-        once::<Vec<_>>(&self.found.centres, || {
+    pub fn facets(&self) -> &[Facet] {
+        once::<Vec<_>>(&self.found.facets, || {
+            let facet = |(normal, polygon): (&[f32; 3], u32)| Facet {
+                centre: self.polygon_centre(polygon).as_vec3().to_array(),
+                normal: *normal,
+            };
             let polygons = 0..index(self.polygon_count());
-            let centre = |polygon| self.polygon_centre(polygon).as_vec3().to_array();
-            polygons.into_par_iter().map(centre).collect()
+            self.polygon_normals().par_iter().zip(polygons).map(facet).collect()
         })
     }
 

@@ -37,6 +37,7 @@ pub use mesh::{
 };
 pub use mesh_build::CornerLists;
 pub use mesh_edges::Edge;
+pub use mesh_found::Facet;
 pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Winding, Wrap};
 pub use object::{Object, PartLook, Spin, Surface};
 pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};

@@ -276,7 +276,7 @@ impl<'a> Setup<'a> {
 
     pub(in crate::render) fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
         let mesh = &self.draw.model.mesh;
-        let polygon = mesh.triangles()[number as usize].polygon;
+        let polygon = mesh.polygon_of(number);
         if self.draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {
             return Kind::Not;
         }

@@ -47,7 +47,7 @@ impl Draw {
     pub(in crate::render) fn pipeline_of(&self, triangle: u32) -> u32 {
         self.uniform.unwrap_or_else(|| {
             let mesh = &self.model.mesh;
-            let polygon = mesh.triangles()[triangle as usize].polygon;
+            let polygon = mesh.polygon_of(triangle);
             let part = mesh.polygon_parts()[polygon as usize];
             self.part_pipelines[part as usize].unwrap_or(0)
         })

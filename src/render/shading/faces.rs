@@ -29,6 +29,8 @@ pub struct Faces<T> {
     pub(super) count: usize,
     /// Their numbers in the mesh.
     pub(super) numbers: [u32; SLOTS],
+    /// Whether these two are known.
+    has_corners: bool,
     /// Their places in the mesh's draw order, and their vertices there.
     places: [u32; SLOTS],
     ids: [[u32; 3]; SLOTS],
@@ -63,6 +65,7 @@ impl<T: Number> Default for Faces<T> {
         Self {
             count: 0,
             numbers: [0; SLOTS],
+            has_corners: false,
             places: [0; SLOTS],
             ids: [[0; 3]; SLOTS],
             vertices: [[[0; 4]; SLOTS]; 3],
@@ -94,24 +97,35 @@ impl<T: Faced> Faces<T> {
         self.draw = None;
     }
 
-    /// Takes the triangles of a list, all of one draw whose numbers begin at `base`. Says whether they
-    /// are others than those that are there already.
-    pub(super) fn take(&mut self, items: &Items, order: &DrawOrder, draw: u32, base: u32) -> bool {
+    /// Takes the triangles of a list, all of one draw whose numbers begin at `base`, and their corners
+    /// where an order is given. Says whether they are others than those that are there already.
+    pub(super) fn take(
+        &mut self,
+        items: &Items,
+        order: Option<&DrawOrder>,
+        draw: u32,
+        base: u32,
+    ) -> bool {
         let count = items.count;
         let same = self.draw == Some(draw)
+            && (self.has_corners || order.is_none())
             && count == 1
             && self.count == 1
             && self.numbers[0] == items.numbers[0] - base;
         if same {
             return false;
         }
-        (self.draw, self.count) = (Some(draw), count);
-        for (slot, number) in items.numbers[..count].iter().enumerate() {
-            self.numbers[slot] = number - base;
-            self.places[slot] = order.place(number - base);
+        (self.draw, self.count, self.has_corners) = (Some(draw), count, order.is_some());
+        for (own, number) in self.numbers.iter_mut().zip(&items.numbers[..count]) {
+            *own = number - base;
         }
-        for slot in 0..count {
-            self.ids[slot] = order.triangles[self.places[slot] as usize].vertices;
+        if let Some(order) = order {
+            for (place, number) in self.places.iter_mut().zip(&self.numbers[..count]) {
+                *place = order.place(*number);
+            }
+            for (ids, place) in self.ids.iter_mut().zip(&self.places[..count]) {
+                *ids = order.triangles[*place as usize].vertices;
+            }
         }
         true
     }
@@ -176,7 +190,7 @@ impl<T: Faced> Faces<T> {
         for (slot, number) in self.numbers[..self.count].iter().enumerate() {
             let normals = match draw.normals {
                 Normals::Face => {
-                    let polygon = mesh.triangles()[*number as usize].polygon;
+                    let polygon = mesh.polygon_of(*number);
                     [mesh.polygon_normals()[polygon as usize]; 3]
                 }
                 Normals::Vertex => {

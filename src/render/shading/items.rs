@@ -30,6 +30,9 @@ pub struct Items {
     pub(super) count: usize,
     /// The triangles of the slots, by their numbers in the frame.
     pub(super) numbers: [u32; SLOTS],
+    /// In which slot a triangle was last put, by the end of its number. What it says is believed where
+    /// the slot has that number.
+    table: [u8; TABLE],
 }
 
 /// Which pixels of a block show what: bit i stands for pixel i.
@@ -39,8 +42,9 @@ pub(super) struct Shown {
     pub(super) lines: u64,
 }
 
-/// Among so many slots a triangle is looked for that is seen again.
-const RECENT: usize = 24;
+/// Places of the table in which a triangle is looked for that is seen again. Of two that would have the
+/// same place, the later one does.
+const TABLE: usize = 128;
 
 /// Pixels before the first and after the last, so that neighbours can be looked at.
 const MARGIN: usize = 16;
@@ -59,6 +63,7 @@ impl Default for Items {
             shares: [0; BLOCK_PIXELS],
             count: 0,
             numbers: [0; SLOTS],
+            table: [0; TABLE],
         }
     }
 }
@@ -202,17 +207,16 @@ impl Items {
 
     /// Adds a triangle that has some samples of a pixel, where there is room.
     #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "there are 64 slots")]
     pub(super) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
-        let last = self.numbers[..self.count].iter().rev().take(RECENT);
-        let slot = match last.clone().position(|other| *other == number) {
-            Some(back) => self.count - 1 - back,
-            None => {
-                self.numbers[self.count % SLOTS] = number;
-                self.count += 1;
-                self.count - 1
-            }
-        };
-        let slot = i32::try_from(slot).expect("there are 64 slots");
+        let known = &mut self.table[number as usize % TABLE];
+        if usize::from(*known) >= self.count || self.numbers[usize::from(*known) % SLOTS] != number
+        {
+            *known = self.count as u8;
+            self.numbers[self.count % SLOTS] = number;
+            self.count += 1;
+        }
+        let slot = i32::from(*known);
         let i = self.put(corner, PLACES[place % BLOCK_PIXELS], slot);
         self.shares[i] = share;
     }

@@ -14,7 +14,7 @@ use crate::base::math::each;
 use crate::render::effects::{BATCH, Batch, Light, Shine, load, set, store};
 use crate::render::numbers::real::{Kernel, Machine, Number, Real, Triple};
 use crate::render::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded, Stage, TileLight};
-use crate::scene::{LightAt, Normalising, Normals, dvec3};
+use crate::scene::{Facet, LightAt, Normalising, Normals, dvec3};
 
 /// Light at the vertices of a frame, and what it takes to light faces.
 #[derive(Debug, Default)]
@@ -97,12 +97,12 @@ impl<T: Light> Lit<T> {
         batch: &mut Batch<T>,
     ) {
         let mesh = &draw.model.mesh;
-        let (centres, normals) = (mesh.polygon_centres(), mesh.polygon_normals());
+        let facets = mesh.facets();
         for (slot, number) in faces.numbers[..faces.count].iter().enumerate() {
-            let polygon = mesh.triangles()[*number as usize].polygon as usize;
+            let Facet { centre, normal } = facets[mesh.polygon_of(*number) as usize];
             let turn =
                 if faces.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
-            put(batch, slot, centres[polygon], normals[polygon].map(|x| x * turn));
+            put(batch, slot, centre, normal.map(|x| x * turn));
         }
         let to_view = self.to_view[index as usize];
         T::run_by(level, to_view.way, Place { batch, to_view });

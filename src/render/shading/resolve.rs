@@ -100,14 +100,11 @@ impl<T: Light> Shader<T> {
             add_other(scenery, number, place, share, sums);
         }
         self.items.begin_shared();
-        let mut pixels = samples.new[1] | samples.new[2] | samples.new[3];
-        while pixels != 0 {
-            let place = pixels.trailing_zeros() as usize;
-            pixels &= pixels - 1;
-            for sample in 1..FOUR {
-                if samples.new[sample] >> place & 1 == 0 {
-                    continue;
-                }
+        for sample in 1..FOUR {
+            let mut pixels = samples.new[sample];
+            while pixels != 0 {
+                let place = pixels.trailing_zeros() as usize;
+                pixels &= pixels - 1;
                 let number = samples.numbers[sample][place];
                 let share = samples.shares[sample][place];
                 if !matches!(seen_number(number), Seen::Triangle(_)) {

@@ -362,7 +362,8 @@ impl<T: Light> Shader<T> {
     fn take(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, places: bool) -> bool {
         let Scenery { level, plan, frame, .. } = *scenery;
         let Group { draw, draw_index, base, .. } = *group;
-        let order = draw.model.mesh.draw_order();
+        let corners = places || draw.back != Back::Left;
+        let order = corners.then(|| draw.model.mesh.draw_order());
         let new = self.faces.take(&self.items, order, draw_index, base);
         if new {
             let vertices = frame.vertices_of(plan, draw_index);
