@@ -5,6 +5,7 @@
 mod axes;
 mod bounds;
 mod camera;
+mod clusters;
 mod command;
 mod edge_order;
 mod light;
@@ -27,6 +28,7 @@ mod view;
 pub use axes::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Lesson, Preset as AccuracyPreset};
 pub use bounds::Bounds;
 pub use camera::{Camera, CameraMode, Lens, Pose};
+pub use clusters::{CLUSTER, Cluster};
 pub use command::{Command, CommandError, Item};
 pub use edge_order::{DrawEdge, EdgeOrder};
 pub use light::{Aim, Attenuation, Light, LightKind, Orbit, SpotOwner};

@@ -5,8 +5,10 @@
 //! between equal depths, so that the order cannot show. Morton, "A Computer Oriented Geodetic Data
 //! Base", IBM 1966.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
+use super::clusters::{Cluster, clusters};
 use super::{Bounds, Mesh, NONE, dvec3};
 use crate::base::lists::sorted_by_keys;
 
@@ -40,6 +42,8 @@ pub struct DrawOrder {
     pub z: Vec<f32>,
     /// The triangles.
     pub triangles: Vec<DrawTriangle>,
+    /// What is known of the triangles many at a time; empty where nobody has looked.
+    pub clusters: Vec<Cluster>,
     /// For each triangle of the mesh its place in [`Self::triangles`]; empty where that is its
     /// number.
     places: Vec<u32>,
@@ -91,7 +95,9 @@ impl DrawOrder {
         }
         let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
         let triangles = numbers.into_par_iter().map(triangle).collect();
-        Self { places, ..Self::of(mesh, triangles) }
+        let order = Self { places, ..Self::of(mesh, triangles) };
+        let place = |vertex| DVec3::from_array(order.position(vertex));
+        Self { clusters: clusters(&order.triangles, place), ..order }
     }
 
     /// As the mesh has them.

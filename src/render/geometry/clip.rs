@@ -121,6 +121,11 @@ impl Screen {
         Self { guard: self.half.map(|half| pixels / half - 1.0), ..self }
     }
 
+    /// The same with a guard band that ends so many pixels beyond the picture.
+    pub(super) fn close_to_picture(self, pixels: f64) -> Self {
+        Self { guard: self.half.map(|half| 1.0 + pixels / half), ..self }
+    }
+
     /// A place of object space in clip space.
     #[inline(always)]
     pub(in crate::render) fn clip(&self, [x, y, z]: [f64; 3]) -> Clip {
@@ -134,9 +139,16 @@ impl Screen {
     /// Signed distances to the near plane, the far plane and the four sides of the guard band; not
     /// negative inside.
     #[inline(always)]
-    fn distances(&self, [x, y, z, w]: Clip) -> [f64; 6] {
+    pub(super) fn distances(&self, [x, y, z, w]: Clip) -> [f64; 6] {
         let [gx, gy] = self.guard;
         [w - z, z, gx * w + x, gx * w - x, gy * w + y, gy * w - y]
+    }
+
+    /// The most that each of these distances changes on a way of length 1 in object space.
+    pub(super) fn slopes(&self) -> [f64; 6] {
+        let along = |axis: usize| self.distances(self.rows.map(|row| row[axis]));
+        let [x, y, z] = [along(0), along(1), along(2)];
+        std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]).length())
     }
 
     /// Whether a place is inside the planes by more than rounding could make of it.

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::bins::Bins;
 use super::clip::{Screen, ScreenVertex};
 use super::coverage::SUBPIXELS;
+use super::culling::Culling;
 use super::edges::{self, EdgeSetup};
 use super::facing::Facing;
 use super::lines::LineNumber;
@@ -23,10 +24,10 @@ use crate::render::plan::{Draw, FramePlan};
 use crate::render::stages::{Laps, Stages};
 use crate::render::watch::Watch;
 use crate::render::ways::Ways;
-use crate::scene::Model;
+use crate::scene::{CLUSTER, Model};
 
 /// Triangles, polygons or edges that a thread takes at a time.
-const CHUNK: usize = 2048;
+const CHUNK: usize = 32 * CLUSTER;
 
 /// Fewer than this are set up by one thread: waking the others would take longer.
 const FEW: usize = 4096;
@@ -414,11 +415,18 @@ impl<'a> Parts<'a> {
                 let pipelines = &self.plan.pipelines;
                 let setup = Setup::new(draw, pipelines, vertices, size, self.starts[i].number);
                 let setup = setup.seen_from(self.plan.shift);
-                let triangles = chunk(&mesh.draw_order().triangles, from);
+                let order = mesh.draw_order();
+                let triangles = chunk(&order.triangles, from);
                 if self.plan.ways.draws_one_by_one() {
                     self.plan.ways.set_up(&setup, triangles, pipelines, (size, bins));
-                } else {
+                } else if order.clusters.is_empty() {
                     setup.run(level, triangles, pipelines, bins);
+                } else {
+                    let clusters = &order.clusters[from / CLUSTER..];
+                    let culling = Culling::new(draw, setup.screen);
+                    culling.each_left(clusters, triangles, |some| {
+                        setup.run(level, some, pipelines, bins);
+                    });
                 }
             }
             What::Facing => {

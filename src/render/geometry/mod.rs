@@ -7,6 +7,7 @@
 pub(super) mod bins;
 pub(super) mod clip;
 pub mod coverage;
+mod culling;
 mod edges;
 mod facing;
 pub(super) mod frame;
