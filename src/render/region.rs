@@ -118,7 +118,8 @@ impl Region {
         let middle = self.corners.iter().sum::<DVec3>() / 8.0 - apex;
         let aside = middle - axis * axis.dot(middle);
         let off_axis = aside.length() / middle.length();
-        beyond(-axis) || off_axis > LEAST_ASIDE && beyond(aside.normalize() * wider - axis * sine)
+        beyond(-axis)
+            || off_axis > LEAST_ASIDE && beyond(aside.normalize_or_zero() * wider - axis * sine)
     }
 }
 
@@ -152,12 +153,12 @@ mod tests {
             let angle = |step: f64| (f64::from(i) * step).rem_euclid(6.0);
             let axis =
                 DVec3::new(libm::cos(angle(0.7)), libm::sin(angle(0.7)), libm::sin(angle(1.3)));
-            let (axis, far) = (axis.normalize(), 300.0);
+            let (axis, far) = (axis.normalize_or_zero(), 300.0);
             let region = cube(axis * far, 0.5);
             assert!(!region.misses_cone(DVec3::ZERO, axis, 0.9999), "{axis}");
             // As much off the axis as rounding is, or more.
             for off in [1e-13, 1e-10, 1e-7, 1e-3] {
-                let turned = (axis + DVec3::new(off, -off, off)).normalize();
+                let turned = (axis + DVec3::new(off, -off, off)).normalize_or_zero();
                 assert!(!region.misses_cone(DVec3::ZERO, turned, 0.9999), "{axis} {off}");
             }
         }

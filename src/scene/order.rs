@@ -60,7 +60,7 @@ pub struct Points {
     of: Vec<[u32; 3]>,
     /// Their normals, of length 1.
     pub normals: Vec<[f32; 3]>,
-    /// Their vertices, as places in [`DrawOrder::x`].
+    /// Their vertices, as places in [`DrawOrder::x`]; empty where they have the numbers of these.
     pub vertices: Vec<u32>,
 }
 
@@ -74,11 +74,11 @@ pub enum NormalSource {
 }
 
 impl Points {
-    /// The points of a triangle: of the one at `place`, with these vertices.
+    /// The points of a triangle of the mesh, with these vertices, in the order that they belong to.
     #[inline(always)]
     #[must_use]
-    pub fn of(&self, place: u32, vertices: [u32; 3]) -> [u32; 3] {
-        if self.of.is_empty() { vertices } else { self.of[place as usize] }
+    pub fn of(&self, order: &DrawOrder, number: u32, vertices: [u32; 3]) -> [u32; 3] {
+        if self.of.is_empty() { vertices } else { self.of[order.place(number) as usize] }
     }
 }
 
@@ -131,7 +131,7 @@ impl DrawOrder {
             Points {
                 of: Vec::new(),
                 normals: used.par_iter().map(normal).collect(),
-                vertices: (0..index(used.len())).collect(),
+                vertices: Vec::new(),
             }
         } else {
             order.points_of(mesh, |corner| mesh.corners.smooth(corner))
@@ -151,8 +151,7 @@ impl DrawOrder {
 
     /// Where a triangle of the mesh stands in [`Self::triangles`].
     #[inline(always)]
-    #[must_use]
-    pub fn place(&self, number: u32) -> u32 {
+    fn place(&self, number: u32) -> u32 {
         if self.places.is_empty() { number } else { self.places[number as usize] }
     }
 
@@ -183,7 +182,8 @@ impl DrawOrder {
         }
         let of_vertices = self.triangles.iter().map(|triangle| triangle.vertices);
         if points.of.iter().copied().eq(of_vertices) {
-            points.of = Vec::new();
+            // Both are numbered by first use.
+            (points.of, points.vertices) = (Vec::new(), Vec::new());
         }
         points
     }

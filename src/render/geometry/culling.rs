@@ -140,7 +140,7 @@ impl Culling {
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "small numbers")]
+#[expect(clippy::cast_precision_loss, reason = "small numbers")]
 mod tests {
     use glam::{DMat4, DQuat};
 

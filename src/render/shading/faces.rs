@@ -29,10 +29,9 @@ pub struct Faces<T> {
     pub(super) count: usize,
     /// Their numbers in the mesh.
     pub(super) numbers: [u32; SLOTS],
-    /// Whether these two are known.
+    /// Whether their corners are known.
     has_corners: bool,
-    /// Their places in the mesh's draw order, and their vertices there.
-    places: [u32; SLOTS],
+    /// Their vertices in the mesh's draw order.
     ids: [[u32; 3]; SLOTS],
     /// x, y, depth and one by w of each corner, as [`ScreenVertex::row`] has them.
     vertices: [[[i32; 4]; SLOTS]; 3],
@@ -66,7 +65,6 @@ impl<T: Number> Default for Faces<T> {
             count: 0,
             numbers: [0; SLOTS],
             has_corners: false,
-            places: [0; SLOTS],
             ids: [[0; 3]; SLOTS],
             vertices: [[[0; 4]; SLOTS]; 3],
             carried: [[[T::default(); 4]; SLOTS]; 3],
@@ -120,11 +118,8 @@ impl<T: Faced> Faces<T> {
             *own = number - base;
         }
         if let Some(order) = order {
-            for (place, number) in self.places.iter_mut().zip(&self.numbers[..count]) {
-                *place = order.place(*number);
-            }
-            for (ids, place) in self.ids.iter_mut().zip(&self.places[..count]) {
-                *ids = order.triangles[*place as usize].vertices;
+            for (ids, number) in self.ids.iter_mut().zip(&self.numbers[..count]) {
+                *ids = order.vertices_of(*number);
             }
         }
         true
@@ -194,7 +189,7 @@ impl<T: Faced> Faces<T> {
                     [mesh.polygon_normals()[polygon as usize]; 3]
                 }
                 Normals::Vertex => {
-                    let of = points.of(self.places[slot], self.ids[slot]);
+                    let of = points.of(order, *number, self.ids[slot]);
                     each(of, |point| points.normals[point as usize])
                 }
             };
@@ -216,7 +211,7 @@ impl<T: Faced> Faces<T> {
         for (slot, number) in self.numbers[..self.count].iter().enumerate() {
             let places = match draw.normals {
                 Normals::Face => mesh.triangles()[*number as usize].corners,
-                Normals::Vertex => points.of(self.places[slot], self.ids[slot]),
+                Normals::Vertex => points.of(order, *number, self.ids[slot]),
             };
             let back = self.back >> slot & 1 == 1;
             for (carried, place) in self.carried.iter_mut().zip(places) {

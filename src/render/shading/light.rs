@@ -208,11 +208,15 @@ fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
             let order = mesh.draw_order();
             let points = order.points(draw.normal_source);
             let own = first..first + batch.len;
-            let (vertices, normals) = (&points.vertices[own.clone()], &points.normals[own]);
-            let places = batch.position.iter_mut().zip([&order.x, &order.y, &order.z]);
-            for (to, from) in places {
-                for (to, vertex) in to.iter_mut().zip(vertices) {
-                    *to = T::from_f64(f64::from(from[*vertex as usize]));
+            let normals = &points.normals[own.clone()];
+            let number = |x: f32| T::from_f64(f64::from(x));
+            for (to, from) in batch.position.iter_mut().zip([&order.x, &order.y, &order.z]) {
+                if points.vertices.is_empty() {
+                    to.iter_mut().zip(&from[own.clone()]).for_each(|(to, x)| *to = number(*x));
+                } else {
+                    let vertices = &points.vertices[own.clone()];
+                    let places = to.iter_mut().zip(vertices);
+                    places.for_each(|(to, vertex)| *to = number(from[*vertex as usize]));
                 }
             }
             let [x, y, z] = &mut batch.normal;

@@ -273,9 +273,9 @@ fn lit<S: Simd>(
         |[column, row]| {
             let [x, y] = [left + column, top + row];
             if let Some(look) = &look {
-                for (pair, linear) in linear.block(simd, [x, y]).into_iter().enumerate() {
+                let pairs = linear.block(simd, [x, y]);
+                for ((pair, linear), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
                     let (weights, w) = with_perspective(machine, linear, by_w);
-                    let y = y + 2 * pair as i32;
                     let place = [across + x, down + y].map(|i| i.to_float::<f32x16<S>>() + 0.5);
                     let normal = between(corners, weights);
                     let sample = look.at(machine, normal, place, w, || depth_between(z, weights));
