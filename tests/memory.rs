@@ -65,6 +65,7 @@ fn measure(path: &std::path::Path, file: usize) {
     let settings = Settings::default();
     // What drawing looks for in the mesh once, and keeps there, is the mesh's.
     drop(FramePlan::new(&scene, &view, &settings, size));
+    scene.objects.iter().for_each(|(_, object)| assert!(!object.model.mesh.facets().is_empty()));
     let mesh = HeapStats::get().curr_bytes;
     println!("file {file} bytes, mesh {mesh}, most while loading {most}");
     assert!(most <= file + 2 * mesh, "loading takes {most} bytes for a mesh of {mesh}");

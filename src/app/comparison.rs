@@ -148,7 +148,9 @@ impl Comparison {
         let (dark, light) = (egui::Color32::from_black_alpha(160), egui::Color32::WHITE);
         ui.painter().vline(x, rect.y_range(), Stroke::new(3.0, dark));
         ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, light));
-        let handle = Rect::from_center_size(pos2(x, rect.center().y), vec2(12.0, 34.0));
+        // At the lower end, where it covers nothing that is looked at.
+        let low = pos2(x, rect.bottom() - HANDLE.y);
+        let handle = Rect::from_center_size(low, HANDLE);
         let response = ui.interact(grip_at(rect, part), Id::unique("split"), Sense::drag());
         let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         response.widget_info(|| {
@@ -177,6 +179,9 @@ impl Comparison {
         plate_ui(ui, rect, Align2::LEFT_TOP, text);
     }
 }
+
+/// The size of what the slider shows to be held by.
+const HANDLE: egui::Vec2 = vec2(12.0, 34.0);
 
 /// Where the slider between the two pictures is held; a press there is none on the picture.
 pub(super) fn grip(state: &State, rect: Rect) -> Option<Rect> {

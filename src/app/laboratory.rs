@@ -357,7 +357,7 @@ impl App {
                 selection::settle(&state.scene, &mut state.view);
                 (state.lab.lesson, state.lab.side) = (axis, Side::Lessons);
                 state.lab.compare = Compare::Split(0.5);
-                state.tell(Some(format!("Lesson: {}", axis.name)));
+                state.tell(Some(format!("Lesson: {}", axis.lesson.title)));
                 self.replace(state);
             }
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),

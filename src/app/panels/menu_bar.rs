@@ -80,8 +80,9 @@ fn items(
 /// What each axis of accuracy teaches; a click shows it in the laboratory.
 fn lessons_ui(ui: &mut Ui, asks: &mut Vec<Ask>) {
     for axis in AXES {
-        let response = ui.button(axis.name);
-        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, axis.name));
+        let title = axis.lesson.title;
+        let response = ui.button(title);
+        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, title));
         if response.on_hover_text(axis.lesson.what).clicked() {
             asks.push(Ask::Lab(LabAsk::Lesson(axis.key)));
             ui.close();

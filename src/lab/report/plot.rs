@@ -241,6 +241,12 @@ fn legend<DB: DrawingBackend>(
         area.draw(&Text::new(name, (LEGEND + 22, y), at(HPos::Left, VPos::Top, &style)))?;
         y += LINE;
     }
-    let notes = "green: no other is both faster and more exact; triangles and thin line: against 64 samples, each lit; grey band: noise";
-    area.draw(&Text::new(notes, (PLOT[0], PLOT[3] + 44), small.color(&GREY)))
+    let notes = [
+        "green: no other is both faster and more exact; grey band: noise",
+        "triangles and thin line: against 64 samples, each lit",
+    ];
+    for (line, y) in notes.into_iter().zip((PLOT[3] + 44..).step_by(LINE as usize)) {
+        area.draw(&Text::new(line, (PLOT[0], y), small.color(&GREY)))?;
+    }
+    Ok(())
 }

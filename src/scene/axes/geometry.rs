@@ -30,6 +30,7 @@ pub(super) const VERTICES: Axis = Axis {
     ],
     sense: anything,
     lesson: Lesson {
+        title: "Why scenes far from the origin tremble",
         what: "A place far from the origin uses its digits up for being far; what is left of them says \
             where in the picture it is.",
         coarse: "In 32 bits the way from the camera is the difference of two numbers with few digits left, \
@@ -63,6 +64,7 @@ pub(super) const SUBPIXELS: Axis = Axis {
     ],
     sense: anything,
     lesson: Lesson {
+        title: "Why thin spokes break into steps",
         what: "Which pixels a triangle covers is settled in whole numbers, so its corners are first put \
             on a grid of parts of a pixel.",
         coarse: "On a coarse grid small triangles change their shape, thin ones vanish, and things that \
@@ -95,6 +97,7 @@ pub(super) const COVERAGE: Axis = Axis {
     ],
     sense: anything,
     lesson: Lesson {
+        title: "Why points leave holes",
         what: "A triangle covers the pixels whose centres lie inside, and of a centre on the edge of two \
             triangles exactly one has to have it.",
         coarse: "Points leave holes where they are seen from near and cost a hundred writes a pixel from \
@@ -130,6 +133,7 @@ pub(super) const INTERPOLATION: Axis = Axis {
         }
     },
     lesson: Lesson {
+        title: "Why textures bend and swim",
         what: "A step to the next pixel is a longer way on a surface that is farther off, so what corners \
             carry has to be divided by their distance before it is mixed.",
         coarse: "Mixed evenly, a texture bends along the diagonal of every square and swims when the view \
@@ -158,6 +162,7 @@ pub(super) const STRETCHED: Axis = Axis {
         if_any_object(scene, view, is_stretched, "nothing that is shown is stretched")
     },
     lesson: Lesson {
+        title: "Why stretched things are lit wrongly",
         what: "A normal stands across its surface, and a stretched surface leans the other way than a \
             stretched arrow would: normals need a matrix of their own.",
         coarse: "Placed by the object's own matrix, normals lean with the stretch, and light falls on \

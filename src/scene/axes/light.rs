@@ -27,6 +27,7 @@ pub(super) const SHADING: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
+        title: "Why Gouraud misses a highlight",
         what: "Light can be worked out once a polygon, once a corner, once a pixel, or in each place \
             of a pixel that is looked at.",
         coarse: "Between corners colours are only mixed, so a highlight that falls inside a \
@@ -54,6 +55,7 @@ pub(super) const ARITHMETIC: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
+        title: "What 64 bits add to light",
         what: "Every number is rounded when it is stored: 32 bits keep 7 digits, 64 bits 16.",
         coarse: "The digits that are lost almost never reach the eye: a byte changes only \
             where the exact value lies next to the border between two steps.",
@@ -93,6 +95,7 @@ pub(super) const POWER: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_mirroring, "nothing that is shown mirrors light"),
     lesson: Lesson {
+        title: "Why quick powers leave rings",
         what: "A highlight is a cosine taken to a power, and no processor has an instruction for \
             that: it is computed, or looked up.",
         coarse: "A table of 256 has steps where the power is steep, which show as rings; Schlick's \
@@ -122,6 +125,7 @@ pub(super) const NORMALISING: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
+        title: "Why quick roots make highlights grainy",
         what: "Directions are brought to length 1 by one by a root; processors have a quick \
             instruction that knows 11 or 14 of its digits.",
         coarse: "With the instruction alone vectors are a little too long or too short, and a \
@@ -148,6 +152,7 @@ pub(super) const FAINT: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
+        title: "What becomes of light too faint to see",
         what: "A lamp that is far off, or a highlight at its rim, may add less light than a byte \
             can tell.",
         coarse: "What is left out together adds less than half a step, so that a byte may be \
@@ -175,6 +180,7 @@ pub(super) const SPECULAR: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_mirroring, "nothing that is shown mirrors light"),
     lesson: Lesson {
+        title: "Two shapes of a highlight: R.V and N.H",
         what: "A highlight can be measured from the mirrored light to the eye (R.V), or from \
             the normal to the half-way between light and eye (N.H).",
         coarse: "Neither is an error of the other: with the same exponent N.H is about twice \

@@ -101,6 +101,8 @@ pub struct Choice {
 /// What an axis teaches, in three sentences.
 #[derive(Debug)]
 pub struct Lesson {
+    /// What a student would ask: "Why Gouraud misses a highlight".
+    pub title: &'static str,
     /// What it is.
     pub what: &'static str,
     /// What goes wrong when it is coarse.

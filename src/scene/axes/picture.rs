@@ -26,6 +26,7 @@ pub(super) const DEPTH: Axis = Axis {
     ],
     sense: |scene, view| if_any_object(scene, view, is_any, "nothing is shown"),
     lesson: Lesson {
+        title: "Why surfaces show through each other",
         what: "Which surface is in front is decided by a depth that is kept for every pixel, and \
             perspective leaves few of its steps for what is far.",
         coarse: "Where two surfaces are nearer to each other than a step, one shows through the other in \
@@ -56,6 +57,7 @@ pub(super) const ROUNDING: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
+        title: "Why dim walls fall into bands",
         what: "A colour has many digits and a byte has 256 steps: what is between two steps is cut off, \
             rounded, or shared out among neighbours by a pattern.",
         coarse: "Cut off, every colour is half a step too dark; without a pattern a slow change falls \

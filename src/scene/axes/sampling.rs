@@ -26,6 +26,7 @@ pub(super) const SAMPLES: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_there, "nothing is shown"),
     lesson: Lesson {
+        title: "Why edges are staircases",
         what: "A pixel is a small square, and an edge may run through it: it can show what is seen in \
             its middle, or the mean of what is seen in several places of it.",
         coarse: "With the middle alone an edge becomes a staircase that crawls when the view moves, \

@@ -23,6 +23,7 @@ pub(super) const FILTER: Axis = Axis {
     ],
     sense: |scene, view| if_any(scene, view, is_textured, "nothing that is shown has a texture"),
     lesson: Lesson {
+        title: "Why textures fall into blocks",
         what: "A texture is a grid of colours, and pixels seldom fall on the middle of a \
             texel: the nearest one is taken, or the four around are mixed.",
         coarse: "With the nearest texel alone a picture that is seen from near falls into \

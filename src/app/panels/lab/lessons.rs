@@ -17,12 +17,13 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         ui.horizontal_wrapped(|ui| {
             for other in AXES {
                 let button = egui::Button::selectable(other.key == axis.key, other.name);
-                if ui.add(button).clicked() {
+                if ui.add(button).on_hover_text(other.lesson.title).clicked() {
                     asks.push(Ask::Lab(LabAsk::Lesson(other.key)));
                 }
             }
         });
         ui.add_space(theme::GAP);
+        ui.label(RichText::new(axis.lesson.title).strong());
         ui.horizontal(|ui| {
             let hint = "Opens a small scene in which the difference is plain to see";
             if ui.button("Take me there").on_hover_text(hint).clicked() {
