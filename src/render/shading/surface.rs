@@ -11,14 +11,12 @@ use super::colors::{Colors, Form, Sums};
 use super::faces::Faces;
 use super::finish::{Finish, Own};
 use super::groups::{Group, group_of, one_group};
-use super::interpolate::{Look, Mixed, mix, surroundings};
+use super::interpolate::{Mixed, mix, surroundings};
 use super::items::Items;
 use super::light::{Lighting, Lit, Table, run};
 use super::located::Located;
 use super::shines::Shines;
-use super::texels::{color, uv, uv_ways};
-use super::texture;
-use super::whole::{BlockLight, Blocks, Canvas};
+use super::whole::Canvas;
 use crate::base::color::Color;
 use crate::render::effects::{BATCH, Batch, Light, Rows};
 use crate::render::geometry::frame::Frame;
@@ -46,10 +44,10 @@ pub(super) struct Shader<T> {
     /// The lights of the tile that is coloured.
     pub(super) tile: TilePlan,
     pub(super) items: Items,
-    faces: Faces<T>,
-    located: Located<T>,
-    batch: Batch<T>,
-    texels: Rows<T>,
+    pub(super) faces: Faces<T>,
+    pub(super) located: Located<T>,
+    pub(super) batch: Batch<T>,
+    pub(super) texels: Rows<T>,
     colors: Colors,
 }
 
@@ -146,7 +144,12 @@ impl<T: Light> Shader<T> {
     }
 
     /// Colours pixels that are coloured together.
-    fn color_group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, out: &mut Out<'_, '_>) {
+    pub(super) fn color_group(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        out: &mut Out<'_, '_>,
+    ) {
         self.colors.form = match out {
             Out::Tile(..) => Form::Pixels,
             Out::Sums(_) => Form::Parts,
@@ -159,97 +162,6 @@ impl<T: Light> Shader<T> {
                 sums.add_all(&self.colors, &places[..*len], &shares[..*len]);
             }
         }
-    }
-
-    /// Colours the pixels of blocks that one triangle covers as a whole.
-    pub(super) fn whole_blocks(
-        &mut self,
-        scenery: &Scenery<'_, T>,
-        number: u32,
-        blocks: Blocks,
-        canvas: &mut Canvas<'_>,
-    ) {
-        let group = group_of(scenery, number);
-        let [x, y] = blocks.corner;
-        self.items.list_whole(number, [x, y]);
-        if self.mix_blocks(scenery, &group, blocks, canvas)
-            || self.light_blocks(scenery, &group, blocks, canvas)
-        {
-            return;
-        }
-        blocks.each(|[column, row]| {
-            self.items.list_whole(number, [x + column, y + row]);
-            let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
-            let at = canvas.place(place);
-            self.color_group(scenery, &group, &mut Out::Tile(canvas, at));
-        });
-    }
-
-    /// Colours the pixels of blocks that one triangle covers as a whole in one pass, where all that is
-    /// to do is to mix the colours of its corners. Says whether it is.
-    fn mix_blocks(
-        &mut self,
-        scenery: &Scenery<'_, T>,
-        group: &Group<'_>,
-        blocks: Blocks,
-        canvas: &mut Canvas<'_>,
-    ) -> bool {
-        let Scenery { level, plan, lit, .. } = *scenery;
-        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
-            return false;
-        };
-        let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
-        if !mixed || group.draw.back == Back::Red || plan.ways.mixes_one_by_one() {
-            return false;
-        }
-        let tables = lit.tables(group.draw_index, group.pipeline);
-        if !tables[0].is_colored() {
-            return false;
-        }
-        if self.take(scenery, group, true) {
-            self.carry_diffuse(scenery, group, shaded, tables);
-            self.faces.spread(level);
-        }
-        T::mix_blocks(level, &self.faces, blocks, canvas)
-    }
-
-    /// Colours the pixels of blocks that one triangle covers as a whole, a block at a time without a
-    /// list, where they are lit and nothing else is done to them. Says whether it is so.
-    fn light_blocks(
-        &mut self,
-        scenery: &Scenery<'_, T>,
-        group: &Group<'_>,
-        blocks: Blocks,
-        canvas: &mut Canvas<'_>,
-    ) -> bool {
-        let Scenery { level, plan, shines, .. } = *scenery;
-        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
-            return false;
-        };
-        let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
-        let textured = shaded.texture.is_some() || shaded.vertex_colors;
-        let rare = plan.ways.has_rare_places()
-            || plan.ways.rare_roots().is_some()
-            || plan.ways.rounding != Rounding::Nearest;
-        if shaded.light.is_none() || !pixels || textured || rare || group.draw.back == Back::Red {
-            return false;
-        }
-        let new = self.take(scenery, group, true);
-        let Self { tile, faces, batch, .. } = self;
-        let lights = tile.light(plan, group.pipeline, shaded);
-        if !lights.places {
-            faces.forget();
-        } else if new {
-            faces.carry_normals(group.draw);
-            faces.spread(level);
-        }
-        let light = BlockLight {
-            look: lights.places.then(|| Look::new(plan, group.draw)),
-            tint: shaded.tint.map(T::from_f64),
-            lights,
-            shines: shines.of(group.pipeline),
-        };
-        T::light_blocks(level, faces, blocks, (light, batch), canvas)
     }
 
     /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
@@ -359,7 +271,12 @@ impl<T: Light> Shader<T> {
 
     /// Takes the triangles of the list, and where they are if the pixels have `places`. Says whether
     /// they are others than before.
-    fn take(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, places: bool) -> bool {
+    pub(super) fn take(
+        &mut self,
+        scenery: &Scenery<'_, T>,
+        group: &Group<'_>,
+        places: bool,
+    ) -> bool {
         let Scenery { level, plan, frame, .. } = *scenery;
         let Group { draw, draw_index, base, .. } = *group;
         let corners = places || draw.back != Back::Left;
@@ -437,7 +354,7 @@ impl<T: Light> Shader<T> {
     }
 
     /// Lets the faces carry the diffuse light of their corners, or their colours.
-    fn carry_diffuse(
+    pub(super) fn carry_diffuse(
         &mut self,
         scenery: &Scenery<'_, T>,
         group: &Group<'_>,
@@ -477,44 +394,6 @@ impl<T: Light> Shader<T> {
                 }
             }
             batch.len = items.len;
-        }
-    }
-
-    /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
-    fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
-        let (plan, draw) = (scenery.plan, group.draw);
-        let mips = shaded.texture.as_ref().and_then(|texture| scenery.shines.mips_of(texture));
-        let Self { items, faces, located, texels, .. } = self;
-        for (row, tint) in texels.iter_mut().zip(shaded.tint) {
-            row.fill(T::from_f64(tint));
-        }
-        for i in 0..items.len {
-            let number = faces.numbers[items.slots[i].cast_unsigned() as usize];
-            let weights = located.weights(i);
-            if let Some(texture) = &shaded.texture
-                && let Some(uv) = uv(draw, number, weights)
-            {
-                let texel = match mips {
-                    None => texture::sample::<T>(texture, uv, plan.filter),
-                    Some(mips) => mips.sample(
-                        uv,
-                        uv_ways(
-                            (plan, scenery.frame),
-                            group.draw_index,
-                            number,
-                            [items.x[i], items.y[i]],
-                        ),
-                    ),
-                };
-                for (row, part) in texels.iter_mut().zip(texel) {
-                    row[i] = row[i] * part;
-                }
-            }
-            if shaded.vertex_colors {
-                for (row, part) in texels.iter_mut().zip(color(draw, number, weights)) {
-                    row[i] = row[i] * T::from_f64(part);
-                }
-            }
         }
     }
 }

@@ -1,0 +1,48 @@
+//! The colour of a surface itself, pixel by pixel: its texture, its vertex colours, its tint.
+
+use super::groups::Group;
+use super::surface::{Scenery, Shader};
+use super::texels::{color, uv, uv_ways};
+use super::texture;
+use crate::render::effects::Light;
+use crate::render::plan::Shaded;
+
+impl<T: Light> Shader<T> {
+    /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
+    pub(super) fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+        let (plan, draw) = (scenery.plan, group.draw);
+        let mips = shaded.texture.as_ref().and_then(|texture| scenery.shines.mips_of(texture));
+        let Self { items, faces, located, texels, .. } = self;
+        for (row, tint) in texels.iter_mut().zip(shaded.tint) {
+            row.fill(T::from_f64(tint));
+        }
+        for i in 0..items.len {
+            let number = faces.numbers[items.slots[i].cast_unsigned() as usize];
+            let weights = located.weights(i);
+            if let Some(texture) = &shaded.texture
+                && let Some(uv) = uv(draw, number, weights)
+            {
+                let texel = match mips {
+                    None => texture::sample::<T>(texture, uv, plan.filter),
+                    Some(mips) => mips.sample(
+                        uv,
+                        uv_ways(
+                            (plan, scenery.frame),
+                            group.draw_index,
+                            number,
+                            [items.x[i], items.y[i]],
+                        ),
+                    ),
+                };
+                for (row, part) in texels.iter_mut().zip(texel) {
+                    row[i] = row[i] * part;
+                }
+            }
+            if shaded.vertex_colors {
+                for (row, part) in texels.iter_mut().zip(color(draw, number, weights)) {
+                    row[i] = row[i] * T::from_f64(part);
+                }
+            }
+        }
+    }
+}
