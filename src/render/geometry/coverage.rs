@@ -233,6 +233,7 @@ impl Triangle {
     }
 
     /// Calls `cover` with every pixel inside `clip` that the triangle covers, row by row.
+    #[inline(always)]
     pub fn covered(&self, clip: PixelBox, mut cover: impl FnMut(Covered)) {
         let area = self.bounds.intersection(clip);
         let step = i64::from(SUBPIXELS);

@@ -1,10 +1,13 @@
 //! The colour of a surface itself, pixel by pixel: its texture, its vertex colours, its tint.
 
+use fearless_simd::dispatch;
+
 use super::groups::Group;
 use super::surface::{Scenery, Shader};
-use super::texels::{color, uv, uv_ways};
+use super::texels::{color, uv, uv_ways, uvs};
 use super::texture;
 use crate::render::effects::Light;
+use crate::render::numbers::pick::SLOTS;
 use crate::render::plan::Shaded;
 
 impl<T: Light> Shader<T> {
@@ -16,12 +19,21 @@ impl<T: Light> Shader<T> {
         for (row, tint) in texels.iter_mut().zip(shaded.tint) {
             row.fill(T::from_f64(tint));
         }
-        for i in 0..items.len {
-            let number = faces.numbers[items.slots[i].cast_unsigned() as usize];
+        let mut corners = [None; SLOTS];
+        if shaded.texture.is_some() {
+            for (corners, number) in corners.iter_mut().zip(&faces.numbers[..faces.count]) {
+                *corners = uvs(draw, *number);
+            }
+        }
+        // Where a processor rounds down by an instruction, it is that.
+        dispatch!(scenery.level, _ => for i in 0..items.len {
+            let slot = items.slots[i].cast_unsigned() as usize % SLOTS;
+            let number = faces.numbers[slot];
             let weights = located.weights(i);
             if let Some(texture) = &shaded.texture
-                && let Some(uv) = uv(draw, number, weights)
+                && let Some(corners) = corners[slot]
             {
+                let uv = uv(corners, weights);
                 let texel = match mips {
                     None => texture::sample::<T>(texture, uv, plan.filter),
                     Some(mips) => mips.sample(
@@ -43,6 +55,6 @@ impl<T: Light> Shader<T> {
                     row[i] = row[i] * T::from_f64(part);
                 }
             }
-        }
+        });
     }
 }

@@ -5,36 +5,73 @@ use glam::DVec3;
 
 use crate::base::math::each;
 use crate::render::geometry::clip::{Screen, ScreenVertex, homogeneous_weights};
-use crate::render::geometry::coverage::{SUBPIXELS, Triangle};
+use crate::render::geometry::coverage::{SUBPIXELS, Snapped, Triangle};
 use crate::render::plan::{Draw, FramePlan};
 
-/// The parts that the corners of one triangle have in a place of a pixel, shifted by so many parts of
-/// a pixel from its middle, with perspective, in f64.
-pub(super) fn weights(
-    plan: &FramePlan,
-    draw: &Draw,
-    vertices: &[ScreenVertex],
+/// The parts that the corners of one triangle have in places of pixels that are shifted by so many parts of
+/// a pixel from their middles, with perspective, in f64.
+#[derive(Debug)]
+pub(super) struct Weights<'a> {
+    plan: &'a FramePlan,
+    draw: &'a Draw,
     number: u32,
-    (pixel, shift): ([i32; 2], [i32; 2]),
-) -> DVec3 {
-    let order = draw.model.mesh.draw_order();
-    let ids = order.vertices_of(number);
-    let own = each(ids, |vertex| vertices[vertex as usize]);
-    if !own.iter().all(ScreenVertex::is_inside) {
-        return cut_weights(plan, draw, number, (pixel, shift));
+    shift: [i32; 2],
+    way: Way,
+}
+
+/// How they are found.
+#[derive(Debug)]
+enum Way {
+    /// The triangle is cut.
+    Cut,
+    /// By one of the rare ways, from its corners and one by w of each.
+    Rare([Snapped; 3], [f64; 3]),
+    /// From edge functions, where it has an area, and w of each corner.
+    Edges(Option<Triangle>, DVec3),
+}
+
+impl<'a> Weights<'a> {
+    pub(super) fn new(
+        plan: &'a FramePlan,
+        draw: &'a Draw,
+        vertices: &[ScreenVertex],
+        number: u32,
+        shift: [i32; 2],
+    ) -> Self {
+        let order = draw.model.mesh.draw_order();
+        let ids = order.vertices_of(number);
+        let own = each(ids, |vertex| vertices[vertex as usize]);
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
+        let way = if !own.iter().all(ScreenVertex::is_inside) {
+            Way::Cut
+        } else if plan.ways.has_rare_places() {
+            Way::Rare(own.map(|vertex| vertex.at()), w.map(|w| 1.0 / w))
+        } else {
+            let triangle = Triangle::new(own.map(|vertex| vertex.at().seen_from(shift)));
+            Way::Edges(triangle, DVec3::from_array(w))
+        };
+        Self { plan, draw, number, shift, way }
     }
-    let screen = Screen::new(draw.clip_from_object, plan.size);
-    let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
-    if plan.ways.has_rare_places() {
-        let by_w = w.map(|w| 1.0 / w);
-        let corners = own.map(|vertex| vertex.at());
-        let ([second, third], _) = plan.ways.parts_at(corners, by_w, (pixel, shift), false);
-        return DVec3::new(1.0 - second - third, second, third);
+
+    /// Those in a pixel.
+    #[inline(always)]
+    pub(super) fn at(&self, pixel: [i32; 2]) -> DVec3 {
+        match &self.way {
+            Way::Cut => cut_weights(self.plan, self.draw, self.number, (pixel, self.shift)),
+            Way::Rare(corners, by_w) => {
+                let at = (pixel, self.shift);
+                let ([second, third], _) = self.plan.ways.parts_at(*corners, *by_w, at, false);
+                DVec3::new(1.0 - second - third, second, third)
+            }
+            Way::Edges(triangle, w) => {
+                let parts = triangle.as_ref().map(|triangle| barycentric(triangle, pixel));
+                let [second, third] = parts.unwrap_or_default();
+                let by_w = DVec3::new(1.0 - second - third, second, third) / *w;
+                by_w / by_w.element_sum()
+            }
+        }
     }
-    let triangle = Triangle::new(own.map(|vertex| vertex.at().seen_from(shift)));
-    let [second, third] = triangle.map_or([0.0; 2], |triangle| barycentric(&triangle, pixel));
-    let by_w = DVec3::new(1.0 - second - third, second, third) / DVec3::from_array(w);
-    by_w / by_w.element_sum()
 }
 
 /// The second and third barycentric coordinate of a pixel, linear on the screen.
@@ -46,7 +83,7 @@ pub(super) fn barycentric(triangle: &Triangle, [x, y]: [i32; 2]) -> [f64; 2] {
     [second as f64 * per_area, third as f64 * per_area]
 }
 
-/// The parts of a cut triangle's corners in a place of a pixel, as for [`weights`].
+/// The parts of a cut triangle's corners in a place of a pixel, as for [`Weights`].
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(super) fn cut_weights(
     plan: &FramePlan,

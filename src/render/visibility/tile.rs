@@ -27,7 +27,7 @@ use crate::render::geometry::lines;
 use crate::render::geometry::places::{FOUR, Places};
 use crate::render::geometry::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
 use crate::render::plan::FramePlan;
-use crate::render::shading::texels;
+use crate::render::shading::texels::Holes;
 
 /// The words of one tile, block by block, in each block sample by sample, and these row by row.
 #[derive(Debug)]
@@ -278,6 +278,20 @@ impl Visibility {
         }
     }
 
+    /// Whether what is in a place already hides a triangle there.
+    #[inline(always)]
+    fn hides<const N: usize>(
+        &mut self,
+        (x, y, sample): (i32, i32, usize),
+        depth: f32,
+        number: u32,
+    ) -> bool {
+        let (x, y) = (x - self.bounds.left, y - self.bounds.top);
+        let block = block_at(x, y);
+        self.written >> block & 1 != 0
+            && self.plane::<N>(block, sample)[within(x, y)] >= word(depth, number)
+    }
+
     #[inline(always)]
     fn put<S: Simd, const N: usize>(
         &mut self,
@@ -328,12 +342,19 @@ impl Visibility {
             let corners = each(large.corners, |corner| corner.at().seen_from(shift));
             let Some(triangle) = Triangle::new(corners) else { return };
             let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
-            triangle.covered(self.bounds, |Covered { x, y, edges }| {
-                if texels::is_opaque(plan, frame, large.number, ([x, y], shift)) {
+            let holes = Holes::of(plan, frame, large.number, shift);
+            dispatch!(level, simd => triangle.covered(
+                self.bounds,
+                #[inline(always)]
+                |Covered { x, y, edges }| {
                     let (at, depth) = ((x, y, sample), seen.depth(edges));
-                    dispatch!(level, simd => self.put::<_, N>(simd, at, depth, large.number));
-                }
-            });
+                    if !self.hides::<N>(at, depth, large.number)
+                        && holes.as_ref().is_none_or(|holes| holes.is_opaque([x, y]))
+                    {
+                        self.put::<_, N>(simd, at, depth, large.number);
+                    }
+                },
+            ));
         }
     }
 

@@ -10,7 +10,7 @@ use crate::render::geometry::frame::Frame;
 use crate::render::geometry::lines;
 use crate::render::geometry::tiles::pixel_at;
 use crate::render::plan::FramePlan;
-use crate::render::shading::texels::is_opaque;
+use crate::render::shading::texels::Holes;
 use crate::scene::{Coverage, DepthFormat};
 
 /// How many steps of a format of its own lines are nearer than the surfaces that they lie on.
@@ -49,8 +49,9 @@ impl Ways {
         let (plain, own) = bins.plain(number);
         let plain = &plain.seen_from(shift, self.parts());
         let clip = own.intersection(bounds);
+        let holes = plain.cutout.then(|| Holes::of(plan, frame, plain.number, shift)).flatten();
         let mut take = |x: i32, y: i32, depth: f32| {
-            if !plain.cutout || is_opaque(plan, frame, plain.number, ([x, y], shift)) {
+            if holes.as_ref().is_none_or(|holes| holes.is_opaque([x, y])) {
                 put([x - bounds.left, y - bounds.top], key(self.depth, depth), plain.number);
             }
         };
