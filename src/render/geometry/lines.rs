@@ -127,6 +127,7 @@ pub(super) fn stretches(
 }
 
 /// Calls `take` with every pixel of a line inside `clip`, and with the depth there.
+#[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,
