@@ -10,6 +10,7 @@ use marraztu::lab::job::{self, Mode};
 use marraztu::scene::{LoadOptions, Samples};
 
 use super::arguments::size;
+use super::draw_along;
 use super::failure::Failure;
 use super::stage::load;
 
@@ -69,10 +70,7 @@ pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
     let (Some(mode), Some(samples)) = (Mode::named(&arguments.mode), samples) else {
         return Ok(3);
     };
-    if let Some(threads) = arguments.threads {
-        // Fails only where the threads are there already, and this comes first.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    }
+    draw_along(arguments.threads);
     let loaded = load(&arguments.mesh, &LoadOptions::default())?;
     let measured = job::run(
         &job::Job {

@@ -20,6 +20,7 @@ use marraztu::scene::{AXES, Axis, Settings};
 use super::accuracy::Accuracy;
 use super::arguments::{Reading, Seeing, Surfaces, size};
 use super::bar::Bar;
+use super::draw_along;
 use super::failure::Failure;
 use super::render::staged;
 
@@ -83,10 +84,7 @@ struct Pixel([usize; 2]);
 
 /// Measures, and tells what was found.
 pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
-    if let Some(threads) = arguments.threads {
-        // Fails only where the threads are there already, and this comes first.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    }
+    draw_along(arguments.threads);
     let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
     let stage = staged(files, reading, surfaces, seeing, accuracy)?;
     let settings = stage.settings;

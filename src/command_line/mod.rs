@@ -54,6 +54,14 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
+/// Has this thread draw, together with others: so many in all, or as many as there are cores. It has nothing
+/// else to do, and no time is lost with waking it when they are done.
+fn draw_along(threads: Option<usize>) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+    // Fails only where the threads are there already, and this comes first.
+    let _ = pool.use_current_thread().build_global();
+}
+
 /// Shows clap's message: help and version too come this way, with exit status 0.
 fn usage(wrong: &clap::Error) -> ExitCode {
     // Nobody is left to be told where this fails.

@@ -30,6 +30,7 @@ pub mod plan;
 pub mod region;
 mod renderer;
 mod shading;
+mod shares;
 mod stages;
 mod visibility;
 mod watch;

@@ -5,10 +5,8 @@
 //! given up.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fearless_simd::Level;
-use rayon::prelude::*;
 
 use super::changes::{Cause, Changes};
 use super::effects::Light;
@@ -20,6 +18,7 @@ use super::shading::light::Lit;
 use super::shading::painter::{Band, Painter, TileSums, bounds_of};
 use super::shading::shines::Shines;
 use super::shading::surface::Scenery;
+use super::shares::{own, together};
 use super::stages::{Laps, Stages};
 use super::visibility::tile::Visibility;
 use super::visibility::words::{self, Seen};
@@ -346,16 +345,16 @@ impl Renderer {
             .map(|(pixels, filled)| Mutex::new(Band { pixels, filled }))
             .collect();
         let tiles = bands.len() * columns;
-        let next = AtomicUsize::new(0);
-        let work = |painter: &mut Painter<T>| {
+        let shares = frame.shares_of_tiles(tiles);
+        painters.resize_with(rayon::current_num_threads(), Painter::default);
+        let painters: Vec<Mutex<&mut Painter<T>>> = painters.iter_mut().map(Mutex::new).collect();
+        together(painters.len(), || {
+            let painter = &mut own(&painters);
             painter.begin();
             loop {
-                let turn = next.fetch_add(1, Ordering::Relaxed);
-                if turn >= tiles || !watch.goes_on() {
-                    return;
-                }
+                let Some(turn) = shares.next().filter(|_| watch.goes_on()) else { return };
                 // Down and then across, so that threads are at work in bands of their own.
-                let (row, column) = (turn % bands.len(), turn / bands.len());
+                let (row, column) = (turn / columns, turn % columns);
                 let tile = row * columns + column;
                 if changes.tiles.contains(tile) {
                     match pass.sums.get(tile) {
@@ -367,9 +366,7 @@ impl Renderer {
                     }
                 }
             }
-        };
-        painters.resize_with(rayon::current_num_threads(), Painter::default);
-        painters.par_iter_mut().with_max_len(1).for_each(work);
+        });
         self.stages.tiles += laps.lap();
     }
 }

@@ -31,8 +31,9 @@ pub(in crate::render) struct Bin {
     pub(in crate::render) lines: Vec<u32>,
 }
 
-/// The bins of one thread.
+/// The bins of one thread, in lines of the cache that no other thread's are in.
 #[derive(Debug, Default)]
+#[repr(align(128))]
 pub(in crate::render) struct Bins {
     columns: i32,
     rows: i32,

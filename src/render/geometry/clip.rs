@@ -22,7 +22,7 @@ const ROUND: f64 = 6_755_399_441_055_744.0;
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(16))]
-pub(in crate::render) struct ScreenVertex {
+pub struct ScreenVertex {
     x: i32,
     y: i32,
     /// 1 at the near plane, 0 at the far one.

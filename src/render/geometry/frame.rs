@@ -1,6 +1,7 @@
 //! A frame on the screen: its vertices, and its triangles and lines in bins.
 
-use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
+use std::sync::atomic::AtomicU8;
+use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
 use glam::DMat4;
@@ -9,28 +10,23 @@ use rayon::prelude::*;
 use super::bins::Bins;
 use super::clip::{Screen, ScreenVertex};
 use super::coverage::SUBPIXELS;
-use super::culling::Culling;
-use super::edges::{self, EdgeSetup};
-use super::facing::Facing;
+use super::edges;
 use super::lines::LineNumber;
+use super::parts::{Parts, share_out};
 use super::places::Places;
-use super::setup::{self, Setup};
+use super::starts::{Start, number};
 use super::vertices;
+use super::work::{What, WorkList, piece_of};
 use crate::base::Shared;
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::render::changes::alike_matrices;
 use crate::render::plan::{Draw, FramePlan};
+use crate::render::shares::{Shares, together};
 use crate::render::stages::{Laps, Stages};
 use crate::render::watch::Watch;
 use crate::render::ways::Ways;
-use crate::scene::{CLUSTER, Model};
-
-/// Triangles, polygons or edges that a thread takes at a time.
-const CHUNK: usize = 32 * CLUSTER;
-
-/// Fewer than this are set up by one thread: waking the others would take longer.
-const FEW: usize = 4096;
+use crate::scene::Model;
 
 /// Everything of a frame that is on the screen.
 #[derive(Debug, Default)]
@@ -47,50 +43,15 @@ pub(in crate::render) struct Frame {
     outlines: Vec<AtomicU8>,
     /// The polygons of the normals that are drawn.
     normals: Vec<u32>,
-    work: Vec<Work>,
+    /// The vertices that are brought onto the screen.
+    placing: WorkList<()>,
+    /// The triangles that are put into bins, and the polygons whose outlines are.
+    set_up: WorkList<What>,
+    /// The edges that are.
+    lines: WorkList<What>,
     bins: Vec<Bins>,
     /// Where its pixels are looked at.
     places: Places,
-}
-
-/// Where the numbers of a draw begin.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::render) struct Start {
-    vertex: usize,
-    vertex_end: usize,
-    /// The number of its first triangle.
-    pub(in crate::render) number: u32,
-    /// The number after that of its last.
-    pub(in crate::render) end: u32,
-    outline: usize,
-    /// The number of its first edge among the lines.
-    line: u32,
-    /// The number of its first normal among the lines.
-    normal: u32,
-    /// The number after that of its last line.
-    line_end: u32,
-    /// Where its normals begin among those of all draws.
-    normal_place: usize,
-}
-
-/// What a thread takes at a time.
-#[derive(Clone, Copy, Debug)]
-struct Work {
-    draw: usize,
-    what: What,
-    from: usize,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum What {
-    /// Triangles into bins.
-    Triangles,
-    /// The outlines of polygons that are one triangle each, in the order of drawing.
-    Facing,
-    /// The outlines of polygons.
-    FacingOneByOne,
-    /// Edges into bins.
-    Edges,
 }
 
 /// What the screen vertices of a draw were made of.
@@ -173,33 +134,40 @@ impl Frame {
 
     /// Vertices to the screen, all draws' together.
     fn place(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
-        let (starts, held) = (&self.starts, &self.held);
-        let work = |(i, mut out): (usize, &mut [ScreenVertex])| {
-            let mut at = i * CHUNK;
-            let mut next = starts.partition_point(|start| start.vertex_end <= at);
-            while !out.is_empty() && watch.goes_on() {
-                let (draw, start) = (&plan.draws[next], starts[next]);
-                let (own, others) = out.split_at_mut(out.len().min(start.vertex_end - at));
-                if held[next].is_none() {
-                    let screen = Screen::new(draw.clip_from_object, plan.size);
-                    let order = draw.model.mesh.draw_order();
-                    let first = at - start.vertex;
-                    if plan.ways.has_plain_vertices() {
-                        vertices::transform(level, &screen, order, first, own);
-                    } else {
-                        plan.ways.transform(level, &screen, order, first, own);
-                    }
-                    see_from(own, plan.shift);
-                }
-                at += own.len();
-                (out, next) = (others, next + 1);
-            }
-        };
-        if self.vertices.len() <= FEW {
-            self.vertices.chunks_mut(CHUNK).enumerate().for_each(work);
-        } else {
-            self.vertices.par_chunks_mut(CHUNK).enumerate().for_each(work);
+        self.placing.clear();
+        for (i, draw) in plan.draws.iter().enumerate().filter(|(i, _)| self.held[*i].is_none()) {
+            let order = draw.model.mesh.draw_order();
+            let position = |i| order.position(number(i));
+            self.placing.add((i, draw), ((), order.x.len()), plan.size, position);
         }
+        // The pieces' parts of all vertices, as they were added.
+        let (mut rest, mut pieces) = (&mut self.vertices[..], Vec::new());
+        pieces.reserve_exact(self.placing.len());
+        for (start, held) in self.starts.iter().zip(&self.held) {
+            let (own, others) = rest.split_at_mut(start.vertex_end - start.vertex);
+            rest = others;
+            if held.is_none() {
+                pieces.extend(own.chunks_mut(piece_of(own.len())).map(Mutex::new));
+            }
+        }
+        let threads = self.placing.threads();
+        let work = self.placing.sorted();
+        let shares = Shares::new(work.len(), threads);
+        together(threads, || {
+            while let Some(work) = shares.next().map(|i| &work[i]).filter(|_| watch.goes_on()) {
+                let draw = &plan.draws[work.draw];
+                let screen = Screen::new(draw.clip_from_object, plan.size);
+                let order = draw.model.mesh.draw_order();
+                let out = &mut *pieces[work.place].lock().unwrap_or_else(PoisonError::into_inner);
+                if plan.ways.has_plain_vertices() {
+                    vertices::transform(level, &screen, order, work.from, out);
+                } else {
+                    plan.ways.transform(level, &screen, order, work.from, out);
+                }
+                see_from(out, plan.shift);
+            }
+        });
+        drop(pieces);
         self.place_finely(plan);
         if watch.is_given_up() {
             return;
@@ -220,8 +188,9 @@ impl Frame {
             let screen = Screen::new(draw.clip_from_object, plan.size);
             let order = draw.model.mesh.draw_order();
             let own = &mut self.fine[start.vertex..start.vertex_end];
-            own.par_chunks_mut(CHUNK).enumerate().for_each(|(i, out)| {
-                plan.ways.transform_finely(&screen, order, i * CHUNK, out);
+            let piece = piece_of(own.len());
+            own.par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
+                plan.ways.transform_finely(&screen, order, i * piece, out);
                 see_from(out, plan.shift.map(|shift| shift * (plan.ways.parts() / SUBPIXELS)));
             });
         }
@@ -230,31 +199,34 @@ impl Frame {
     /// Triangles into bins: one set of bins for each thread that takes part. And which polygons face
     /// the observer, for their outlines.
     fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
-        self.work.clear();
-        let mut count = 0;
+        self.set_up.clear();
         for (i, draw) in plan.draws.iter().enumerate() {
             let mesh = &draw.model.mesh;
             let triangles = mesh.draw_order().triangles.len();
+            let mut add = |what: What, count| {
+                let position = |i| what.position(draw, i);
+                self.set_up.add((i, draw), (what, count), plan.size, position);
+            };
             if draw.filled {
-                count += self.add_work(i, What::Triangles, triangles);
+                add(What::Triangles, triangles);
             }
             if draw.lines.edges && mesh.edge_order().triangles {
-                count += self.add_work(i, What::Facing, triangles);
+                add(What::Facing, triangles);
             } else if draw.lines.edges {
-                count += self.add_work(i, What::FacingOneByOne, mesh.polygon_count());
+                add(What::FacingOneByOne, mesh.polygon_count());
             }
         }
-        let threads = if count < FEW { 1 } else { rayon::current_num_threads() };
-        self.bins.resize_with(threads, Bins::default);
+        self.bins.resize_with(self.set_up.threads(), Bins::default);
         for bins in &mut self.bins {
             bins.clear(plan.size, self.places);
         }
-        self.share_out(level, plan, watch);
+        let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+        share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
     }
 
     /// Lines into bins.
     fn add_lines(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
-        self.work.clear();
+        self.lines.clear();
         self.normals.clear();
         let mut next = 0;
         for (i, draw) in plan.draws.iter().enumerate() {
@@ -271,36 +243,18 @@ impl Frame {
             setup.add_normals(first, &mut self.bins[0], &mut self.normals);
             next = first + number(self.normals.len() - self.starts[i].normal_place);
             self.starts[i].line_end = next;
-            self.add_work(i, What::Edges, edges);
+            let position = |edge| What::Edges.position(draw, edge);
+            self.lines.add((i, draw), (What::Edges, edges), plan.size, position);
         }
-        if !self.work.is_empty() {
-            self.share_out(level, plan, watch);
+        if self.lines.len() > 0 {
+            let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+            share_out(level, self.lines.sorted(), &parts, &mut self.bins, watch);
         }
     }
 
-    /// Cuts work into chunks; gives back how much it is.
-    fn add_work(&mut self, draw: usize, what: What, count: usize) -> usize {
-        self.work.extend((0..count).step_by(CHUNK).map(|from| Work { draw, what, from }));
-        count
-    }
-
-    /// Has all threads do the work, each into its own bins, as long as that is wanted.
-    fn share_out(&mut self, level: Level, plan: &FramePlan, watch: &Watch<'_>) {
-        let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
-        let (work, next) = (&self.work, AtomicUsize::new(0));
-        let run = |bins: &mut Bins| {
-            while let Some(work) = work.get(next.fetch_add(1, Ordering::Relaxed)) {
-                if !watch.goes_on() {
-                    return;
-                }
-                parts.run(level, work, bins);
-            }
-            setup::finish(level, bins);
-        };
-        match &mut self.bins[..] {
-            [one] => run(one),
-            all => all.par_iter_mut().with_max_len(1).for_each(run),
-        }
+    /// The tiles of the picture, shared out so that each thread draws mostly what it has set up.
+    pub(in crate::render) fn shares_of_tiles(&self, tiles: usize) -> Shares {
+        self.set_up.shares_of_tiles(tiles)
     }
 
     /// The bins of all threads.
@@ -386,87 +340,6 @@ impl Frame {
     }
 }
 
-/// What all threads read while they fill their bins.
-#[derive(Debug)]
-struct Parts<'a> {
-    plan: &'a FramePlan,
-    vertices: &'a [ScreenVertex],
-    starts: &'a [Start],
-    outlines: &'a [AtomicU8],
-}
-
-impl<'a> Parts<'a> {
-    fn new(
-        plan: &'a FramePlan,
-        vertices: &'a [ScreenVertex],
-        starts: &'a [Start],
-        outlines: &'a [AtomicU8],
-    ) -> Self {
-        Self { plan, vertices, starts, outlines }
-    }
-
-    fn run(&self, level: Level, work: &Work, bins: &mut Bins) {
-        let Work { draw: i, what, from } = *work;
-        let draw = &self.plan.draws[i];
-        let mesh = &draw.model.mesh;
-        let (vertices, size) = (self.vertices_of(i), self.plan.size);
-        match what {
-            What::Triangles => {
-                let pipelines = &self.plan.pipelines;
-                let setup = Setup::new(draw, pipelines, vertices, size, self.starts[i].number);
-                let setup = setup.seen_from(self.plan.shift);
-                let order = mesh.draw_order();
-                let triangles = chunk(&order.triangles, from);
-                if self.plan.ways.draws_one_by_one() {
-                    self.plan.ways.set_up(&setup, triangles, pipelines, (size, bins));
-                } else if order.clusters.is_empty() {
-                    setup.run(level, triangles, pipelines, bins);
-                } else {
-                    let clusters = &order.clusters[from / CLUSTER..];
-                    let culling = Culling::new(draw, setup.screen);
-                    culling.each_left(clusters, triangles, |some| {
-                        setup.run(level, some, pipelines, bins);
-                    });
-                }
-            }
-            What::Facing => {
-                let triangles = chunk(&mesh.draw_order().triangles, from);
-                let facing = Facing::new(draw, vertices, size);
-                facing.of_triangles(level, triangles, self.outlines_of(i));
-            }
-            What::FacingOneByOne => {
-                let facing = Facing::new(draw, vertices, size);
-                for polygon in from..(from + CHUNK).min(mesh.polygon_count()) {
-                    facing.one(number(polygon), self.outlines_of(i));
-                }
-            }
-            What::Edges => {
-                self.edge_setup(i).run(level, chunk(&mesh.edge_order().edges, from), bins);
-            }
-        }
-    }
-
-    fn edge_setup(&self, i: usize) -> EdgeSetup<'a> {
-        let plan = self.plan;
-        let (draw, first) = (&plan.draws[i], self.starts[i].line);
-        let screen = Screen::new(draw.clip_from_object, plan.size).seen_from(plan.shift);
-        let (vertices, outlines) = (self.vertices_of(i), self.outlines_of(i));
-        EdgeSetup { draw, vertices, screen, outlines, first, width: plan.line_width }
-    }
-
-    fn vertices_of(&self, draw: usize) -> &'a [ScreenVertex] {
-        let count = self.plan.draws[draw].model.mesh.draw_order().x.len();
-        &self.vertices[self.starts[draw].vertex..][..count]
-    }
-
-    /// The outlines of a draw whose edges are drawn; none elsewhere.
-    fn outlines_of(&self, draw: usize) -> &'a [AtomicU8] {
-        let Draw { model, lines, .. } = &self.plan.draws[draw];
-        let count = if lines.edges { model.mesh.polygon_count() } else { 0 };
-        &self.outlines[self.starts[draw].outline..][..count]
-    }
-}
-
 /// Moves vertices to where they are seen from a place that is shifted by so many parts of a pixel.
 fn see_from(vertices: &mut [ScreenVertex], shift: [i32; 2]) {
     if shift != [0; 2] {
@@ -474,13 +347,4 @@ fn see_from(vertices: &mut [ScreenVertex], shift: [i32; 2]) {
             *vertex = vertex.seen_from(shift);
         }
     }
-}
-
-/// Some of a list, from `from` on.
-fn chunk<T>(all: &[T], from: usize) -> &[T] {
-    &all[from..all.len().min(from + CHUNK)]
-}
-
-fn number(i: usize) -> u32 {
-    u32::try_from(i).expect("fewer than 2^32 primitives")
 }

@@ -78,7 +78,8 @@ impl Queue {
     #[inline(always)]
     fn forget(&mut self) {
         for row in &mut self.rows {
-            row.copy_within(WAITING.., 0);
+            let (first, others) = row.split_at_mut(WAITING);
+            first[..PACK].copy_from_slice(others);
         }
         self.count -= WAITING;
     }

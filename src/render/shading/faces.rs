@@ -13,6 +13,7 @@ use super::items::Items;
 use crate::base::math::each;
 use crate::render::geometry::clip::{Screen, ScreenVertex, faces_observer};
 use crate::render::geometry::coverage::{SUBPIXELS, Snapped, doubled_area};
+use crate::render::geometry::vertices::fetch_vertices;
 use crate::render::numbers::pick::SLOTS;
 use crate::render::numbers::real::{Kernel, Machine, Number, Triple};
 use crate::render::plan::{Back, Draw, Eye, FramePlan};
@@ -33,8 +34,8 @@ pub struct Faces<T> {
     has_corners: bool,
     /// Their vertices in the mesh's draw order.
     ids: [[u32; 3]; SLOTS],
-    /// x, y, depth and one by w of each corner, as [`ScreenVertex::row`] has them.
-    vertices: [[[i32; 4]; SLOTS]; 3],
+    /// x and y of each corner on the screen, in parts of a pixel.
+    pub(super) corners: [[[i32; SLOTS]; 2]; 3],
     /// What each corner carries.
     pub(super) carried: [[[T; 4]; SLOTS]; 3],
     /// a, b and c of the edge functions that belong to the second and the third corner, for whole
@@ -66,7 +67,7 @@ impl<T: Number> Default for Faces<T> {
             numbers: [0; SLOTS],
             has_corners: false,
             ids: [[0; 3]; SLOTS],
-            vertices: [[[0; 4]; SLOTS]; 3],
+            corners: [[[0; SLOTS]; 2]; 3],
             carried: [[[T::default(); 4]; SLOTS]; 3],
             edges: [[[0; SLOTS]; 3]; 2],
             per_area: [0.0; SLOTS],
@@ -85,8 +86,8 @@ impl<T: Number> Default for Faces<T> {
 pub trait Faced: Number {
     /// Whether barycentric coordinates come from whole numbers and f64, one by one.
     const EXACT: bool;
-    /// Makes the edge functions and one by w ready, where they are not yet.
-    fn prepare(level: Level, faces: &mut Faces<Self>);
+    /// Fetches the corners, and makes the edge functions and one by w ready, where they are not yet.
+    fn prepare(level: Level, faces: &mut Faces<Self>, vertices: &[ScreenVertex]);
 }
 
 impl<T: Faced> Faces<T> {
@@ -152,12 +153,7 @@ impl<T: Faced> Faces<T> {
         plan: &FramePlan,
         vertices: &[ScreenVertex],
     ) {
-        for (slot, [a, b, c]) in self.ids[..self.count].iter().copied().enumerate() {
-            self.vertices[0][slot] = vertices[a as usize].row();
-            self.vertices[1][slot] = vertices[b as usize].row();
-            self.vertices[2][slot] = vertices[c as usize].row();
-        }
-        T::prepare(level, self);
+        T::prepare(level, self, vertices);
         if !T::EXACT && plan.eye == Eye::Point {
             return;
         }
@@ -236,10 +232,7 @@ impl<T: Faced> Faces<T> {
 
     /// The corners of a triangle on the screen.
     pub(super) fn corners(&self, slot: usize) -> [Snapped; 3] {
-        each([0, 1, 2], |i: usize| {
-            let [x, y, _, _] = self.vertices[i][slot];
-            Snapped { x, y }
-        })
+        self.corners.map(|[x, y]| Snapped { x: x[slot], y: y[slot] })
     }
 }
 
@@ -287,11 +280,15 @@ pub(super) fn picked<M: Machine, const PAGES: usize>(
 impl Faced for f64 {
     const EXACT: bool = true;
 
-    fn prepare(_: Level, faces: &mut Faces<Self>) {
+    fn prepare(_: Level, faces: &mut Faces<Self>, vertices: &[ScreenVertex]) {
         faces.cut = 0;
         for slot in 0..faces.count {
-            let beyond = faces.corners(slot).iter().any(|corner| corner.x == ScreenVertex::BEYOND);
-            faces.cut |= u64::from(beyond) << slot;
+            let own = faces.corners_among(slot, vertices);
+            let inside = own.iter().all(ScreenVertex::is_inside);
+            faces.cut |= u64::from(!inside) << slot;
+            for ([x, y], own) in faces.corners.iter_mut().zip(own) {
+                (x[slot], y[slot]) = (own.at().x, own.at().y);
+            }
         }
         faces.wide = !faces.cut;
     }
@@ -300,19 +297,23 @@ impl Faced for f64 {
 impl Faced for f32 {
     const EXACT: bool = false;
 
-    fn prepare(level: Level, faces: &mut Faces<Self>) {
+    fn prepare(level: Level, faces: &mut Faces<Self>, vertices: &[ScreenVertex]) {
         (faces.cut, faces.wide) = (0, 0);
-        dispatch!(level, simd => prepare(simd, faces));
+        dispatch!(level, simd => prepare(simd, faces, vertices));
     }
 }
 
 /// The edge functions of sixteen triangles at a time.
 #[inline(always)]
-fn prepare<S: Simd>(simd: S, faces: &mut Faces<f32>) {
+fn prepare<S: Simd>(simd: S, faces: &mut Faces<f32>, vertices: &[ScreenVertex]) {
     for at in (0..faces.count).step_by(16) {
-        let [x0, y0, _, w0] = load_four(simd, &faces.vertices[0], at);
-        let [x1, y1, _, w1] = load_four(simd, &faces.vertices[1], at);
-        let [x2, y2, _, w2] = load_four(simd, &faces.vertices[2], at);
+        let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
+            corners(simd, &faces.ids, at, vertices);
+        for ([own_x, own_y], (x, y)) in faces.corners.iter_mut().zip([(x0, y0), (x1, y1), (x2, y2)])
+        {
+            x.store_slice(&mut own_x[at..at + 16]);
+            y.store_slice(&mut own_y[at..at + 16]);
+        }
         for (row, w) in faces.by_w.iter_mut().zip([w0, w1, w2]) {
             w.bitcast::<f32x16<S>>().store_slice(&mut row[at..at + 16]);
         }
@@ -343,17 +344,34 @@ fn prepare<S: Simd>(simd: S, faces: &mut Faces<f32>) {
     }
 }
 
-/// Four rows of whole numbers that lie side by side, from `at` on.
+/// x, y, depth and one by w of the corners of sixteen triangles. Slots that nobody has taken name vertices
+/// of other draws: what is fetched for them is of no meaning.
 #[inline(always)]
-fn load_four<S: Simd>(simd: S, rows: &[[i32; 4]; SLOTS], at: usize) -> [i32x16<S>; 4] {
-    let flat = rows[at..at + 16].as_flattened();
-    let first = i32x16::from_slice(simd, &flat[..16]);
-    let second = i32x16::from_slice(simd, &flat[16..32]);
-    let third = i32x16::from_slice(simd, &flat[32..48]);
-    let fourth = i32x16::from_slice(simd, &flat[48..]);
-    let (even_low, odd_low) = first.deinterleave(second);
-    let (even_high, odd_high) = third.deinterleave(fourth);
-    let (a, c) = even_low.deinterleave(even_high);
-    let (b, d) = odd_low.deinterleave(odd_high);
-    [a, b, c, d]
+fn corners<S: Simd>(
+    simd: S,
+    ids: &[[u32; 3]; SLOTS],
+    at: usize,
+    vertices: &[ScreenVertex],
+) -> [[i32x16<S>; 4]; 3] {
+    let ids = &ids[at..at + 16];
+    [
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][0],
+        ),
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][1],
+        ),
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][2],
+        ),
+    ]
 }

@@ -19,41 +19,28 @@ use crate::render::geometry::tiles::BLOCK;
 use crate::render::numbers::pick::SLOTS;
 use crate::render::numbers::real::{Kernel, Machine, Number, Real};
 
-/// The corners of triangles in parts of a pixel: of each the first, from the block's upper left corner,
-/// and the ways from there to the second and the third; x and y of each.
-type Corners<T> = [[T; SLOTS]; 6];
-
 impl<T: Interpolated> Located<T> {
     /// Moves to the nearest points of their triangles what the linear coordinates have outside, and
     /// says where all are looked at.
     pub(super) fn hold(&mut self, level: Level, items: &Items, faces: &Faces<T>) {
         // The same for all pixels of a block, so that a pixel does not depend on its neighbours.
         let origin = [items.x[0] & !(BLOCK - 1), items.y[0] & !(BLOCK - 1)];
-        let mut corners = [[T::default(); SLOTS]; 6];
-        for slot in 0..faces.count {
-            let [a, b, c] = faces.corners(slot).map(|at| [f64::from(at.x), f64::from(at.y)]);
-            let first = origin.map(|pixel| f64::from(pixel) * f64::from(SUBPIXELS));
-            let ways = [a[0] - first[0], a[1] - first[1]];
-            let ways = [ways, [b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]];
-            for (row, way) in corners.iter_mut().zip(ways.as_flattened()) {
-                row[slot] = T::from_f64(*way);
-            }
-        }
-        T::run(level, Hold { items, origin, corners: &corners, to: self });
+        T::run(level, Hold { items, faces, origin, to: self });
     }
 }
 
 struct Hold<'a, T> {
     items: &'a Items,
+    faces: &'a Faces<T>,
     origin: [i32; 2],
-    corners: &'a Corners<T>,
     to: &'a mut Located<T>,
 }
 
 impl<T: Number> Kernel<T> for Hold<'_, T> {
     #[inline(always)]
     fn run<M: Machine<Number = T>>(self, machine: M) {
-        let Self { items, origin, corners, to } = self;
+        let Self { items, faces, origin, to } = self;
+        let corners = corners(machine, faces, origin);
         let [left, top] = origin.map(|pixel| machine.lift(f64::from(pixel)));
         let (zero, half) = (machine.lift(0.0), machine.lift(0.5));
         for at in (0..items.len).step_by(M::LANES) {
@@ -86,6 +73,34 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
             machine.store(place[1], &mut to.places[1], at);
         }
     }
+}
+
+/// The corners of triangles in parts of a pixel: of each the first, from a pixel's upper left corner, and
+/// the ways from there to the second and the third; x and y of each.
+#[inline(always)]
+fn corners<T: Number, M: Machine<Number = T>>(
+    machine: M,
+    faces: &Faces<T>,
+    origin: [i32; 2],
+) -> [[T; SLOTS]; 6] {
+    let [first, second, third] = &faces.corners;
+    let mut ways = [[0; SLOTS]; 6];
+    for axis in 0..2 {
+        let from = origin[axis] * SUBPIXELS;
+        for slot in 0..SLOTS {
+            // What is cut has no place on the screen, and is not asked here.
+            ways[axis][slot] = first[axis][slot].wrapping_sub(from);
+            ways[2 + axis][slot] = second[axis][slot].wrapping_sub(first[axis][slot]);
+            ways[4 + axis][slot] = third[axis][slot].wrapping_sub(first[axis][slot]);
+        }
+    }
+    let mut corners = [[T::default(); SLOTS]; 6];
+    for (row, ways) in corners.iter_mut().zip(&ways) {
+        for at in (0..faces.count).step_by(M::LANES) {
+            machine.store(machine.whole(ways, at), row, at);
+        }
+    }
+    corners
 }
 
 /// The second and third coordinate of the point of a triangle (with the sides u and v from its first

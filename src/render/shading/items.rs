@@ -2,8 +2,11 @@
 //!
 //! A block shows few triangles on many pixels. Each triangle gets a slot, in which what is known of
 //! it stands once; a pixel takes it from there. A pixel shows mostly the triangle of its neighbour to
-//! the left or above, so that is where its slot is looked for; a triangle that is found again on
-//! another way gets a second slot, and nothing else comes of it.
+//! the left; where a run of pixels begins, the slot is looked for in a table, by the end of the
+//! triangle's number. A triangle that another has pushed out of the table gets a second slot, and nothing
+//! else comes of it.
+
+use std::hint::select_unpredictable;
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, u32x16};
 
@@ -88,13 +91,12 @@ impl Items {
         for (number, word) in numbers[MARGIN..].iter_mut().zip(words) {
             *number = !(*word as u32);
         }
-        let (mut triangles, mut background, mut left, mut above) = (0, 0, 0, 0);
+        let (mut triangles, mut background, mut left) = (0, 0, 0);
         for at in (0..BLOCK_PIXELS).step_by(16) {
             let own = sixteen(simd, &numbers, MARGIN + at);
             triangles |= own.simd_lt(1 << 31).to_bitmask() << at;
             background |= own.simd_eq(u32::MAX).to_bitmask() << at;
             left |= own.simd_eq(sixteen(simd, &numbers, MARGIN + at - 1)).to_bitmask() << at;
-            above |= own.simd_eq(sixteen(simd, &numbers, MARGIN + at - ROW)).to_bitmask() << at;
         }
         if triangles == 0 {
             return Shown { triangles, lines: !background };
@@ -106,7 +108,7 @@ impl Items {
             self.put_all(corner, &[0; BLOCK_PIXELS]);
         } else {
             let starts = triangles & (!left | FIRST_COLUMN);
-            let slots = self.share_out(&numbers, starts, above);
+            let slots = self.share_out(&numbers, starts);
             if triangles == u64::MAX {
                 self.put_all(corner, &slots);
             } else {
@@ -126,33 +128,41 @@ impl Items {
 
     /// Gives slots to the runs of pixels that begin at `starts`.
     #[inline(always)]
+    fn share_out(
+        &mut self,
+        numbers: &[u32; MARGIN + BLOCK_PIXELS],
+        mut starts: u64,
+    ) -> [i32; BLOCK_PIXELS] {
+        self.count = 0;
+        // As long as a run can reach behind the last.
+        let mut slots = [0; BLOCK_PIXELS + ROW];
+        while starts != 0 {
+            let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
+            starts &= starts - 1;
+            let slot = self.slot_of(numbers[MARGIN + at]);
+            slots[at..][..ROW].fill(slot);
+        }
+        let mut all = [0; BLOCK_PIXELS];
+        all.copy_from_slice(&slots[..BLOCK_PIXELS]);
+        all
+    }
+
+    /// The slot of a triangle, a new one where it has none.
+    #[inline(always)]
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_possible_wrap,
         reason = "there are 64 slots"
     )]
-    fn share_out(
-        &mut self,
-        numbers: &[u32; MARGIN + BLOCK_PIXELS],
-        mut starts: u64,
-        above: u64,
-    ) -> [i32; BLOCK_PIXELS] {
-        // From the row above the first to as much as a run can reach behind the last.
-        let mut slots = [0; ROW + BLOCK_PIXELS + ROW];
-        let mut count = 0;
-        while starts != 0 {
-            let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
-            starts &= starts - 1;
-            let again = above >> at & 1 == 1;
-            self.numbers[count % SLOTS] = numbers[MARGIN + at];
-            let slot = if again { slots[at] } else { count as i32 };
-            slots[ROW + at..][..ROW].fill(slot);
-            count += usize::from(!again);
-        }
-        self.count = count;
-        let mut all = [0; BLOCK_PIXELS];
-        all.copy_from_slice(&slots[ROW..][..BLOCK_PIXELS]);
-        all
+    fn slot_of(&mut self, number: u32) -> i32 {
+        let known = &mut self.table[number as usize % TABLE];
+        let slot = usize::from(*known);
+        let is_known = (slot < self.count) & (self.numbers[slot % SLOTS] == number);
+        let slot = select_unpredictable(is_known, slot, self.count);
+        *known = slot as u8;
+        self.numbers[slot % SLOTS] = number;
+        self.count += usize::from(!is_known);
+        slot as i32
     }
 
     #[inline(always)]
@@ -207,16 +217,8 @@ impl Items {
 
     /// Adds a triangle that has some samples of a pixel, where there is room.
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "there are 64 slots")]
     pub(super) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
-        let known = &mut self.table[number as usize % TABLE];
-        if usize::from(*known) >= self.count || self.numbers[usize::from(*known) % SLOTS] != number
-        {
-            *known = self.count as u8;
-            self.numbers[self.count % SLOTS] = number;
-            self.count += 1;
-        }
-        let slot = i32::from(*known);
+        let slot = self.slot_of(number);
         let i = self.put(corner, PLACES[place % BLOCK_PIXELS], slot);
         self.shares[i] = share;
     }

@@ -57,8 +57,9 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
     [block % BLOCKS * ROW, block / BLOCKS * ROW]
 }
 
-/// Draws one tile after another.
+/// Draws one tile after another. No line of the cache has parts of two of these.
 #[derive(Debug)]
+#[repr(align(128))]
 pub(in crate::render) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
