@@ -240,13 +240,12 @@ mod tests {
                     if vertices.iter().all(ScreenVertex::is_inside) {
                         let at = vertices.map(|vertex| vertex.at());
                         let area = doubled_area(at) * if mirror < 0.0 { -1 } else { 1 };
-                        let side = |low: fn(i32, i32) -> i32, axis: fn(&super::super::coverage::Snapped) -> i32| {
-                            at.iter().map(axis).reduce(low).unwrap()
+                        let [x, y] = [at.map(|at| at.x), at.map(|at| at.y)];
+                        let beyond = |row: [i32; 3], pixels: i32| {
+                            row.iter().all(|a| *a < -SUBPIXELS)
+                                || row.iter().all(|a| *a > (pixels + 1) * SUBPIXELS)
                         };
-                        let out = side(i32::max, |at| at.x) < -SUBPIXELS
-                            || side(i32::max, |at| at.y) < -SUBPIXELS
-                            || side(i32::min, |at| at.x) > 641 * SUBPIXELS
-                            || side(i32::min, |at| at.y) > 401 * SUBPIXELS;
+                        let out = beyond(x, 640) || beyond(y, 400);
                         assert!(area > 0 || out, "round {round}, {area}: {at:?}");
                         turned_away += usize::from(!out);
                     } else {
