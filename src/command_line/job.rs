@@ -21,7 +21,7 @@ Draws a mesh from an orbit, lit by five lights, and prints one line of comma-sep
 R, label, mesh, triangles, mode, size, samples, frames, median and shortest milliseconds a frame,
 processor milliseconds a frame, the same three again, and how many pixels are covered.
 
-Exit status 3 says that this mode or number of samples is not drawn.")]
+Exit status 3 says that this mode or number of samples is not drawn, or not with these instructions.")]
 pub(crate) struct Job {
     /// The model (.obj)
     #[arg(long)]
@@ -59,6 +59,9 @@ pub(crate) struct Job {
     /// What the line calls this program
     #[arg(long, default_value = "marraztu")]
     pub(crate) label: String,
+    /// Instructions that it is drawn with: best, avx512, avx2, sse4.2, plain. The picture is the same
+    #[arg(long, value_name = "SET", default_value = "best")]
+    pub(crate) instructions: String,
     /// Threads that draw; all cores where it is not said
     #[arg(long)]
     pub(crate) threads: Option<usize>,
@@ -67,7 +70,9 @@ pub(crate) struct Job {
 /// Measures a job and prints its line. Gives the exit status.
 pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
     let samples = Samples::ALL.into_iter().find(|samples| samples.count() == arguments.msaa);
-    let (Some(mode), Some(samples)) = (Mode::named(&arguments.mode), samples) else {
+    let level = job::instructions(&arguments.instructions);
+    let (Some(mode), Some(samples), Some(level)) = (Mode::named(&arguments.mode), samples, level)
+    else {
         return Ok(3);
     };
     draw_along(arguments.threads);
@@ -83,6 +88,7 @@ pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
             distance: arguments.dist,
             face: arguments.face,
             raw: arguments.raw,
+            level,
         },
         &loaded.model,
     )?;

@@ -7,6 +7,7 @@
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
+use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 
 use crate::base::image::{Picture, Size};
@@ -69,6 +70,26 @@ pub struct Job {
     pub face: bool,
     /// Whether the mesh is left where its file has it.
     pub raw: bool,
+    /// Instructions that it is drawn with.
+    pub level: Level,
+}
+
+/// The instructions with a name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, which every processor of this
+/// kind has. None where this processor lacks them, or nobody calls any by this name.
+#[must_use]
+pub fn instructions(name: &str) -> Option<Level> {
+    let best = Level::new();
+    match name {
+        "best" => Some(best),
+        "plain" => Some(Level::baseline()),
+        #[cfg(target_arch = "x86_64")]
+        "avx512" => best.as_avx512().map(Level::Avx512),
+        #[cfg(target_arch = "x86_64")]
+        "avx2" => best.as_avx2().map(Level::Avx2),
+        #[cfg(target_arch = "x86_64")]
+        "sse4.2" => best.as_sse4_2().map(Level::Sse4_2),
+        _ => None,
+    }
 }
 
 /// What was measured.
@@ -111,7 +132,7 @@ pub fn run(job: &Job, model: &Model) -> Result<Measured, CommandError> {
     let mesh = prepared(model, job.raw);
     let triangles = mesh.mesh.triangle_count();
     let (scene, view, settings) = scene(job, Shared::new(mesh))?;
-    let mut renderer = Renderer::default();
+    let mut renderer = Renderer::new(job.level);
     let mut frame = |i: usize| -> Result<f64, CommandError> {
         let mut scene = scene.clone();
         let begin = Instant::now();
