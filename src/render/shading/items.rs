@@ -33,8 +33,7 @@ pub struct Items {
     pub(super) count: usize,
     /// The triangles of the slots, by their numbers in the frame.
     pub(super) numbers: [u32; SLOTS],
-    /// In which slot a triangle was last put, by the end of its number. What it says is believed where
-    /// the slot has that number.
+    /// In which slot of this list a triangle was last put, by the end of its number, or [`FREE`].
     table: [u8; TABLE],
 }
 
@@ -48,6 +47,9 @@ pub(super) struct Shown {
 /// Places of the table in which a triangle is looked for that is seen again. Of two that would have the
 /// same place, the later one does.
 const TABLE: usize = 128;
+
+/// What a place of the table holds that no slot has.
+const FREE: u8 = u8::MAX;
 
 /// Pixels before the first and after the last, so that neighbours can be looked at.
 const MARGIN: usize = 16;
@@ -66,7 +68,7 @@ impl Default for Items {
             shares: [0; BLOCK_PIXELS],
             count: 0,
             numbers: [0; SLOTS],
-            table: [0; TABLE],
+            table: [FREE; TABLE],
         }
     }
 }
@@ -133,7 +135,7 @@ impl Items {
         numbers: &[u32; MARGIN + BLOCK_PIXELS],
         mut starts: u64,
     ) -> [i32; BLOCK_PIXELS] {
-        self.count = 0;
+        (self.count, self.table) = (0, [FREE; TABLE]);
         // As long as a run can reach behind the last.
         let mut slots = [0; BLOCK_PIXELS + ROW];
         while starts != 0 {
@@ -157,7 +159,7 @@ impl Items {
     fn slot_of(&mut self, number: u32) -> i32 {
         let known = &mut self.table[number as usize % TABLE];
         let slot = usize::from(*known);
-        let is_known = (slot < self.count) & (self.numbers[slot % SLOTS] == number);
+        let is_known = (*known != FREE) & (self.numbers[slot % SLOTS] == number);
         let slot = select_unpredictable(is_known, slot, self.count);
         *known = slot as u8;
         self.numbers[slot % SLOTS] = number;
@@ -208,6 +210,7 @@ impl Items {
     /// Empties the list, for triangles that share their pixels.
     pub(super) fn begin_shared(&mut self) {
         (self.len, self.count, self.shared) = (0, 0, true);
+        self.table = [FREE; TABLE];
     }
 
     /// Whether there is no room for another.
