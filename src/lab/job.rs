@@ -222,6 +222,8 @@ fn scene(job: &Job, model: Shared<Model>) -> Result<(Scene, View, Settings), Com
     scene.background = BACKGROUND;
     let mut object = Object::new(model, material);
     object.edge_color = Color::from_factors([0.9, 0.8, 0.6]);
+    // Edges have one colour, whichever way their faces look.
+    object.two_sided = job.mode == Mode::Wire;
     let item = Item::Object(ObjectId(1), Box::new(object));
     Command::Insert { at: 0, item }.apply(&mut scene)?;
     for (i, light) in (0..).zip(lights(job.mode)) {
@@ -232,7 +234,6 @@ fn scene(job: &Job, model: Shared<Model>) -> Result<(Scene, View, Settings), Com
         marks: false,
         fill: if job.mode == Mode::Wire { Fill::Edges } else { Fill::Filled },
         normals: if job.mode == Mode::Flat { Normals::Face } else { Normals::Vertex },
-        back_faces: job.mode == Mode::Wire,
         ..scene.first_view()
     };
     let light = match job.mode {
