@@ -352,10 +352,8 @@ impl Renderer {
             let painter = &mut own(&painters);
             painter.begin();
             loop {
-                let Some(turn) = shares.next().filter(|_| watch.goes_on()) else { return };
-                // Down and then across, so that threads are at work in bands of their own.
-                let (row, column) = (turn / columns, turn % columns);
-                let tile = row * columns + column;
+                let Some(tile) = shares.next().filter(|_| watch.goes_on()) else { return };
+                let row = tile / columns;
                 if changes.tiles.contains(tile) {
                     match pass.sums.get(tile) {
                         None => painter.paint(&scenery, tile, &bands[row]),

@@ -2,7 +2,7 @@
 //!
 //! Each thread has a stretch of the work and takes from its front; who has nothing left takes from the back
 //! of another's. So a thread meets what its core's cache still holds, of the last stage and of the last
-//! frame: a line of the cache that another core has written takes as long to come as one of memory.
+//! frame. What another core has written has to come from there first.
 //!
 //! Blumofe and Leiserson, "Scheduling Multithreaded Computations by Work Stealing", JACM 1999.
 
@@ -21,11 +21,11 @@ pub(in crate::render) struct Shares {
 impl Shares {
     /// So many pieces for so many threads, as many for each.
     pub(in crate::render) fn new(count: usize, threads: usize) -> Self {
-        Self::from(count, (0..threads).map(|i| i * count / threads))
+        Self::beginning_at(count, (0..threads).map(|i| i * count / threads))
     }
 
     /// So many pieces, in stretches that begin here, in ascending order. The first also has what is before.
-    pub(in crate::render) fn from(
+    pub(in crate::render) fn beginning_at(
         count: usize,
         begins: impl DoubleEndedIterator<Item = usize> + ExactSizeIterator,
     ) -> Self {
@@ -92,7 +92,7 @@ mod tests {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
         for (count, begins) in [(0, vec![0, 0]), (1, vec![0, 5, 9]), (1000, vec![3, 3, 700])] {
             let taken: Vec<Mutex<u32>> = (0..count).map(|_| Mutex::new(0)).collect();
-            let shares = Shares::from(count, begins.into_iter());
+            let shares = Shares::beginning_at(count, begins.into_iter());
             pool.install(|| {
                 together(3, || {
                     while let Some(piece) = shares.next() {

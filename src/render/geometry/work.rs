@@ -25,7 +25,7 @@ pub(super) fn piece_of(count: usize) -> usize {
 }
 
 /// Fewer than this are set up by one thread: waking the others would take longer.
-pub(super) const FEW: usize = 4096;
+const FEW: usize = 4096;
 
 /// What a thread takes at a time.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +115,10 @@ impl<W: Copy> WorkList<W> {
         if self.pieces.len() < 4 * threads {
             return Shares::new(tiles, threads);
         }
-        Shares::from(tiles, (0..threads).map(|i| self.pieces[i * self.pieces.len() / threads].home))
+        Shares::beginning_at(
+            tiles,
+            (0..threads).map(|i| self.pieces[i * self.pieces.len() / threads].home),
+        )
     }
 }
 
