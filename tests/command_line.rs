@@ -69,6 +69,7 @@ fn help_says_what_there_is_and_version_which() {
         "out",
         "size",
         "material",
+        "sides",
         "projection",
         "shading",
         "normals",
@@ -162,12 +163,92 @@ fn models_alone_are_seen_whole_and_in_the_middle() {
     assert_eq!(through_the_camera.pixel(80, 60), blue, "the square is at (5, 5), and small");
     let marks = ["square.obj", "--camera", "1", "--helpers", "all"];
     assert_eq!(drawn(folder.path(), &marks).pixel(80, 60), [255, 255, 0, 255], "the bulb");
-    let turned = drawn(folder.path(), &["square.obj", "--flip-winding"]);
-    assert_eq!(turned.pixel(80, 60), blue, "only its back is seen, which is not drawn");
-    let red = drawn(folder.path(), &["square.obj", "--flip-winding", "--back-faces"]);
+    let one = ["square.obj", "--flip-winding", "--sides", "one"];
+    assert_eq!(drawn(folder.path(), &one).pixel(80, 60), blue, "its back is not drawn");
+    let red = drawn(folder.path(), &[&one[..], &["--back-faces"]].concat());
     assert_eq!(red.pixel(80, 60), [255, 0, 0, 255]);
-    let upright = drawn(folder.path(), &["square.obj", "--up", "z"]);
+    let upright = drawn(folder.path(), &["square.obj", "--up", "z", "--from", "0,0"]);
     assert_eq!(upright.pixel(80, 60), blue, "it lies, and is seen from its edge");
+    let upright = drawn(folder.path(), &["square.obj", "--up", "z"]);
+    assert_ne!(upright.pixel(80, 60), blue, "from above it is seen");
+}
+
+#[test]
+fn models_alone_are_seen_from_the_right_and_above() {
+    let folder = folder();
+    let picture = drawn(folder.path(), &["square.obj"]);
+    assert!(picture == drawn(folder.path(), &["square.obj", "--from", "30,20"]));
+    assert!(picture != drawn(folder.path(), &["square.obj", "--from", "0,0"]));
+}
+
+#[test]
+fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
+    let folder = folder();
+    let back = |sides| {
+        let all = ["square.obj", "--from", "180,0", "--lights", "0", "--sides", sides];
+        drawn(folder.path(), &all)
+    };
+    let blue = [0, 0, 179, 255];
+    assert_eq!(back("one").pixel(80, 60), blue);
+    assert_ne!(back("two").pixel(80, 60), blue);
+    assert!(back("auto") == back("two"));
+    assert!(
+        drawn(folder.path(), &["square.obj", "--from", "180,0", "--lights", "0"]) == back("two")
+    );
+    // A closed surface inside out shows its far inner side from one side, its outside from two.
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
+    std::fs::write(folder.path().join("inside_out.obj"), text).unwrap();
+    let closed = |sides| drawn(folder.path(), &["inside_out.obj", "--sides", sides]);
+    assert!(closed("auto") == closed("one"));
+    assert!(closed("two") != closed("one"));
+}
+
+/// What `render` notes on standard error.
+fn notes(folder: &Path, arguments: &[&str]) -> String {
+    let all = [&["render", "--out", "x.png", "--size", "160x120"], arguments].concat();
+    ends_with(0, folder, &all).1
+}
+
+#[test]
+fn a_picture_that_shows_nothing_of_an_object_says_why() {
+    let folder = folder();
+    let path = folder.path();
+    assert_eq!(notes(path, &["square.obj"]), "");
+    assert_eq!(notes(path, &[]), "", "all of the first scene is seen");
+    let err = notes(path, &["square.obj", "--from", "180,0", "--sides", "one"]);
+    assert!(
+        err.contains("nothing is seen of square: its only face is turned away: --sides two"),
+        "{err}"
+    );
+    let err = notes(path, &["square.obj", "--from", "90,0"]);
+    assert!(
+        err.contains("nothing is seen of square: it is smaller than a pixel, or seen edge-on"),
+        "{err}"
+    );
+    let err = notes(path, &["square.obj", "--camera", "1", "--scale", "1e9"]);
+    assert!(err.contains("nothing is seen of square: outside the view"), "{err}");
+
+    std::fs::write(path.join("two.obj"), format!("{SQUARE}f 2 3 4\n").replace(" 5\n", " 4\n"))
+        .unwrap();
+    let err = notes(path, &["square.obj", "two.obj", "--from", "180,0", "--sides", "one"]);
+    assert!(
+        err.contains("of square: its only face") && err.contains("of two: all 2 faces"),
+        "{err}"
+    );
+    let err = notes(path, &["square.obj", "two.obj", "--from", "180,0"]);
+    assert!(err.contains("nothing is seen of square: it is behind other objects"), "{err}");
+    let err = notes(path, &["square.obj", "square.obj", "--from", "180,0", "--sides", "one"]);
+    assert!(err.contains("and of 1 other object:"), "{err}");
+
+    std::fs::write(
+        path.join("clear.mtl"),
+        "newmtl clear\nKd 1 1 1\nd 0.2\nnewmtl solid\nKd 1 1 1\n",
+    )
+    .unwrap();
+    let clear = format!("mtllib clear.mtl\n{}", SQUARE.replace("f 1", "usemtl clear\nf 1"));
+    std::fs::write(path.join("clear.obj"), clear).unwrap();
+    let err = notes(path, &["clear.obj"]);
+    assert!(err.contains("nothing is seen of clear: it is transparent"), "{err}");
 }
 
 #[test]
@@ -391,7 +472,10 @@ fn models_alone_are_seen_from_the_side_that_is_asked_for() {
     let folder = folder();
     // A square that faces +Z, in a box so long that the camera is far from its plane.
     let seen = |from: &str| {
-        let picture = drawn(folder.path(), &["square.obj", "--lights", "0", "--from", from]);
+        let picture = drawn(
+            folder.path(),
+            &["square.obj", "--lights", "0", "--sides", "one", "--from", from],
+        );
         let ground = picture.pixel(0, 0);
         picture.pixels().iter().filter(|pixel| **pixel != ground).count()
     };

@@ -214,6 +214,19 @@ fn negative_indices_count_back_from_where_they_stand() {
 }
 
 #[test]
+fn minus_zero_names_no_vertex_not_even_the_one_that_follows() {
+    for face in ["f -0 1 2", "f 1 -0 2", "f 1/-0 2/1 3/1", "f 1//-0 2//1 3//1"] {
+        let lines = format!("vt 0 0\nvn 0 0 1\n{face}\nv 5 5 5\nvt 1 1\nvn 0 1 0\nf 1 2 3\n");
+        let loaded = read(&triangle_and(&lines));
+        assert!(!loaded.findings.is_empty(), "{face}");
+        let mesh = loaded.model.mesh;
+        assert!(mesh.corners().iter().all(|corner| corner.position != 3), "{face}");
+        assert!(mesh.corners().iter().all(|corner| corner.uv != 1), "{face}");
+        assert!(!mesh.points().iter().any(|point| point.normal == [0.0, 1.0, 0.0]), "{face}");
+    }
+}
+
+#[test]
 fn positive_indices_may_name_what_follows() {
     assert_eq!(outline(&clean(&format!("f 1 2 3\n{TRIANGLE}")), 0), [0, 1, 2]);
 }

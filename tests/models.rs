@@ -17,7 +17,7 @@ use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, loa
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Arithmetic, Camera, Command, Corner, ItemId, LightAt, LoadOptions, MaterialChoice, Mesh, Model,
-    Object, Placed, Pose, Scene, Settings, View, dvec3, newell,
+    Object, Placed, Pose, Samples, Scene, Settings, View, dvec3, newell,
 };
 
 /// The folder of the models, where it is there.
@@ -325,4 +325,38 @@ fn every_model_is_seen_and_drawn_alike_to_a_step_in_both_arithmetics() {
         }
         assert_eq!(seen, shown && row.triangles > 0, "{} is seen", row.file);
     }
+}
+
+/// The pictures of a model in every shading, drawn by the present threads as soon as it is loaded.
+fn pictures_of(file: &Path) -> Vec<Picture> {
+    let shadings = [LightAt::Face, LightAt::Vertex, LightAt::Pixel, LightAt::Sample];
+    let draw = |light: LightAt| {
+        // Each anew, so that each has to find what it needs of the mesh.
+        let loaded = load(file, &LoadOptions::default(), &Progress::new()).ok()?;
+        let (scene, view) = staged(&Shared::new(loaded.model), DVec3::new(3.0, 2.0, 5.0));
+        let settings = Settings { light, samples: Samples::Four, ..Settings::default() };
+        let plan = FramePlan::new(&scene, &view, &settings, Size::new(96, 80));
+        Some(Renderer::default().render(&plan).clone())
+    };
+    shadings.into_iter().filter_map(draw).collect()
+}
+
+#[test]
+fn every_model_is_drawn_alike_by_1_to_64_threads_in_every_shading() {
+    let Some(models) = models() else { return };
+    let pools: Vec<rayon::ThreadPool> = [1, 2, 3, 8, 64]
+        .map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap())
+        .into();
+    let mut drawn = 0;
+    for row in table(&models) {
+        let file = models.join(&row.file);
+        let alone = pools[0].install(|| pictures_of(&file));
+        for pool in &pools[1..] {
+            let threads = pool.current_num_threads();
+            let several = pool.install(|| pictures_of(&file));
+            assert!(several == alone, "{}: {threads} threads", row.file);
+            drawn += several.len();
+        }
+    }
+    assert!(drawn > 1000, "only {drawn} pictures were compared");
 }

@@ -14,7 +14,7 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::render::{EffectUse, FramePlan, Renderer};
 use marraztu::scene::{
     Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Model, Normals, ObjectId,
-    PolygonMode, PresetId, Projection, Scene, Settings, SpecularForm, View,
+    PolygonMode, PresetId, Projection, Scene, Settings, Sides, SpecularForm, View,
 };
 
 const FIRST: ObjectId = ObjectId(10);
@@ -172,17 +172,17 @@ fn back_faces_are_left_out_or_red_or_lit() {
     assert!(covered(&empty, &scene).iter().all(|seen| !seen));
     let red = View { back_faces: true, ..view.clone() };
     assert_eq!(draw(&scene, &red, &settings, 50).pixel(25, 25), [255, 0, 0, 255]);
-    edit(&mut scene, FIRST, |object| object.two_sided = true);
+    edit(&mut scene, FIRST, |object| object.sides = Sides::Two);
     let lit = draw(&scene, &view, &settings, 50).pixel(25, 25);
     edit(&mut scene, FIRST, |object| {
-        object.two_sided = false;
+        object.sides = Sides::One;
         object.placement = object.placement.replaced(at(50.0, 0.0, 0.0, 0.0));
     });
     // The object's own spot turned with it: without it, front and turned back look alike.
     switch(&mut scene, 3, false);
     let front = draw(&scene, &view, &settings, 50).pixel(25, 25);
     edit(&mut scene, FIRST, |object| {
-        object.two_sided = true;
+        object.sides = Sides::Two;
         object.placement = object.placement.replaced(turned);
     });
     let back = draw(&scene, &view, &settings, 50).pixel(25, 25);

@@ -27,8 +27,8 @@ use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer
 use marraztu::scene::{
     AXES, Arithmetic, Command, Fill, Filter, Frame, ItemId, LightAt, LightKind, MaterialChoice,
     MeshSource, Model, Normals, Object, ObjectId, Observer, Part, PolygonMode, PresetId,
-    Projection, Samples, Scene, Settings, SourceCorner, SpecularForm, SpotOwner, Subject, Surface,
-    Texture, Transformation, View, Wrap,
+    Projection, Samples, Scene, Settings, Sides, SourceCorner, SpecularForm, SpotOwner, Subject,
+    Surface, Texture, Transformation, View, Wrap,
 };
 
 /// Numbers that look random and are the same on every machine (Marsaglia's xorshift).
@@ -314,7 +314,7 @@ fn dress(object: &mut Object, dice: &mut Dice) {
         }
         2 => object.texture = (dice.below(3) > 0).then(|| texture(dice)),
         3 => object.tint = dice.color(),
-        4 => object.two_sided ^= true,
+        4 => object.sides = if object.sides == Sides::Two { Sides::One } else { Sides::Two },
         5 => object.file_normals ^= true,
         6 => object.edge_color = dice.color(),
         7 if !object.hidden_parts.remove(&0) => {

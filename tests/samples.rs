@@ -17,7 +17,7 @@ use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Aim, Arithmetic, Axis, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,
     MeshSource, NONE, NormalLength, ObjectId, Part, Placed, Projection, Samples, Scene, Settings,
-    SourceCorner, SpotOwner, Surface, Texture, View, Wrap,
+    Sides, SourceCorner, SpotOwner, Surface, Texture, View, Wrap,
 };
 
 const SIDE: usize = 128;
@@ -508,7 +508,7 @@ fn fan() -> (Scene, View) {
     let (mut scene, view) = scene(&[(model_of("fan", source), at(110.0, 0.0, 0.0, 0.0))]);
     edit(&mut scene, ObjectId(10), |object| {
         object.surface = Surface::Texture;
-        object.two_sided = true;
+        object.sides = Sides::Two;
     });
     scene.background = Color([120; 3]);
     (scene, View { marks: false, ..view })

@@ -19,9 +19,9 @@ use marraztu::scene::{
     Fill, Filter, Frame, Interpolation, Item, LeaveOut, Lens, Light, LightAt, LightId, LightKind,
     LoadOptions, Material, MaterialChoice, NormalLength, NormalMatrix, Normalising, Normals,
     Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId, Projection,
-    Rounding, Samples, Scale, Scene, Settings, SpecularForm, SpecularPower, Spin, SpotOwner, Steps,
-    Subject, Subpixels, Surface, Texture, Transformation, UpAxis, VertexArithmetic, View, Winding,
-    Wrap,
+    Rounding, Samples, Scale, Scene, Settings, Sides, SpecularForm, SpecularPower, Spin, SpotOwner,
+    Steps, Subject, Subpixels, Surface, Texture, Transformation, UpAxis, VertexArithmetic, View,
+    Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -69,7 +69,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         surface: Surface::Texture,
         texture: Some(Shared::new(texture)),
         tint: Color([1, 2, 3]),
-        two_sided: true,
+        sides: Sides::Two,
         file_normals: false,
         edge_color: Color([4, 5, 6]),
     };

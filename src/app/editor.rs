@@ -24,8 +24,9 @@ use super::measuring::Measuring;
 use super::pace::{Happening, Motion};
 use super::painter::Snapshot;
 use super::scene_files::Waiting;
-use super::state::{Message, Shown, State, Tone};
+use super::state::{Message, Offer, Shown, State, Tone};
 use super::viewport::{Purpose, Viewport};
+use super::visibility::Search;
 use super::worker::Worker;
 use super::{notices, panels};
 use crate::edit::selection::{self, Selection};
@@ -38,6 +39,7 @@ pub struct App {
     pub(super) state: State,
     pub(super) dialogs: Dialogs,
     pub(super) loading: Vec<Loading>,
+    pub(super) searches: Vec<Search>,
     /// A scene whose models are not where it says.
     pub(super) waiting: Option<Waiting>,
     pub(super) viewport: Viewport,
@@ -67,6 +69,7 @@ impl App {
             state: State::new(scene, view),
             dialogs: Dialogs::default(),
             loading: Vec::new(),
+            searches: Vec::new(),
             waiting: None,
             viewport: Viewport::default(),
             lab: Work::default(),
@@ -127,6 +130,7 @@ impl App {
             self.take_answer(&ctx, answer);
         }
         self.hear_loading(&ctx);
+        self.hear_searches();
         self.hear_measuring();
         self.hear_laboratory(&ctx);
         self.compare(&ctx);
@@ -298,7 +302,10 @@ impl App {
     pub fn perform(&mut self, ctx: &Context, action: Action, gesture: Gesture) {
         let label = action.step_label(&self.state);
         // What a notice offers is done by any key or button, and then there is no more to offer.
-        self.state.notices.retain(|notice| notice.offer != Some(action));
+        if action == Action::FrameSelection {
+            let framed = self.state.view.object.map(Offer::Frame);
+            self.state.notices.retain(|notice| notice.offer.is_none() || notice.offer != framed);
+        }
         match decide(action, &self.state, self.state.stroke(gesture)) {
             Err(refusal) => self.refuse(refusal.to_string()),
             Ok(Meaning::Change(command)) => self.change(command, gesture, &label),

@@ -7,13 +7,12 @@ use std::path::{Path, PathBuf};
 
 use egui::Context;
 
-use super::action::Action;
 use super::dialogs::{After, Answer, Wanted};
 use super::editor::App;
 use super::material_dialog::{MaterialChoices, MaterialDialog, file_name, own_or_silver, summary};
 use super::painter;
 use super::scene_files::{self, Opening};
-use super::state::{Economy, Notice, State};
+use super::state::{Economy, Notice, Offer, State};
 use super::tasks::{Outcome, Task};
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
@@ -154,7 +153,7 @@ impl App {
             return;
         };
         if loaded.model.options == options && texture.is_none() {
-            self.insert(loaded, material, None);
+            self.insert(ctx, loaded, material, None);
         } else {
             self.load_model(
                 ctx,
@@ -232,7 +231,7 @@ impl App {
                     (Err(error), _) => self.tell_load_error(&error),
                     (Ok((loaded, texture)), Some(material)) => {
                         let keeps_saved = keeps_saved && self.state.history.is_saved();
-                        self.insert(loaded, material, texture);
+                        self.insert(ctx, loaded, material, texture);
                         if keeps_saved {
                             self.state.history.mark_saved();
                         }
@@ -266,6 +265,7 @@ impl App {
     /// Puts a loaded model into the scene, and tells what was found in its file.
     fn insert(
         &mut self,
+        ctx: &Context,
         loaded: Loaded,
         material: MaterialChoice,
         texture: Option<Shared<Texture>>,
@@ -280,6 +280,7 @@ impl App {
         let unseen = out_of_sight(&self.state, &object, size);
         let command = items::insert_object(&self.state.scene, object);
         self.change(command, Gesture::Whole, &format!("Load {name}"));
+        let Some(id) = self.state.view.object else { return };
         self.state.tell(Some(format!("Loaded {name}: {found}")));
         // Two notices, for one is done with when the object is framed and the other is not.
         if !details.is_empty() {
@@ -288,8 +289,10 @@ impl App {
         }
         if unseen {
             let text = format!("{name} can hardly be seen from here");
-            let offer = Some(Action::FrameSelection);
+            let offer = Some(Offer::Frame(id));
             self.state.notices.push(Notice { text, details: Vec::new(), offer });
+        } else {
+            self.look_for_unseen(ctx, vec![id]);
         }
     }
 
@@ -343,7 +346,7 @@ fn settled(material: MaterialChoice, loaded: &Loaded) -> MaterialChoice {
 
 /// Whether an object would be outside of what is seen now, or too small to be noticed.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
+pub(super) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
     let Some((centre, radius)) = object.bounding_sphere(0.0) else { return false };
     let (view, scene) = (&state.view, &state.scene);
     let centre = scene.observer_frame(view).inverse().transform_point3(centre);

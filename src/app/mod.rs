@@ -35,6 +35,7 @@ mod tasks;
 pub mod theme;
 mod trace;
 mod viewport;
+mod visibility;
 mod worker;
 
 pub use editor::App;

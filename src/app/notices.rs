@@ -5,6 +5,7 @@ use egui::{Align2, Area, Context, Frame, Id, Order, Ui, vec2};
 use super::ask::Ask;
 use super::files::Loading;
 use super::state::{Notice, State};
+use crate::edit::Gesture;
 
 /// Shows them in the lower right corner; what is asked for is added to `asks`.
 pub(super) fn show(ctx: &Context, state: &State, loading: &[Loading], asks: &mut Vec<Ask>) {
@@ -42,10 +43,14 @@ fn loading_ui(ui: &mut Ui, at: usize, loading: &Loading, asks: &mut Vec<Ask>) {
 fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, asks: &mut Vec<Ask>) {
     ui.label(&notice.text);
     ui.horizontal(|ui| {
-        if let Some(action) = notice.offer
-            && let Some(action) = action.button(ui, state)
+        if let Some(offer) = notice.offer
+            && ui.button(offer.label()).clicked()
         {
-            asks.push(Ask::Do(action));
+            asks.push(match offer.command(&state.scene, &state.view) {
+                Ok((command, label)) => Ask::Change { command, gesture: Gesture::Whole, label },
+                Err(refusal) => Ask::Refuse(refusal.to_string()),
+            });
+            asks.push(Ask::PutAway(at));
         }
         if !notice.details.is_empty() && ui.button("Details").clicked() {
             asks.push(Ask::Details(at));

@@ -290,7 +290,7 @@ mod tests {
         static BEGINNING: OnceLock<Instant> = OnceLock::new();
         let now = NOW.get() + Duration::from_millis(40);
         NOW.set(now);
-        *BEGINNING.get_or_init(Instant::now) + now
+        *crate::base::once::get_or_compute(&BEGINNING, Instant::now) + now
     }
 
     fn this() -> Asked {

@@ -89,7 +89,7 @@ impl App {
     pub(super) fn take_scene(&mut self, ctx: &Context, opening: Opening) {
         let Opening { path, relocated, result } = opening;
         match result {
-            Ok(opened) => self.show_scene(path, opened),
+            Ok(opened) => self.show_scene(ctx, path, opened),
             Err(SceneFileError::Model(LoadError::Cancelled)) => {
                 self.state.tell(Some("Opening was cancelled".to_owned()));
             }
@@ -140,7 +140,7 @@ impl App {
         ));
     }
 
-    fn show_scene(&mut self, path: PathBuf, opened: Opened) {
+    fn show_scene(&mut self, ctx: &Context, path: PathBuf, opened: Opened) {
         let Opened { scene, view, settings, findings } = opened;
         let shown = Shown::of(view.panels, self.state.shown.theme);
         let mut state = State { settings, ..State::new(scene, view) };
@@ -154,6 +154,8 @@ impl App {
         state.path = Some(path);
         self.replace(state);
         self.state.shown = shown;
+        let objects = self.state.scene.objects.ids().collect();
+        self.look_for_unseen(ctx, objects);
     }
 }
 

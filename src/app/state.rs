@@ -4,15 +4,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::action::Action;
 use super::laboratory::Laboratory;
 pub use super::pace::Economy;
 use super::painter::Drawn;
 use crate::base::image::Size;
-use crate::edit::{Gesture, History, Stroke, selection};
+use crate::edit::{Gesture, History, Refusal, Stroke, frame, items, selection};
 use crate::lab::cost::{Costs, Explained};
 use crate::render::Changes;
-use crate::scene::{ItemId, Light, LightKind, Panels, Scene, Settings, View};
+use crate::scene::{
+    Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Settings, Sides, View,
+};
 
 /// What is edited and shown.
 #[derive(Debug)]
@@ -71,7 +72,43 @@ pub struct Notice {
     /// More, one line each, for those who want to see it.
     pub details: Vec<String>,
     /// What is offered with it, as a button.
-    pub offer: Option<Action>,
+    pub offer: Option<Offer>,
+}
+
+/// What a notice offers to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Offer {
+    /// To bring an object into view.
+    Frame(ObjectId),
+    /// To draw both sides of an object's faces.
+    TwoSides(ObjectId),
+}
+
+impl Offer {
+    /// The label of its button.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Frame(_) => "Frame",
+            Self::TwoSides(_) => "Draw both sides",
+        }
+    }
+
+    /// What it does to the scene, and what the history calls that.
+    ///
+    /// # Errors
+    /// If the object is gone, or an object looks.
+    pub fn command(self, scene: &Scene, view: &View) -> Result<(Command, String), Refusal> {
+        let (Self::Frame(id) | Self::TwoSides(id)) = self;
+        let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
+        Ok(match self {
+            Self::Frame(_) => (frame::objects(scene, view, &[id])?, format!("Frame {name}")),
+            Self::TwoSides(_) => {
+                let two = |object: &mut Object| object.sides = Sides::Two;
+                (items::change_object(scene, id, two)?, format!("Draw both sides of {name}"))
+            }
+        })
+    }
 }
 
 /// What the last picture took.

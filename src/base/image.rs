@@ -2,6 +2,8 @@
 
 use std::sync::OnceLock;
 
+use super::once::get_or_compute;
+
 /// Rows of pixels from the top; each pixel is red, green, blue and alpha, not premultiplied.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
@@ -89,7 +91,7 @@ impl Picture {
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
         let least = || self.pixels.iter().fold(255, |least, pixel| pixel[3].min(least));
-        *self.least_alpha.0.get_or_init(least)
+        *get_or_compute(&self.least_alpha.0, least)
     }
 
     /// The pixel in column `x` of row `y`, both counted from the upper left.

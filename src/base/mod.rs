@@ -4,6 +4,7 @@ pub mod color;
 pub mod image;
 pub mod lists;
 pub mod math;
+pub mod once;
 mod shared;
 
 pub use shared::Shared;

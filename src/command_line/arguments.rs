@@ -15,7 +15,8 @@ use super::prove::Prove;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::scene::{
-    LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Surface, UpAxis, Winding,
+    LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides, Surface, UpAxis,
+    Winding,
 };
 
 /// The longest side that a picture may have.
@@ -141,6 +142,13 @@ pub(crate) struct Surfaces {
         ("lit", Surface::TextureAndLight),
     ]))]
     pub(crate) surface: Option<Surface>,
+    /// Which sides of faces are drawn and lit: one, two, auto* (two of an open surface, one of a closed)
+    #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[
+        ("one", Sides::One),
+        ("two", Sides::Two),
+        ("auto", Sides::Auto),
+    ]))]
+    pub(crate) sides: Option<Sides>,
     /// Compute normals even where the file has some
     #[arg(long)]
     pub(crate) no_file_normals: bool,
@@ -153,7 +161,7 @@ pub(crate) struct Seeing {
     /// The camera to look through, by its place in the scene's list, from 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) camera: Option<u32>,
-    /// From where models alone are seen: degrees to the right, and up; "0,0" is the front
+    /// From where models alone are seen: degrees to the right, and up (30,20*); "0,0" is the front
     #[arg(long, value_name = "RIGHT,UP", allow_hyphen_values = true, conflicts_with = "camera", value_parser = side)]
     pub(crate) from: Option<[f64; 2]>,
     /// How space is brought onto the picture: perspective*, orthographic

@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use glam::{DMat3, DVec3};
-use marraztu::base::math;
+use marraztu::base::image::Size;
 use marraztu::edit::{frame, items};
 use marraztu::io;
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{Camera, CameraId, Command, Fill, ItemId, Object, Placed, Pose};
+use marraztu::render::{FramePlan, Renderer, Unseen, unseen};
+use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
 
 use super::accuracy::Accuracy;
 use super::arguments::{Reading, Render, Seeing, Shot, Slots, Surfaces};
@@ -25,13 +24,40 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     }
     let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.shot.size);
     let mut renderer = Renderer::default();
-    let picture = renderer.render(&plan);
+    renderer.render(&plan);
     drop(bar);
+    tell_unseen(&mut renderer, &stage, arguments.shot.size);
+    let picture = renderer.picture();
     let _bar = Bar::unmeasured(&format!("writing {}", arguments.out.display()));
     io::save_picture(&arguments.out, picture)?;
     // With this the process ends: to take a million vertices out of memory before only takes time.
     std::mem::forget((stage, plan, renderer));
     Ok(())
+}
+
+/// Says of which objects nothing is seen, and why: a line for each reason.
+fn tell_unseen(renderer: &mut Renderer, stage: &Stage, size: Size) {
+    let Stage { scene, view, settings, .. } = stage;
+    let mut reasons: Vec<(Unseen, Vec<&str>)> = Vec::new();
+    for (id, reason) in unseen(renderer, scene, view, settings, size) {
+        let name = scene.objects.get(id).map_or("", |object| &*object.name);
+        match reasons.iter_mut().find(|(other, _)| *other == reason) {
+            Some((_, names)) => names.push(name),
+            None => reasons.push((reason, vec![name])),
+        }
+    }
+    for (reason, names) in &reasons {
+        let remedy = match reason {
+            Unseen::TurnedAway { .. } => ": --sides two draws both sides",
+            _ => "",
+        };
+        let others = match names.len() {
+            1 => String::new(),
+            2 => " and of 1 other object".to_owned(),
+            n => format!(" and of {} other objects", n - 1),
+        };
+        say("note", &format!("nothing is seen of {}{others}: {reason}{remedy}", names[0]));
+    }
 }
 
 /// Reads the files and arranges everything as it is asked for. What was found in the files is told.
@@ -69,6 +95,7 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
             object.texture.clone_from(&texture);
         }
         object.surface = surfaces.surface.unwrap_or(object.surface);
+        object.sides = surfaces.sides.unwrap_or(object.sides);
         object.file_normals &= !surfaces.no_file_normals;
     };
     let ids: Vec<_> = stage.scene.objects.ids().collect();
@@ -98,31 +125,21 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     view.face_normals |= seeing.face_normals;
     view.vertex_normals |= seeing.vertex_normals;
     view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
-    if let Some(side) = seeing.from {
-        turn(stage, side)?;
+    if seeing.from.is_some() && !stage.models_alone {
+        return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
     }
     match seeing.camera {
         Some(number) => stage.view.camera = camera(stage, number)?,
-        None if stage.models_alone => match frame::all(&stage.scene, &stage.view) {
-            Ok(command) => stage.change(command)?,
-            Err(refusal) => say("note", &refusal),
-        },
+        None if stage.models_alone => {
+            let from = seeing.from.unwrap_or(frame::MODELS_FROM);
+            match frame::models(&stage.scene, &stage.view, from) {
+                Ok(command) => stage.change(command)?,
+                Err(refusal) => say("note", &refusal),
+            }
+        }
         None => {}
     }
     Ok(())
-}
-
-/// Turns the camera, so that what it frames is seen from this side: degrees to the right, and up.
-fn turn(stage: &mut Stage, [right, up]: [f64; 2]) -> Result<(), Failure> {
-    if !stage.models_alone {
-        return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
-    }
-    let axes: DMat3 =
-        math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
-    let aim = |camera: &mut Camera| {
-        camera.pose = Placed::new(Pose { axes, ..*camera.pose.now() });
-    };
-    stage.change(items::change_camera(&stage.scene, stage.view.camera, aim)?)
 }
 
 /// Puts the lights in these slots on, and all others out.

@@ -13,6 +13,7 @@
 use glam::{DMat3, DVec3};
 
 use super::{Refusal, Stroke, put};
+use crate::base::math;
 use crate::scene::{
     CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, Scene, View, dvec3,
 };
@@ -49,6 +50,12 @@ impl Side {
     }
 }
 
+/// From where models alone are seen: degrees to the right of the front, and degrees up.
+pub const MODELS_FROM: [f64; 2] = [30.0, 20.0];
+
+/// How much farther away than necessary models alone are seen: their margin in the picture.
+const MARGIN: f64 = 1.0 / 20.0;
+
 /// The key `.`: the selected camera sees the selected object whole.
 ///
 /// # Errors
@@ -63,12 +70,15 @@ pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 /// # Errors
 /// Where nothing is shown.
 pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    objects(scene, view, &shown(scene, view))
+}
+
+/// The objects that are shown.
+fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
     let shown = |id: &ObjectId, object: &Object| {
         object.visible && (!view.only_selected || view.object == Some(*id))
     };
-    let ids: Vec<ObjectId> =
-        scene.objects.iter().filter(|(id, object)| shown(id, object)).map(|(id, _)| id).collect();
-    objects(scene, view, &ids)
+    scene.objects.iter().filter(|(id, object)| shown(id, object)).map(|(id, _)| id).collect()
 }
 
 /// The selected camera sees these objects whole.
@@ -76,7 +86,18 @@ pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 /// # Errors
 /// Where none of them has vertices.
 pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, Refusal> {
-    framed(scene, view, ids, scene.selected_camera(view).pose.now().axes)
+    framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
+}
+
+/// Models that no scene says how to look at: the selected camera sees everything that is shown, with a
+/// margin of a twentieth, from `right` degrees to the right of the front and `up` degrees above.
+///
+/// # Errors
+/// Where nothing is shown.
+pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Command, Refusal> {
+    let axes =
+        math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
+    framed(scene, view, &shown(scene, view), axes, MARGIN)
 }
 
 /// Ctrl+1, 3 and 7: the selected camera sees the selected object whole from a side.
@@ -85,7 +106,7 @@ pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, 
 /// Where there is no object, or it has no vertices.
 pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
     let (id, _) = put::selected_object(scene, view)?;
-    framed(scene, view, &[id], side.axes())
+    framed(scene, view, &[id], side.axes(), 0.0)
 }
 
 /// A sphere about objects: of one object its own, of several about the box around theirs. `None`
@@ -124,7 +145,15 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     (distance, framed)
 }
 
-fn framed(scene: &Scene, view: &View, ids: &[ObjectId], axes: DMat3) -> Result<Command, Refusal> {
+/// The selected camera sees these objects whole along these axes, farther away than necessary by a part
+/// of the distance.
+fn framed(
+    scene: &Scene,
+    view: &View,
+    ids: &[ObjectId],
+    axes: DMat3,
+    margin: f64,
+) -> Result<Command, Refusal> {
     if view.observer == Observer::Object && view.object.is_some() {
         return Err(Refusal::ObjectLooks);
     }
@@ -141,7 +170,9 @@ fn framed(scene: &Scene, view: &View, ids: &[ObjectId], axes: DMat3) -> Result<C
     let Sphere { centre, radius } = sphere.ok_or(Refusal::NothingToFrame)?;
     // A single point is looked at as if it were a sphere of one unit.
     let radius = if radius > 0.0 { radius } else { 1.0 };
-    let (distance, lens) = lens(&camera.lens, radius);
+    let (distance, lens) = lens(&camera.lens, radius * (1.0 + margin));
+    // In parallel projection a margin is there already.
+    let lens = Lens { half_size: 1.1 * radius, ..lens };
     let pose = Pose { eye: centre + axes.z_axis * distance, axes, mode };
     put::pose_and_lens(scene, view.camera, pose, lens, Stroke::First)
 }

@@ -8,6 +8,7 @@ use super::obj::parse;
 use super::progress::Progress;
 use super::texture::own_picture;
 use crate::base::Shared;
+use crate::base::once::get_or_compute;
 use crate::scene::{
     Camera, CameraId, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model, Object,
     ObjectId, Placed, Pose, PresetId, Scene, Texture, View, Wrap,
@@ -33,11 +34,7 @@ impl Asset {
             let loaded = parse(self.text, &file, None, &LoadOptions::default(), &Progress::new());
             Shared::new(loaded.expect("the program's own models are sound").model)
         };
-        // Read outside of the cell: whoever waits for it in the middle may be asked for it again.
-        self.model.get().cloned().unwrap_or_else(|| {
-            let model = read();
-            self.model.get_or_init(|| model).clone()
-        })
+        get_or_compute(&self.model, read).clone()
     }
 }
 
@@ -75,7 +72,7 @@ pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
         let (wrap, offset, scale) = (Wrap::default(), [0.0; 2], [1.0; 2]);
         Shared::new(Texture { source: own.into(), picture, wrap, offset, scale })
     };
-    (path == own).then(|| TEXTURE.get_or_init(read).clone())
+    (path == own).then(|| get_or_compute(&TEXTURE, read).clone())
 }
 
 /// The scene that the program opens with, and how it is seen.

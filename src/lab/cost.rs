@@ -155,7 +155,7 @@ pub fn measure(
         bench.time(&plan);
     }
     let control = bench.pairs(&plan, &plan, share, &stopped);
-    let noise = median(&control.differences).abs() + spread(&control.differences);
+    let noise = noise(&control.differences);
     let mut costs = Costs { frame: median(&control.frames), noise, effects: Vec::new() };
     for (effect, without) in &without {
         if stopped() {
@@ -236,4 +236,36 @@ fn median(some: &[f64]) -> f64 {
 
 fn spread(some: &[f64]) -> f64 {
     (quantile(some, 0.75) - quantile(some, 0.25)) / 2.0
+}
+
+/// What pairs of equal frames seem to differ by: |median| and half of the interquartile range.
+fn noise(differences: &[f64]) -> f64 {
+    median(differences).abs() + spread(differences)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Differences with the median -1 and the quartiles -3 and 3.
+    const DIFFERENCES: [f64; 9] = [4.0, -7.0, -3.0, 3.0, -1.0, 2.0, -2.0, 5.0, -4.0];
+
+    #[test]
+    fn the_noise_is_the_median_and_half_of_the_interquartile_range() {
+        assert_eq!(spread(&DIFFERENCES), 3.0);
+        assert_eq!(noise(&DIFFERENCES), 4.0);
+        assert_eq!(noise(&[]), 0.0);
+    }
+
+    #[test]
+    fn a_cost_within_the_noise_and_its_own_spread_is_not_clear() {
+        let costs = Costs { frame: 9.0, noise: 4.0, effects: Vec::new() };
+        let cost = |milliseconds| Cost { effect: Effect::Texture, milliseconds, spread: 3.0 };
+        for within in [0.0, 6.5, 7.0, -7.0] {
+            assert!(!costs.is_clear(&cost(within)), "{within}");
+        }
+        for beyond in [7.1, -7.1] {
+            assert!(costs.is_clear(&cost(beyond)), "{beyond}");
+        }
+    }
 }

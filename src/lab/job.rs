@@ -16,7 +16,8 @@ use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     Aim, Attenuation, Camera, CameraId, Command, CommandError, Fill, Item, Lens, Light, LightAt,
     LightId, LightKind, Material, MaterialChoice, Mesh, MeshSource, Model, Normals, Object,
-    ObjectId, Orbit, Placed, Pose, Samples, Scene, Settings, SourceCorner, SpotOwner, View, dvec3,
+    ObjectId, Orbit, Placed, Pose, Samples, Scene, Settings, Sides, SourceCorner, SpotOwner, View,
+    dvec3,
 };
 
 /// How the mesh is drawn.
@@ -223,7 +224,7 @@ fn scene(job: &Job, model: Shared<Model>) -> Result<(Scene, View, Settings), Com
     let mut object = Object::new(model, material);
     object.edge_color = Color::from_factors([0.9, 0.8, 0.6]);
     // Edges have one colour, whichever way their faces look.
-    object.two_sided = job.mode == Mode::Wire;
+    object.sides = if job.mode == Mode::Wire { Sides::Two } else { Sides::One };
     let item = Item::Object(ObjectId(1), Box::new(object));
     Command::Insert { at: 0, item }.apply(&mut scene)?;
     for (i, light) in (0..).zip(lights(job.mode)) {

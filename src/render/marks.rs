@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use glam::{DMat3, DMat4, DVec3};
 
 use super::plan::ObserverSpace;
+use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color, math};
 use crate::scene::{Camera, LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner};
 
@@ -47,7 +48,7 @@ pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Optio
 /// A square on its corner, from -1 to 1, facing +Z.
 pub(super) fn diamond() -> &'static Shared<Model> {
     static DIAMOND: OnceLock<Shared<Model>> = OnceLock::new();
-    DIAMOND.get_or_init(|| {
+    get_or_compute(&DIAMOND, || {
         let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
         let mesh = Mesh::new(MeshSource {
             positions: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]],

@@ -4,6 +4,8 @@
 //! bytes. What is picked is asked of the last picture that was finished, also after a frame that was
 //! given up.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use fearless_simd::Level;
@@ -110,7 +112,10 @@ impl Renderer {
             self.resize(plan.size);
             self.finished = false;
             // From one of the threads that draw, so that the caller sleeps and wakes once a frame.
-            rayon::scope(|_| self.draw_changes(plan, &changes, &watch));
+            rayon::scope(|_| {
+                plan.prepare();
+                self.draw_changes(plan, &changes, &watch);
+            });
             if watch.is_given_up() {
                 return Err(GivenUp);
             }
@@ -252,25 +257,41 @@ impl Renderer {
     /// Where the last picture shows an item: a flag for each pixel, row by row from the top.
     #[must_use]
     pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
-        self.build_again();
-        let Some(plan) = &self.plan else { return Vec::new() };
-        let size = plan.size;
-        let mut pixels = vec![false; size.area()];
-        let [columns, rows] = tiles_of(plan.size);
-        let mut visibility = Visibility::default();
-        for tile in 0..usize::try_from(columns * rows).expect("not negative") {
-            let bounds = bounds_of(tile, plan.size);
-            visibility.draw(self.level, plan, &self.frame, (tile, bounds));
-            for (y, x) in (bounds.top..bounds.bottom)
-                .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
-            {
-                let seen = self.seen(plan, visibility.word(self.level, x, y));
-                let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
-                pixels[y * size.width + x] =
-                    seen.is_some_and(|(draw, _)| plan.draws[draw as usize].item == item);
-            }
-        }
+        let mut pixels = vec![false; self.seen_size().area()];
+        self.look(|renderer, plan, at, word| {
+            pixels[at] = renderer
+                .seen(plan, word)
+                .is_some_and(|(draw, _)| plan.draws[draw as usize].item == item);
+            ControlFlow::Continue(())
+        });
         pixels
+    }
+
+    /// Those of some items of which the last picture shows nothing.
+    pub(super) fn missing(&mut self, mut items: BTreeSet<ItemId>) -> BTreeSet<ItemId> {
+        let mut last = None;
+        self.look(|renderer, plan, _, word| {
+            if let Some((draw, _)) =
+                renderer.seen(plan, word).filter(|(draw, _)| last != Some(*draw))
+            {
+                last = Some(draw);
+                items.remove(&plan.draws[draw as usize].item);
+            }
+            if items.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        items
+    }
+
+    /// The item that the last picture shows at the most of these pixels; `None` if it shows none.
+    pub(super) fn most_seen(&mut self, pixels: &[bool]) -> Option<ItemId> {
+        let mut counts: BTreeMap<ItemId, usize> = BTreeMap::new();
+        self.look(|renderer, plan, at, word| {
+            if let Some((draw, _)) = renderer.seen(plan, word).filter(|_| pixels[at]) {
+                *counts.entry(plan.draws[draw as usize].item).or_default() += 1;
+            }
+            ControlFlow::Continue(())
+        });
+        counts.into_iter().max_by_key(|(_, count)| *count).map(|(item, _)| item)
     }
 
     /// Says of each effect of the last picture how many pixels it takes part in, and gives by how many
@@ -288,10 +309,24 @@ impl Renderer {
         reason = "the lower half of a word names what is seen"
     )]
     pub fn primitives(&mut self) -> Vec<u32> {
+        let mut pixels = vec![0; self.seen_size().area()];
+        self.look(|_, _, at, word| {
+            pixels[at] = word as u32;
+            ControlFlow::Continue(())
+        });
+        pixels
+    }
+
+    /// The size of the last picture that was finished; 0 x 0 before the first.
+    fn seen_size(&self) -> Size {
+        self.plan.as_ref().map_or(Size::new(0, 0), |plan| plan.size)
+    }
+
+    /// Calls `each` with the place and the word of each pixel of the last picture, tile by tile, until
+    /// it breaks off.
+    fn look(&mut self, mut each: impl FnMut(&Self, &FramePlan, usize, u64) -> ControlFlow<()>) {
         self.build_again();
-        let Some(plan) = &self.plan else { return Vec::new() };
-        let size = plan.size;
-        let mut pixels = vec![0; size.area()];
+        let Some(plan) = &self.plan else { return };
         let [columns, rows] = tiles_of(plan.size);
         let mut visibility = Visibility::default();
         for tile in 0..usize::try_from(columns * rows).expect("not negative") {
@@ -302,10 +337,11 @@ impl Renderer {
             {
                 let word = visibility.word(self.level, x, y);
                 let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
-                pixels[y * size.width + x] = word as u32;
+                if each(self, plan, y * plan.size.width + x, word).is_break() {
+                    return;
+                }
             }
         }
-        pixels
     }
 
     /// The draw and the polygon that a word of the visibility stands for.

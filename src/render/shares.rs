@@ -11,6 +11,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
+use crate::base::once::without_computing;
+
 /// Pieces of work, by their numbers, in stretches.
 #[derive(Debug)]
 pub(in crate::render) struct Shares {
@@ -66,12 +68,17 @@ impl Shares {
     }
 }
 
-/// Has so many threads do some work, each as much of it as it finds.
+/// Runs the same work on each of a number of threads; each does as much of it as it finds.
+///
+/// The work holds locks on what it draws, so it calls nothing that waits for other threads: a thread
+/// that waits takes up other work, which may want the same locks. What the work reads of a mesh is
+/// computed before ([`FramePlan::prepare`](super::plan::FramePlan::prepare)).
 pub(in crate::render) fn together(threads: usize, work: impl Fn() + Sync) {
     if threads == 1 {
-        work();
+        without_computing(work);
     } else {
-        (0..threads).into_par_iter().with_max_len(1).for_each(|_| work());
+        let threads = (0..threads).into_par_iter().with_max_len(1);
+        threads.for_each(|_| without_computing(&work));
     }
 }
 

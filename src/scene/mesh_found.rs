@@ -7,11 +7,13 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
+use super::closed::is_closed;
 use super::mesh::index;
 use super::mesh_build::{Outlines, triangles};
 use super::mesh_edges::{Edge, Edges};
 use super::mesh_points::shown_normal;
 use super::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
+use crate::base::once::get_or_compute;
 
 /// A polygon that is lit as a whole. What is fetched together lies together, in one line of the cache.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +23,25 @@ pub struct Facet {
     pub centre: [f32; 3],
     /// See [`Mesh::polygon_normals`].
     pub normal: [f32; 3],
+}
+
+/// What follows from a mesh, and is computed when it is first needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Derived {
+    /// [`Mesh::corners`].
+    Corners,
+    /// [`Mesh::triangles`].
+    Triangles,
+    /// [`Mesh::polygon_of`].
+    PolygonOf,
+    /// [`Mesh::polygon_normals`].
+    PolygonNormals,
+    /// [`Mesh::facets`].
+    Facets,
+    /// [`Mesh::draw_order`].
+    DrawOrder,
+    /// [`Mesh::edge_order`], [`Mesh::edges`] and [`Mesh::edge_polygons`].
+    EdgeOrder,
 }
 
 /// What was asked for.
@@ -33,13 +54,14 @@ pub(super) struct Found {
     edges: OnceLock<Edges>,
     order: OnceLock<DrawOrder>,
     edge_order: OnceLock<EdgeOrder>,
+    closed: OnceLock<bool>,
 }
 
 impl Mesh {
     /// The corners of all polygons, one after the other.
     #[must_use]
     pub fn corners(&self) -> &[Corner] {
-        once::<Vec<_>>(&self.found.corners, || {
+        get_or_compute::<Vec<_>>(&self.found.corners, || {
             let corner = |i: usize| Corner {
                 position: self.corners.vertices[i],
                 uv: self.corners.uvs.get(i).copied().unwrap_or(NONE),
@@ -53,7 +75,7 @@ impl Mesh {
     /// The triangles of all polygons, in the order of the polygons.
     #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
-        once::<Vec<_>>(&self.found.triangles, || triangles(&self.outlines()))
+        get_or_compute::<Vec<_>>(&self.found.triangles, || triangles(&self.outlines()))
     }
 
     /// The polygon that a triangle belongs to.
@@ -64,6 +86,21 @@ impl Mesh {
             return triangle;
         }
         self.triangles()[triangle as usize].polygon
+    }
+
+    /// Computes something of the mesh now, so that it can be read inside of
+    /// [`without_computing`](crate::base::once::without_computing).
+    pub fn prepare(&self, what: Derived) {
+        match what {
+            Derived::Corners => _ = self.corners(),
+            Derived::Triangles => _ = self.triangles(),
+            Derived::PolygonOf if self.has_triangles_only() => {}
+            Derived::PolygonOf => _ = self.triangles(),
+            Derived::PolygonNormals => _ = self.polygon_normals(),
+            Derived::Facets => _ = self.facets(),
+            Derived::DrawOrder => _ = self.draw_order(),
+            Derived::EdgeOrder => _ = self.edge_order(),
+        }
     }
 
     /// Whether each polygon is one triangle.
@@ -89,7 +126,7 @@ impl Mesh {
     /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
     #[must_use]
     pub fn polygon_normals(&self) -> &[[f32; 3]] {
-        once::<Vec<_>>(&self.found.normals, || {
+        get_or_compute::<Vec<_>>(&self.found.normals, || {
             let outlines = self.outlines();
             let polygons = 0..self.polygon_count();
             polygons.into_par_iter().map(|i| shown_normal(outlines.normal(i))).collect()
@@ -99,7 +136,7 @@ impl Mesh {
     /// What it takes to light each polygon as a whole.
     #[must_use]
     pub fn facets(&self) -> &[Facet] {
-        once::<Vec<_>>(&self.found.facets, || {
+        get_or_compute::<Vec<_>>(&self.found.facets, || {
             let facet = |(normal, polygon): (&[f32; 3], u32)| Facet {
                 centre: self.polygon_centre(polygon).as_vec3().to_array(),
                 normal: *normal,
@@ -109,22 +146,29 @@ impl Mesh {
         })
     }
 
+    /// Whether the polygons form closed surfaces: every edge is passed as often in one direction as in
+    /// the other.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        *get_or_compute(&self.found.closed, || is_closed(&self.outlines()))
+    }
+
     /// The triangles and vertices in the order in which they are drawn fastest.
     #[must_use]
     pub fn draw_order(&self) -> &DrawOrder {
-        once(&self.found.order, || DrawOrder::along_curve(self))
+        get_or_compute(&self.found.order, || DrawOrder::along_curve(self))
     }
 
     /// Has the mesh drawn in the order of its file, unless another one has been found: for the one
     /// picture of a program that then ends, a better order is not worth finding.
     pub fn draw_as_filed(&self) {
-        once(&self.found.order, || DrawOrder::as_filed(self));
+        get_or_compute(&self.found.order, || DrawOrder::as_filed(self));
     }
 
     /// The edges in the order in which they are drawn fastest.
     #[must_use]
     pub fn edge_order(&self) -> &EdgeOrder {
-        once(&self.found.edge_order, || EdgeOrder::new(self))
+        get_or_compute(&self.found.edge_order, || EdgeOrder::new(self))
     }
 
     /// The sides of all polygons, each once.
@@ -140,22 +184,11 @@ impl Mesh {
     }
 
     fn edge_table(&self) -> &Edges {
-        once(&self.found.edges, || Edges::of(self))
+        get_or_compute(&self.found.edges, || Edges::of(self))
     }
 
     /// The outlines of all polygons.
     pub(super) fn outlines(&self) -> Outlines<'_> {
         Outlines { places: &self.positions, corners: &self.corners.vertices, starts: &self.starts }
     }
-}
-
-/// What a cell holds, found where it holds nothing yet.
-///
-/// It is found outside of the cell: a thread that waits for others in the middle of it may take up
-/// work that needs the same thing, and would wait for itself. Rather is it found twice.
-fn once<T>(cell: &OnceLock<T>, find: impl FnOnce() -> T) -> &T {
-    cell.get().unwrap_or_else(|| {
-        let found = find();
-        cell.get_or_init(|| found)
-    })
 }

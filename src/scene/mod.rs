@@ -5,6 +5,7 @@
 mod axes;
 mod bounds;
 mod camera;
+mod closed;
 mod clusters;
 mod command;
 mod edge_order;
@@ -39,9 +40,9 @@ pub use mesh::{
 };
 pub use mesh_build::CornerLists;
 pub use mesh_edges::Edge;
-pub use mesh_found::Facet;
+pub use mesh_found::{Derived, Facet};
 pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Winding, Wrap};
-pub use object::{Object, PartLook, Spin, Surface};
+pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;
 pub use settings::{

@@ -33,8 +33,8 @@ pub struct Object {
     pub texture: Option<Shared<Texture>>,
     /// Multiplied with the texture.
     pub tint: Color,
-    /// Whether back faces are lit, with their normals turned.
-    pub two_sided: bool,
+    /// Which sides of its faces are drawn.
+    pub sides: Sides,
     /// Whether the file's normals are used where a polygon has them.
     pub file_normals: bool,
     /// Edges and normals are drawn in it.
@@ -51,6 +51,18 @@ pub enum Surface {
     /// The texture, lit; the material alone where there is none.
     #[default]
     TextureAndLight,
+}
+
+/// Which sides of an object's faces are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Sides {
+    /// The front: back faces are culled.
+    One,
+    /// Both: a back face is lit with its normal turned.
+    Two,
+    /// Both of an open surface, the front of a closed one.
+    #[default]
+    Auto,
 }
 
 /// Turning about the object's own axes, after its placement: M Rx Ry Rz.
@@ -92,7 +104,8 @@ impl Spin {
 }
 
 impl Object {
-    /// A model as oriented in its file, at the centre of the world.
+    /// A model as oriented in its file, at the centre of the world. [`Sides::Auto`] if it is from a
+    /// file, else [`Sides::One`].
     #[must_use]
     pub fn new(model: Shared<Model>, material: MaterialChoice) -> Self {
         Self {
@@ -105,10 +118,20 @@ impl Object {
             surface: Surface::default(),
             texture: None,
             tint: Color::WHITE,
-            two_sided: false,
+            sides: if model.source.is_some() { Sides::Auto } else { Sides::One },
             file_normals: true,
             edge_color: model.edge_color.unwrap_or(Color::WHITE),
             model,
+        }
+    }
+
+    /// Whether both sides of its faces are drawn and lit.
+    #[must_use]
+    pub fn is_two_sided(&self) -> bool {
+        match self.sides {
+            Sides::One => false,
+            Sides::Two => true,
+            Sides::Auto => !self.model.mesh.is_closed(),
         }
     }
 

@@ -30,6 +30,22 @@ fn the_object_is_seen_from_r_through_the_sine_of_the_half_angle() {
 }
 
 #[test]
+fn models_alone_are_seen_from_the_right_and_above_with_a_margin() {
+    let mut desk = desk();
+    desk.view.only_selected = true;
+    desk.perform(frame::models(&desk.scene, &desk.view, frame::MODELS_FROM));
+    // sin 30 cos 20, sin 20, cos 30 cos 20
+    let z = DVec3::new(0.469_846_310_392_954, 0.342_020_143_325_669, 0.813_797_681_349_374);
+    close(desk.pose().axes.z_axis, z);
+    let [x, y] = [desk.pose().axes.x_axis, desk.pose().axes.y_axis];
+    assert!(x.y.abs() < 1e-12 && y.y > 0.9, "it is upright: {x} {y}");
+    // 1.05 times as far as without a margin.
+    close(desk.pose().eye, DVec3::new(-99.0, 2.0, 3.0) + z * (1.05 * 13.065_629_648_763_766));
+    let lens = desk.scene.selected_camera(&desk.view).lens;
+    assert!((lens.half_size - 5.5).abs() < 1e-12, "{}", lens.half_size);
+}
+
+#[test]
 fn whatever_its_size_every_vertex_is_in_the_picture_in_both_projections() {
     for scale in [1e-6, 0.16, 1.0, 1e6] {
         let mut desk = desk();

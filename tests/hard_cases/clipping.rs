@@ -9,8 +9,8 @@ use marraztu::lab::prove::stage::{self, Flat};
 use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Fill, Filter, List, MeshSource, Object, ObjectId, Part, Placed, Pose, Settings, SourceCorner,
-    Surface, View,
+    Fill, Filter, List, MeshSource, Object, ObjectId, Part, Placed, Pose, Settings, Sides,
+    SourceCorner, Surface, View,
 };
 
 use super::cases::look;
@@ -25,7 +25,7 @@ fn alone(corners: [DVec3; 3]) -> (marraztu::scene::Scene, View) {
     let positions = corners.map(|corner| corner.as_vec3().to_array());
     let (mut scene, view) =
         scene(&[(model("triangle", &positions, &[&[0, 1, 2]]), DMat4::IDENTITY)]);
-    edit(&mut scene, ObjectId(10), |object: &mut Object| object.two_sided = true);
+    edit(&mut scene, ObjectId(10), |object: &mut Object| object.sides = Sides::Two);
     (scene, View { marks: false, ..view })
 }
 
@@ -167,7 +167,7 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
         let shown = |faces: [&[u32]; 2]| {
             let both = model("pair", &positions, &faces);
             let (mut scene, view) = scene(&[(both, DMat4::IDENTITY)]);
-            edit(&mut scene, ObjectId(10), |object| object.two_sided = true);
+            edit(&mut scene, ObjectId(10), |object| object.sides = Sides::Two);
             let view = View { marks: false, ..view };
             let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(32, 32));
             let mut renderer = Renderer::default();
@@ -216,7 +216,7 @@ fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
         let positions = corners.map(|corner| corner.as_vec3().to_array());
         let shown = |face: &[u32]| {
             let (mut scene, view) = scene(&[(model("face", &positions, &[face]), DMat4::IDENTITY)]);
-            edit(&mut scene, ObjectId(10), |object| object.two_sided = true);
+            edit(&mut scene, ObjectId(10), |object| object.sides = Sides::Two);
             let view = View { marks: false, ..view };
             let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(64, 64));
             let mut renderer = Renderer::default();
@@ -519,7 +519,7 @@ pub(super) fn textured(
     };
     let (mut scene, view) = scene(&[(model_of("triangle", source), DMat4::IDENTITY)]);
     edit(&mut scene, ObjectId(10), |object| {
-        object.two_sided = true;
+        object.sides = Sides::Two;
         object.surface = Surface::Texture;
         object.texture = Some(texture.clone());
     });

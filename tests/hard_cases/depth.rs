@@ -8,7 +8,8 @@ use marraztu::lab::prove::stage::{self, FAR, Flat};
 use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Command, ItemId, MaterialChoice, ObjectId, PresetId, Projection, Scene, Settings, Surface, View,
+    Command, ItemId, MaterialChoice, ObjectId, PresetId, Projection, Scene, Settings, Sides,
+    Surface, View,
 };
 
 use super::common::{at, draw, edit, model, scene, square};
@@ -257,7 +258,7 @@ fn case_33_no_depth_of_a_small_triangle_is_beyond_those_of_its_corners() {
         flats.push(Flat { corners, distances });
     }
     let (mut scene, view) = stage::scene(&[flats.clone()], SIDE);
-    edit(&mut scene, ObjectId(1), |object| object.two_sided = true);
+    edit(&mut scene, ObjectId(1), |object| object.sides = Sides::Two);
     let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
     let mut renderer = Renderer::default();
     renderer.render(&plan);
@@ -299,7 +300,7 @@ fn case_34_two_faces_that_meet_in_a_line_meet_in_that_line() {
         let placements = [plane(turns.0), plane(turns.1)];
         let (mut scene, view) = scene(&placements.map(|placement| (square(), placement)));
         for id in [10, 11] {
-            edit(&mut scene, ObjectId(id), |object| object.two_sided = true);
+            edit(&mut scene, ObjectId(id), |object| object.sides = Sides::Two);
         }
         let view = View { marks: false, ..view };
         let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
@@ -381,7 +382,7 @@ fn case_36_the_order_of_drawing_does_not_show() {
     for (id, preset) in (10..22).zip(PresetId::all()) {
         edit(&mut scene, ObjectId(id), |object| {
             object.material = MaterialChoice::Preset(preset);
-            object.two_sided = true;
+            object.sides = Sides::Two;
         });
     }
     let view = View { marks: false, ..view };

@@ -83,6 +83,8 @@ fn case_65_faces_are_kept_mended_or_left_out_and_concave_ones_are_filled_rightly
         ("f 1 2 4\nf 1 2 3\n", FindingKind::FaceRange, 1),
         ("f -4 -2 -1\nf -3 -2 -1\n", FindingKind::FaceRange, 1),
         ("f 1 2 99999999999\nf 1 2 3\n", FindingKind::FaceRange, 1),
+        // Counted back by 0 it would name the vertex that follows.
+        ("f -0 1 2\nv 1 1 0\nf 1 2 3\n", FindingKind::FaceRange, 1),
         ("f 1 2\nf 1 2 3\n", FindingKind::FaceShort, 1),
         ("f 1 x 2\nf 1 2 3\n", FindingKind::FaceUnreadable, 1),
         ("f 1 2 2\nf 1 2 3\n", FindingKind::FaceRepeats, 2),

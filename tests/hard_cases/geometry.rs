@@ -8,7 +8,7 @@ use marraztu::lab::prove::dice::Dice;
 use marraztu::lab::prove::double_double::Double;
 use marraztu::render::geometry::coverage::{Snapped, Triangle, doubled_area};
 use marraztu::scene::{
-    Frame, Light, LightId, LightKind, List, ObjectId, Placed, Scene, Settings, Subject,
+    Frame, Light, LightId, LightKind, List, ObjectId, Placed, Scene, Settings, Sides, Subject,
     Transformation, View, newell,
 };
 
@@ -337,7 +337,7 @@ fn case_7_a_placement_without_room_draws_nothing() {
     ] {
         edit(&mut scene, ObjectId(10), |object| {
             object.placement = object.placement.replaced(DMat4::from_scale(flat));
-            object.two_sided = true;
+            object.sides = Sides::Two;
         });
         let view = View { marks: false, vertex_normals: true, ..view.clone() };
         let picture = draw(&scene, &view, &Settings::default(), 64);
@@ -414,7 +414,7 @@ fn case_9_shapes_without_area_have_no_pixel() {
     for polygon in polygons {
         let (mut scene, view) =
             scene(&[(model("none", &positions, &[polygon]), at(60.0, -60.0, 0.0, 0.0))]);
-        edit(&mut scene, ObjectId(10), |object| object.two_sided = true);
+        edit(&mut scene, ObjectId(10), |object| object.sides = Sides::Two);
         let view = View { marks: false, ..view };
         let picture = draw(&scene, &view, &Settings::default(), 64);
         drawn += covered(&picture, &scene).iter().filter(|seen| **seen).count();

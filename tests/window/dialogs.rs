@@ -10,7 +10,7 @@ use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
 use marraztu::app::action::Action;
 use marraztu::app::ask::Ask;
 use marraztu::app::chord::Chord::{Command, Lower, Named, Upper};
-use marraztu::scene::{MaterialChoice, PresetId};
+use marraztu::scene::{MaterialChoice, ObjectId, PresetId, Sides};
 
 use crate::editor::Editor;
 
@@ -143,7 +143,7 @@ fn a_model_is_loaded_by_key_path_and_material() {
     assert_eq!(object.placement.depth(), 0);
     assert_eq!(editor.steps(), 1);
     assert!(editor.shows("can hardly be seen from here"), "a cube of one unit is tiny");
-    editor.click_label("Frame selection");
+    editor.click_label("Frame");
     assert!(!editor.shows("can hardly be seen from here"));
     assert_eq!(editor.steps(), 2);
     editor.press(Command(Key::Z));
@@ -198,7 +198,7 @@ fn what_was_mended_is_told_and_listed_on_a_click() {
     editor.click_label("Details");
     assert!(editor.shows("that the file does not have"), "a sentence for each finding");
     editor.click_label("Close");
-    editor.click_label("Frame selection");
+    editor.click_label("Frame");
     assert!(!editor.shows("can hardly be seen from here"), "it is seen now");
     assert!(editor.shows("Details"), "what was mended is another matter");
     editor.click_label("Dismiss");
@@ -306,6 +306,33 @@ fn a_scene_opens_with_the_panels_that_it_was_saved_with() {
     other.ask(Ask::LoadFiles(vec![file]));
     other.wait_until(|editor| editor.state().path.as_deref() == Some(&*path));
     assert_eq!(other.state().shown, shown);
+}
+
+#[test]
+fn an_object_whose_faces_are_turned_away_is_told_of_with_a_button_that_draws_both_sides() {
+    let square = "v -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\nf 4 3 2 1\n";
+    let (folder, _) = folder_with("square.obj", square);
+    let file = folder.path().join("turned.marraztu");
+    let scene = r#"(
+        version: 1,
+        objects: [
+            (id: 1, name: "square", model: File(path: "square.obj"), sides: One),
+            (id: 2, name: "behind", model: File(path: "square.obj")),
+        ],
+        cameras: [(id: 3, name: "camera 1", eye: (0.0, 0.0, 300.0))],
+        view: (object: Some(1), camera: 3),
+    )"#;
+    std::fs::write(&file, scene).unwrap();
+    let mut editor = Editor::new();
+    editor.ask(Ask::LoadFiles(vec![file.clone()]));
+    editor.wait_until(|editor| editor.shows("Nothing of square is seen"));
+    assert!(editor.shows("its only face is turned away"));
+    assert!(!editor.shows("Nothing of behind is seen"), "both sides of an open surface are drawn");
+    editor.click_label("Draw both sides");
+    let scene = editor.scene();
+    assert_eq!(scene.objects.get(ObjectId(1)).unwrap().sides, Sides::Two);
+    assert_eq!(editor.steps(), 1, "it can be taken back");
+    assert!(editor.state().notices.is_empty());
 }
 
 #[test]

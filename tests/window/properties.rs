@@ -13,8 +13,8 @@ use marraztu::app::chord::Chord::{Command, Either, Lower, Named, Upper};
 use marraztu::base::color::Color;
 use marraztu::edit::{Gesture, place};
 use marraztu::scene::{
-    Camera, CameraMode, ItemId, Light, LightKind, MaterialChoice, Object, PresetId, SpotOwner,
-    Surface, View,
+    Camera, CameraMode, ItemId, Light, LightKind, MaterialChoice, Object, PresetId, Sides,
+    SpotOwner, Surface, View,
 };
 
 use crate::editor::Editor;
@@ -338,8 +338,14 @@ fn the_surface_and_the_drawing_of_an_object_are_chosen() {
         click(&mut editor, Role::RadioButton, label);
         assert_eq!(object(&editor).surface, surface);
     }
-    click(&mut editor, Role::CheckBox, "Light both sides");
-    assert!(object(&editor).two_sided);
+    for (label, sides) in [
+        ("Sides: Two sides", Sides::Two),
+        ("Sides: One side", Sides::One),
+        ("Sides: Auto", Sides::Auto),
+    ] {
+        click(&mut editor, Role::RadioButton, label);
+        assert_eq!(object(&editor).sides, sides);
+    }
     click(&mut editor, Role::CheckBox, "About own Y");
     assert_eq!(object(&editor).spin.axes, [false, true, false]);
     let steps = editor.steps();

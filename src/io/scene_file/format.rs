@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::{
     Attenuation, Fill, Frame, Lens, MaterialChoice, NormalLength, Normals, Observer, Panels,
-    Projection, Settings, Steps, Subject, Surface, Transformation, UpAxis, Winding, Wrap,
+    Projection, Settings, Sides, Steps, Subject, Surface, Transformation, UpAxis, Winding, Wrap,
 };
 
 /// The version that is written, and the latest that is read.
@@ -81,8 +81,11 @@ pub(super) struct FileObject {
     pub(super) texture: Option<FileTexture>,
     #[serde(default = "white")]
     pub(super) tint: [u8; 3],
-    #[serde(default)]
-    pub(super) two_sided: bool,
+    #[serde(default, with = "written_bare", skip_serializing_if = "Option::is_none")]
+    pub(super) sides: Option<Sides>,
+    /// What earlier scene files have in place of `sides`.
+    #[serde(default, with = "written_bare", skip_serializing_if = "Option::is_none")]
+    pub(super) two_sided: Option<bool>,
     #[serde(default = "yes")]
     pub(super) file_normals: bool,
     #[serde(default = "white")]
@@ -296,6 +299,27 @@ impl TryFrom<String> for Numbers {
             Ok((number(first)?, number(last)?))
         };
         text.split_whitespace().map(run).collect::<Result<_, String>>().map(Self)
+    }
+}
+
+/// A field that may be missing, written without `Some`.
+mod written_bare {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<T: Serialize, S: Serializer>(
+        value: &Option<T>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        match value {
+            Some(value) => value.serialize(serializer),
+            None => serializer.serialize_none(),
+        }
+    }
+
+    pub(super) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<T>, D::Error> {
+        T::deserialize(deserializer).map(Some)
     }
 }
 

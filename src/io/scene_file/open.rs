@@ -14,7 +14,7 @@ use super::format::{
 use crate::base::{Shared, color::Color};
 use crate::scene::{
     Aim, Camera, CameraId, CameraMode, Command, Item, Light, LightId, LightKind, List,
-    MaterialChoice, Model, Object, ObjectId, Orbit, Placed, PolygonMode, Pose, Scene, Spin,
+    MaterialChoice, Model, Object, ObjectId, Orbit, Placed, PolygonMode, Pose, Scene, Sides, Spin,
     SpotOwner, Steps, Texture, View,
 };
 
@@ -135,9 +135,19 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
         surface: object.surface,
         texture: object.texture.as_ref().map(|texture| needs.texture(texture)),
         tint: Color(object.tint),
-        two_sided: object.two_sided,
+        sides: read_sides(object),
         file_normals: object.file_normals,
         edge_color: Color(object.edge_color),
+    })
+}
+
+/// The sides that a scene file names; earlier ones name whether there are two. The program's own models
+/// have one if nothing is named.
+fn read_sides(object: &FileObject) -> Sides {
+    let earlier = object.two_sided.map(|two| if two { Sides::Two } else { Sides::One });
+    object.sides.or(earlier).unwrap_or(match object.model {
+        FileModel::Own(_) => Sides::One,
+        FileModel::File { .. } => Sides::Auto,
     })
 }
 

@@ -75,7 +75,7 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         surface,
         texture,
         tint,
-        two_sided,
+        sides,
         file_normals,
         edge_color,
     } = object;
@@ -93,7 +93,8 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         surface: *surface,
         texture,
         tint: tint.0,
-        two_sided: *two_sided,
+        sides: Some(*sides),
+        two_sided: None,
         file_normals: *file_normals,
         edge_color: edge_color.0,
     })

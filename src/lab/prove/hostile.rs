@@ -17,8 +17,8 @@ use crate::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
     Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
     MeshSource, Model, NONE, NormalLength, Normals, Object, ObjectId, Observer, Orbit, Part,
-    Placed, Pose, PresetId, Projection, Samples, Scene, Settings, SourceCorner, SpecularForm, Spin,
-    SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
+    Placed, Pose, PresetId, Projection, Samples, Scene, Settings, Sides, SourceCorner,
+    SpecularForm, Spin, SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
 };
 
 /// A command is done, or refused with nothing changed.
@@ -216,7 +216,7 @@ impl Hostile {
         if self.bool() {
             object.texture = Some(self.texture());
         }
-        object.two_sided = self.bool();
+        object.sides = if self.bool() { Sides::Two } else { Sides::One };
         object.file_normals = self.bool();
         object.tint = Color([255, 128, 9]);
         Some(object)

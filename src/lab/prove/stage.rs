@@ -13,8 +13,8 @@ use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     Camera, CameraId, Lens, List, LoadOptions, MaterialChoice, Mesh, MeshSource, Model, NONE,
-    Object, ObjectId, Part, Placed, Pose, PresetId, Projection, Scene, Settings, SourceCorner,
-    Surface, View,
+    Object, ObjectId, Part, Placed, Pose, PresetId, Projection, Scene, Settings, Sides,
+    SourceCorner, Surface, View,
 };
 
 /// How far the camera sees, in units.
@@ -78,7 +78,7 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
         let mut object = Object::new(model(triangles, side, number), silver);
         number += triangles.len();
         object.surface = Surface::Texture;
-        object.two_sided = true;
+        object.sides = Sides::Two;
         (ObjectId(id), object)
     });
     let mut scene = Scene::with_camera(camera);

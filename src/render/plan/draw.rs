@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4};
 
+use super::FramePlan;
 use crate::base::{Shared, color::Color};
 use crate::render::effects::{self, Entry, Matter};
-use crate::scene::{ItemId, Model, NormalSource, Normals, Texture};
+use crate::scene::{Derived, ItemId, LightAt, Model, NormalSource, Normals, Texture};
 
 /// One mesh of a frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +41,37 @@ impl Draw {
         let part = self.model.mesh.polygon_parts()[polygon as usize];
         self.part_pipelines[part as usize].is_some()
             && self.polygons.as_ref().is_none_or(|some| some.contains(&polygon))
+    }
+
+    /// Computes everything of the mesh that drawing reads, so that nothing is computed while threads
+    /// draw.
+    pub(super) fn prepare(&self, plan: &FramePlan) {
+        let pipelines = self.part_pipelines.iter().flatten();
+        let shaded: Vec<&Shaded> = pipelines
+            .filter_map(|pipeline| match &plan.pipelines[*pipeline as usize] {
+                Pipeline::Shaded(shaded) => Some(shaded),
+                Pipeline::Flat(_) => None,
+            })
+            .collect();
+        let lit = shaded.iter().any(|shaded| shaded.light.is_some());
+        let flat = lit && plan.light_at == LightAt::Face;
+        let by_face = lit && self.normals == Normals::Face;
+        let placed = |shaded: &&Shaded| shaded.texture.is_some() || shaded.vertex_colors;
+        let by_corner = by_face || shaded.iter().any(placed);
+        let Lines { edges, face_normals, .. } = self.lines;
+        for (what, needed) in [
+            (Derived::DrawOrder, true),
+            (Derived::PolygonOf, true),
+            (Derived::EdgeOrder, edges),
+            (Derived::Facets, flat),
+            (Derived::PolygonNormals, by_face || face_normals.is_some()),
+            (Derived::Triangles, by_corner),
+            (Derived::Corners, by_corner || edges),
+        ] {
+            if needed {
+                self.model.mesh.prepare(what);
+            }
+        }
     }
 
     /// The pipeline of a triangle that is drawn.

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use super::planner::Planner;
 use super::uses::{Effect, EffectUse, State, Thing};
 use super::{Back, Draw, Pipeline, Planning, Shaded};
-use crate::scene::{Filter, ItemId, LightAt, Normals, Object, Settings, Surface};
+use crate::scene::{Filter, ItemId, LightAt, Normals, Object, Settings, Sides, Surface};
 
 /// What a row reads.
 struct Facts<'a> {
@@ -143,8 +143,10 @@ fn vertex_colors(it: &Facts<'_>) -> State {
 
 fn back_faces(it: &Facts<'_>) -> State {
     match it.draw.back {
-        Back::Left => State::exact("switched off"),
+        Back::Left if it.object.sides == Sides::Auto => State::exact("the surface is closed"),
+        Back::Left => State::exact("one side is drawn"),
         Back::Red => State::On("red, not lit".into()),
+        Back::Lit if it.object.sides == Sides::Auto => State::On("lit: the surface is open".into()),
         Back::Lit => State::On("lit from both sides".into()),
     }
 }

@@ -210,6 +210,12 @@ impl FramePlan {
         Self { shift, ..self.clone() }
     }
 
+    /// Computes everything of the meshes that drawing reads. Threads that draw compute nothing of it
+    /// themselves: see [`together`](crate::render::shares::together).
+    pub(in crate::render) fn prepare(&self) {
+        self.draws.iter().for_each(|draw| draw.prepare(self));
+    }
+
     /// Pixels.
     #[must_use]
     pub const fn size(&self) -> Size {

@@ -69,7 +69,7 @@ impl Planner<'_> {
                 BTreeSet::from([mode.current])
             }
         });
-        let back = match (object.two_sided, self.view.back_faces) {
+        let back = match (object.is_two_sided(), self.view.back_faces) {
             (true, _) => Back::Lit,
             (false, true) => Back::Red,
             (false, false) => Back::Left,

@@ -4,11 +4,12 @@
 //! which draws what it would leave out, and it can be replaced by a wrong one: the proofs of
 //! [`lab`](crate::lab) do both, and see that the picture stays and that it does not.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, OnceLock};
 
 use super::observer::ObserverSpace;
 use super::turning::{Turning, is_turned_away};
 use super::{Draw, Stage};
+use crate::base::once::get_or_compute;
 use crate::render::changes::Changes;
 use crate::render::effects::{Entry, Lamp, Matter};
 use crate::render::region::Region;
@@ -211,8 +212,8 @@ impl Rules {
     /// The rules of the table.
     #[must_use]
     pub fn sound() -> Arc<Self> {
-        static SOUND: LazyLock<Arc<Rules>> = LazyLock::new(|| Arc::new(Rules::of(Variant::Sound)));
-        Arc::clone(&SOUND)
+        static SOUND: OnceLock<Arc<Rules>> = OnceLock::new();
+        Arc::clone(get_or_compute(&SOUND, || Arc::new(Self::of(Variant::Sound))))
     }
 
     /// The same with every rule switched off: everything that a scene names is computed.

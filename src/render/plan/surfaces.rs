@@ -1,7 +1,7 @@
 //! How surfaces are coloured: from materials, textures and lights to pipelines.
 
 use std::path::PathBuf;
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 use super::draw::Form;
 use super::lamps::Shining;
@@ -11,6 +11,7 @@ use super::turning::Turning;
 use super::uses::{self, Class, Effect, EffectUse, State};
 use super::{Pipeline, Planning, Shaded, Stage, bounded};
 use crate::base::image::{Picture, Size};
+use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color};
 use crate::render::effects::Matter;
 use crate::render::region::Region;
@@ -40,15 +41,18 @@ impl Ground<'_> {
 }
 
 /// What leaves a surface as it is.
-static WHITE: LazyLock<Shared<Texture>> = LazyLock::new(|| {
-    Shared::new(Texture {
-        source: PathBuf::new(),
-        picture: Picture::filled(Size::new(1, 1), [255; 4]),
-        wrap: Wrap::Repeat,
-        offset: [0.0; 2],
-        scale: [1.0; 2],
+fn white() -> &'static Shared<Texture> {
+    static WHITE: OnceLock<Shared<Texture>> = OnceLock::new();
+    get_or_compute(&WHITE, || {
+        Shared::new(Texture {
+            source: PathBuf::new(),
+            picture: Picture::filled(Size::new(1, 1), [255; 4]),
+            wrap: Wrap::Repeat,
+            offset: [0.0; 2],
+            scale: [1.0; 2],
+        })
     })
-});
+}
 
 impl Planner<'_> {
     /// How one part of an object is drawn; `None` where its opacity leaves nothing.
@@ -71,7 +75,7 @@ impl Planner<'_> {
         let texture = look.texture.filter(|_| !mesh.uvs().is_empty());
         let texture = match rules.texture(texture.map(|texture| &**texture)) {
             Some(_) => None,
-            None => texture.or_else(|| Some(&*WHITE).filter(|_| !mesh.uvs().is_empty())),
+            None => texture.or_else(|| Some(white()).filter(|_| !mesh.uvs().is_empty())),
         };
         let has_holes = |texture: &&Shared<Texture>| {
             rules.holes(&Covering { texture, opacity: look.opacity }).is_none()

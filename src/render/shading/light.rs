@@ -169,6 +169,10 @@ impl<T: Light> Table<T> {
     /// Lights the places that are lit together, unless another thread does.
     #[cold]
     #[inline(never)]
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "what lights a batch has other threads do nothing"
+    )]
     fn light(&self, chunk: usize, lighting: &Lighting<'_, T>, batch: &mut Batch<T>) -> &Lights<T> {
         let Lighting { level, draw, stages, shines } = *lighting;
         let to_view = self.to_view.expect("it was made ready");

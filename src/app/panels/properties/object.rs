@@ -4,7 +4,7 @@ use egui::{Button, Ui};
 use glam::{DMat3, DVec3};
 
 use super::super::color_picker::swatch;
-use super::super::controls::{Switch, change, fact, row, section};
+use super::super::controls::{Choice, Switch, change, choices, fact, row, section};
 use super::super::number::{Number, keep_angles, kept_angles, short, vector};
 use super::{material, number_row, steps_ui, surface};
 use crate::app::ask::Ask;
@@ -12,7 +12,7 @@ use crate::app::material_dialog::grouped;
 use crate::app::state::State;
 use crate::base::math::{self, Axis};
 use crate::edit::{Gesture, items, motion, place, transform};
-use crate::scene::{Frame, Object, ObjectId, Spin};
+use crate::scene::{Frame, Object, ObjectId, Sides, Spin};
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
@@ -142,11 +142,19 @@ fn drawing_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, obj
     let mut set = |verb: &str, gesture, command| {
         change(asks, format!("{verb} {}", object.name), gesture, command);
     };
-    let two_sided = Switch::new("Light both sides", object.two_sided).ui(ui);
-    let hint = "Back faces are lit too, with their normals turned";
-    if two_sided.on_hover_text(hint).clicked() {
-        let command = items::change_object(scene, id, |object| object.two_sided ^= true);
-        set("Light both sides of", Gesture::Whole, command);
+    let sides = [
+        ("One side", Sides::One, "Back faces are not drawn."),
+        ("Two sides", Sides::Two, "Back faces are drawn too, lit with their normals turned."),
+        ("Auto", Sides::Auto, "Two sides of an open surface, one of a closed surface."),
+    ];
+    let choice = |(label, sides, hint): &(&'static str, Sides, &'static str)| {
+        Choice::new("Sides", label, object.sides == *sides, hint)
+    };
+    let all: Vec<Choice<'_>> = sides.iter().map(choice).collect();
+    if let Some(clicked) = choices(ui, &all) {
+        let to = sides[clicked].1;
+        let command = items::change_object(scene, id, |object| object.sides = to);
+        set("Change the sides of", Gesture::Whole, command);
     }
     let file_normals = Switch {
         enabled: object.model.mesh.has_file_normals(),

@@ -61,7 +61,7 @@ fn with_absent(it: &Sample, dice: &mut Dice) -> Sample {
     // Older than all, or younger.
     let id = ObjectId(dice.pick(&[20, 700]));
     let material = crate::scene::MaterialChoice::Own(shapes::material(dice));
-    let mut hidden = Object::new(dice.pick(&shapes::SHAPES), material);
+    let mut hidden = Object::new(dice.pick(shapes::shapes()), material);
     hidden.visible = false;
     hidden.placement = Placed::new(glam::DMat4::from_scale(glam::DVec3::splat(20.0)));
     let at = dice.index(more.scene.objects.len() + 1);

@@ -4,15 +4,15 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::shapes::{self, SHAPES};
+use super::shapes::{self, shapes};
 use crate::base::image::Size;
 use crate::base::{color::Color, math};
 use crate::lab::prove::dice::Dice;
 use crate::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, Fill, Filter, LeaveOut, Lens, Light, LightAt,
     LightId, LightKind, List, MaterialChoice, Normals, Object, ObjectId, Observer, Orbit, Placed,
-    PolygonMode, Pose, PresetId, Projection, Samples, Scene, Settings, SpecularForm, SpotOwner,
-    Surface, View,
+    PolygonMode, Pose, PresetId, Projection, Samples, Scene, Settings, Sides, SpecularForm,
+    SpotOwner, Surface, View,
 };
 
 /// What a picture is made of.
@@ -79,7 +79,7 @@ fn cameras(dice: &mut Dice, size: Size) -> List<CameraId, Camera> {
         Camera {
             name: name.to_owned(),
             visible: dice.percent(90),
-            model: SHAPES[dice.index(2)].clone(),
+            model: shapes()[dice.index(2)].clone(),
             material: MaterialChoice::Preset(PresetId::OBSIDIAN),
             pose: Placed::new(pose),
             lens: Lens { near, half_size, ..Lens::default() },
@@ -132,7 +132,7 @@ fn object(dice: &mut Dice) -> Object {
         1 => MaterialChoice::Preset(dice.pick(&PresetId::all().collect::<Vec<_>>())),
         _ => MaterialChoice::Own(shapes::material(dice)),
     };
-    let model = dice.pick(&SHAPES);
+    let model = dice.pick(shapes());
     let scale = match dice.index(10) {
         // Around the camera: its faces are cut.
         0 => DVec3::splat(400.0),
@@ -152,7 +152,7 @@ fn object(dice: &mut Dice) -> Object {
     ]);
     object.texture = dice.percent(35).then(|| shapes::texture(dice));
     object.tint = dice.pick(&[Color::WHITE, Color::WHITE, Color([0; 3]), Color([200, 100, 0])]);
-    object.two_sided = dice.percent(20);
+    object.sides = if dice.percent(20) { Sides::Two } else { Sides::One };
     object.file_normals = dice.percent(50);
     if dice.percent(5) {
         object.hidden_parts.insert(0);

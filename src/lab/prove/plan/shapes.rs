@@ -1,10 +1,11 @@
 //! The shapes, materials and textures that scenes by chance are made of.
 
 use std::path::PathBuf;
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
+use crate::base::once::get_or_compute;
 use crate::lab::prove::dice::Dice;
 use crate::scene::{
     FileMaterial, LoadOptions, Material, Mesh, MeshSource, Model, NONE, Part, SourceCorner,
@@ -16,8 +17,12 @@ const COEFFICIENTS: [f64; 8] =
     [0.0, -0.0, 5e-324, 1e-45, f32::MIN_POSITIVE as f64, 1.0 / 255.0, 0.4, 1.0];
 
 /// The shapes.
-pub(super) static SHAPES: LazyLock<Vec<Shared<Model>>> =
-    LazyLock::new(|| vec![triangle(), square(), cube(), ball(4), two_parts(), colored(), ball(7)]);
+pub(super) fn shapes() -> &'static [Shared<Model>] {
+    static SHAPES: OnceLock<Vec<Shared<Model>>> = OnceLock::new();
+    get_or_compute::<Vec<_>>(&SHAPES, || {
+        vec![triangle(), square(), cube(), ball(4), two_parts(), colored(), ball(7)]
+    })
+}
 
 fn corner(position: u32) -> SourceCorner {
     SourceCorner { position, uv: NONE, normal: NONE }

@@ -1,0 +1,193 @@
+//! Why a picture shows nothing of an object.
+//!
+//! Found by elimination: the object is drawn alone, then alone from both sides, then alone and opaque.
+//! The first picture that shows it names what hid it before. The picture itself costs nothing more;
+//! only objects of which nothing is seen are drawn again.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use super::plan::Draw;
+use super::{Effect, FramePlan, Renderer, State};
+use crate::base::image::Size;
+use crate::scene::{
+    Fill, ItemId, LightAt, List, MaterialChoice, Object, ObjectId, Scene, Settings, Sides, Surface,
+    View,
+};
+
+/// Why nothing of an object is seen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unseen {
+    /// It is not drawn, for a reason that the plan names.
+    LeftOut(Cow<'static, str>),
+    /// Its faces are turned away, and only their fronts are drawn.
+    TurnedAway {
+        /// How many there are.
+        faces: usize,
+    },
+    /// Another item is in front of it.
+    Covered {
+        /// The one that covers the most of it.
+        by: ItemId,
+    },
+    /// Its material or its texture has holes wherever it could be seen.
+    Transparent,
+    /// No centre of a pixel lies on it: it is too small, or seen edge-on.
+    BetweenPixels,
+    /// It is in the view, but many other objects are not seen either, and its reason was not looked for.
+    Unexamined,
+}
+
+/// Objects whose reasons are looked for in pictures of their own: each takes up to three.
+const EXAMINED: usize = 16;
+
+impl fmt::Display for Unseen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LeftOut(reason) => f.write_str(reason),
+            Self::TurnedAway { faces: 1 } => f.write_str("its only face is turned away"),
+            Self::TurnedAway { faces } => write!(f, "all {faces} faces are turned away"),
+            Self::Covered { .. } => f.write_str("it is behind other objects"),
+            Self::Transparent => f.write_str("it is transparent"),
+            Self::BetweenPixels => f.write_str("it is smaller than a pixel, or seen edge-on"),
+            Self::Unexamined => f.write_str("it is too small, turned away or behind others"),
+        }
+    }
+}
+
+/// The objects that the user wants to see in the picture that the renderer drew last, and of which
+/// nothing is seen. The picture is the one of these values.
+///
+/// Objects that the user hid, as a whole or part by part, are left out of the list.
+#[must_use]
+pub fn unseen(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    size: Size,
+) -> Vec<(ObjectId, Unseen)> {
+    let wanted = scene.objects.iter().filter(|(id, object)| is_wanted(view, *id, object));
+    let wanted = wanted.map(|(id, _)| ItemId::Object(id)).collect();
+    let missing = renderer.missing(wanted);
+    if missing.is_empty() {
+        return Vec::new();
+    }
+    let left_out = left_out(scene, view, settings, size);
+    let mut alone = Alone { scene, view, size, renderer: Renderer::default() };
+    let objects = missing.into_iter().filter_map(|item| match item {
+        ItemId::Object(id) => Some(id),
+        ItemId::Camera(_) | ItemId::Light(_) => None,
+    });
+    let reason = |(i, id)| {
+        let planned = left_out.get(&ItemId::Object(id)).cloned();
+        let reason = match planned {
+            planned if i < EXAMINED => alone.reason(renderer, id, planned),
+            Some(reason) => Unseen::LeftOut(reason),
+            None => Unseen::Unexamined,
+        };
+        (id, reason)
+    };
+    objects.enumerate().map(reason).collect()
+}
+
+/// Why the plan draws nothing of some things.
+fn left_out(
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    size: Size,
+) -> BTreeMap<ItemId, Cow<'static, str>> {
+    let (plan, uses) = FramePlan::explained(scene, view, settings, size);
+    let is_drawn = |draw: &&Draw| draw.part_pipelines.iter().any(Option::is_some);
+    let drawn: BTreeSet<ItemId> =
+        plan.draws.iter().filter(is_drawn).map(|draw| draw.item).collect();
+    uses.into_iter()
+        .filter_map(|one| match (one.effect, one.on, one.state) {
+            (Effect::Surfaces, Some(thing), State::LeftOut { reason, .. }) => {
+                Some((thing.item, reason))
+            }
+            _ => None,
+        })
+        .filter(|(item, _)| !drawn.contains(item))
+        .collect()
+}
+
+/// Whether the user expects to see an object.
+fn is_wanted(view: &View, id: ObjectId, object: &Object) -> bool {
+    let parts = object.model.mesh.parts().len();
+    object.visible
+        && view.polygons.is_none()
+        && (!view.only_selected || view.object == Some(id))
+        && (parts == 0 || object.hidden_parts.len() < parts)
+}
+
+/// Draws one object of a scene at a time.
+struct Alone<'a> {
+    scene: &'a Scene,
+    view: &'a View,
+    size: Size,
+    renderer: Renderer,
+}
+
+impl Alone<'_> {
+    /// Why an object is not seen, of which the plan gives this reason if it leaves it out.
+    fn reason(
+        &mut self,
+        whole: &mut Renderer,
+        id: ObjectId,
+        left_out: Option<Cow<'static, str>>,
+    ) -> Unseen {
+        let Some(object) = self.scene.objects.get(id) else {
+            return Unseen::LeftOut("it is not in the scene".into());
+        };
+        let faces = object.model.mesh.polygon_count();
+        if left_out.is_none() {
+            let seen = self.draw(id, |_| {});
+            if let Some(by) = whole.most_seen(&seen) {
+                return Unseen::Covered { by };
+            }
+        }
+        if object.is_two_sided() || faces == 0 || self.is_empty(id, |o| o.sides = Sides::Two) {
+            let opaque = |object: &mut Object| {
+                object.sides = Sides::Two;
+                object.surface = Surface::Material;
+                object.material = MaterialChoice::Own(object.part_look(0).material);
+            };
+            return match left_out {
+                _ if faces > 0 && !self.is_empty(id, opaque) => Unseen::Transparent,
+                Some(reason) => Unseen::LeftOut(reason),
+                None => Unseen::BetweenPixels,
+            };
+        }
+        Unseen::TurnedAway { faces }
+    }
+
+    fn is_empty(&mut self, id: ObjectId, change: impl FnOnce(&mut Object)) -> bool {
+        !self.draw(id, change).contains(&true)
+    }
+
+    /// Where a changed object is seen if it is alone: a flag for each pixel.
+    fn draw(&mut self, id: ObjectId, change: impl FnOnce(&mut Object)) -> Vec<bool> {
+        let mut own = self.scene.objects.get(id).expect("it is in the scene").clone();
+        change(&mut own);
+        // The observer may be another object.
+        let selected = self.view.object.filter(|other| *other != id);
+        let selected = selected.and_then(|other| Some((other, self.scene.objects.get(other)?)));
+        let hidden = selected.map(|(id, object)| (id, Object { visible: false, ..object.clone() }));
+        let scene = Scene {
+            objects: hidden.into_iter().chain([(id, own)]).collect(),
+            cameras: self.scene.cameras.clone(),
+            lights: List::default(),
+            background: self.scene.background,
+            next_id: self.scene.next_id,
+        };
+        let view = View { marks: false, fill: Fill::Filled, ..self.view.clone() };
+        // Where it is seen does not depend on light; this is the quickest.
+        let settings = Settings { light: LightAt::Face, ..Settings::default() };
+        let plan = FramePlan::new(&scene, &view, &settings, self.size);
+        self.renderer.render(&plan);
+        self.renderer.pixels_of(ItemId::Object(id))
+    }
+}
