@@ -183,7 +183,7 @@ fn checks_that_begin_on_many_threads_come_to_their_end() {
     let _watchdog = Watchdog::new("checks that begin on many threads");
     for run in 0..RUNS / 10 {
         let checked = Process::new(env!("CARGO_BIN_EXE_marraztu"))
-            .args(["prove", "plan", "--scenes", "40"])
+            .args(["prove", "plan", "--count", "40"])
             .env("RAYON_NUM_THREADS", "8")
             .output()
             .unwrap();

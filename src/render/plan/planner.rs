@@ -136,12 +136,12 @@ impl Planner<'_> {
         let item = draw.item;
         let mesh = &object.model.mesh;
         let Some(bounds) = mesh.bounds() else {
-            return left_out(into, item, &object.name, "has no vertices");
+            return left_out(into, item, &object.name, "it has no vertices");
         };
         let thing = Thing { observer: &self.observer, draw: &draw, bounds };
         let rules = into.plan.rules.clone();
         let reason = if mesh.polygon_count() == 0 {
-            Some("has no faces")
+            Some("it has no faces")
         } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
             Some("its placement is flat: it has no inside and no outside")
         } else if into.plan.ways.has_rare_geometry() {
