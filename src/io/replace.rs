@@ -8,13 +8,13 @@ use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::error::{reason, short_name};
+use super::error::{reason, shown};
 
 /// Why a file could not be written. What was there before still is.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file} could not be saved: {reason}")]
 pub struct SaveError {
-    /// The file's name, without folders.
+    /// The file's path, as the user gave it.
     pub file: String,
     /// What is wrong.
     pub reason: String,
@@ -22,7 +22,7 @@ pub struct SaveError {
 
 impl SaveError {
     pub(super) fn new(path: &Path, reason: impl Into<String>) -> Self {
-        Self { file: short_name(path), reason: reason.into() }
+        Self { file: shown(path), reason: reason.into() }
     }
 }
 
@@ -45,7 +45,7 @@ pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), S
         return Err(SaveError::new(path, "this is a folder, not a file"));
     }
     if target.file_name().is_none() {
-        return Err(SaveError::new(path, "this is no name for a file"));
+        return Err(SaveError::new(path, "this is not a name for a file"));
     }
     let beside = with_ending(&target, &format!(".{}.new", std::process::id()));
     let written = write(&beside, &target, content, worth);
