@@ -362,7 +362,7 @@ fn what_fails_ends_with_1_and_says_why_in_one_sentence() {
     }
     assert!(!folder.path().join("a.png").exists());
     let (_, err) = ends_with(1, folder.path(), &["render", "-o", "absent/a.png"]);
-    assert!(err.starts_with("error: a.png could not be saved"), "{err}");
+    assert!(err.starts_with("error: absent/a.png could not be saved: "), "{err}");
 }
 
 #[test]

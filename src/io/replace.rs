@@ -5,7 +5,7 @@
 //! not even a loss of power takes it.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use super::error::{reason, shown};
@@ -38,7 +38,10 @@ pub(super) enum Worth {
 
 /// Makes `content` the content of the file at `path`.
 pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), SaveError> {
-    let fail = |error: std::io::Error| SaveError::new(path, reason(&error));
+    let fail = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => SaveError::new(path, "there is no such folder"),
+        _ => SaveError::new(path, reason(&error)),
+    };
     // A link goes on pointing where it points: the file behind it is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_new| path.to_owned());
     if target.is_dir() {
