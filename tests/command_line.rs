@@ -374,7 +374,7 @@ fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
     assert!(out.contains("square") && out.contains("vertices"), "{out}");
     let (all, err) = ends_with(1, folder.path(), &["info", "bad.obj", "square.obj"]);
     assert!(all.contains("vertices"), "{all}");
-    assert!(err.starts_with("error: bad.obj, line 1: "), "{err}");
+    assert!(err.starts_with("error: bad.obj:1: "), "{err}");
     assert_eq!(err.lines().count(), 1, "one clear message");
 }
 
@@ -428,7 +428,7 @@ fn what_fails_ends_with_1_and_says_why_in_one_sentence() {
     std::fs::write(folder.path().join("bad.marraztu"), "what is this").unwrap();
     let wrong: &[(&[&str], &str)] = &[
         (&["absent.obj"], "absent.obj: there is no such file"),
-        (&["bad.obj"], "bad.obj, line 2: "),
+        (&["bad.obj"], "bad.obj:2: "),
         (&["absent.marraztu"], "absent.marraztu: there is no such file"),
         (&["bad.marraztu"], "bad.marraztu"),
         (&["--texture", "absent.png"], "absent.png: there is no such file"),
@@ -443,7 +443,7 @@ fn what_fails_ends_with_1_and_says_why_in_one_sentence() {
     }
     assert!(!folder.path().join("a.png").exists());
     let (_, err) = ends_with(1, folder.path(), &["render", "-o", "absent/a.png"]);
-    assert!(err.starts_with("error: a.png could not be saved"), "{err}");
+    assert!(err.starts_with("error: absent/a.png could not be saved: "), "{err}");
 }
 
 #[test]

@@ -5,8 +5,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+use std::path::Path;
+
 use marraztu::base::color::Color;
-use marraztu::io::{Finding, FindingKind, LoadError, Loaded, Progress, describe, load, parse};
+use marraztu::io::{
+    Finding, FindingKind, LoadError, Loaded, Progress, describe, load, load_texture, parse,
+};
 use marraztu::scene::{LoadOptions, Mesh, NONE, Scale, UpAxis, Winding};
 use proptest::prelude::*;
 
@@ -99,8 +103,8 @@ fn lines_and_points_are_left_out_and_counted() {
     assert_eq!(
         texts,
         [
-            "2 statements \"l\" are left out: only faces are drawn (first: line 4)",
-            "a statement \"p\" is left out: only faces are drawn (line 6)",
+            "2 statements \"l\" are skipped: only faces are drawn (first: line 4)",
+            "a statement \"p\" is skipped: only faces are drawn (line 6)",
         ]
     );
 }
@@ -283,7 +287,7 @@ fn the_axes_the_scale_and_the_winding_are_as_asked_for() {
     assert!(filed[1] < 0.0 && filed[2] < 0.0, "{filed:?}");
 
     let error = with(UpAxis::Y, 1e39, Winding::Kept).unwrap_err();
-    assert_eq!(error.to_string(), "a.obj: its coordinates are too large at this scale");
+    assert_eq!(error.to_string(), "a.obj: the coordinates are too large at this scale");
 }
 
 // What is refused, with line and reason.
@@ -291,15 +295,12 @@ fn the_axes_the_scale_and_the_winding_are_as_asked_for() {
 #[test]
 fn a_number_that_cannot_be_read_refuses_the_file_with_its_line() {
     for (text, message) in [
-        ("v 0 0 zero\n", "a.obj, line 1: \"zero\" is no number"),
-        (
-            "v 0 0 0\nv 0,5 1 1\n",
-            "a.obj, line 2: \"0,5\" has a decimal comma, where the format has a point",
-        ),
-        ("# x\n\nv 1 2\n", "a.obj, line 3: a vertex needs three numbers, here are 2"),
-        ("v 0 0 0\nvn 0 0\n", "a.obj, line 2: a normal needs three numbers, here are 2"),
-        ("v 0 0 0\nvt\n", "a.obj, line 2: a place on the texture needs two numbers, here is none"),
-        ("v 0 0 \\\n0x\n", "a.obj, line 1: \"0x\" is no number"),
+        ("v 0 0 zero\n", "a.obj:1: \"zero\" is not a number"),
+        ("v 0 0 0\nv 0,5 1 1\n", "a.obj:2: \"0,5\" has a decimal comma; write a decimal point"),
+        ("# x\n\nv 1 2\n", "a.obj:3: a vertex needs three numbers, but has 2"),
+        ("v 0 0 0\nvn 0 0\n", "a.obj:2: a normal needs three numbers, but has 2"),
+        ("v 0 0 0\nvt\n", "a.obj:2: a texture coordinate needs two numbers, but has none"),
+        ("v 0 0 \\\n0x\n", "a.obj:1: \"0x\" is not a number"),
     ] {
         assert_eq!(refusal(text), message);
     }
@@ -309,20 +310,20 @@ fn a_number_that_cannot_be_read_refuses_the_file_with_its_line() {
 fn a_file_of_which_no_face_can_be_used_is_refused_by_its_first_bad_line() {
     assert_eq!(
         refusal(&triangle_and("f 1 2 9\nf 1 2\n")),
-        "a.obj, line 4: a face names vertex 9, the file has 3; no face of the file can be used"
+        "a.obj:4: a face refers to vertex 9, but the file has 3 vertices; none of its faces can be used"
     );
     assert_eq!(
         refusal(&triangle_and("f 1 2\n")),
-        "a.obj, line 4: a face needs three corners or more, here are 2; \
-         no face of the file can be used"
+        "a.obj:4: a face needs at least three corners, but has 2; \
+         none of its faces can be used"
     );
     assert_eq!(
         refusal(&triangle_and("f a b c\n")),
-        "a.obj, line 4: \"a\" is no corner of a face; no face of the file can be used"
+        "a.obj:4: \"a\" is not a corner of a face; none of its faces can be used"
     );
     assert_eq!(
         refusal(&triangle_and("f 0 1 2\n")),
-        "a.obj, line 4: a face names vertex 0; no face of the file can be used"
+        "a.obj:4: a face refers to vertex 0, which the file does not have; none of its faces can be used"
     );
 }
 
@@ -331,11 +332,11 @@ fn what_is_no_obj_file_is_refused() {
     for (bytes, message) in [
         (&b""[..], "a.obj: the file is empty"),
         (b" \n\n", "a.obj: the file is empty"),
-        (b"\x89PNG\r\n\x1a\n", "a.obj: this is no OBJ file, but a PNG picture"),
-        (b"ab\0cd", "a.obj: this is no OBJ file: it is no text"),
-        (b"\xFF\xFEv\0 \0", "a.obj: this is no OBJ file, but a text of UTF-16; save it as UTF-8"),
-        (b"Dear Sir,\n", "a.obj: this is no OBJ file: it has neither vertices nor faces"),
-        (b"v nan 0 0\n", "a.obj: none of its vertices is finite"),
+        (b"\x89PNG\r\n\x1a\n", "a.obj: this is not an OBJ file but a PNG picture"),
+        (b"ab\0cd", "a.obj: this is not an OBJ file: it is not text"),
+        (b"v\0 \x000\0", "a.obj: this is not an OBJ file: it is not text"),
+        (b"Dear Sir,\n", "a.obj: this is not an OBJ file: it has neither vertices nor faces"),
+        (b"v nan 0 0\n", "a.obj: all of its vertices are infinite or NaN"),
     ] {
         assert_eq!(read_bytes(bytes).unwrap_err().to_string(), message);
     }
@@ -344,13 +345,64 @@ fn what_is_no_obj_file_is_refused() {
 #[test]
 fn a_file_that_is_not_there_or_is_a_folder_is_refused_in_plain_words() {
     let folder = tempfile::tempdir().unwrap();
-    let load = |path: &std::path::Path| {
-        load(path, &LoadOptions::default(), &Progress::new()).unwrap_err().to_string()
+    let refusal = |path: &Path| {
+        let error = load(path, &LoadOptions::default(), &Progress::new()).unwrap_err().to_string();
+        let lead = format!("{}: ", path.display());
+        error.strip_prefix(&lead).map(ToOwned::to_owned).unwrap_or(error)
     };
-    assert_eq!(load(&folder.path().join("b.obj")), "b.obj: there is no such file");
+    assert_eq!(refusal(&folder.path().join("b.obj")), "there is no such file");
     let inner = folder.path().join("c.obj");
     std::fs::create_dir(&inner).unwrap();
-    assert_eq!(load(&inner), "c.obj: this is a folder, not a file");
+    assert_eq!(refusal(&inner), "this is a folder, not a file");
+}
+
+/// Opening a pipe waits until somebody writes to it.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_pipe_and_a_device_are_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("a.obj");
+    make_pipe(&pipe);
+    let refusal = |path: &Path| {
+        load(path, &LoadOptions::default(), &Progress::new()).unwrap_err().to_string()
+    };
+    assert_eq!(refusal(&pipe), format!("{}: this is a pipe, not a file", pipe.display()));
+    assert_eq!(refusal(Path::new("/dev/zero")), "/dev/zero: this is a device, not a file");
+    let picture = folder.path().join("a.png");
+    make_pipe(&picture);
+    let error = load_texture(&picture).unwrap_err().to_string();
+    assert_eq!(error, format!("{}: this is a pipe, not a file", picture.display()));
+}
+
+#[cfg(target_os = "linux")]
+fn make_pipe(path: &Path) {
+    assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+}
+
+#[test]
+fn an_error_names_the_file_as_the_user_did() {
+    let path = Path::new("tests/../no such folder/b.obj");
+    let error = load(path, &LoadOptions::default(), &Progress::new()).unwrap_err();
+    assert_eq!(error.to_string(), "tests/../no such folder/b.obj: there is no such file");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("./c.obj");
+    std::fs::write(&path, "v 0 0 zero\n").unwrap();
+    let error = load(&path, &LoadOptions::default(), &Progress::new()).unwrap_err();
+    assert_eq!(error.to_string(), format!("{}:1: \"zero\" is not a number", path.display()));
+}
+
+#[test]
+fn a_text_of_utf_16_is_read_in_either_order_of_bytes() {
+    let text = "\u{FEFF}g \u{e9}\u{4e2d}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+    let mesh = clean(text);
+    assert_eq!(mesh.parts()[0].name, "\u{e9}\u{4e2d}");
+    for bytes in [little, big] {
+        let loaded = read_bytes(&bytes).unwrap();
+        assert_eq!(loaded.findings, []);
+        assert!(loaded.model.mesh == mesh);
+    }
 }
 
 // What is mended and listed.
@@ -365,9 +417,9 @@ fn faces_that_cannot_be_are_left_out_and_the_others_stay() {
     assert_eq!(
         texts,
         [
-            "3 faces name vertices that the file does not have, and are left out (first: line 6)",
-            "a face has fewer than three corners, and is left out (line 8)",
-            "a face has a corner that is no number (\"x\"), and is left out (line 9)",
+            "3 faces refer to vertices that the file does not have and are skipped (first: line 6)",
+            "a face has fewer than three corners and is skipped (line 8)",
+            "a face has a corner that is not a number (\"x\") and is skipped (line 9)",
         ]
     );
 }
@@ -492,7 +544,7 @@ fn a_line_that_cannot_be_read_is_named_by_its_number_wherever_it_stands() {
     let lines = text.lines().count();
     text += "v 1 2 x\nv 3 4 y\n";
     text += &long(20_000);
-    assert_eq!(refusal(&text), format!("a.obj, line {}: \"x\" is no number", lines + 1));
+    assert_eq!(refusal(&text), format!("a.obj:{}: \"x\" is not a number", lines + 1));
 }
 
 // What files claim, and nobody has the memory or the time for.
@@ -503,7 +555,7 @@ fn an_index_promises_nothing() {
         read(&triangle_and("f 1 2 3\nf 1 2 1000000000\nf 1 2 -1000000000\nf 1 2 99999999999\n"));
     assert_eq!(loaded.model.mesh.polygon_count(), 1);
     let text =
-        "3 faces name vertices that the file does not have, and are left out (first: line 6)";
+        "3 faces refer to vertices that the file does not have and are skipped (first: line 6)";
     assert_eq!(only(&loaded), (FindingKind::FaceRange, text));
 }
 

@@ -3,6 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::{Finding, FindingKind, Loaded, Progress, load, save_picture};
 use marraztu::scene::{LoadOptions, Wrap};
@@ -51,15 +52,17 @@ fn a_material_is_found_under_names_with_blanks_and_in_any_order_of_statements() 
 #[test]
 fn missing_materials_and_files_are_listed() {
     let loaded = with_files("mtllib x.mtl y.mtl\nusemtl blue\nf 1 2 3\n", ("z.mtl", RED));
-    let texts: Vec<String> = loaded.findings.iter().map(ToString::to_string).collect();
+    let texts: Vec<&str> = loaded.findings.iter().map(|finding| finding.text.as_str()).collect();
     assert_eq!(
         texts,
         [
-            "a.obj: the material file \"x.mtl\" was not found (line 4)",
-            "a.obj: the material file \"y.mtl\" was not found (line 4)",
-            "a.obj: the material \"blue\" is not known: silver is taken (line 5)",
+            "the material file \"x.mtl\" was not found (line 4)",
+            "the material file \"y.mtl\" was not found (line 4)",
+            "the material \"blue\" is not defined: silver is used (line 5)",
         ]
     );
+    let source = loaded.model.source.as_ref().unwrap();
+    assert_eq!(loaded.findings[0].file, source.display().to_string());
 }
 
 #[test]
@@ -93,11 +96,133 @@ fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
     );
     let mtl = format!("{RED}map_Kd a.obj\n");
     let loaded = with_files("mtllib m.mtl\nusemtl red\nf 1 2 3\n", ("m.mtl", &mtl));
+    let (kind, text) = only(&loaded);
+    assert_eq!(kind, FindingKind::TextureUnreadable);
+    let path = loaded.model.source.as_ref().unwrap().display();
+    let reason = "this is not a PNG, JPEG, BMP, TGA or GIF (line 5)";
+    assert_eq!(text, format!("the texture cannot be read: {path}: {reason}"));
+}
+
+/// What `Tr` says in each of a file's materials, two of which are used; the opacity of the first
+/// and what was found.
+fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
+    let material = |(name, tr): (&str, &str)| format!("{}{tr}\n", RED.replace("red", name));
+    let mtl: String = ["a", "b", "c"].into_iter().zip(tr).map(material).collect();
+    let obj = "mtllib m.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
+    let loaded = with_files(obj, ("m.mtl", &mtl));
+    let found = loaded.findings.iter().map(|finding| (finding.kind, finding.count)).collect();
+    (loaded.model.materials[0].opacity, found)
+}
+
+#[test]
+fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
+    use FindingKind::{MendedTransparency, Translucent, Transparent};
+    assert_eq!(with_tr(["Tr 1.0", "Tr 1", "Tr 1.0"]), (1.0, vec![(MendedTransparency, 3)]));
+    // What is not used says nothing of the convention.
+    let unused = vec![(MendedTransparency, 2), (Translucent, 1)];
+    assert_eq!(with_tr(["Tr 1.0", "Tr 1", "d 0.5"]), (1.0, unused));
+    assert_eq!(with_tr(["Tr 1.0", "Tr 0", "Tr 0"]), (0.0, vec![(Transparent, 1)]));
+    assert_eq!(with_tr(["Tr 1.0", "d 1", "d 1"]), (0.0, vec![(Transparent, 1)]));
+    assert_eq!(with_tr(["d 0", "d 0", "d 0"]), (0.0, vec![(Transparent, 3)]));
+    let mixed = vec![(Transparent, 2), (Translucent, 1)];
+    assert_eq!(with_tr(["Tr 1", "Tr 0.9", "Tr 0.1"]), (0.0, mixed));
+}
+
+#[test]
+fn what_is_mended_in_many_files_is_one_finding_with_the_first_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut obj = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for i in 0..7 {
+        let mtl = format!("# by hand\nnewmtl a{i}\nKd 1 0 0\nnewmtl b{i}\nKd 0 1 0\n");
+        std::fs::write(folder.path().join(format!("{i}.mtl")), mtl).unwrap();
+        obj += &format!("mtllib {i}.mtl\nusemtl a{i}\nf 1 2 3\n");
+    }
+    let path = folder.path().join("a.obj");
+    std::fs::write(&path, obj).unwrap();
+    let loaded = load(&path, &LoadOptions::default(), &Progress::new()).unwrap();
+    let texts: Vec<String> = loaded.findings.iter().map(ToString::to_string).collect();
+    let first = folder.path().join("0.mtl").display().to_string();
     assert_eq!(
-        only(&loaded),
-        (
-            FindingKind::TextureUnreadable,
-            "the texture cannot be read: a.obj: this is no PNG, JPEG, BMP, TGA or GIF (line 5)"
-        )
+        texts,
+        [
+            format!(
+                "{first}: 14 materials: Ka is missing, white, above 1 or equal to Kd, and is \
+                 taken as 0.2 Kd (first: line 2; 7 files)"
+            ),
+            format!(
+                "{first}: 14 materials: Ks is missing or switched off by illum, and is taken as 0 \
+                 (first: line 2; 7 files)"
+            ),
+        ]
     );
+}
+
+#[test]
+fn a_picture_that_many_textures_show_is_read_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = Picture::filled(Size::new(2, 2), [1, 2, 3, 255]);
+    save_picture(&folder.path().join("a.png"), &picture).unwrap();
+    let mut obj = String::from("mtllib a.mtl b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for file in ["a", "b"] {
+        let mut mtl = String::new();
+        for i in 0..3 {
+            mtl += &RED.replace("red", &format!("{file}{i}"));
+            mtl += &format!("map_Kd -o 0.{i} ./a.png\n");
+            obj += &format!("usemtl {file}{i}\nf 1 2 3\n");
+        }
+        std::fs::write(folder.path().join(format!("{file}.mtl")), mtl).unwrap();
+    }
+    let path = folder.path().join("a.obj");
+    std::fs::write(&path, obj).unwrap();
+    let loaded = load(&path, &LoadOptions::default(), &Progress::new()).unwrap();
+    let textures = loaded.model.materials.iter().map(|material| material.texture.clone().unwrap());
+    let textures: Vec<_> = textures.collect();
+    assert_eq!(textures.len(), 6);
+    assert_eq!(textures[5].offset, [0.2, 0.0]);
+    assert!(textures.iter().all(|texture| Shared::same(&texture.picture, &textures[0].picture)));
+}
+
+#[test]
+fn a_material_file_in_utf_16_is_read_and_one_that_is_not_text_is_listed() {
+    let units = || "\u{FEFF}".encode_utf16().chain(RED.encode_utf16());
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib m.mtl\nusemtl red\nf 1 2 3\n";
+    let with = |mtl: Vec<u8>| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        std::fs::write(&path, obj).unwrap();
+        std::fs::write(folder.path().join("m.mtl"), mtl).unwrap();
+        load(&path, &LoadOptions::default(), &Progress::new()).unwrap()
+    };
+    for bytes in [u16::to_le_bytes, u16::to_be_bytes] {
+        let loaded = with(units().flat_map(bytes).collect());
+        assert_eq!(loaded.findings, []);
+        assert_eq!(loaded.model.materials[0].material.diffuse, [0.5, 0.0, 0.0]);
+    }
+    let loaded = with(units().skip(1).flat_map(u16::to_le_bytes).collect());
+    assert_eq!(kinds(&loaded.findings), [FindingKind::MaterialUnknown, FindingKind::MtlUnreadable]);
+    assert!(loaded.findings.iter().all(|finding| !finding.text.contains('\0')));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn material_files_and_textures_that_are_pipes_are_listed_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let make_pipe = |name: &str| {
+        let path = folder.path().join(name);
+        assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+    };
+    make_pipe("p.mtl");
+    make_pipe("p.png");
+    let mtl = format!("{RED}map_Kd p.png\n");
+    std::fs::write(folder.path().join("m.mtl"), mtl).unwrap();
+    let path = folder.path().join("a.obj");
+    let obj = "mtllib p.mtl\nmtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    std::fs::write(&path, obj).unwrap();
+    let loaded = load(&path, &LoadOptions::default(), &Progress::new()).unwrap();
+    assert_eq!(
+        kinds(&loaded.findings),
+        [FindingKind::MtlUnreadable, FindingKind::TextureUnreadable]
+    );
+    let is_said = |finding: &Finding| finding.text.contains("this is a pipe, not a file");
+    assert!(loaded.findings.iter().all(is_said), "{:?}", loaded.findings);
 }

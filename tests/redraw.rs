@@ -98,7 +98,7 @@ fn texture(dice: &mut Dice) -> Shared<Texture> {
     let pixels = vec![texel(dice, 255), texel(dice, hole), texel(dice, 255), texel(dice, 255)];
     Shared::new(Texture {
         source: PathBuf::from("none"),
-        picture: Picture::from_pixels(Size::new(2, 2), pixels).unwrap(),
+        picture: Picture::from_pixels(Size::new(2, 2), pixels).unwrap().into(),
         wrap: Wrap::Repeat,
         offset: [0.0; 2],
         scale: [1.0; 2],

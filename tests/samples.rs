@@ -160,7 +160,7 @@ fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
     let texels = (0..36).map(|_| [random(255) as u8, 200, random(255) as u8, 255]);
     let texture = Texture {
         source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(6, 6), texels.collect()).unwrap(),
+        picture: Picture::from_pixels(Size::new(6, 6), texels.collect()).unwrap().into(),
         wrap: Wrap::Repeat,
         offset: [0.0; 2],
         scale: [1.0; 2],

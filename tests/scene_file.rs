@@ -11,8 +11,8 @@ use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math;
 use marraztu::io::{
-    Progress, SceneFileError, default_scene, load, load_texture, open, open_with, save,
-    save_picture, to_text,
+    FindingKind, Progress, SceneFileError, default_scene, load, load_texture, open, open_with,
+    save, save_picture, to_text,
 };
 use marraztu::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Coverage, DepthFormat,
@@ -238,47 +238,107 @@ fn the_first_scene_opens_as_it_was() {
 }
 
 #[test]
-fn what_cannot_be_understood_is_refused_with_its_line() {
+fn what_cannot_be_understood_is_refused_with_its_place_in_plain_words() {
+    let mut wrong = Vec::new();
     for (from, to, line, reason) in [
-        ("version: 1", "version: 2", 2, "a newer one has written it"),
-        ("version: 1", "version: 0", 2, "of version 0"),
-        ("background", "foreground", 3, "foreground"),
-        ("next_id: 9", "next_id: -9", 4, ""),
-        ("name: \"r_falke\"", "name: r_falke", 8, ""),
-        ("(\n    version", "\n    version", 2, ""),
+        (
+            "version: 1",
+            "version: 2",
+            2,
+            "the file has version 2, which a newer program has written",
+        ),
+        ("version: 1", "version: 0", 2, "0 is not a version: the first one is 1"),
+        ("version: 1,", "", 0, "this is not a scene file: it has no version"),
+        ("background", "foreground", 3, "the scene cannot have \"foreground\""),
+        ("next_id: 9", "next_id: -9", 4, "this number is too large or too small here"),
+        ("next_id: 9", "next_id: 99999999999", 4, "this number is too large or too small here"),
+        ("next_id: 9", "next_id: 9, next_id: 9", 4, "the scene has \"next_id\" twice"),
+        ("next_id: 9,", "next_id: 9", 5, "\",\" is missing here"),
+        ("name: \"r_falke\"", "name: r_falke", 8, "a text in quotation marks is missing here"),
+        ("name: \"r_falke\",", "", 0, "the object has no \"name\""),
+        ("(\n    version", "\n    version", 1, "this is not a scene file: it does not begin with"),
+        ("visible: true", "visible: yes", 9, "true or false is missing here"),
+        ("Preset(\"ruby\")", "Preset(\"mud\")", 0, "there is no material called \"mud\""),
+        (
+            "Preset(\"ruby\")",
+            "Reset(\"ruby\")",
+            0,
+            "\"Reset\" cannot be here; use Preset, File or Own",
+        ),
+        ("(0, 0, 179)", "(0, 0)", 3, "is expected here"),
+        ("(0, 0, 179)", "(0, 0, 300)", 3, "this number is too large or too small here"),
     ] {
         let error = changed(from, to).unwrap_err();
         let text = error.to_string();
-        let SceneFileError::Line { line: at, .. } = error else { panic!("{to}: {text}") };
-        assert_eq!(at, line, "{to}: {text}");
-        assert!(text.starts_with(&format!("a.marraztu, line {line}: ")), "{to}: {text}");
-        assert!(text.contains(reason), "{to}: {text}");
+        let SceneFileError::Line { line: at, column, ref file, .. } = error else {
+            panic!("{to}: {text}")
+        };
+        assert!(text.starts_with(&format!("{file}:{at}:{column}: ")), "{to}: {text}");
+        if (line != 0 && at != line) || !text.contains(reason) {
+            wrong.push(format!("{to}: {text}"));
+        }
+    }
+    assert_eq!(wrong, [""; 0]);
+}
+
+/// Words of the parser and of Rust are of no use to a person.
+#[test]
+fn no_error_speaks_of_the_parser() {
+    let folder = folder();
+    let path = folder.path().join("a.marraztu");
+    let (scene, view) = default_scene();
+    let whole = to_text(&path, &scene, &view, &Settings::default()).unwrap();
+    let refusal = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        open(&path, &Progress::new()).err().map(|error| error.to_string())
+    };
+    let nested = format!("(a: {}", "[".repeat(5000));
+    let mut refusals: Vec<String> = refusal(&nested).into_iter().collect();
+    assert!(refusals[0].contains("nested too deeply"), "{refusals:?}");
+    let places: Vec<usize> = whole.char_indices().map(|(place, _)| place).collect();
+    for place in places.iter().step_by(17) {
+        for change in ["", "'", "?", "\"", "(", "_", "/*"] {
+            refusals.extend(refusal(&format!(
+                "{}{change}{}",
+                &whole[..*place],
+                &whole[place + 1..]
+            )));
+        }
+        refusals.extend(refusal(&whole[..*place]));
+    }
+    assert!(refusals.len() > 1000, "{}", refusals.len());
+    for refusal in refusals {
+        let words =
+            ["Expected", "Unexpected", "struct", "RON", "ron::", "`", "enum", "u32", "FileS"];
+        let refusal = refusal.replace(&path.display().to_string(), "");
+        let of_rust = words.into_iter().find(|word| refusal.contains(word));
+        assert_eq!(of_rust, None, "{refusal}");
     }
 }
 
 #[test]
 fn what_cannot_be_in_a_scene_is_refused_by_its_name() {
     for (from, to, reason) in [
-        ("id: 1,", "id: 2,", "object 2 \"x_wing\": what should be added is already in the scene"),
+        ("id: 1,", "id: 2,", "object 2 \"x_wing\": its id is used twice"),
         (
             "(-100.0, 0.0, 0.0, 1.0)",
             "(inf, 0.0, 0.0, 1.0)",
-            "\"r_falke\": its placement has a number that is not finite",
+            "\"r_falke\": its placement has a number that is infinite or NaN",
         ),
         (
             "eye: (0.0, 0.0, 400.0)",
             "eye: (0.0, 0.0, NaN)",
-            "\"camera 1\": its place has a number that is not finite",
+            "\"camera 1\": its place has a number that is infinite or NaN",
         ),
         ("half_angle: 22.5", "half_angle: 90.0", "the lens needs an angle between 0 and 90"),
-        ("slot: 1,", "slot: 0,", "another light has slot 0, too"),
+        ("slot: 1,", "slot: 0,", "another light has slot 0 already"),
         (
             "direction: (0.0, -1.0, 0.0)",
             "direction: (0.0, 0.0, 0.0)",
             "its direction has no length",
         ),
         ("scaling: 1.2", "scaling: 1.0", "of scaling above 1"),
-        ("Own(\"x_wing\")", "Own(\"y_wing\")", "no model of its own \"y_wing\""),
+        ("Own(\"x_wing\")", "Own(\"y_wing\")", "there is no built-in model \"y_wing\""),
         ("next_id: 9", "next_id: 9, unknown: 1", "unknown"),
         ("id: 0,", "id: 4294967295,", "an id is too large"),
     ] {
@@ -288,24 +348,116 @@ fn what_cannot_be_in_a_scene_is_refused_by_its_name() {
 }
 
 #[test]
-fn a_selection_that_is_gone_gives_way_to_the_first() {
-    let opened = changed("object: Some(2)", "object: Some(77)").unwrap();
-    assert_eq!(opened.view.object, opened.scene.objects.first());
+fn a_selection_that_is_gone_gives_way_to_the_first_and_is_listed() {
+    for (from, to, what) in [
+        ("object: Some(2)", "object: Some(77)", "object 77"),
+        ("camera: 3,", "camera: 77,", "camera 77"),
+        ("light: Some(5)", "light: Some(77)", "light 77"),
+    ] {
+        let opened = changed(from, to).unwrap();
+        let (_, view) = default_scene();
+        assert_eq!(opened.view, view, "{to}");
+        let [finding] = &opened.findings[..] else { panic!("{to}: {:?}", opened.findings) };
+        let text = format!(
+            "the view selects {what}, which is not in the scene: the first one is selected"
+        );
+        assert_eq!((finding.kind, &finding.text), (FindingKind::SelectionMissing, &text));
+    }
+}
+
+#[test]
+fn a_scene_that_says_nothing_of_its_view_has_nothing_to_list() {
+    let folder = folder();
+    let path = folder.path().join("a.marraztu");
+    std::fs::write(&path, "(version: 1, cameras: [(id: 5, name: \"only\")])").unwrap();
+    assert_eq!(open(&path, &Progress::new()).unwrap().findings, []);
+}
+
+#[test]
+fn spots_and_cameras_that_are_bound_to_what_is_gone_are_listed() {
+    for (from, to, text) in [
+        (
+            "owner: SelectedObject",
+            "owner: Object(77)",
+            "the light \"object spot\" belongs to object 77, which is not in the scene",
+        ),
+        (
+            "mode: Fly",
+            "mode: Analysis(77)",
+            "the camera \"camera 1\" is aimed at object 77, which is not in the scene",
+        ),
+    ] {
+        let opened = changed(from, to).unwrap();
+        let texts: Vec<&str> = opened.findings.iter().map(|finding| &*finding.text).collect();
+        assert_eq!(texts, [text]);
+    }
 }
 
 #[test]
 fn what_is_no_scene_file_at_all_is_refused() {
     let folder = folder();
-    for (content, reason) in
-        [(&b""[..], ""), (b"\x89PNG\xFF", "this is no scene file"), (b"hello", "")]
-    {
-        let path = folder.path().join("b.marraztu");
+    let path = folder.path().join("b.marraztu");
+    let refusal = || open(&path, &Progress::new()).unwrap_err().to_string();
+    let shown = path.display();
+    assert_eq!(refusal(), format!("{shown}: there is no such file"));
+    for (content, reason) in [
+        (&b""[..], ":1:1: this is not a scene file: it does not begin with \"(\""),
+        (b"\x89PNG\xFF", ": this is not a scene file: it is not text"),
+        (b"hello", ":1:1: this is not a scene file: it does not begin with \"(\""),
+        (b"()", ":1:2: this is not a scene file: it has no version"),
+    ] {
         std::fs::write(&path, content).unwrap();
-        let text = open(&path, &Progress::new()).unwrap_err().to_string();
-        assert!(text.starts_with("b.marraztu") && text.contains(reason), "{text}");
+        assert_eq!(refusal(), format!("{shown}{reason}"));
     }
-    let error = open(&folder.path().join("none.marraztu"), &Progress::new()).unwrap_err();
-    assert_eq!(error.to_string(), "none.marraztu: there is no such file");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_scene_that_is_a_pipe_or_names_one_is_refused_at_once() {
+    let folder = folder();
+    let make_pipe = |path: &Path| {
+        assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+    };
+    let [scene, model] = ["a.marraztu", "a.obj"].map(|name| folder.path().join(name));
+    make_pipe(&scene);
+    let refusal = |path: &Path| open(path, &Progress::new()).unwrap_err().to_string();
+    assert_eq!(refusal(&scene), format!("{}: this is a pipe, not a file", scene.display()));
+    make_pipe(&model);
+    let named = folder.path().join("b.marraztu");
+    let text = "(version: 1, cameras: [(id: 1, name: \"a\", model: File(path: \"a.obj\"))])";
+    std::fs::write(&named, text).unwrap();
+    assert_eq!(refusal(&named), format!("{}: this is a pipe, not a file", model.display()));
+}
+
+#[test]
+fn a_picture_of_two_models_and_an_object_is_read_once() {
+    let folder = folder();
+    let mtl = "newmtl m\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nmap_Kd chess.png\n";
+    std::fs::write(folder.path().join("m.mtl"), mtl).unwrap();
+    for name in ["a.obj", "b.obj"] {
+        let text = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let object = |id: u32, name: &str| {
+        format!(
+            "(id: {id}, name: \"{name}\", model: File(path: \"{name}\"), \
+             texture: Some((path: \"chess.png\", offset: (0.5, {id}.0)))),"
+        )
+    };
+    let text = format!(
+        "(version: 1, cameras: [(id: 9, name: \"c\")], objects: [{}{}])",
+        object(1, "a.obj"),
+        object(2, "b.obj")
+    );
+    let path = folder.path().join("a.marraztu");
+    std::fs::write(&path, text).unwrap();
+    let opened = open(&path, &Progress::new()).unwrap();
+    let objects = opened.scene.objects.iter().map(|(_, object)| object);
+    let own = |object: &Object| object.texture.clone().unwrap().picture.clone();
+    let file = |object: &Object| object.model.materials[0].texture.clone().unwrap().picture.clone();
+    let pictures: Vec<_> = objects.flat_map(|object| [own(object), file(object)]).collect();
+    assert_eq!(pictures.len(), 4);
+    assert!(pictures.iter().all(|picture| Shared::same(picture, &pictures[0])));
 }
 
 #[test]
@@ -383,7 +535,7 @@ fn a_number_that_is_none_is_refused_before_anything_is_written() {
     let (scene, mut view) = default_scene();
     view.time = f64::NAN;
     let error = save(&path, &scene, &view, &Settings::default()).unwrap_err();
-    assert!(error.to_string().contains("not finite"), "{error}");
+    assert!(error.to_string().contains("NaN"), "{error}");
     assert!(!path.exists());
 }
 

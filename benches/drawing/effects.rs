@@ -77,7 +77,7 @@ fn holed() -> Texture {
     let texels = (0..size.area()).map(texel).collect();
     Texture {
         source: "holed".into(),
-        picture: Picture::from_pixels(size, texels).expect("as many as it has"),
+        picture: Picture::from_pixels(size, texels).expect("as many as it has").into(),
         wrap: Wrap::Repeat,
         offset: [0.0; 2],
         scale: [1.0; 2],

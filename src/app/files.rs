@@ -17,7 +17,7 @@ use super::tasks::{Outcome, Task};
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::edit::{Gesture, items};
-use crate::io::{self, LoadError, Loaded};
+use crate::io::{self, Finding, LoadError, Loaded};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Projection, Texture};
 
@@ -35,7 +35,7 @@ pub(super) enum Fetched {
     /// A model; the material is asked for where it is not known.
     Model(Box<FetchedModel>),
     /// A texture for an object.
-    Texture(ObjectId, Result<Shared<Texture>, LoadError>),
+    Texture(ObjectId, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
     /// A scene.
     Scene(Box<Opening>),
 }
@@ -167,8 +167,9 @@ impl App {
         let label = format!("Loading {}", file_name(&path));
         let asks = wish.material.is_none();
         self.begin_loading(ctx, label, asks, move |progress| {
-            let result = io::load(&path, &wish.options, progress).and_then(|loaded| {
-                let texture = wish.texture.as_deref().map(io::load_texture).transpose()?;
+            let result = io::load(&path, &wish.options, progress).and_then(|mut loaded| {
+                let mut load = |path| io::load_texture_with(path, &mut loaded.findings);
+                let texture = wish.texture.as_deref().map(&mut load).transpose()?;
                 Ok((loaded, texture))
             });
             let Wish { material, keeps_saved, .. } = wish;
@@ -179,7 +180,9 @@ impl App {
     fn load_texture(&mut self, ctx: &Context, id: ObjectId, path: PathBuf) {
         let label = format!("Loading {}", file_name(&path));
         self.begin_loading(ctx, label, false, move |_| {
-            Fetched::Texture(id, io::load_texture(&path))
+            let mut findings = Vec::new();
+            let texture = io::load_texture_with(&path, &mut findings);
+            Fetched::Texture(id, texture.map(|texture| (texture, findings)))
         });
     }
 
@@ -242,7 +245,13 @@ impl App {
                 }
             }
             Fetched::Texture(_, Err(error)) => self.tell_load_error(&error),
-            Fetched::Texture(id, Ok(texture)) => {
+            Fetched::Texture(id, Ok((texture, findings))) => {
+                let notice = |finding: Finding| Notice {
+                    text: finding.to_string(),
+                    details: Vec::new(),
+                    offer: None,
+                };
+                self.state.notices.extend(findings.into_iter().map(notice));
                 let set = |object: &mut Object| object.texture = Some(texture);
                 match items::change_object(&self.state.scene, id, set) {
                     Ok(command) => self.change(command, Gesture::Whole, "Choose a texture"),

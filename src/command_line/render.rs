@@ -75,10 +75,10 @@ pub(crate) fn staged(
     accuracy: &Accuracy,
 ) -> Result<Stage, Failure> {
     let mut stage = Stage::of(files, reading)?;
+    cover(&mut stage, surfaces)?;
     for finding in &stage.findings {
         say("note", finding);
     }
-    cover(&mut stage, surfaces)?;
     look(&mut stage, seeing)?;
     stage.settings = accuracy.of(&stage.settings);
     Ok(stage)
@@ -86,7 +86,8 @@ pub(crate) fn staged(
 
 /// Gives all objects the surface that is asked for.
 fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
-    let texture = surfaces.texture.as_deref().map(io::load_texture).transpose()?;
+    let mut load = |path| io::load_texture_with(path, &mut stage.findings);
+    let texture = surfaces.texture.as_deref().map(&mut load).transpose()?;
     let change = |object: &mut Object| {
         if let Some(material) = &surfaces.material {
             object.material = material.clone();

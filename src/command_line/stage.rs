@@ -44,6 +44,7 @@ impl Stage {
         for model in models {
             stage.add(model, &reading.options())?;
         }
+        stage.findings = io::joined(stage.findings);
         Ok(stage)
     }
 

@@ -68,7 +68,7 @@ pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
     static TEXTURE: OnceLock<Shared<Texture>> = OnceLock::new();
     let (own, content) = TILES;
     let read = || {
-        let picture = own_picture(content).expect("the program's own texture is sound");
+        let picture = own_picture(content).expect("the program's own texture is sound").into();
         let (wrap, offset, scale) = (Wrap::default(), [0.0; 2], [1.0; 2]);
         Shared::new(Texture { source: own.into(), picture, wrap, offset, scale })
     };

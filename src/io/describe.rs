@@ -99,7 +99,7 @@ fn describe_mesh(mesh: &Mesh, text: &mut Text) {
     let yes = |present: bool| if present { "yes" } else { "no" };
     text.line("normals", if mesh.has_file_normals() { "the file's" } else { "computed" });
     let uv = mesh.corners().iter().any(|corner| corner.uv != crate::scene::NONE);
-    text.line("texture places", yes(uv));
+    text.line("texture coords", yes(uv));
     text.line("vertex colours", yes(!mesh.colors().is_empty()));
     text.line("closed", &closed(mesh));
 }
@@ -265,7 +265,7 @@ triangles       6
 box             (-1, 0, -1) to (1, 2, 1)
 size            2 x 2 x 2
 normals         computed
-texture places  no
+texture coords  no
 vertex colours  no
 closed          yes (8 edges, each of two faces)
 parts           2
@@ -273,7 +273,7 @@ parts           2
   \"base\": 1 face, no material: silver
 materials       0
 findings        1
-  pyramid.obj: a face names a vertex that the file does not have, and is left out (line 13)
+  pyramid.obj: a face refers to a vertex that the file does not have and is skipped (line 13)
 ";
         assert_eq!(describe(&loaded.unwrap()), expected);
     }

@@ -4,21 +4,24 @@ use std::path::Path;
 
 use super::progress::Cancelled;
 
+/// What is said if memory for a file cannot be had.
+pub(super) const NO_MEMORY: &str = "there is not enough memory for it";
+
 /// Why a file could not be loaded. Nothing has been changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read at all.
     #[error("{file}: {reason}")]
     File {
-        /// Its name, without folders.
+        /// Its path, as the user gave it.
         file: String,
         /// What is wrong.
         reason: String,
     },
     /// A line of it cannot be taken for what it says it is.
-    #[error("{file}, line {line}: {reason}")]
+    #[error("{file}:{line}: {reason}")]
     Line {
-        /// The file's name, without folders.
+        /// The file's path, as the user gave it.
         file: String,
         /// The line, counted from 1.
         line: u32,
@@ -46,7 +49,7 @@ impl LoadError {
     }
 
     pub(super) fn too_large(file: &str, most: usize) -> Self {
-        Self::file(file, format!("it is larger than {} MB", most >> 20))
+        Self::file(file, format!("the file is larger than {} MB", most >> 20))
     }
 
     pub(super) fn system(file: &str, error: &std::io::Error) -> Self {
@@ -59,17 +62,22 @@ pub(super) fn reason(error: &std::io::Error) -> String {
     use std::io::ErrorKind;
     match error.kind() {
         ErrorKind::NotFound => "there is no such file".to_owned(),
-        ErrorKind::PermissionDenied => "this user may not do that with it".to_owned(),
+        ErrorKind::PermissionDenied => "permission denied".to_owned(),
         ErrorKind::IsADirectory => "this is a folder, not a file".to_owned(),
-        ErrorKind::NotADirectory => "a part of its path is no folder".to_owned(),
-        ErrorKind::StorageFull => "there is no room left on the disk".to_owned(),
-        ErrorKind::ReadOnlyFilesystem => "the disk can only be read".to_owned(),
-        ErrorKind::OutOfMemory => "there is not enough memory for it".to_owned(),
+        ErrorKind::NotADirectory => "a part of its path is not a folder".to_owned(),
+        ErrorKind::StorageFull => "the disk is full".to_owned(),
+        ErrorKind::ReadOnlyFilesystem => "the disk is read-only".to_owned(),
+        ErrorKind::OutOfMemory => NO_MEMORY.to_owned(),
         _ => error.to_string(),
     }
 }
 
-/// A file's name without folders, for messages.
+/// A path as messages show it: as the user gave it.
+pub(super) fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// A file's name without folders.
 pub(super) fn short_name(path: &Path) -> String {
     let name = path.file_name().unwrap_or(path.as_os_str());
     name.to_string_lossy().into_owned()

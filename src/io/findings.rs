@@ -4,20 +4,55 @@
 //! a file with a million faults is as easy to read about as one with two.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// One thing that was mended, left out or odd.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// The file, without folders.
+    /// The path of the file; of the first one if it is about several.
     pub file: String,
-    /// The first line that it is about, counted from 1.
+    /// The first line of that file that it is about, counted from 1.
     pub line: Option<u32>,
     /// What it is.
     pub kind: FindingKind,
     /// How often it was found.
     pub count: usize,
+    /// What the first case is about.
+    name: String,
+    /// How many files it is about.
+    files: usize,
     /// The whole of it in plain words.
     pub text: String,
+}
+
+impl Finding {
+    /// Takes up the cases of the same kind in another file.
+    fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        self.files += other.files;
+        self.text = self.kind.text(self.count, &self.name, self.line, self.files);
+    }
+}
+
+/// Findings of one kind in several files as one, in the place of the first.
+#[must_use]
+pub fn joined(findings: Vec<Finding>) -> Vec<Finding> {
+    let mut places = BTreeMap::new();
+    let mut list: Vec<Finding> = Vec::new();
+    for finding in findings {
+        let name = if finding.kind.joins_names() { "" } else { &finding.name };
+        match places.entry((finding.kind, name.to_owned())) {
+            Entry::Occupied(place) => {
+                let first: &mut Finding = &mut list[*place.get()];
+                first.join(&finding);
+            }
+            Entry::Vacant(place) => {
+                place.insert(list.len());
+                list.push(finding);
+            }
+        }
+    }
+    list
 }
 
 impl std::fmt::Display for Finding {
@@ -48,88 +83,96 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// A vertex with an infinite coordinate, or one that is no number.
-    VertexNotFinite: "a vertex is not finite, and is left out", "# vertices are not finite, and are left out";
-    /// A face that names such a vertex.
-    FaceOnLostVertex: "a face names a vertex that is left out, and is left out with it", "# faces name vertices that are left out, and are left out with them";
-    /// A face that names a vertex that is not there.
-    FaceRange: "a face names a vertex that the file does not have, and is left out", "# faces name vertices that the file does not have, and are left out";
+    /// A vertex with a coordinate that is infinite or NaN.
+    VertexNotFinite: "a vertex is infinite or NaN and is skipped", "# vertices are infinite or NaN and are skipped";
+    /// A face that refers to such a vertex.
+    FaceOnLostVertex: "a face refers to a skipped vertex and is skipped too", "# faces refer to skipped vertices and are skipped too";
+    /// A face that refers to a vertex that is not there.
+    FaceRange: "a face refers to a vertex that the file does not have and is skipped", "# faces refer to vertices that the file does not have and are skipped";
     /// A face of one or two corners.
-    FaceShort: "a face has fewer than three corners, and is left out", "# faces have fewer than three corners, and are left out";
-    /// A face with a corner that is no number.
-    FaceUnreadable: "a face has a corner that is no number (\"@\"), and is left out", "# faces have corners that are no numbers (as \"@\"), and are left out";
+    FaceShort: "a face has fewer than three corners and is skipped", "# faces have fewer than three corners and are skipped";
+    /// A face with a corner that is not a number.
+    FaceUnreadable: "a face has a corner that is not a number (\"@\") and is skipped", "# faces have corners that are not numbers (such as \"@\") and are skipped";
     /// Lines and points, which are not drawn.
-    LineOrPoint: "a statement \"@\" is left out: only faces are drawn", "# statements \"@\" are left out: only faces are drawn";
+    LineOrPoint: "a statement \"@\" is skipped: only faces are drawn", "# statements \"@\" are skipped: only faces are drawn";
     /// Curves and surfaces that are not polygons.
-    FreeForm: "a free-form curve or surface is left out: only polygons are drawn", "# statements of free-form curves and surfaces are left out: only polygons are drawn";
+    FreeForm: "a statement of a free-form curve or surface is skipped: only polygons are drawn", "# statements of free-form curves and surfaces are skipped: only polygons are drawn";
     /// A statement that OBJ or MTL does not have.
-    Unknown: "an unknown statement \"@\" is passed over", "# unknown statements \"@\" are passed over";
-    /// A texture place that is not there.
-    UvRange: "a face names a place on the texture that the file does not have; it has none there", "# faces name places on the texture that the file does not have; they have none there";
+    Unknown: "an unknown statement \"@\" is ignored", "# unknown statements \"@\" are ignored";
+    /// A texture coordinate that is not there.
+    UvRange: "a face refers to a texture coordinate that the file does not have; its corner has none", "# faces refer to texture coordinates that the file does not have; their corners have none";
     /// A normal that is not there.
-    NormalRange: "a face names a normal that the file does not have; it has none there", "# faces name normals that the file does not have; they have none there";
-    /// A texture place with one number.
-    UvSingle: "a place on the texture has one number; 0 is taken for the other", "# places on the texture have one number; 0 is taken for the other";
-    /// A texture place that is not finite.
-    UvNotFinite: "a place on the texture is not finite, and is left out", "# places on the texture are not finite, and are left out";
-    /// A normal that is not finite.
-    NormalNotFinite: "a normal is not finite, and is left out", "# normals are not finite, and are left out";
-    /// Only some faces have places on the texture.
-    UvMixed: "a face has no places on the texture, while others have", "# faces have no places on the texture, while others have";
+    NormalRange: "a face refers to a normal that the file does not have; its normals are computed", "# faces refer to normals that the file does not have; their normals are computed";
+    /// A texture coordinate of one number.
+    UvSingle: "a texture coordinate has one number; 0 is taken for the other", "# texture coordinates have one number; 0 is taken for the other";
+    /// A texture coordinate that is infinite or NaN.
+    UvNotFinite: "a texture coordinate is infinite or NaN and is ignored", "# texture coordinates are infinite or NaN and are ignored";
+    /// A normal that is infinite or NaN.
+    NormalNotFinite: "a normal is infinite or NaN and is ignored", "# normals are infinite or NaN and are ignored";
+    /// Only some faces have texture coordinates.
+    UvMixed: "a face has no texture coordinates, while others have", "# faces have no texture coordinates, while others have";
     /// Only some faces have normals.
-    NormalMixed: "a face has no normals of the file's, while others have; its own are computed", "# faces have no normals of the file's, while others have; theirs are computed";
+    NormalMixed: "a face has no normals, while others have; they are computed", "# faces have no normals, while others have; they are computed";
     /// Numbers after those that a statement has.
-    ExtraNumbers: "a vertex has more numbers than x, y, z and a colour; they are passed over", "# vertices have more numbers than x, y, z and a colour; they are passed over";
+    ExtraNumbers: "a vertex has more numbers than x, y, z and a colour; the rest is ignored", "# vertices have more numbers than x, y, z and a colour; the rest is ignored";
     /// A weight that is not 1.
-    Weight: "a vertex has a weight other than 1, which is passed over", "# vertices have a weight other than 1, which is passed over";
+    Weight: "a vertex has a weight other than 1, which is ignored", "# vertices have a weight other than 1, which is ignored";
     /// Colours on some vertices only.
     ColorPartly: "a vertex has no colour, while others have: it is white", "# vertices have no colour, while others have: they are white";
     /// Colours from 0 to 255.
-    ColorBytes: "the colours of vertices exceed 1, and are taken as 0 to 255", "the colours of vertices exceed 1, and are taken as 0 to 255";
-    /// A face that names a vertex twice.
-    FaceRepeats: "a face names a vertex twice", "# faces name a vertex twice";
+    ColorBytes: "vertex colours exceed 1 and are read as 0 to 255", "vertex colours exceed 1 and are read as 0 to 255";
+    /// A face that refers to a vertex twice.
+    FaceRepeats: "a face refers to a vertex twice", "# faces refer to a vertex twice";
     /// A face without area.
-    FaceNoArea: "a face has no area, and no normal of its own", "# faces have no area, and no normals of their own";
+    FaceNoArea: "a face has no area and no normal of its own", "# faces have no area and no normals of their own";
     /// A polygon whose triangles leave it.
-    PolygonCrosses: "a polygon of @ corners crosses itself or is too large to be cut up rightly", "# polygons (the first of @ corners) cross themselves or are too large to be cut up rightly";
+    PolygonCrosses: "a polygon of @ corners crosses itself; its triangles may lie outside of it", "# polygons (the first of @ corners) cross themselves; their triangles may lie outside of them";
     /// No face at all.
-    NoFaces: "the file has vertices, but no face: it draws nothing", "the file has vertices, but no face: it draws nothing";
+    NoFaces: "the file has vertices but no faces: it draws nothing", "the file has vertices but no faces: it draws nothing";
     /// An MTL file that is not there.
     MtlMissing: "the material file \"@\" was not found", "the material file \"@\" was not found";
-    /// More MTL files than anyone names.
-    MtlMany: "a statement \"mtllib\" is passed over: a thousand different ones are enough", "# statements \"mtllib\" are passed over: a thousand different ones are enough";
+    /// More MTL files than are read.
+    MtlMany: "a statement \"mtllib\" is ignored: 1000 different ones are read at most", "# statements \"mtllib\" are ignored: 1000 different ones are read at most";
     /// An MTL file that cannot be read.
     MtlUnreadable: "the material file cannot be read: @", "the material file cannot be read: @";
     /// A `usemtl` of a name that no MTL file has.
-    MaterialUnknown: "the material \"@\" is not known: silver is taken", "the material \"@\" is not known: silver is taken";
+    MaterialUnknown: "the material \"@\" is not defined: silver is used", "the material \"@\" is not defined: silver is used";
     /// Two materials of one name.
-    MaterialTwice: "the material \"@\" is there twice: the first is taken", "the material \"@\" is there # times too often: the first is taken";
+    MaterialTwice: "the material \"@\" is defined twice: the first is used", "the material \"@\" is defined # times more: the first is used";
     /// A statement before any `newmtl`.
-    MtlStray: "a statement \"@\" belongs to no material, and is passed over", "# statements (the first \"@\") belong to no material, and are passed over";
+    MtlStray: "a statement \"@\" stands before any newmtl and is ignored", "# statements (the first: \"@\") stand before any newmtl and are ignored";
     /// A number of a material that cannot be read.
-    MtlNumber: "a number cannot be read in \"@\", which is passed over", "# statements have numbers that cannot be read (the first: \"@\"), and are passed over";
+    MtlNumber: "a statement \"@\" has a number that cannot be read and is ignored", "# statements (the first: \"@\") have numbers that cannot be read and are ignored";
     /// Ka := 0.2 Kd.
-    MendedAmbient: "0.2 Kd is taken for Ka of the material \"@\", which is missing, white, above 1, or Kd again", "0.2 Kd is taken for Ka of # materials (first: \"@\"), which is missing, white, above 1, or Kd again";
+    MendedAmbient: "material \"@\": Ka is missing, white, above 1 or equal to Kd, and is taken as 0.2 Kd", "# materials: Ka is missing, white, above 1 or equal to Kd, and is taken as 0.2 Kd";
     /// Kd := 0.8, or 1 with a texture.
-    MendedDiffuse: "the material \"@\" has no Kd: 0.8 is taken, or 1 with a texture", "# materials (first: \"@\") have no Kd: 0.8 is taken, or 1 with a texture";
+    MendedDiffuse: "material \"@\": Kd is missing and is taken as 0.8, or 1 with a texture", "# materials: Kd is missing and is taken as 0.8, or 1 with a texture";
     /// Ks := 0.
-    MendedSpecular: "0 is taken for Ks of the material \"@\", which is missing or switched off by illum", "0 is taken for Ks of # materials (first: \"@\"), which is missing or switched off by illum";
+    MendedSpecular: "material \"@\": Ks is missing or switched off by illum, and is taken as 0", "# materials: Ks is missing or switched off by illum, and is taken as 0";
     /// Ns := 1.
-    MendedExponent: "1 is taken for Ns of the material \"@\", which is missing or below 1", "1 is taken for Ns of # materials (first: \"@\"), which is missing or below 1";
+    MendedExponent: "material \"@\": Ns is missing or below 1, and is taken as 1", "# materials: Ns is missing or below 1, and is taken as 1";
     /// A colour or an opacity outside 0 to 1.
-    MendedRange: "a number of the material \"@\" is outside 0 to 1, and is brought there", "# numbers of materials (first: \"@\") are outside 0 to 1, and are brought there";
+    MendedRange: "material \"@\": a value is outside 0 to 1 and is clamped", "# values of materials are outside 0 to 1 and are clamped";
+    /// `Tr 1` in all materials that are used.
+    MendedTransparency: "material \"@\": Tr 1, which would hide the whole model, is taken as opaque", "# materials: Tr 1, which would hide the whole model, is taken as opaque";
     /// `d` below 0.5.
-    Transparent: "the material \"@\" is more than half transparent: it draws nothing, for nothing is blended", "# materials (first: \"@\") are more than half transparent: they draw nothing, for nothing is blended";
+    Transparent: "material \"@\" is more than half transparent and draws nothing: there is no blending", "# materials are more than half transparent and draw nothing: there is no blending";
     /// `d` below 1.
-    Translucent: "the material \"@\" is drawn without its transparency, for nothing is blended", "# materials (first: \"@\") are drawn without their transparency, for nothing is blended";
+    Translucent: "material \"@\" is partly transparent and is drawn opaque: there is no blending", "# materials are partly transparent and are drawn opaque: there is no blending";
     /// A map other than `map_Kd`.
-    MapUnused: "a statement \"@\" is passed over: the only texture that is drawn is map_Kd", "# statements \"@\" are passed over: the only texture that is drawn is map_Kd";
+    MapUnused: "a statement \"@\" is ignored: map_Kd is the only texture that is drawn", "# statements \"@\" are ignored: map_Kd is the only texture that is drawn";
     /// A texture that is not there.
     TextureMissing: "the texture \"@\" was not found", "the texture \"@\" was not found";
-    /// More textures than anyone names.
-    TextureMany: "a texture is passed over: ten thousand different ones are enough", "# textures are passed over: ten thousand different ones are enough";
+    /// More textures than are read.
+    TextureMany: "a texture is ignored: 10,000 different ones are read at most", "# textures are ignored: 10,000 different ones are read at most";
     /// A texture that cannot be read.
     TextureUnreadable: "the texture cannot be read: @", "the texture cannot be read: @";
+    /// A texture whose file ends before the picture does.
+    TextureCutOff: "the texture is cut off: @ ends early, and the rest of the picture is grey", "the texture is cut off: @ ends early, and the rest of the picture is grey";
+    /// A selection of something that the scene does not have.
+    SelectionMissing: "the view selects @, which is not in the scene: the first one is selected", "the view selects @, which is not in the scene: the first one is selected";
+    /// A spot or a camera that is bound to something that the scene does not have.
+    OwnerMissing: "@, which is not in the scene", "@, which is not in the scene";
 }
 
 /// How many signs of a name are shown.
@@ -149,23 +192,27 @@ impl FindingKind {
                 | Self::MendedSpecular
                 | Self::MendedExponent
                 | Self::MendedRange
+                | Self::MendedTransparency
                 | Self::Transparent
                 | Self::Translucent
         )
     }
 
-    fn text(self, count: usize, name: &str, line: Option<u32>) -> String {
+    fn text(self, count: usize, name: &str, line: Option<u32>, files: usize) -> String {
         let [one, many] = self.words();
         let words = if count == 1 { one } else { many };
         let name = match name.char_indices().nth(LONGEST_NAME) {
             Some((end, _)) => &format!("{}...", &name[..end]),
             None => name,
         };
-        let text = words.replace('#', &count.to_string()).replace('@', name);
-        match line {
-            None => text,
-            Some(line) if count == 1 => format!("{text} (line {line})"),
-            Some(line) => format!("{text} (first: line {line})"),
+        let shown = name.replace(char::is_control, "\u{FFFD}");
+        let text = words.replace('#', &count.to_string()).replace('@', &shown);
+        match (line, files) {
+            (None, 1) => text,
+            (None, _) => format!("{text} ({files} files)"),
+            (Some(line), 1) if count == 1 => format!("{text} (line {line})"),
+            (Some(line), 1) => format!("{text} (first: line {line})"),
+            (Some(line), _) => format!("{text} (first: line {line}; {files} files)"),
         }
     }
 }
@@ -268,8 +315,8 @@ impl Findings {
         cases.extend(others.into_iter().map(|(kind, cases)| ((kind, LAST.to_owned()), cases)));
         let finding = |((kind, _), cases): ((FindingKind, String), Cases)| {
             let Cases { count, name, line } = cases;
-            let text = kind.text(count, &name, line);
-            Finding { file: file.clone(), line, kind, count, text }
+            let text = kind.text(count, &name, line, 1);
+            Finding { file: file.clone(), line, kind, count, name, files: 1, text }
         };
         cases.into_iter().map(finding).collect()
     }
@@ -295,11 +342,11 @@ mod tests {
         };
         let forth = found(&mut (0..1000), 1000);
         assert_eq!(forth.len(), 101);
-        let text = "900 unknown statements \"... and others\" are passed over (first: line 101)";
+        let text = "900 unknown statements \"... and others\" are ignored (first: line 101)";
         assert_eq!(forth[100].text, text);
         assert_eq!(forth, found(&mut (0..1000), 7));
         assert_eq!(forth, found(&mut (0..1000).rev(), 130));
-        let long = FindingKind::TextureMissing.text(1, &"x".repeat(1 << 20), None);
+        let long = FindingKind::TextureMissing.text(1, &"x".repeat(1 << 20), None, 1);
         assert!(long.len() < 300, "{} signs", long.len());
     }
 }

@@ -28,10 +28,13 @@ impl Locator {
         }
         let last = name.rsplit('/').next().unwrap_or(&name);
         let file = |path: PathBuf| path.is_file().then_some(path);
+        // A pipe or a device is not read, but it is what is meant: reading it says why it is not.
+        let other = |path: PathBuf| (path.exists() && !path.is_dir()).then_some(path);
         file(folder.join(&name))
             .or_else(|| file(folder.join(last)))
             .or_else(|| self.any_case(folder, &name))
             .or_else(|| self.any_case(folder, last))
+            .or_else(|| other(folder.join(&name)))
     }
 
     /// Follows a relative name from `folder`, without regard to case.

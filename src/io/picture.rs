@@ -86,11 +86,10 @@ mod tests {
     #[test]
     fn another_ending_is_refused_and_a_failed_save_leaves_nothing_behind() {
         let folder = tempfile::tempdir().unwrap();
-        let error = save_picture(&folder.path().join("a.tiff"), &picture(255)).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "a.tiff could not be saved: its name has to end in .png or .ppm"
-        );
+        let path = folder.path().join("a.tiff");
+        let error = save_picture(&path, &picture(255)).unwrap_err();
+        let reason = "could not be saved: its name has to end in .png or .ppm";
+        assert_eq!(error.to_string(), format!("{} {reason}", path.display()));
         std::fs::create_dir(folder.path().join("b.png")).unwrap();
         assert!(save_picture(&folder.path().join("b.png"), &picture(255)).is_err());
         assert!(save_picture(&folder.path().join("none/c.png"), &picture(255)).is_err());

@@ -1,50 +1,85 @@
 //! Files into memory, none larger than anyone means.
 
-use std::fs::File;
-use std::io::Read;
+use std::fs::{File, FileType, Metadata};
+use std::io::{Chain, Cursor, Read};
 use std::path::Path;
 
-use super::error::{LoadError, short_name};
+use super::error::{LoadError, NO_MEMORY, shown};
 use super::progress::Progress;
 
 /// The most bytes of a text that describes materials or a scene.
 pub(super) const MOST_WORDS: usize = 64 << 20;
 
+/// The bytes of a text in UTF-16 that are too many to be converted.
+const MOST_UTF_16: u64 = 1 << 30;
+
 /// How much is read between two looks at the progress.
 const PIECE: usize = 8 << 20;
 
-/// Opens a file of at most so many bytes; says how many it has, where that is known before.
+/// Opens a file of at most `most` bytes; says how many it has, as far as that is known beforehand.
 ///
 /// # Errors
-/// Where it cannot be opened, is a folder, or has more.
+/// If it cannot be opened, cannot be read as a file, or is larger.
 pub(super) fn open(path: &Path, most: usize) -> Result<(File, usize), LoadError> {
-    let file = short_name(path);
-    let system = |error: std::io::Error| LoadError::system(&file, &error);
-    let handle = File::open(path).map_err(system)?;
-    let metadata = handle.metadata().map_err(system)?;
-    if metadata.is_dir() {
-        return Err(LoadError::file(&file, "this is a folder, not a file"));
-    }
+    let metadata = readable(path)?;
     let size = usize::try_from(metadata.len()).unwrap_or(usize::MAX);
-    if size > most { Err(LoadError::too_large(&file, most)) } else { Ok((handle, size)) }
+    if size > most {
+        return Err(LoadError::too_large(&shown(path), most));
+    }
+    let handle = File::open(path).map_err(|error| LoadError::system(&shown(path), &error))?;
+    Ok((handle, size))
+}
+
+/// Refuses what is not a regular file, before it is opened: opening a pipe waits until another
+/// program writes to it. A pipe that this program was started with, as `<(...)` in a shell, is open
+/// already and can be read.
+fn readable(path: &Path) -> Result<Metadata, LoadError> {
+    let file = shown(path);
+    let metadata = std::fs::metadata(path).map_err(|error| LoadError::system(&file, &error))?;
+    match kind(metadata.file_type()) {
+        None => Ok(metadata),
+        Some("a pipe") if is_inherited(path) => Ok(metadata),
+        Some(kind) => Err(LoadError::file(&file, format!("this is {kind}, not a file"))),
+    }
+}
+
+/// What something on a disk is, if it is not a file.
+fn kind(kind: FileType) -> Option<&'static str> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return Some("a pipe");
+        }
+        if kind.is_socket() {
+            return Some("a socket");
+        }
+        if kind.is_char_device() || kind.is_block_device() {
+            return Some("a device");
+        }
+    }
+    kind.is_dir().then_some("a folder")
+}
+
+/// Whether a path stands for a file that this program had open when it was started.
+fn is_inherited(path: &Path) -> bool {
+    ["/dev/fd", "/proc/self/fd", "/dev/stdin"].iter().any(|begin| path.starts_with(begin))
 }
 
 /// Reads a file in pieces, so that it can be watched and cancelled.
 ///
 /// # Errors
-/// Where it cannot be read or has more than `most` bytes; and where `progress` is cancelled.
+/// If it cannot be read or has more than `most` bytes, or if `progress` is cancelled.
 pub(super) fn read(path: &Path, most: usize, progress: &Progress) -> Result<Vec<u8>, LoadError> {
-    let file = short_name(path);
+    let file = shown(path);
     let (mut handle, size) = open(path, most)?;
     let mut bytes = Vec::new();
-    bytes
-        .try_reserve(size + 1)
-        .map_err(|_full| LoadError::file(&file, "there is not enough memory for it"))?;
+    bytes.try_reserve(size + 1).map_err(|_full| LoadError::file(&file, NO_MEMORY))?;
     loop {
         let limit = u64::try_from(PIECE).unwrap_or(u64::MAX);
         let piece = handle.by_ref().take(limit).read_to_end(&mut bytes);
         let piece = piece.map_err(|error| LoadError::system(&file, &error))?;
-        // What is no file on a disk does not say how large it is.
+        // A pipe does not say how large it is.
         if bytes.len() > most {
             return Err(LoadError::too_large(&file, most));
         }
@@ -53,6 +88,41 @@ pub(super) fn read(path: &Path, most: usize, progress: &Progress) -> Result<Vec<
             return Ok(bytes);
         }
     }
+}
+
+/// Whether a text begins with a byte-order mark of UTF-16.
+pub(super) const fn is_utf_16(bytes: &[u8]) -> bool {
+    matches!(bytes, [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..])
+}
+
+/// A text in UTF-8 if it is one in UTF-16, which its byte-order mark tells; else as it is.
+pub(super) fn utf_8(bytes: Vec<u8>) -> Vec<u8> {
+    let unit = match bytes[..] {
+        [0xFF, 0xFE, ..] => u16::from_le_bytes,
+        [0xFE, 0xFF, ..] => u16::from_be_bytes,
+        _ => return bytes,
+    };
+    let (units, _) = bytes[2..].as_chunks();
+    let signs = char::decode_utf16(units.iter().map(|two| unit(*two)));
+    let text: String = signs.map(|sign| sign.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    text.into_bytes()
+}
+
+/// A text, converted if it is one in UTF-16. That is done at once, and not for the largest texts.
+pub(super) fn in_utf_8<R: Read + Send>(
+    mut text: R,
+    file: &str,
+) -> Result<Chain<Cursor<Vec<u8>>, R>, LoadError> {
+    let mut head = Vec::new();
+    let read = text.by_ref().take(2).read_to_end(&mut head).and_then(|_| {
+        let rest = if is_utf_16(&head) { MOST_UTF_16 } else { 0 };
+        text.by_ref().take(rest).read_to_end(&mut head)
+    });
+    let rest = read.map_err(|error| LoadError::system(file, &error))?;
+    if rest as u64 == MOST_UTF_16 {
+        return Err(LoadError::file(file, "this UTF-16 text is too large; save it as UTF-8"));
+    }
+    Ok(Cursor::new(utf_8(head)).chain(text))
 }
 
 #[cfg(test)]
@@ -66,14 +136,32 @@ mod tests {
         std::fs::write(&path, vec![b' '; 3 << 20]).unwrap();
         let read = |most| read(&path, most, &Progress::new());
         assert_eq!(read(3 << 20).unwrap().len(), 3 << 20);
-        let refusal = "a: it is larger than 2 MB";
+        let refusal = format!("{}: the file is larger than 2 MB", path.display());
         assert_eq!(read((3 << 20) - 1).unwrap_err().to_string(), refusal);
     }
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn what_has_no_end_is_read_no_farther_than_that() {
+    fn a_file_that_does_not_say_how_large_it_is_is_read_no_farther_than_allowed() {
+        let refusal = read(Path::new("/proc/self/stat"), 10, &Progress::new()).unwrap_err();
+        assert_eq!(refusal.to_string(), "/proc/self/stat: the file is larger than 0 MB");
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_device_is_refused() {
         let refusal = read(Path::new("/dev/zero"), 1 << 20, &Progress::new()).unwrap_err();
-        assert_eq!(refusal.to_string(), "zero: it is larger than 1 MB");
+        assert_eq!(refusal.to_string(), "/dev/zero: this is a device, not a file");
+    }
+
+    #[test]
+    fn a_text_of_utf_16_becomes_one_of_utf_8() {
+        let text = "v 1 2 3 # \u{e9}\u{1F600}";
+        let units = || std::iter::once(0xFEFF).chain(text.encode_utf16());
+        let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();
+        assert_eq!([utf_8(little), utf_8(big)], [text.as_bytes(); 2]);
+        assert_eq!(utf_8(text.into()), text.as_bytes());
+        assert_eq!(utf_8(vec![0xFF, 0xFE, 0x00, 0xD8, 0x41]), "\u{FFFD}".as_bytes());
     }
 }

@@ -5,16 +5,16 @@
 //! not even a loss of power takes it.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use super::error::{reason, short_name};
+use super::error::{reason, shown};
 
 /// Why a file could not be written. What was there before still is.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file} could not be saved: {reason}")]
 pub struct SaveError {
-    /// The file's name, without folders.
+    /// The file's path, as the user gave it.
     pub file: String,
     /// What is wrong.
     pub reason: String,
@@ -22,7 +22,7 @@ pub struct SaveError {
 
 impl SaveError {
     pub(super) fn new(path: &Path, reason: impl Into<String>) -> Self {
-        Self { file: short_name(path), reason: reason.into() }
+        Self { file: shown(path), reason: reason.into() }
     }
 }
 
@@ -38,14 +38,17 @@ pub(super) enum Worth {
 
 /// Makes `content` the content of the file at `path`.
 pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), SaveError> {
-    let fail = |error: std::io::Error| SaveError::new(path, reason(&error));
+    let fail = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => SaveError::new(path, "there is no such folder"),
+        _ => SaveError::new(path, reason(&error)),
+    };
     // A link goes on pointing where it points: the file behind it is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_new| path.to_owned());
     if target.is_dir() {
         return Err(SaveError::new(path, "this is a folder, not a file"));
     }
     if target.file_name().is_none() {
-        return Err(SaveError::new(path, "this is no name for a file"));
+        return Err(SaveError::new(path, "this is not a name for a file"));
     }
     let beside = with_ending(&target, &format!(".{}.new", std::process::id()));
     let written = write(&beside, &target, content, worth);

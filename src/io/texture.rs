@@ -1,8 +1,15 @@
 //! Pictures to be laid over surfaces.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
 
-use super::error::{LoadError, short_name};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+
+use super::error::{LoadError, shown};
+use super::findings::{Finding, FindingKind, Findings};
+use super::progress::Progress;
+use super::read::read;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Texture, Wrap};
@@ -13,56 +20,187 @@ const LARGEST_SIDE: u32 = 16_384;
 /// The most memory that reading a picture may take.
 const MOST_MEMORY: u64 = 2 << 30;
 
-/// Reads a texture that the user gives by hand: it repeats, and lies as the model's places say.
+/// The most bytes of a file.
+const MOST_BYTES: usize = 2 << 30;
+
+/// What is said of a file of another kind.
+const UNKNOWN: &str = "this is not a PNG, JPEG, BMP, TGA or GIF";
+
+/// Reads a texture that the user gives by hand: it repeats, and lies as the model's texture
+/// coordinates say.
 ///
 /// # Errors
-/// Where the file cannot be read or is no picture.
+/// If the file cannot be read or is not a picture.
 pub fn load_texture(path: &Path) -> Result<Shared<Texture>, LoadError> {
-    Ok(Shared::new(Texture {
-        // Complete, so that it holds wherever the program goes on to work.
-        source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
-        picture: load_picture(path)?,
-        wrap: Wrap::Repeat,
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    }))
+    load_texture_with(path, &mut Vec::new())
+}
+
+/// As [`load_texture`]; notes what is odd about the file.
+///
+/// # Errors
+/// As [`load_texture`].
+pub fn load_texture_with(
+    path: &Path,
+    findings: &mut Vec<Finding>,
+) -> Result<Shared<Texture>, LoadError> {
+    Pictures::default().texture(path, findings)
 }
 
 /// Reads a PNG, JPEG, BMP, TGA or GIF (its first picture), whatever its name ends in.
 ///
 /// # Errors
-/// Where the file cannot be read, is no picture, or too large a one.
+/// If the file cannot be read, is not a picture, or is too large.
 pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
-    let file = short_name(path);
-    let system = |error: std::io::Error| LoadError::system(&file, &error);
-    let reader = image::ImageReader::open(path).map_err(system)?;
-    let mut reader = reader.with_guessed_format().map_err(system)?;
-    if reader.format().is_none() {
-        return Err(LoadError::file(&file, "this is no PNG, JPEG, BMP, TGA or GIF"));
+    let (picture, _) = decode(path, usize::MAX)?;
+    Ok(picture)
+}
+
+/// The pictures that were read for one model or scene: each is read once and shared.
+#[derive(Debug, Default)]
+pub(super) struct Pictures {
+    read: BTreeMap<PathBuf, Result<Read, LoadError>>,
+}
+
+/// A picture from a file.
+#[derive(Clone, Debug)]
+pub(super) struct Read {
+    pub(super) picture: Shared<Picture>,
+    /// The file ends before the picture does.
+    pub(super) cut_off: bool,
+}
+
+impl Pictures {
+    /// The picture of a file.
+    ///
+    /// # Errors
+    /// If it cannot be read, is not a picture, or has more than `most` texels; these are counted
+    /// before any is decoded.
+    pub(super) fn read(&mut self, path: &Path, most: usize) -> Result<Read, LoadError> {
+        // One file may have several paths.
+        let file = std::fs::canonicalize(path).unwrap_or_else(|_missing| path.to_owned());
+        if let Some(read) = self.read.get(&file) {
+            let fits = |read: &Read| read.picture.size().area() <= most;
+            return match read {
+                Ok(read) if !fits(read) => Err(too_many_texels(path)),
+                known => known.clone(),
+            };
+        }
+        let read = decode(path, most)
+            .map(|(picture, cut_off)| Read { picture: Shared::new(picture), cut_off });
+        // With more room it may be read yet.
+        if read.as_ref().err() != Some(&too_many_texels(path)) {
+            self.read.insert(file, read.clone());
+        }
+        read
     }
+
+    /// The texture of a file that repeats, and lies as the model's texture coordinates say.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is not a picture.
+    pub(super) fn texture(
+        &mut self,
+        path: &Path,
+        findings: &mut Vec<Finding>,
+    ) -> Result<Shared<Texture>, LoadError> {
+        let Read { picture, cut_off } = self.read(path, usize::MAX)?;
+        if cut_off {
+            let mut own = Findings::new(&shown(path));
+            own.add(FindingKind::TextureCutOff, &shown(path), None);
+            findings.extend(own.into_list());
+        }
+        Ok(Shared::new(Texture {
+            // Complete, so that it holds wherever the program goes on to work.
+            source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
+            picture,
+            wrap: Wrap::Repeat,
+            offset: [0.0; 2],
+            scale: [1.0; 2],
+        }))
+    }
+}
+
+fn too_many_texels(path: &Path) -> LoadError {
+    LoadError::file(&shown(path), "with it the textures take more than 2 GB of memory")
+}
+
+/// The picture of a file, and whether the file ends before it does.
+fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
+    let file = shown(path);
+    let fail = |reason: String| LoadError::file(&file, reason);
+    let bytes = read(path, MOST_BYTES, &Progress::new())?;
+    let mut reader = ImageReader::new(Cursor::new(&bytes));
+    // A TGA is known by its name alone.
+    if let Ok(format) = ImageFormat::from_path(path) {
+        reader.set_format(format);
+    }
+    let mut reader =
+        reader.with_guessed_format().map_err(|error| LoadError::system(&file, &error))?;
+    if reader.format().is_none() {
+        return Err(fail(UNKNOWN.to_owned()));
+    }
+    let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(&bytes);
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(LARGEST_SIDE);
     limits.max_image_height = Some(LARGEST_SIDE);
     limits.max_alloc = Some(MOST_MEMORY);
     reader.limits(limits);
+    let decoded = move || {
+        let decoder = reader.into_decoder()?;
+        let (width, height) = decoder.dimensions();
+        if width as usize * height as usize > most {
+            return Ok(None);
+        }
+        DynamicImage::from_decoder(decoder).map(Some)
+    };
     // A decoder that breaks down on a damaged file must not take the editor with it.
-    let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| reader.decode()))
-        .map_err(|_panic| LoadError::file(&file, "the picture is damaged"))?
-        .map_err(|error| LoadError::file(&file, reason(&error)))?;
-    let texels = decoded.into_rgba8();
-    let size = Size::new(texels.width() as usize, texels.height() as usize);
-    if size.area() == 0 {
-        return Err(LoadError::file(&file, "the picture is empty"));
+    let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoded))
+        .map_err(|_panic| fail("the picture is damaged".to_owned()))?
+        .map_err(|error| fail(reason(&error)))?
+        .ok_or_else(|| too_many_texels(path))?;
+    drop(bytes);
+    let picture = picture(decoded).ok_or_else(|| fail("the picture is damaged".to_owned()))?;
+    if picture.size().area() == 0 {
+        return Err(fail("the picture is empty".to_owned()));
     }
-    Picture::from_pixels(size, texels.as_raw().as_chunks().0.to_vec())
-        .ok_or_else(|| LoadError::file(&file, "the picture is damaged"))
+    Ok((picture, cut_off))
 }
 
-/// A picture that the program carries; `None` where it is none.
+fn picture(decoded: DynamicImage) -> Option<Picture> {
+    let size = Size::new(decoded.width() as usize, decoded.height() as usize);
+    let texels = match decoded {
+        DynamicImage::ImageRgb8(texels) => {
+            let (texels, _) = texels.as_chunks();
+            texels.iter().map(|[r, g, b]| [*r, *g, *b, 255]).collect()
+        }
+        other => other.into_rgba8().as_chunks().0.to_vec(),
+    };
+    Picture::from_pixels(size, texels)
+}
+
+/// Whether a JPEG ends before its marker of the end: the decoder fills up what is missing.
+fn jpeg_ends_early(bytes: &[u8]) -> bool {
+    // Behind the marker of the beginning: FF, a kind, and for most kinds a length and its content.
+    let mut rest = bytes.get(2..).unwrap_or_default();
+    while let [first, kind, after @ ..] = rest {
+        rest = match (first, kind) {
+            (0xFF, 0xD9) => return false,
+            // Of no content: stuffing, restarts, fill bytes. All else is the picture itself.
+            (0xFF, 0x00 | 0x01 | 0xD0..=0xD8) => after,
+            (0xFF, 0xFF) | (0..=0xFE, _) => &rest[1..],
+            _ => {
+                let [high, low, ..] = after else { return true };
+                let length = usize::from(u16::from_be_bytes([*high, *low]));
+                after.get(length..).unwrap_or_default()
+            }
+        };
+    }
+    true
+}
+
+/// A picture that the program carries; `None` if it cannot be read.
 pub(super) fn own_picture(content: &[u8]) -> Option<Picture> {
-    let texels = image::load_from_memory(content).ok()?.into_rgba8();
-    let size = Size::new(texels.width() as usize, texels.height() as usize);
-    Picture::from_pixels(size, texels.as_raw().as_chunks().0.to_vec())
+    picture(image::load_from_memory(content).ok()?)
 }
 
 fn reason(error: &image::ImageError) -> String {
@@ -75,9 +213,8 @@ fn reason(error: &image::ImageError) -> String {
         ImageError::Limits(_) => {
             format!("the picture takes more than {} GB of memory", MOST_MEMORY >> 30)
         }
-        ImageError::IoError(error) => super::error::reason(error),
-        ImageError::Unsupported(_) => "this is no PNG, JPEG, BMP, TGA or GIF".to_owned(),
-        other => format!("the picture is damaged: {other}"),
+        ImageError::Unsupported(_) => UNKNOWN.to_owned(),
+        _ => "the picture is damaged".to_owned(),
     }
 }
 
@@ -96,7 +233,7 @@ mod tests {
         for format in [Bmp, Gif, Jpeg, Png, Tga] {
             // Only a TGA has nothing in it that tells what it is.
             let path = folder.path().join(if format == Tga { "a.tga" } else { "a.picture" });
-            let written = image::DynamicImage::from(drawn.clone()).to_rgb8();
+            let written = DynamicImage::from(drawn.clone()).to_rgb8();
             written.save_with_format(&path, format).unwrap();
             let read = load_picture(&path).unwrap();
             assert_eq!(read.size(), Size::new(8, 8), "{format:?}");
@@ -113,15 +250,58 @@ mod tests {
     fn a_picture_that_is_none_or_too_large_or_cut_off_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        let refusal = || load_picture(&path).unwrap_err().to_string();
-        assert_eq!(refusal(), "a.png: there is no such file");
+        let file = format!("{}: ", path.display());
+        let refusal = || {
+            let refusal = load_picture(&path).unwrap_err().to_string();
+            refusal.strip_prefix(&file).unwrap().to_owned()
+        };
+        assert_eq!(refusal(), "there is no such file");
         image::RgbImage::new(16_385, 1).save(&path).unwrap();
-        assert_eq!(refusal(), "a.png: the picture is larger than 16384 x 16384");
+        assert_eq!(refusal(), "the picture is larger than 16384 x 16384");
         image::RgbImage::new(64, 64).save(&path).unwrap();
         let whole = std::fs::read(&path).unwrap();
         std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
-        assert!(refusal().starts_with("a.png: "), "{}", refusal());
+        assert!(refusal().starts_with("the picture is damaged"), "{}", refusal());
         std::fs::write(&path, b"hello").unwrap();
-        assert!(refusal().starts_with("a.png: the picture is damaged"), "{}", refusal());
+        assert!(refusal().starts_with("the picture is damaged"), "{}", refusal());
+    }
+
+    #[test]
+    fn a_jpeg_that_ends_early_is_read_with_a_finding_wherever_it_is_cut() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.jpg");
+        let noise = |x: u32, y: u32| image::Rgb([(x * 37 + y * 91) as u8, (x * y) as u8, x as u8]);
+        image::RgbImage::from_fn(64, 64, noise).save(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        let found = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).unwrap();
+            let mut findings = Vec::new();
+            let loaded = load_texture_with(&path, &mut findings);
+            loaded.map(|_| findings.iter().map(|finding| finding.kind).collect::<Vec<_>>())
+        };
+        assert_eq!(found(&whole), Ok(vec![]));
+        assert_eq!(found(&[&whole[..], b"more"].concat()), Ok(vec![]));
+        for part in 1..8 {
+            let cut = whole.len() / 2 + whole.len() * part / 16;
+            assert_eq!(found(&whole[..cut]), Ok(vec![FindingKind::TextureCutOff]), "{cut}");
+        }
+    }
+
+    #[test]
+    fn a_picture_is_decoded_once_and_never_if_its_texels_are_too_many() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        image::RgbImage::new(16, 16).save(&path).unwrap();
+        let mut pictures = Pictures::default();
+        let first = pictures.read(&path, 256).unwrap().picture;
+        let again = pictures.read(&folder.path().join("./a.png"), 256).unwrap().picture;
+        assert!(Shared::same(&first, &again));
+        assert_eq!(pictures.read(&path, 255).unwrap_err(), too_many_texels(&path));
+        // A head without texels: that it is refused for their number shows that none were asked for.
+        let whole = std::fs::read(&path).unwrap();
+        let headless = folder.path().join("b.png");
+        std::fs::write(&headless, &whole[..50]).unwrap();
+        assert_eq!(decode(&headless, 255).unwrap_err(), too_many_texels(&headless));
+        assert_ne!(decode(&headless, 256).unwrap_err(), too_many_texels(&headless));
     }
 }

@@ -9,11 +9,17 @@
 //! shape, and seen along the normal: corners of a polygon that is not flat keep their order best so.
 //! What is closer together than rounding can tell counts as touching.
 //!
+//! Looking for ears may take time that grows with the square of the corners. For more than a thousand
+//! of them it is limited, and what is left is cut by a line that sweeps over it ([`sweep`]), with
+//! slimmer triangles.
+//!
 //! Ear clipping is Meisters', "Polygons Have Ears", American Mathematical Monthly 1975. A hole that
 //! is joined to the outline by a bridge names positions twice; a corner that stands on a corner of
 //! the ear does not block it.
 
 mod grid;
+mod status;
+mod sweep;
 
 use std::collections::VecDeque;
 
@@ -21,16 +27,16 @@ use glam::{DVec2, DVec3};
 
 use self::grid::Grid;
 
-/// How many corners and cells are looked at, for each corner that the polygon has, before the rest
-/// is left to a fan: enough for any simple polygon of two thousand corners, and for a million in
-/// shapes that anyone draws.
-const BUDGET: usize = 1000;
+/// The most corners of a polygon whose ears are looked for to the last.
+const FEW: usize = 1000;
+
+/// How many corners and cells are looked at for each corner that the polygon has beyond [`FEW`].
+const LOOKS: usize = 16;
 
 /// Cuts a polygon into triangles, each as three places in `outline`, in its order of rotation.
 ///
 /// `normal` is the polygon's normal; there are `outline.len() - 2` triangles. A polygon that crosses
-/// itself gets some, too; one that keeps thousands of corners in the way of each other may end in a
-/// fan.
+/// itself gets some, too.
 #[must_use]
 pub fn triangulate(outline: &[DVec3], normal: DVec3) -> Vec<[u32; 3]> {
     Triangulator::default().cut(outline.iter().copied(), normal).to_vec()
@@ -144,6 +150,8 @@ struct Ring {
     left: usize,
     tolerance: f64,
     looked_at: usize,
+    /// How many corners and cells may be looked at.
+    budget: usize,
 }
 
 impl Ring {
@@ -159,6 +167,7 @@ impl Ring {
             left: flat.len(),
             tolerance: tolerance(&flat),
             looked_at: 0,
+            budget: FEW * flat.len().min(FEW) + LOOKS * flat.len().saturating_sub(FEW),
             flat,
         };
         for i in 0..corners {
@@ -173,18 +182,39 @@ impl Ring {
         ring
     }
 
-    /// Cuts ear after ear; three corners, or what nobody has the time for, are a fan.
-    fn cut(mut self) -> Vec<[u32; 3]> {
+    /// Cuts ear after ear, and leaves to a sweep what would take too long.
+    fn cut(&mut self) -> Vec<[u32; 3]> {
         let mut triangles = Vec::with_capacity(self.left - 2);
-        let budget = self.left * BUDGET;
-        while self.left > 3 && self.looked_at < budget {
-            let ear = self.ear().unwrap_or_else(|| self.forced());
-            triangles.push([self.last[ear as usize], ear, self.next[ear as usize]]);
-            self.remove(ear);
+        while self.left > 3
+            && let Some(ear) = self.ear().or_else(|| self.forced())
+        {
+            self.cut_off(ear, &mut triangles);
+        }
+        if self.left > 3 {
+            self.cut_off_what_turns_back(&mut triangles);
         }
         let ring: Vec<u32> = self.corners_left().collect();
-        triangles.extend(ring[1..].windows(2).map(|side| [ring[0], side[0], side[1]]));
+        match ring[..] {
+            [a, b, c] => triangles.push([a, b, c]),
+            _ => sweep::cut(&self.flat, &ring, &mut triangles),
+        }
         triangles
+    }
+
+    /// Cuts off corners without extent, which a sweep cannot tell from slits.
+    fn cut_off_what_turns_back(&mut self, triangles: &mut Vec<[u32; 3]>) {
+        let turns_back = |ring: &Self, corner: u32| ring.turn[corner as usize] == Turn::Back;
+        self.candidates = self.corners_left().filter(|corner| turns_back(self, *corner)).collect();
+        while let Some(corner) = self.candidates.pop_front() {
+            if self.left > 3 && turns_back(self, corner) && !self.gone[corner as usize] {
+                self.cut_off(corner, triangles);
+            }
+        }
+    }
+
+    fn cut_off(&mut self, ear: u32, triangles: &mut Vec<[u32; 3]>) {
+        triangles.push([self.last[ear as usize], ear, self.next[ear as usize]]);
+        self.remove(ear);
     }
 
     fn corners_left(&self) -> impl Iterator<Item = u32> {
@@ -237,9 +267,14 @@ impl Ring {
         }
     }
 
+    /// Whether no more ears should be looked for.
+    const fn is_spent(&self) -> bool {
+        self.looked_at >= self.budget
+    }
+
     /// The next ear of those that are waiting.
     fn ear(&mut self) -> Option<u32> {
-        loop {
+        while !self.is_spent() {
             let corner = self.candidates.pop_front()?;
             if self.gone[corner as usize] {
                 continue;
@@ -251,16 +286,20 @@ impl Ring {
                 _ => {}
             }
         }
+        None
     }
 
     /// Where no corner waits: an ear that others merely touch; else the polygon crosses itself, and
-    /// some corner has to go.
-    fn forced(&mut self) -> u32 {
+    /// some corner has to go. `None` if no more ears should be looked for.
+    fn forced(&mut self) -> Option<u32> {
         let left: Vec<u32> = self.corners_left().collect();
-        self.looked_at += self.flat.len();
+        self.looked_at += left.len() * if self.flat.len() > FEW { 4 } else { 1 };
         for &i in &left {
+            if self.is_spent() {
+                return None;
+            }
             if self.turn[i as usize] == Turn::Convex && self.is_free(i, Blocked::Inside) {
-                return i;
+                return Some(i);
             }
         }
         let least = |of: Turn| {
@@ -274,7 +313,7 @@ impl Ring {
         least(Turn::Straight)
             .or_else(|| least(Turn::Convex))
             .or_else(|| least(Turn::Reflex))
-            .unwrap_or(left[0])
+            .or(left.first().copied())
     }
 
     /// Whether no corner that is left stands in the way of the ear at `corner`.

@@ -493,7 +493,7 @@ pub(super) fn ruler(scale: f64) -> marraztu::base::Shared<marraztu::scene::Textu
     let texels = (0..=255).map(|i| [i, i, i, 255]).collect();
     marraztu::base::Shared::new(marraztu::scene::Texture {
         source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(256, 1), texels).unwrap(),
+        picture: Picture::from_pixels(Size::new(256, 1), texels).unwrap().into(),
         wrap: marraztu::scene::Wrap::Repeat,
         offset: [0.0; 2],
         scale: [scale, 1.0],

@@ -139,7 +139,8 @@ fn case_39_places_beyond_the_texture_are_brought_back_into_it() {
         Shared::new(Texture {
             source: std::path::PathBuf::new(),
             picture: Picture::from_pixels(Size::new(2, 1), vec![[10, 0, 0, 255], [20, 0, 0, 255]])
-                .unwrap(),
+                .unwrap()
+                .into(),
             wrap,
             offset: [0.0; 2],
             scale: [1.0; 2],

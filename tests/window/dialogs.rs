@@ -173,7 +173,7 @@ fn a_bad_file_is_told_in_one_sentence_with_its_line_and_changes_nothing() {
     let before = editor.scene();
     editor.ask(Ask::LoadFiles(vec![path]));
     editor.wait_until(|editor| editor.shows("That did not work"));
-    assert!(editor.shows("bad.obj, line 2"));
+    assert!(editor.shows("bad.obj:2: "));
     assert!(editor.scene() == before);
     editor.press(Named(Key::Enter));
     assert!(!editor.shows("That did not work"), "Enter closes it");

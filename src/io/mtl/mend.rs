@@ -73,11 +73,6 @@ impl Statements {
     fn mended_opacity(&self, note: &mut dyn FnMut(FindingKind)) -> f64 {
         let given = self.opacity.or_else(|| self.transparency.map(|x| 1.0 - x)).unwrap_or(1.0);
         let [opacity, ..] = clamped([given; 3], note);
-        if opacity < 0.5 {
-            note(FindingKind::Transparent);
-        } else if opacity < 1.0 {
-            note(FindingKind::Translucent);
-        }
         opacity
     }
 }

@@ -10,14 +10,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use self::map::{Map, map};
-use super::error::{LoadError, short_name};
-use super::findings::{Finding, FindingKind, Findings};
+use super::error::{LoadError, shown};
+use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
 use super::obj::lines::{Line, Lines, decode, number, words};
 use super::progress::Progress;
-use super::read::{MOST_WORDS, read};
-use super::texture::load_picture;
+use super::read::{MOST_WORDS, is_utf_16, read, utf_8};
+use super::texture::{Pictures, Read};
 use crate::base::Shared;
+use crate::base::image::Picture;
 use crate::scene::{FileMaterial, NONE, Texture, Wrap};
 
 /// The most texels of all textures of a model: 2 GB.
@@ -27,21 +28,37 @@ const MOST_TEXELS: usize = 1 << 29;
 const MOST_NAMES: usize = 10_000;
 
 /// The materials of the files that a model names, in their order.
-#[derive(Debug, Default)]
-pub(super) struct Library {
-    pub(super) materials: Vec<FileMaterial>,
-    pub(super) findings: Vec<Finding>,
+#[derive(Debug)]
+pub(super) struct Library<'a> {
+    materials: Vec<FileMaterial>,
+    /// Where each of `materials` was read.
+    origins: Vec<Origin>,
+    /// Of each file that was read.
+    findings: Vec<Findings>,
     pub(super) locator: Locator,
     /// Where each name stands in `materials`.
     places: BTreeMap<String, u32>,
     /// The files that were read.
     read: BTreeSet<PathBuf>,
+    pictures: &'a mut Pictures,
+    /// The files whose texels are counted in `texels`.
+    counted: BTreeSet<PathBuf>,
     texels: usize,
     /// Where the textures are that were looked for, by the folder of the file that names them and
     /// their name.
     found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
     /// By path, wrapping, and the bits of offset and scale: what is the same is shared.
     textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
+}
+
+/// Where a material was read, and how its opacity was given.
+#[derive(Debug)]
+struct Origin {
+    /// The place of its file's findings.
+    file: usize,
+    line: u32,
+    /// It is fully transparent by `Tr 1` and nothing else.
+    hidden_by_tr: bool,
 }
 
 /// A material as its statements say it.
@@ -59,18 +76,38 @@ struct Statements {
     map: Option<(u32, Map)>,
 }
 
-impl Library {
+impl<'a> Library<'a> {
+    /// A library without materials, whose textures show `pictures`.
+    pub(super) fn new(pictures: &'a mut Pictures) -> Self {
+        Self {
+            materials: Vec::new(),
+            origins: Vec::new(),
+            findings: Vec::new(),
+            locator: Locator::default(),
+            places: BTreeMap::new(),
+            read: BTreeSet::new(),
+            pictures,
+            counted: BTreeSet::new(),
+            texels: 0,
+            found: BTreeMap::new(),
+            textures: BTreeMap::new(),
+        }
+    }
+
     /// Reads one file, if it was not read before; textures are looked for beside it, then beside the
     /// model.
     pub(super) fn read(&mut self, path: &Path, model_folder: &Path) {
         if !self.read.insert(path.to_owned()) {
             return;
         }
-        let mut findings = Findings::new(&short_name(path));
+        let mut findings = Findings::new(&shown(path));
         match read(path, MOST_WORDS, &Progress::new()) {
+            Ok(bytes) if !is_utf_16(&bytes) && bytes.contains(&0) => {
+                findings.add(FindingKind::MtlUnreadable, "this is not text", None);
+            }
             Ok(bytes) => {
                 let folders = [path.parent().unwrap_or(Path::new("")), model_folder];
-                for statements in read_statements(&bytes, &mut findings) {
+                for statements in read_statements(&utf_8(bytes), &mut findings) {
                     self.add(statements, folders, &mut findings);
                 }
             }
@@ -79,12 +116,37 @@ impl Library {
             }
             Err(error) => findings.add(FindingKind::MtlUnreadable, &error.to_string(), None),
         }
-        self.findings.extend(findings.into_list());
+        self.findings.push(findings);
     }
 
     /// The place of the material with this name.
     pub(super) fn place(&self, name: &str) -> Option<u32> {
         self.places.get(name).copied()
+    }
+
+    /// The materials, and what was found in their files. `used` are the places of those that the
+    /// model uses.
+    ///
+    /// Some programs write `Tr 1` for what is opaque. It is taken so if it would hide all that is
+    /// used.
+    pub(super) fn finish(mut self, used: &BTreeSet<u32>) -> (Vec<FileMaterial>, Vec<Finding>) {
+        let hidden = |place: &u32| self.origins[*place as usize].hidden_by_tr;
+        let other_convention = !used.is_empty() && used.iter().all(hidden);
+        for (material, origin) in self.materials.iter_mut().zip(&self.origins) {
+            let kind = if other_convention && origin.hidden_by_tr {
+                material.opacity = 1.0;
+                FindingKind::MendedTransparency
+            } else if material.opacity < 0.5 {
+                FindingKind::Transparent
+            } else if material.opacity < 1.0 {
+                FindingKind::Translucent
+            } else {
+                continue;
+            };
+            self.findings[origin.file].add(kind, &material.name, Some(origin.line));
+        }
+        let findings = self.findings.into_iter().flat_map(Findings::into_list).collect();
+        (self.materials, joined(findings))
     }
 
     fn add(&mut self, statements: Statements, folders: [&Path; 2], findings: &mut Findings) {
@@ -97,6 +159,11 @@ impl Library {
         });
         let place = u32::try_from(self.materials.len()).unwrap_or(NONE);
         self.places.insert(statements.name.clone(), place);
+        self.origins.push(Origin {
+            file: self.findings.len(),
+            line: statements.line,
+            hidden_by_tr: statements.opacity.is_none() && statements.transparency == Some(1.0),
+        });
         self.materials.push(statements.mended(texture, findings));
     }
 
@@ -124,20 +191,31 @@ impl Library {
         if let Some(texture) = self.textures.get(&key) {
             return Some(texture.clone());
         }
-        match load_picture(&path) {
-            Ok(picture) if self.texels + picture.size().area() > MOST_TEXELS => {
-                let most = MOST_TEXELS >> 28;
-                let reason = format!("the textures of this model take more than {most} GB");
-                note(FindingKind::TextureUnreadable, &reason);
-                None
-            }
-            Ok(picture) => {
-                self.texels += picture.size().area();
-                let Map { wrap, offset, scale, .. } = *map;
-                let texture = Texture { source: path, picture, wrap, offset, scale };
-                let texture = Shared::new(texture);
-                self.textures.insert(key, texture.clone());
-                Some(texture)
+        let picture = self.picture(&path, note)?;
+        let Map { wrap, offset, scale, .. } = *map;
+        let texture = Shared::new(Texture { source: path, picture, wrap, offset, scale });
+        self.textures.insert(key, texture.clone());
+        Some(texture)
+    }
+
+    /// The picture of a file, if it and those before it are not too large for the memory.
+    fn picture(
+        &mut self,
+        path: &Path,
+        note: &mut dyn FnMut(FindingKind, &str),
+    ) -> Option<Shared<Picture>> {
+        let counted = self.counted.contains(path);
+        let most = if counted { MOST_TEXELS } else { MOST_TEXELS - self.texels };
+        match self.pictures.read(path, most) {
+            Ok(Read { picture, cut_off }) => {
+                if !counted {
+                    self.counted.insert(path.to_owned());
+                    self.texels += picture.size().area();
+                }
+                if cut_off {
+                    note(FindingKind::TextureCutOff, &shown(path));
+                }
+                Some(picture)
             }
             Err(error) => {
                 note(FindingKind::TextureUnreadable, &error.to_string());
@@ -241,12 +319,14 @@ mod tests {
 
     fn read(text: &str) -> (FileMaterial, Vec<FindingKind>) {
         let mut findings = Findings::new("a.mtl");
-        let mut library = Library::default();
+        let mut pictures = Pictures::default();
+        let mut library = Library::new(&mut pictures);
         for statements in read_statements(text.as_bytes(), &mut findings) {
             library.add(statements, [Path::new("nowhere"); 2], &mut findings);
         }
-        let kinds = findings.into_list().into_iter().map(|finding| finding.kind).collect();
-        (library.materials.remove(0), kinds)
+        library.findings.push(findings);
+        let (mut materials, findings) = library.finish(&BTreeSet::from([0]));
+        (materials.remove(0), findings.into_iter().map(|finding| finding.kind).collect())
     }
 
     #[test]

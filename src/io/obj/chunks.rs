@@ -8,7 +8,7 @@ use std::io::Read;
 
 use memchr::memrchr2;
 
-use crate::io::error::LoadError;
+use crate::io::error::{LoadError, NO_MEMORY};
 
 /// A text that is taken chunk by chunk.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ impl<'a, R: Read> Chunks<'a, R> {
             }
             if chunk.len() > self.sizes.statement {
                 let most = self.sizes.statement >> 20;
-                let reason = format!("a statement of it is longer than {most} MB");
+                let reason = format!("a statement is longer than {most} MB");
                 return Err(LoadError::file(self.file, reason));
             }
             wanted = 2 * chunk.len();
@@ -88,9 +88,7 @@ impl<'a, R: Read> Chunks<'a, R> {
         if self.ended || missing == 0 {
             return Ok(());
         }
-        chunk
-            .try_reserve(missing)
-            .map_err(|_full| LoadError::file(self.file, "there is not enough memory for it"))?;
+        chunk.try_reserve(missing).map_err(|_full| LoadError::file(self.file, NO_MEMORY))?;
         let limit = u64::try_from(missing).unwrap_or(u64::MAX);
         let new = self.source.by_ref().take(limit).read_to_end(chunk).map_err(system)?;
         self.ended = new < missing;
@@ -158,7 +156,7 @@ mod tests {
     #[test]
     fn what_has_no_end_is_read_no_farther_than_allowed() {
         let refusal = |sign| chunks(std::io::repeat(sign), SIZES).unwrap_err().to_string();
-        assert_eq!(refusal(b'x'), "a.obj: a statement of it is longer than 1 MB");
-        assert_eq!(refusal(b'\n'), "a.obj: it is larger than 3 MB");
+        assert_eq!(refusal(b'x'), "a.obj: a statement is longer than 1 MB");
+        assert_eq!(refusal(b'\n'), "a.obj: the file is larger than 3 MB");
     }
 }

@@ -100,13 +100,16 @@ impl Piece {
             };
             match corner(word, counts) {
                 Some(corner) if corner.position == WRONG => {
-                    let reason = format!("a face names vertex {}", excerpt(word));
+                    let reason = format!(
+                        "a face refers to vertex {}, which the file does not have",
+                        excerpt(word)
+                    );
                     fault.get_or_insert((FindingKind::FaceRange, String::new(), reason));
                 }
                 Some(corner) => self.faces.push(corner),
                 None => {
                     let text = excerpt(word);
-                    let reason = format!("\"{text}\" is no corner of a face");
+                    let reason = format!("\"{text}\" is not a corner of a face");
                     fault.get_or_insert((FindingKind::FaceUnreadable, text, reason));
                 }
             }
@@ -116,7 +119,7 @@ impl Piece {
         }
         let corners = self.faces.corners() - begin;
         if fault.is_none() && corners < 3 {
-            let reason = format!("a face needs three corners or more, here are {corners}");
+            let reason = format!("a face needs at least three corners, but has {corners}");
             fault = Some((FindingKind::FaceShort, String::new(), reason));
         }
         match fault {

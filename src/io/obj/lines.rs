@@ -160,17 +160,19 @@ pub(in crate::io) fn excerpt(word: &[u8]) -> String {
     const MOST: usize = 40;
     // No sign of UTF-8 has more than four bytes.
     let text = decode(&word[..word.len().min(4 * MOST)]);
+    let is_cut = 4 * MOST < word.len() || text.chars().nth(MOST).is_some();
     let shown: String = text.chars().take(MOST).collect();
-    if shown.len() < word.len() && shown != decode(word) { shown + "..." } else { shown }
+    let shown = shown.replace(char::is_control, "\u{FFFD}");
+    if is_cut { shown + "..." } else { shown }
 }
 
-/// Why a word is no number.
+/// Why a word is not a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::io) struct NoNumber(pub(in crate::io) String);
 
 /// A number of 32 bits, with the part of the word that says it: a comment may follow at once.
 ///
-/// What the libraries of C write for infinities and for what is no number is read as such; the text
+/// What the libraries of C write for infinities and NaN is read as such; the text
 /// is then of no use.
 pub(in crate::io) fn number(word: &[u8]) -> Result<(f32, &[u8]), NoNumber> {
     let parse = |word: &[u8]| std::str::from_utf8(word).ok()?.parse::<f32>().ok();
@@ -188,8 +190,8 @@ pub(in crate::io) fn number(word: &[u8]) -> Result<(f32, &[u8]), NoNumber> {
     let text = excerpt(word);
     let point = text.replacen(',', ".", 1);
     Err(NoNumber(if point != text && point.parse::<f32>().is_ok() {
-        format!("\"{text}\" has a decimal comma, where the format has a point")
+        format!("\"{text}\" has a decimal comma; write a decimal point")
     } else {
-        format!("\"{text}\" is no number")
+        format!("\"{text}\" is not a number")
     }))
 }

@@ -31,11 +31,12 @@ use rayon::prelude::*;
 use self::join::{Content, MOST_BYTES};
 use self::parts::PartNames;
 use self::sound::FaceRuns;
-use super::error::{LoadError, short_name};
-use super::findings::{Finding, FindingKind, Findings};
+use super::error::{LoadError, shown};
+use super::findings::{Finding, FindingKind, Findings, joined};
 use super::mtl::Library;
 use super::progress::Progress;
-use super::read::open;
+use super::read;
+use super::texture::Pictures;
 use crate::scene::{
     CornerLists, LoadOptions, Mesh, MeshSource, Model, Part, UpAxis, Winding, dvec3, newell,
 };
@@ -58,22 +59,34 @@ pub struct Loaded {
 /// Reads an OBJ file, with the MTL files and textures that it names.
 ///
 /// # Errors
-/// Where the file cannot be read, is no OBJ file, has a number that cannot be read, or has faces of
-/// which none can be used; and where `progress` is cancelled.
+/// If the file cannot be read, is not an OBJ file, has a number that cannot be read, or has faces of
+/// which none can be used; and if `progress` is cancelled.
 pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
-    let file = short_name(path);
-    let (text, size) = open(path, MOST_BYTES)?;
+    load_with(path, options, &mut Pictures::default(), progress)
+}
+
+/// As [`load`]; what is among `pictures` already is not read again.
+pub(super) fn load_with(
+    path: &Path,
+    options: &LoadOptions,
+    pictures: &mut Pictures,
+    progress: &Progress,
+) -> Result<Loaded, LoadError> {
+    let file = shown(path);
+    let (text, size) = read::open(path, MOST_BYTES)?;
     let mut findings = Findings::new(&file);
     let content = content(text, size, &file, &mut findings, &progress.part(0.0, 0.6))?;
     let folder = path.parent().unwrap_or(Path::new(""));
+    let mut library = Library::new(pictures);
+    read_libraries(&mut library, &content, folder, &mut findings);
     let progress = progress.part(0.6, 1.0);
-    let mut loaded = model(content, &file, Some(folder), options, findings, &progress)?;
+    let mut loaded = model(content, &file, library, options, findings, &progress)?;
     // Complete, so that it holds wherever the program goes on to work.
     loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
     Ok(loaded)
 }
 
-/// Reads the text of an OBJ file. `folder` is where its MTL files are looked for; where it is `None`
+/// Reads the text of an OBJ file. `folder` is where its MTL files are looked for; if it is `None`
 /// none are.
 ///
 /// # Errors
@@ -87,10 +100,15 @@ pub fn parse(
 ) -> Result<Loaded, LoadError> {
     let mut findings = Findings::new(file);
     let content = content(bytes, bytes.len(), file, &mut findings, &progress.part(0.0, 0.6))?;
-    model(content, file, folder, options, findings, &progress.part(0.6, 1.0))
+    let mut pictures = Pictures::default();
+    let mut library = Library::new(&mut pictures);
+    if let Some(folder) = folder {
+        read_libraries(&mut library, &content, folder, &mut findings);
+    }
+    model(content, file, library, options, findings, &progress.part(0.6, 1.0))
 }
 
-/// What a text says, where it is one of an OBJ file; it has so many bytes, as far as that is known.
+/// What the text of an OBJ file says; `size` is how many bytes it has, as far as that is known.
 fn content(
     text: impl Read + Send,
     size: usize,
@@ -98,6 +116,7 @@ fn content(
     findings: &mut Findings,
     progress: &Progress,
 ) -> Result<Content, LoadError> {
+    let text = read::in_utf_8(text, file)?;
     let content = join::content(text, size, file, findings, progress)?;
     refuse_nothing(file, &content)?;
     if content.faces.runs.is_empty() {
@@ -110,20 +129,21 @@ fn content(
 fn model(
     content: Content,
     file: &str,
-    folder: Option<&Path>,
+    library: Library<'_>,
     options: &LoadOptions,
     mut findings: Findings,
     progress: &Progress,
 ) -> Result<Loaded, LoadError> {
-    let library = libraries(&content, folder, &mut findings);
     let parts = named_parts(&content.parts, &library, &mut findings);
+    let used = parts.iter().filter_map(|part| part.material).collect();
+    let (materials, of_materials) = library.finish(&used);
     let edge_color = content.edge_color;
     progress.reached(1, 10)?;
 
     let mut content = content;
     let faces = FaceRuns::of(std::mem::take(&mut content.faces.runs));
     let (source, corners) = source(content, &faces, parts, options)
-        .ok_or_else(|| LoadError::file(file, "its coordinates are too large at this scale"))?;
+        .ok_or_else(|| LoadError::file(file, "the coordinates are too large at this scale"))?;
     let mesh = Mesh::from_lists(source, corners);
     let mesh = mesh.map_err(|error| LoadError::file(file, error.to_string()))?;
     for polygon in mesh.without_area() {
@@ -133,18 +153,16 @@ fn model(
     progress.reached(1, 1)?;
 
     let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let Library { materials, findings: of_materials, .. } = library;
     let model = Model { name, source: None, options: *options, mesh, materials, edge_color };
-    Ok(Loaded { model, findings: findings.into_list().into_iter().chain(of_materials).collect() })
+    let findings = findings.into_list().into_iter().chain(of_materials).collect();
+    Ok(Loaded { model, findings: joined(findings) })
 }
 
-/// Why a text that begins with these bytes is none of an OBJ file, where one can tell by them;
-/// `whole` says that there are no more.
+/// Why a text that begins with these bytes cannot be an OBJ file, if they tell; `whole` says that
+/// there are no more.
 fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
     let known = [
-        (&b"\xFF\xFE"[..], "a text of UTF-16; save it as UTF-8"),
-        (b"\xFE\xFF", "a text of UTF-16; save it as UTF-8"),
-        (b"glTF", "a glTF file"),
+        (&b"glTF"[..], "a glTF file"),
         (b"PK\x03\x04", "a ZIP archive; unpack it first"),
         (b"\x1F\x8B", "a gzip archive; unpack it first"),
         (b"Kaydara FBX", "an FBX file"),
@@ -161,10 +179,12 @@ fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
     }
     for (begin, what) in known {
         if bytes.starts_with(begin) {
-            return Some(format!("this is no OBJ file, but {what}"));
+            return Some(format!("this is not an OBJ file but {what}"));
         }
     }
-    bytes[..bytes.len().min(4096)].contains(&0).then(|| "this is no OBJ file: it is no text".into())
+    bytes[..bytes.len().min(4096)]
+        .contains(&0)
+        .then(|| "this is not an OBJ file: it is not text".into())
 }
 
 /// Refuses a file of which nothing would be left.
@@ -173,7 +193,7 @@ fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
         return Ok(());
     }
     if let Some((line, reason)) = &content.faces.refused {
-        let reason = format!("{reason}; no face of the file can be used");
+        let reason = format!("{reason}; none of its faces can be used");
         return Err(LoadError::line(file, *line, reason));
     }
     if !content.positions.is_empty() {
@@ -182,16 +202,19 @@ fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     Err(LoadError::file(
         file,
         match content.vertices {
-            0 => "this is no OBJ file: it has neither vertices nor faces",
-            _ => "none of its vertices is finite",
+            0 => "this is not an OBJ file: it has neither vertices nor faces",
+            _ => "all of its vertices are infinite or NaN",
         },
     ))
 }
 
-/// The materials of the MTL files that are found in `folder`.
-fn libraries(content: &Content, folder: Option<&Path>, findings: &mut Findings) -> Library {
-    let mut library = Library::default();
-    let Some(folder) = folder else { return library };
+/// Reads the MTL files that are found in `folder`.
+fn read_libraries(
+    library: &mut Library<'_>,
+    content: &Content,
+    folder: &Path,
+    findings: &mut Findings,
+) {
     let mut seen = BTreeSet::new();
     for (line, names) in &content.libraries {
         // Exporters repeat the statement for every object.
@@ -210,11 +233,10 @@ fn libraries(content: &Content, folder: Option<&Path>, findings: &mut Findings) 
             }
         }
     }
-    library
 }
 
 /// The parts, by the names of their groups, objects or materials.
-fn named_parts(names: &[PartNames], library: &Library, findings: &mut Findings) -> Vec<Part> {
+fn named_parts(names: &[PartNames], library: &Library<'_>, findings: &mut Findings) -> Vec<Part> {
     let part = |(i, names): (usize, &PartNames)| {
         let material = names.material.as_deref().and_then(|name| {
             let place = library.place(name);

@@ -187,7 +187,7 @@ impl Piece {
     fn vertex(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
         let Row { values: [x, y, z, more @ ..], count } = row::<7>(rest)?;
         if count < 3 {
-            return Err(format!("a vertex needs three numbers, here are {count}"));
+            return Err(format!("a vertex needs three numbers, but has {count}"));
         }
         match count {
             4 if more[0] != 1.0 => self.findings.note(FindingKind::Weight, line),
@@ -206,7 +206,7 @@ impl Piece {
     fn uv(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
         let Row { values: [u, v], count } = row::<2>(rest)?;
         match count {
-            0 => return Err("a place on the texture needs two numbers, here is none".to_owned()),
+            0 => return Err("a texture coordinate needs two numbers, but has none".to_owned()),
             1 => self.findings.note(FindingKind::UvSingle, line),
             _ => {}
         }
@@ -220,7 +220,7 @@ impl Piece {
     fn normal(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
         let Row { values, count } = row::<3>(rest)?;
         if count < 3 {
-            return Err(format!("a normal needs three numbers, here are {count}"));
+            return Err(format!("a normal needs three numbers, but has {count}"));
         }
         if !self.normals.add(values) {
             self.findings.note(FindingKind::NormalNotFinite, line);

@@ -288,12 +288,12 @@ fn fault(face: &[u32], vertices: &Totals) -> Option<(FindingKind, String)> {
     let count = vertices.count;
     if let Some(wrong) = face.iter().find(|vertex| **vertex >= count) {
         let named = u64::from(*wrong) + 1;
-        let reason = format!("a face names vertex {named}, the file has {count}");
+        let reason = format!("a face refers to vertex {named}, but the file has {count} vertices");
         return Some((FindingKind::FaceRange, reason));
     }
     let lost = |vertex: &u32| vertices.place(*vertex).is_none();
     (!vertices.lost.is_empty() && face.iter().any(lost)).then(|| {
-        let reason = "a face names a vertex that is not finite".to_owned();
+        let reason = "a face refers to a vertex that is infinite or NaN".to_owned();
         (FindingKind::FaceOnLostVertex, reason)
     })
 }

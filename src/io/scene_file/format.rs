@@ -206,6 +206,9 @@ pub(super) enum FileOwner {
     Fixed { position: [f64; 3], direction: [f64; 3] },
 }
 
+/// The camera of a view that does not say which: no camera has this id.
+pub(super) const UNSAID: u32 = u32::MAX;
+
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct FileView {
@@ -294,7 +297,7 @@ impl TryFrom<String> for Numbers {
         let run = |word: &str| {
             let (first, last) = word.split_once('-').unwrap_or((word, word));
             let number = |text: &str| {
-                text.parse::<u32>().map_err(|error| format!("\"{word}\" is no number: {error}"))
+                text.parse::<u32>().map_err(|error| format!("\"{word}\" is not a number: {error}"))
             };
             Ok((number(first)?, number(last)?))
         };

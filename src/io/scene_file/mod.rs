@@ -9,17 +9,19 @@ mod format;
 mod open;
 mod paths;
 mod save;
+mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use self::format::{FileModel, FileScene, FileTexture, Head, VERSION};
-use super::error::{LoadError, short_name};
-use super::findings::Finding;
+use super::error::{LoadError, shown};
+use super::findings::{Finding, Findings, joined};
+use super::obj::load_with;
 use super::progress::Progress;
-use super::read::{MOST_WORDS, read};
+use super::read::{MOST_WORDS, read, utf_8};
 use super::replace::{SaveError, Worth, replace};
-use super::texture::load_texture;
+use super::texture::Pictures;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::scene::{LoadOptions, Model, Scale, Scene, Settings, Texture, View};
@@ -46,25 +48,27 @@ pub enum SceneFileError {
     /// The file cannot be read, or holds no scene that could be.
     #[error("{file}: {reason}")]
     File {
-        /// Its name, without folders.
+        /// Its path, as the user gave it.
         file: String,
         /// What is wrong.
         reason: String,
     },
     /// A line of it cannot be understood.
-    #[error("{file}, line {line}: {reason}")]
+    #[error("{file}:{line}:{column}: {reason}")]
     Line {
-        /// The file's name, without folders.
+        /// The file's path, as the user gave it.
         file: String,
         /// The line, counted from 1.
         line: usize,
+        /// The place in the line, in characters counted from 1.
+        column: usize,
         /// What is wrong.
         reason: String,
     },
     /// Models or textures that it names are not there.
     #[error("{file} names files that are not there: {}", listed(missing))]
     Missing {
-        /// The scene file's name, without folders.
+        /// The scene file's path, as the user gave it.
         file: String,
         /// Where the files should be; [`open_with`] is told by these where they are.
         missing: Vec<PathBuf>,
@@ -100,13 +104,13 @@ pub fn to_text(
     settings: &Settings,
 ) -> Result<String, SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
-    let file = save::file_scene(scene, view, settings, &folder_of(path)).map_err(fail)?;
+    let file = save::file_scene(scene, view, settings, &complete_folder(path)).map_err(fail)?;
     let config = ron::ser::PrettyConfig::new().new_line("\n");
     let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
     // What is not finite could be written, and would not be read again.
     let again = file_scene(&text, "").map_err(|error| fail(error.to_string()))?;
     open::check_counts(&again).map_err(fail)?;
-    open::scene(&again, &StandIns).map_err(fail)?;
+    open::scene(&again, &StandIns, &mut Findings::default()).map_err(fail)?;
     Ok(text + "\n")
 }
 
@@ -129,12 +133,14 @@ pub fn open_with(
     relocated: &BTreeMap<PathBuf, PathBuf>,
     progress: &Progress,
 ) -> Result<Opened, SceneFileError> {
-    let name = short_name(path);
-    let fail = |reason: String| SceneFileError::File { file: name.clone(), reason };
-    let bytes = read(path, MOST_WORDS, &Progress::new())?;
-    let text =
-        String::from_utf8(bytes).map_err(|_bytes| fail("this is no scene file".to_owned()))?;
-    open_text(&text, &name, folder_of(path), relocated, progress)
+    let name = shown(path);
+    let bytes = utf_8(read(path, MOST_WORDS, &Progress::new())?);
+    let text = String::from_utf8(bytes).map_err(|_bytes| SceneFileError::File {
+        file: name.clone(),
+        reason: "this is not a scene file: it is not text".to_owned(),
+    })?;
+    let folder = path.parent().map_or_else(PathBuf::new, paths::plain);
+    open_text(&text, &name, folder, relocated, progress)
 }
 
 /// Opens the text of a scene file that is called `name` and seen from `folder`.
@@ -150,33 +156,49 @@ pub(super) fn open_text(
     open::check_counts(&file).map_err(fail)?;
     let mut files = Files::new(folder, relocated);
     files.load(&file, name, progress)?;
-    let (scene, view) = open::scene(&file, &files).map_err(fail)?;
-    Ok(Opened { scene, view, settings: file.settings, findings: files.findings })
+    let mut own = Findings::new(name);
+    let (scene, view) = open::scene(&file, &files, &mut own).map_err(fail)?;
+    let findings = joined(own.into_list().into_iter().chain(files.findings).collect());
+    Ok(Opened { scene, view, settings: file.settings, findings })
 }
 
 /// The folder of a file, from the root on.
-fn folder_of(path: &Path) -> PathBuf {
+fn complete_folder(path: &Path) -> PathBuf {
     let complete = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
     complete.parent().map_or_else(PathBuf::new, paths::plain)
 }
 
 /// The text of a scene file as its types.
 fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
+    let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let fail = |error: ron::error::SpannedError| SceneFileError::Line {
         file: name.to_owned(),
         line: error.span.start.line,
-        reason: error.code.to_string(),
+        column: error.span.start.col,
+        reason: words::sentence(&error.code),
     };
-    let Head { version } = ron::from_str(text).map_err(fail)?;
-    if version == 0 || version > VERSION {
-        let line = 1 + text.lines().position(|line| line.contains("version")).unwrap_or(0);
-        let reason = format!(
-            "the file is of version {version}, and this program reads up to {VERSION}: a newer one \
-             has written it"
-        );
-        return Err(SceneFileError::Line { file: name.to_owned(), line, reason });
+    if !text.trim_start().starts_with(['(', '#', '/']) {
+        let reason = "this is not a scene file: it does not begin with \"(\"".to_owned();
+        return Err(SceneFileError::Line { file: name.to_owned(), line: 1, column: 1, reason });
     }
-    ron::from_str(text).map_err(fail)
+    let Head { version } = ron::from_str(text).map_err(fail)?;
+    if (1..=VERSION).contains(&version) {
+        return ron::from_str(text).map_err(fail);
+    }
+    let place = text.lines().zip(1..).find_map(|(line, number)| {
+        let before = line.find("version")?;
+        Some((number, line[..before].chars().count() + 1))
+    });
+    let (line, column) = place.unwrap_or((1, 1));
+    let reason = if version == 0 {
+        "0 is not a version: the first one is 1".to_owned()
+    } else {
+        format!(
+            "the file has version {version}, which a newer program has written; this one reads \
+             versions up to {VERSION}"
+        )
+    };
+    Err(SceneFileError::Line { file: name.to_owned(), line, column, reason })
 }
 
 /// The models and textures that a scene file names, loaded.
@@ -185,12 +207,21 @@ struct Files<'a> {
     relocated: &'a BTreeMap<PathBuf, PathBuf>,
     models: Vec<(FileModel, Shared<Model>)>,
     textures: Vec<(String, Shared<Texture>)>,
+    /// Those of models and of textures: one file may be both.
+    pictures: Pictures,
     findings: Vec<Finding>,
 }
 
 impl<'a> Files<'a> {
-    const fn new(folder: PathBuf, relocated: &'a BTreeMap<PathBuf, PathBuf>) -> Self {
-        Self { folder, relocated, models: Vec::new(), textures: Vec::new(), findings: Vec::new() }
+    fn new(folder: PathBuf, relocated: &'a BTreeMap<PathBuf, PathBuf>) -> Self {
+        Self {
+            folder,
+            relocated,
+            models: Vec::new(),
+            textures: Vec::new(),
+            pictures: Pictures::default(),
+            findings: Vec::new(),
+        }
     }
 
     /// Where a file is that the scene file names.
@@ -227,7 +258,10 @@ impl<'a> Files<'a> {
         for path in textures {
             let texture = match super::own_texture(path) {
                 Some(own) => own,
-                None => load_texture(&self.place(path))?,
+                None => {
+                    let place = self.place(path);
+                    self.pictures.texture(&place, &mut self.findings)?
+                }
             };
             self.textures.push((path.to_owned(), texture));
         }
@@ -247,7 +281,7 @@ impl<'a> Files<'a> {
         let mut missing: Vec<PathBuf> = of_models
             .chain(textures.iter().copied().filter(|path| super::own_texture(path).is_none()))
             .map(|path| self.place(path))
-            .filter(|place| !place.is_file())
+            .filter(|place| !place.exists())
             .collect();
         missing.sort();
         missing.dedup();
@@ -266,12 +300,13 @@ impl<'a> Files<'a> {
         let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
         match model {
             FileModel::Own(own) => super::own_model(own)
-                .ok_or_else(|| fail(format!("the program has no model of its own \"{own}\""))),
+                .ok_or_else(|| fail(format!("there is no built-in model \"{own}\""))),
             FileModel::File { path, up, scale, winding } => {
                 let scale = Scale::new(*scale)
-                    .ok_or_else(|| fail(format!("{path}: its scale has to be above 0")))?;
+                    .ok_or_else(|| fail(format!("the scale of {path} has to be above 0")))?;
                 let options = LoadOptions { up: *up, scale, winding: *winding };
-                let loaded = super::load(&self.place(path), &options, progress)?;
+                let place = self.place(path);
+                let loaded = load_with(&place, &options, &mut self.pictures, progress)?;
                 self.findings.extend(loaded.findings);
                 Ok(Shared::new(loaded.model))
             }
@@ -311,7 +346,7 @@ impl open::Needs for StandIns {
 
     fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
         let FileTexture { wrap, offset, scale, .. } = *texture;
-        let picture = Picture::filled(Size::new(1, 1), [255; 4]);
+        let picture = Picture::filled(Size::new(1, 1), [255; 4]).into();
         Shared::new(Texture { source: PathBuf::new(), picture, wrap, offset, scale })
     }
 }

@@ -1,7 +1,7 @@
 //! From the text of a file to a scene.
 //!
 //! Items are put into the scene by the commands that put them there in the editor: what those refuse
-//! (an id used twice, a number that is none) is refused here.
+//! (an id used twice, a number that is NaN) is refused here.
 
 use std::collections::BTreeSet;
 
@@ -9,13 +9,14 @@ use glam::{DMat3, DMat4, DVec3};
 
 use super::format::{
     FileCamera, FileLight, FileLightKind, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
-    FileScene, FileSpin, FileTexture, FileView,
+    FileScene, FileSpin, FileTexture, FileView, UNSAID,
 };
 use crate::base::{Shared, color::Color};
+use crate::io::findings::{FindingKind, Findings};
 use crate::scene::{
-    Aim, Camera, CameraId, CameraMode, Command, Item, Light, LightId, LightKind, List,
-    MaterialChoice, Model, Object, ObjectId, Orbit, Placed, PolygonMode, Pose, Scene, Sides, Spin,
-    SpotOwner, Steps, Texture, View,
+    Aim, Camera, CameraId, CameraMode, Command, CommandError, Item, Light, LightId, LightKind,
+    List, MaterialChoice, Model, Object, ObjectId, Orbit, Placed, PolygonMode, Pose, Scene, Sides,
+    Spin, SpotOwner, Steps, Texture, View,
 };
 
 /// The most things of a kind in a scene: each is looked up among all others.
@@ -33,7 +34,7 @@ pub(super) fn check_counts(file: &FileScene) -> Result<(), String> {
     ];
     match counts.into_iter().find(|(_, count)| *count > MOST_ITEMS) {
         Some((what, count)) => {
-            Err(format!("it has {count} {what}, and {MOST_ITEMS} are the most that a scene has"))
+            Err(format!("it has {count} {what}, but a scene has at most {MOST_ITEMS}"))
         }
         None => Ok(()),
     }
@@ -51,7 +52,11 @@ pub(super) trait Needs {
 ///
 /// # Errors
 /// With the reason where it holds no scene that could be.
-pub(super) fn scene(file: &FileScene, needs: &dyn Needs) -> Result<(Scene, View), String> {
+pub(super) fn scene(
+    file: &FileScene,
+    needs: &dyn Needs,
+    findings: &mut Findings,
+) -> Result<(Scene, View), String> {
     let mut scene = Scene {
         objects: List::default(),
         cameras: List::default(),
@@ -63,7 +68,10 @@ pub(super) fn scene(file: &FileScene, needs: &dyn Needs) -> Result<(Scene, View)
     let mut insert = |at: usize, item: Item, id: u32, what: String| {
         largest = largest.max(id);
         let insertion = Command::Insert { at, item };
-        insertion.apply(&mut scene).map(|_| ()).map_err(|error| format!("{what}: {error}"))
+        insertion.apply(&mut scene).map(|_| ()).map_err(|error| match error {
+            CommandError::AlreadyThere(_) => format!("{what}: its id is used twice"),
+            error => format!("{what}: {error}"),
+        })
     };
     for (at, object) in file.objects.iter().enumerate() {
         let what = format!("object {} \"{}\"", object.id, object.name);
@@ -79,7 +87,7 @@ pub(super) fn scene(file: &FileScene, needs: &dyn Needs) -> Result<(Scene, View)
     for (at, light) in file.lights.iter().enumerate() {
         let what = format!("light {} \"{}\"", light.id, light.name);
         if !slots.insert(light.slot) {
-            return Err(format!("{what}: another light has slot {}, too", light.slot));
+            return Err(format!("{what}: another light has slot {} already", light.slot));
         }
         let item = read_light(light).map_err(|reason| format!("{what}: {reason}"))?;
         insert(at, Item::Light(LightId(light.id), Box::new(item)), light.id, what)?;
@@ -89,15 +97,37 @@ pub(super) fn scene(file: &FileScene, needs: &dyn Needs) -> Result<(Scene, View)
     }
     let after = largest.checked_add(1).ok_or("an id is too large for another to follow")?;
     scene.next_id = file.next_id.max(after);
-    let view = read_view(&file.view, &scene)?;
+    note_missing_owners(&scene, findings);
+    let view = read_view(&file.view, &scene, findings)?;
     Ok((scene, view))
+}
+
+/// Notes spots and cameras that are bound to something that is not there.
+fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
+    let mut note = |what: String| findings.add(FindingKind::OwnerMissing, &what, None);
+    for (_, light) in scene.lights.iter() {
+        let LightKind::Spot { owner, .. } = &light.kind else { continue };
+        let owner = match *owner {
+            SpotOwner::Object(id) if scene.objects.get(id).is_none() => format!("object {}", id.0),
+            SpotOwner::Camera(id) if scene.cameras.get(id).is_none() => format!("camera {}", id.0),
+            _ => continue,
+        };
+        note(format!("the light \"{}\" belongs to {owner}", light.name));
+    }
+    for (_, camera) in scene.cameras.iter() {
+        if let CameraMode::Analysis { target } = camera.pose.now().mode
+            && scene.objects.get(target).is_none()
+        {
+            note(format!("the camera \"{}\" is aimed at object {}", camera.name, target.0));
+        }
+    }
 }
 
 fn finite(what: &str, numbers: &[f64]) -> Result<(), String> {
     if numbers.iter().all(|x| x.is_finite()) {
         Ok(())
     } else {
-        Err(format!("{what} has a number that is not finite"))
+        Err(format!("{what} has a number that is infinite or NaN"))
     }
 }
 
@@ -229,7 +259,7 @@ fn read_direction(direction: [f64; 3]) -> Result<DVec3, String> {
     crate::base::math::unit(direction).ok_or_else(|| "its direction has no length".to_owned())
 }
 
-fn read_view(file: &FileView, scene: &Scene) -> Result<View, String> {
+fn read_view(file: &FileView, scene: &Scene, findings: &mut Findings) -> Result<View, String> {
     let Steps { translation, rotation, scaling, .. } = file.steps;
     finite("the view", &[translation, rotation, scaling, file.time])?;
     if translation <= 0.0 || rotation <= 0.0 || scaling <= 1.0 {
@@ -237,9 +267,18 @@ fn read_view(file: &FileView, scene: &Scene) -> Result<View, String> {
     }
     // What is selected and is not there gives way to what a new scene selects.
     let first = scene.first_view();
-    let object = file.object.map(ObjectId).filter(|id| scene.objects.get(*id).is_some());
-    let camera = Some(CameraId(file.camera)).filter(|id| scene.cameras.get(*id).is_some());
-    let light = file.light.map(LightId).filter(|id| scene.lights.get(*id).is_some());
+    let mut check = |what: &str, id: u32, is_there: bool| {
+        if !is_there {
+            findings.add(FindingKind::SelectionMissing, &format!("{what} {id}"), None);
+        }
+        is_there
+    };
+    let is_there = |id: &ObjectId| check("object", id.0, scene.objects.get(*id).is_some());
+    let object = file.object.map(ObjectId).filter(is_there);
+    let is_there = |id: &CameraId| check("camera", id.0, scene.cameras.get(*id).is_some());
+    let camera = Some(file.camera).filter(|id| *id != UNSAID).map(CameraId).filter(is_there);
+    let is_there = |id: &LightId| check("light", id.0, scene.lights.get(*id).is_some());
+    let light = file.light.map(LightId).filter(is_there);
     let object = object.or(first.object);
     let polygons = object.and_then(|id| scene.objects.get(id)).and_then(|object| {
         let file = file.polygons.as_ref()?;

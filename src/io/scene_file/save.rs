@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::format::{
     FileCamera, FileLight, FileLightKind, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
-    FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, VERSION,
+    FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, UNSAID, VERSION,
 };
 use super::paths::relative;
 use crate::io::own_texture;
@@ -224,6 +224,6 @@ impl FileView {
 
 impl Default for FileView {
     fn default() -> Self {
-        Self::of(&View::new(None, CameraId(0), None))
+        Self { camera: UNSAID, ..Self::of(&View::new(None, CameraId(0), None)) }
     }
 }

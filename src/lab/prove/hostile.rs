@@ -238,7 +238,7 @@ impl Hostile {
         let pixels = pixels.map(|[r, g, b, a, ..]| [r, g, b, a]).collect();
         Shared::new(Texture {
             source: std::path::PathBuf::new(),
-            picture: Picture::from_pixels(Size::new(3, 2), pixels).unwrap_or_default(),
+            picture: Picture::from_pixels(Size::new(3, 2), pixels).unwrap_or_default().into(),
             wrap: self.dice.one_of(&[Wrap::Repeat, Wrap::Clamp]),
             offset: [self.number(2.0), self.number(2.0)],
             scale: [self.number(5.0), self.number(5.0)],

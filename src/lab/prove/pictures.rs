@@ -152,7 +152,7 @@ fn textured(scene: &Scene) -> Scene {
     let texels = texels.map(|[r, g, b, ..]| [r, g, b, 255]).collect();
     let texture = Shared::new(Texture {
         source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(8, 8), texels).unwrap_or_default(),
+        picture: Picture::from_pixels(Size::new(8, 8), texels).unwrap_or_default().into(),
         wrap: Wrap::Repeat,
         offset: [0.1, 0.2],
         scale: [3.0, 5.0],

@@ -46,7 +46,7 @@ fn white() -> &'static Shared<Texture> {
     get_or_compute(&WHITE, || {
         Shared::new(Texture {
             source: PathBuf::new(),
-            picture: Picture::filled(Size::new(1, 1), [255; 4]),
+            picture: Picture::filled(Size::new(1, 1), [255; 4]).into(),
             wrap: Wrap::Repeat,
             offset: [0.0; 2],
             scale: [1.0; 2],

@@ -98,7 +98,7 @@ mod tests {
     /// Red and green above, blue and white below.
     fn four(wrap: Wrap) -> Texture {
         let pixels = vec![[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 0]];
-        let picture = Picture::from_pixels(Size::new(2, 2), pixels).unwrap();
+        let picture = Picture::from_pixels(Size::new(2, 2), pixels).unwrap().into();
         Texture { source: PathBuf::new(), picture, wrap, offset: [0.0; 2], scale: [1.0; 2] }
     }
 

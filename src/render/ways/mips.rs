@@ -26,7 +26,7 @@ impl Mips {
         while let Some(last) = levels.last()
             && last.picture.size().area() > 1
         {
-            levels.push(Texture { picture: halved(&last.picture), ..last.clone() });
+            levels.push(Texture { picture: halved(&last.picture).into(), ..last.clone() });
         }
         Self { of: of.clone(), levels }
     }
@@ -98,7 +98,7 @@ mod tests {
             Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
         let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
         let source = PathBuf::new();
-        Shared::new(Texture { source, picture: picture.unwrap(), wrap, offset, scale })
+        Shared::new(Texture { source, picture: picture.unwrap().into(), wrap, offset, scale })
     }
 
     #[test]
@@ -130,8 +130,10 @@ mod tests {
     fn sides_that_are_no_power_of_two_and_one_texel_have_a_chain_too() {
         for (width, height, levels) in [(1, 1, 1), (5, 3, 3), (1, 8, 4)] {
             let size = Size::new(width, height);
-            let texture =
-                Texture { picture: Picture::filled(size, [9; 4]), ..Texture::clone(&chequered(1)) };
+            let texture = Texture {
+                picture: Picture::filled(size, [9; 4]).into(),
+                ..Texture::clone(&chequered(1))
+            };
             let mips = Mips::new(&Shared::new(texture));
             assert_eq!(mips.levels.len(), levels);
             let color: [f64; 4] = mips.sample([0.3, 0.7], [[9.0, 0.0], [0.0, 9.0]]);

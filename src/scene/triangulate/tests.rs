@@ -16,6 +16,26 @@ fn areas(outline: &[DVec3], normal: DVec3, triangles: &[[u32; 3]]) -> Vec<f64> {
     triangles.iter().map(area).collect()
 }
 
+/// Triangles of a polygon that is seen from +Z, cut by the sweep alone.
+fn swept(outline: &[DVec3]) -> Vec<[u32; 3]> {
+    let flat: Vec<DVec2> = outline.iter().map(|p| p.truncate()).collect();
+    let mut triangles = Vec::new();
+    let ring: Vec<u32> = (0..number(flat.len())).collect();
+    sweep::cut(&flat, &ring, &mut triangles);
+    triangles
+}
+
+/// Checks that the sweep cuts a polygon into triangles inside of it.
+fn is_swept_rightly(outline: &[DVec3]) {
+    let triangles = swept(outline);
+    assert_eq!(triangles.len(), outline.len() - 2);
+    let areas = areas(outline, DVec3::Z, &triangles);
+    let sum = newell(outline.iter().copied()).z;
+    assert!((areas.iter().sum::<f64>() / sum - 1.0).abs() < 1e-9);
+    let worst = areas.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(worst >= -1e-9 * sum, "a triangle of {worst} in a polygon of {sum}");
+}
+
 /// The areas of the triangles, all of them checked to be positive and to sum to the polygon's.
 fn sound(outline: &[DVec3]) -> Vec<f64> {
     let twice = newell(outline.iter().copied());
@@ -191,23 +211,81 @@ fn a_polygon_that_crosses_itself_has_as_many_triangles_as_any_other() {
     }
 }
 
-/// Whatever is left when the budget is spent is a fan, and fans of such shapes leave them.
-#[test]
-fn a_comb_of_many_corners_is_cut_rightly_within_the_budget() {
-    let comb = |i: u32| (f64::from(i), if i.is_multiple_of(2) { 0.0 } else { 1.0 });
-    let teeth = (0..200_000).map(comb).chain([(2e5, -1.0), (0.0, -1.0)]);
-    sound(&outline(&teeth.rev().collect::<Vec<_>>()));
+/// Polygons of so many corners in which ears are far between or hard to tell; whether each is simple.
+fn hard_shapes(corners: u32) -> Vec<(&'static str, bool, Vec<DVec3>)> {
+    let n = f64::from(corners);
+    let round = |i: u32, radius: f64, turns: f64| {
+        let angle = f64::from(i) / n * turns * std::f64::consts::TAU;
+        DVec3::new(libm::cos(angle), libm::sin(angle), 0.0) * radius
+    };
+    let shape =
+        |corner: &dyn Fn(u32) -> DVec3| -> Vec<DVec3> { (0..corners).map(corner).collect() };
+    let scattered = |i: u32| {
+        let bits = i.wrapping_mul(0x9E37_79B9);
+        let [x, y] = [bits >> 16, bits.wrapping_mul(0x85EB_CA6B) >> 16].map(f64::from);
+        DVec3::new(x, y, 0.0)
+    };
+    let tooth = |i: u32, height: f64| {
+        let [x, y] = match (corners - i, i % 2) {
+            (1, _) => [0.0, -1.0],
+            (2, _) => [n, -1.0],
+            (_, odd) => [f64::from(i), height * f64::from(odd)],
+        };
+        DVec3::new(n - x, y, 0.0)
+    };
+    let spiral = |i: u32| {
+        let (turn, side) = if i < corners / 2 { (i, 0.5) } else { (corners - 1 - i, -0.5) };
+        let turns = n / 16.0;
+        round(2 * turn, 10.0 + 8.0 * f64::from(turn) / n * turns + side, turns)
+    };
+    vec![
+        ("comb", true, shape(&|i| tooth(i, 1.0))),
+        ("long comb", true, shape(&|i| tooth(i, n))),
+        ("star", true, shape(&|i| round(i, if i % 2 == 0 { 1.0 } else { 1000.0 }, 1.0))),
+        ("ragged star", true, shape(&|i| round(i, 1.0 + scattered(i).y, 1.0))),
+        ("spiral", true, shape(&spiral)),
+        ("row", false, shape(&|i| DVec3::new(0.7, 0.1, 0.0) * f64::from(i))),
+        (
+            "rounded row",
+            false,
+            shape(&|i| (DVec3::new(0.7, 0.1, 0.0) * f64::from(i)).as_vec3().into()),
+        ),
+        ("one place", false, shape(&|_| DVec3::ONE)),
+        ("pentagram", false, shape(&|i| round(i, 1.0, n / 2.0 - 1.0))),
+        ("scribble", false, shape(&scattered)),
+        ("few places", false, shape(&|i| (scattered(i) / 16384.0).floor())),
+    ]
 }
 
-/// Corners anywhere, each in the way of many: cutting ends when the budget is spent.
 #[test]
-fn a_scribble_is_cut_into_as_many_triangles_as_any_other_polygon() {
-    let place = |i: u32| {
-        let bits = i.wrapping_mul(0x9E37_79B9);
-        (f64::from(bits >> 16), f64::from(bits.wrapping_mul(0x85EB_CA6B) >> 16))
-    };
-    let corners = outline(&(0..30_000).map(place).collect::<Vec<_>>());
-    assert_eq!(triangulate(&corners, DVec3::Z).len(), corners.len() - 2);
+fn polygons_of_many_corners_are_cut_rightly_whatever_their_shape() {
+    for (name, is_simple, corners) in hard_shapes(30_000) {
+        if is_simple {
+            sound(&corners);
+            is_swept_rightly(&corners);
+        } else {
+            let triangles = triangulate(&corners, DVec3::Z);
+            assert_eq!(triangles.len(), corners.len() - 2, "{name}");
+            let sum: f64 = areas(&corners, DVec3::Z, &triangles).iter().sum();
+            let all = newell(corners.iter().copied()).z;
+            let size = corners.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
+            assert!((sum - all).abs() <= 1e-9 * size * size, "{name}: {sum} is not {all}");
+        }
+    }
+}
+
+/// How many corners are looked at does not grow faster than they do, in shapes in which each stands
+/// in the way of many.
+#[test]
+fn the_work_on_a_polygon_grows_with_its_corners_whatever_its_shape() {
+    for corners in [10_000, 100_000] {
+        for (name, _, outline) in hard_shapes(corners) {
+            let mut ring = Ring::new(outline.iter().map(|p| p.truncate()).collect());
+            assert_eq!(ring.cut().len(), outline.len() - 2);
+            let share = ring.looked_at / outline.len();
+            assert!(share < 150, "{name}: {share} looks for each of {corners} corners");
+        }
+    }
 }
 
 proptest! {
@@ -223,8 +301,9 @@ proptest! {
             DVec3::new(libm::cos(angle), libm::sin(angle), 0.0) * f64::from(*r)
         };
         let turned = math::rotation(DVec3::new(0.0, 0.6, 0.8), turn);
-        let corners: Vec<DVec3> =
-            radii.iter().enumerate().map(corner).map(|p| turned * p).collect();
+        let corners: Vec<DVec3> = radii.iter().enumerate().map(corner).collect();
+        is_swept_rightly(&corners);
+        let corners: Vec<DVec3> = corners.into_iter().map(|p| turned * p).collect();
         sound(&corners);
     }
 
@@ -263,6 +342,7 @@ proptest! {
             places.extend([((x + 1) as f64, top), (x as f64, top)]);
         }
         sound(&outline(&places));
+        is_swept_rightly(&outline(&places));
     }
 
     /// Any corners at all on a small grid: many fall together, most outlines cross themselves.
@@ -273,9 +353,10 @@ proptest! {
         let places: Vec<(f64, f64)> =
             places.iter().map(|&(x, y)| (f64::from(x), f64::from(y))).collect();
         let corners = outline(&places);
-        let triangles = triangulate(&corners, DVec3::Z);
-        prop_assert_eq!(triangles.len(), corners.len() - 2);
-        let sum: f64 = areas(&corners, DVec3::Z, &triangles).iter().sum();
-        prop_assert!((sum - newell(corners.iter().copied()).z).abs() < 1e-9);
+        for triangles in [triangulate(&corners, DVec3::Z), swept(&corners)] {
+            prop_assert_eq!(triangles.len(), corners.len() - 2);
+            let sum: f64 = areas(&corners, DVec3::Z, &triangles).iter().sum();
+            prop_assert!((sum - newell(corners.iter().copied()).z).abs() < 1e-9);
+        }
     }
 }

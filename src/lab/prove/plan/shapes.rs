@@ -187,7 +187,9 @@ pub(super) fn texture(dice: &mut Dice) -> Shared<Texture> {
     let texels = (0..side * side).map(|_| texel()).collect();
     Shared::new(Texture {
         source: PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(side, side), texels).expect("as many as it has"),
+        picture: Picture::from_pixels(Size::new(side, side), texels)
+            .expect("as many as it has")
+            .into(),
         wrap: dice.pick(&[Wrap::Repeat, Wrap::Clamp]),
         offset: [0.0; 2],
         scale: [1.0; 2],
