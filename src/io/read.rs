@@ -13,6 +13,19 @@ pub(super) const MOST_WORDS: usize = 64 << 20;
 /// How much is read between two looks at the progress.
 const PIECE: usize = 8 << 20;
 
+/// Finds out whether there is a file at `path`, without reading it.
+///
+/// # Errors
+/// If there is none, or it is a folder.
+pub fn check_file(path: &Path) -> Result<(), LoadError> {
+    let file = short_name(path);
+    let metadata = path.metadata().map_err(|error| LoadError::system(&file, &error))?;
+    if metadata.is_dir() {
+        return Err(LoadError::file(&file, "this is a folder, not a file"));
+    }
+    Ok(())
+}
+
 /// Opens a file of at most so many bytes; says how many it has, where that is known before.
 ///
 /// # Errors

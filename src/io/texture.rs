@@ -10,6 +10,9 @@ use crate::scene::{Texture, Wrap};
 /// The largest side of a texture, in texels.
 const LARGEST_SIDE: u32 = 16_384;
 
+/// Why a file is refused whose format is not known.
+const NO_PICTURE: &str = "this is no PNG, JPEG, WebP, TIFF, BMP, TGA or GIF";
+
 /// The most memory that reading a picture may take.
 const MOST_MEMORY: u64 = 2 << 30;
 
@@ -28,7 +31,7 @@ pub fn load_texture(path: &Path) -> Result<Shared<Texture>, LoadError> {
     }))
 }
 
-/// Reads a PNG, JPEG, BMP, TGA or GIF (its first picture), whatever its name ends in.
+/// Reads a PNG, JPEG, WebP, TIFF, BMP, TGA or GIF (its first picture), whatever its name ends in.
 ///
 /// # Errors
 /// Where the file cannot be read, is no picture, or too large a one.
@@ -38,7 +41,7 @@ pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
     let reader = image::ImageReader::open(path).map_err(system)?;
     let mut reader = reader.with_guessed_format().map_err(system)?;
     if reader.format().is_none() {
-        return Err(LoadError::file(&file, "this is no PNG, JPEG, BMP, TGA or GIF"));
+        return Err(LoadError::file(&file, NO_PICTURE));
     }
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(LARGEST_SIDE);
@@ -76,7 +79,7 @@ fn reason(error: &image::ImageError) -> String {
             format!("the picture takes more than {} GB of memory", MOST_MEMORY >> 30)
         }
         ImageError::IoError(error) => super::error::reason(error),
-        ImageError::Unsupported(_) => "this is no PNG, JPEG, BMP, TGA or GIF".to_owned(),
+        ImageError::Unsupported(_) => NO_PICTURE.to_owned(),
         other => format!("the picture is damaged: {other}"),
     }
 }
@@ -87,13 +90,13 @@ mod tests {
 
     #[test]
     fn every_kind_of_picture_is_read_whatever_its_name_ends_in() {
-        use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga};
+        use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga, Tiff, WebP};
         let folder = tempfile::tempdir().unwrap();
         let texels = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]];
         let drawn = image::RgbaImage::from_fn(8, 8, |x, y| {
             image::Rgba(texels[(x / 4 + y / 4 * 2) as usize])
         });
-        for format in [Bmp, Gif, Jpeg, Png, Tga] {
+        for format in [Bmp, Gif, Jpeg, Png, Tga, Tiff, WebP] {
             // Only a TGA has nothing in it that tells what it is.
             let path = folder.path().join(if format == Tga { "a.tga" } else { "a.picture" });
             let written = image::DynamicImage::from(drawn.clone()).to_rgb8();
