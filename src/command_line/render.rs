@@ -5,38 +5,57 @@ use std::path::PathBuf;
 use glam::{DMat3, DVec3};
 use marraztu::base::math;
 use marraztu::edit::{frame, items};
-use marraztu::io;
+use marraztu::io::{self, Progress};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{Camera, CameraId, Command, Fill, ItemId, Object, Placed, Pose};
 
 use super::accuracy::Accuracy;
 use super::arguments::{Reading, Render, Seeing, Shot, Slots, Surfaces};
 use super::bar::Bar;
+use super::draw_along;
 use super::failure::Failure;
-use super::say;
 use super::stage::{Stage, usage};
+use super::talk::note;
+use super::target::Target;
 
 /// Draws the picture that the arguments describe.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
+    let target = Target::of(arguments)?;
     let stage = stage(&arguments.shot)?;
-    let bar = Bar::unmeasured("drawing");
+    target.spare_inputs(&inputs(&arguments.shot), &stage)?;
+    let progress = Progress::new();
+    let bar = Bar::of("drawing", &progress);
     for (_, object) in stage.scene.objects.iter() {
         object.model.mesh.draw_as_filed();
     }
     let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.shot.size);
     let mut renderer = Renderer::default();
-    let picture = renderer.render(&plan);
+    let picture = renderer.render_watched(&plan, &|done, all| {
+        // Nothing cancels this.
+        let _ = progress.reached(done, all);
+    });
     drop(bar);
-    let _bar = Bar::unmeasured(&format!("writing {}", arguments.out.display()));
-    io::save_picture(&arguments.out, picture)?;
+    target.write(picture)?;
+    if let (None, Target::File(path)) = (&arguments.out, &target) {
+        note(&format_args!("the picture is in {}", path.display()));
+    }
     // With this the process ends: to take a million vertices out of memory before only takes time.
     std::mem::forget((stage, plan, renderer));
     Ok(())
 }
 
+/// All files that are named as something to read.
+fn inputs(shot: &Shot) -> Vec<PathBuf> {
+    shot.files.iter().chain(&shot.surfaces.texture).cloned().collect()
+}
+
 /// Reads the files and arranges everything as it is asked for. What was found in the files is told.
 pub(super) fn stage(shot: &Shot) -> Result<Stage, Failure> {
-    let Shot { files, reading, surfaces, seeing, accuracy, .. } = shot;
+    let Shot { files, reading, surfaces, seeing, accuracy, talk, threads, .. } = shot;
+    talk.apply();
+    if threads.is_some() {
+        draw_along(*threads);
+    }
     staged(files, reading, surfaces, seeing, accuracy)
 }
 
@@ -50,7 +69,7 @@ pub(crate) fn staged(
 ) -> Result<Stage, Failure> {
     let mut stage = Stage::of(files, reading)?;
     for finding in &stage.findings {
-        say("note", finding);
+        note(finding);
     }
     cover(&mut stage, surfaces)?;
     look(&mut stage, seeing)?;
@@ -71,11 +90,7 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
         object.surface = surfaces.surface.unwrap_or(object.surface);
         object.file_normals &= !surfaces.no_file_normals;
     };
-    let ids: Vec<_> = stage.scene.objects.ids().collect();
-    for id in ids {
-        stage.change(items::change_object(&stage.scene, id, change)?)?;
-    }
-    Ok(())
+    stage.change(items::change_all_objects(&stage.scene, change))
 }
 
 /// Looks at the scene as it is asked for.
@@ -105,7 +120,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
         Some(number) => stage.view.camera = camera(stage, number)?,
         None if stage.models_alone => match frame::all(&stage.scene, &stage.view) {
             Ok(command) => stage.change(command)?,
-            Err(refusal) => say("note", &refusal),
+            Err(refusal) => note(&refusal),
         },
         None => {}
     }
