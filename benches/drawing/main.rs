@@ -5,6 +5,7 @@
 
 mod effects;
 mod growth;
+mod objects;
 mod shapes;
 mod stage;
 mod stages;
@@ -22,5 +23,6 @@ fn main() {
     stages::measure(&mut criterion);
     effects::measure(&mut criterion);
     growth::measure(&mut criterion);
+    objects::measure(&mut criterion);
     criterion.final_summary();
 }

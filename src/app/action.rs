@@ -129,7 +129,7 @@ actions! {
     Load           File ONCE [Lower(Key::F)] "Load model..." "Loads an .obj file, asks for its material and places it at the centre of the world.";
     Save           File ONCE [Command(Key::S)] "Save scene" "Saves the scene to its file.";
     SaveAs         File ONCE [CommandShift(Key::S)] "Save scene as..." "Saves the scene to another file.";
-    SavePicture    File ONCE [Named(Key::F12)] "Save picture..." "Saves what the viewport shows as PNG or PPM.";
+    SavePicture    File ONCE [Named(Key::F12)] "Save picture..." "Saves what the viewport shows as PNG, JPEG, WebP or PPM.";
     Quit           File ONCE [Named(Key::Escape), Command(Key::Q)] "Quit" "Leaves the program; asks first when something is not saved.";
 
     Undo           Edit ONCE [Command(Key::Z)] "Undo" "Takes the last change of the scene back.";

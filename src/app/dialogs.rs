@@ -241,14 +241,16 @@ impl Dialogs {
 
 impl Wanted {
     fn look(&self) -> (&'static str, Mode, &'static [&'static str]) {
-        const PICTURES: &[&str] = &["png", "jpg", "jpeg", "bmp", "tga", "gif"];
+        const MODELS: &[&str] = &["obj", "gz"];
+        const PICTURES: &[&str] =
+            &["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "gif"];
         match self {
-            Self::Model => ("Load a model", Mode::Open, &["obj"]),
+            Self::Model => ("Load a model", Mode::Open, MODELS),
             Self::Scene => ("Open a scene", Mode::Open, &["marraztu"]),
             Self::SceneTo(_) => ("Save the scene", Mode::Save, &["marraztu"]),
-            Self::PictureTo => ("Save the picture", Mode::Save, &["png", "ppm"]),
+            Self::PictureTo => ("Save the picture", Mode::Save, &["png", "jpg", "webp", "ppm"]),
             Self::Texture(_) | Self::TextureOfModel => ("Choose a texture", Mode::Open, PICTURES),
-            Self::Missing(_) => ("Where is the missing model?", Mode::Open, &["obj"]),
+            Self::Missing(_) => ("Where is the missing model?", Mode::Open, MODELS),
         }
     }
 }

@@ -16,7 +16,7 @@ use super::chord::Chord;
 use super::comparison::Comparison;
 use super::decide::{Meaning, decide};
 use super::dialogs::{After, Dialogs, Wanted};
-use super::files::Loading;
+use super::files::{Loading, Queued};
 use super::keyboard::{Keyboard, Press};
 use super::laboratory::Work;
 use super::material_dialog::MaterialDialog;
@@ -40,6 +40,8 @@ pub struct App {
     pub(super) dialogs: Dialogs,
     pub(super) loading: Vec<Loading>,
     pub(super) searches: Vec<Search>,
+    /// Files that are read after these.
+    pub(super) queued: VecDeque<Queued>,
     /// A scene whose models are not where it says.
     pub(super) waiting: Option<Waiting>,
     pub(super) viewport: Viewport,
@@ -70,6 +72,7 @@ impl App {
             dialogs: Dialogs::default(),
             loading: Vec::new(),
             searches: Vec::new(),
+            queued: VecDeque::new(),
             waiting: None,
             viewport: Viewport::default(),
             lab: Work::default(),

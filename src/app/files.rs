@@ -29,6 +29,23 @@ pub(super) struct Loading {
     asks: bool,
 }
 
+/// How many files are read at the same time, however many are named.
+const MOST_LOADING: usize = 8;
+
+/// A file that is read once others have been.
+pub(super) struct Queued {
+    label: String,
+    asks: bool,
+    work: Box<dyn FnOnce(&io::Progress) -> Fetched + Send>,
+}
+
+impl std::fmt::Debug for Queued {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { label, asks, work: _ } = self;
+        f.debug_struct("Queued").field("label", label).field("asks", asks).finish_non_exhaustive()
+    }
+}
+
 /// A file that was read.
 #[derive(Debug)]
 pub(super) enum Fetched {
@@ -194,10 +211,20 @@ impl App {
         asks: bool,
         work: impl FnOnce(&io::Progress) -> Fetched + Send + 'static,
     ) {
-        match Task::start(ctx, label, work) {
-            Ok(task) => self.loading.push(Loading { task, asks }),
-            Err(error) => {
-                self.dialogs.tell_fault(format!("There is no thread to load with: {error}."));
+        self.queued.push_back(Queued { label, asks, work: Box::new(work) });
+        self.begin_queued(ctx);
+    }
+
+    /// Begins to read what waits, as far as there is room.
+    fn begin_queued(&mut self, ctx: &Context) {
+        while self.loading.len() < MOST_LOADING
+            && let Some(Queued { label, asks, work }) = self.queued.pop_front()
+        {
+            match Task::start(ctx, label, work) {
+                Ok(task) => self.loading.push(Loading { task, asks }),
+                Err(error) => {
+                    self.dialogs.tell_fault(format!("There is no thread to load with: {error}."));
+                }
             }
         }
     }
@@ -215,6 +242,7 @@ impl App {
                 return;
             }
             let Loading { task, .. } = self.loading.remove(0);
+            self.begin_queued(ctx);
             ctx.request_repaint();
             match outcome {
                 Outcome::Done(fetched) => self.take_fetched(ctx, fetched),

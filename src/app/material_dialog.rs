@@ -140,8 +140,9 @@ impl MaterialDialog {
         egui::CollapsingHeader::new("How the file is read").show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.label("Up is");
-                ui.selectable_value(&mut options.up, UpAxis::Y, "Y");
-                ui.selectable_value(&mut options.up, UpAxis::Z, "Z");
+                for up in UpAxis::ALL {
+                    ui.selectable_value(&mut options.up, up, up.word().to_uppercase());
+                }
             });
             ui.horizontal(|ui| {
                 let label = ui.label("Scale");

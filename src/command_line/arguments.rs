@@ -1,4 +1,4 @@
-//! What can be asked for, with the help that says so.
+//! The arguments of the program, and their help.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -12,17 +12,18 @@ use super::keys::Keys;
 use super::lab::Lab;
 use super::plan::Plan;
 use super::prove::Prove;
+use super::stage::is_standard;
+use super::talk::Talk;
+use super::values::{color, size, threads};
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
+use marraztu::io::PictureFormat;
 use marraztu::scene::{
     LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides, Surface, UpAxis,
     Winding,
 };
 
-/// The longest side that a picture may have.
-const LONGEST_SIDE: usize = 16_384;
-
-/// Draws 3D scenes of .obj models by the CPU alone.
+/// Edits and draws 3D scenes of .obj models, on the CPU alone.
 ///
 /// Without a command the editor opens, with the models and the scene that are named, or with the
 /// first scene.
@@ -35,14 +36,14 @@ const LONGEST_SIDE: usize = 16_384;
 Examples:
   marraztu                                  open the editor with the first scene
   marraztu teapot.obj                       open the editor with a model
+  marraztu render teapot.obj                draw a model into teapot.png
   marraztu render --out first.png           draw the first scene
-  marraztu render teapot.obj --out pot.png  draw a model, as near as it can be seen whole
-  marraztu info teapot.obj                  say what a file holds, and what is wrong with it
+  marraztu info teapot.obj                  describe a file, and what is wrong with it
 
-Exit status: 0 where all was done, 1 where something failed, 2 for arguments that cannot be meant."
+Exit status: 0 on success, 1 if something failed, 2 for invalid arguments."
 )]
 pub(crate) struct Arguments {
-    /// What to do without a window.
+    /// What to do without a window
     #[command(subcommand)]
     pub(crate) command: Option<Headless>,
     /// Models (.obj) and a scene (.marraztu) to open in the editor
@@ -52,53 +53,64 @@ pub(crate) struct Arguments {
 /// What can be done without a window.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Headless {
-    /// Draws a picture into a file: the same pixels that the editor shows
+    /// Draw a picture into a file: the same pixels that the editor shows
     Render(Box<Render>),
-    /// Says what a picture takes: each effect, on or left out, why, and its cost
+    /// Explain which effects a picture uses, which are left out and why, and what they cost
     Plan(Box<Plan>),
-    /// Says what files hold: shape, parts, materials, and what is wrong with them
+    /// Describe files: shape, parts, materials, and what is wrong with them
     Info(Info),
-    /// Lists every key of the editor
+    /// List every key of the editor
     Keys(Keys),
-    /// Measures what accuracy costs in time: each choice of each axis, in time and in error
+    /// Measure what accuracy costs: time and error of each choice of each axis
     Lab(Box<Lab>),
-    /// Measures one drawing job in a form that other renderers share
+    /// Measure one drawing job, in a form that other renderers share
     Job(Job),
-    /// Puts what is claimed of the program to the proof, in any number of cases
+    /// Check the program's guarantees on any number of generated cases
     Prove(Prove),
 }
 
 /// A picture, and the file that it goes to.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Without files the first scene is drawn, and a scene through its own camera. Models alone get the
-first scene's lights, and a camera that sees them whole. What is not said stays as the scene has it;
-a star marks what the first scene has.
+Without files the first scene is drawn. A scene is drawn through its own camera; models alone get the
+lights of the first scene and a camera that sees them whole. Options that are not given stay as the
+scene has them; a star marks the choice of the first scene.
+
+\"-\" as a file reads a model or a scene from standard input. Models may be packed (.obj.gz). The
+picture never replaces a file that it is made of, or a file that is no picture.
 
 Examples:
-  marraztu render --out first.png
+  marraztu render teapot.obj
+  xz -dc pot.obj.xz | marraztu render - --out - > pot.png
   marraztu render bunny.obj --out bunny.png --size 1920x1080 --material gold
   marraztu render room.obj --out room.png --up z --surface texture --filter nearest
   marraztu render spot.obj --out spot.png --from 145,20
   marraztu render shelf.marraztu --out shelf.ppm --camera 2 --time 1.5
   marraztu render ship.obj --out lines.png --edges --projection orthographic --background 0,0,0")]
 pub(crate) struct Render {
-    /// The picture to write; its ending says how: .png or .ppm
+    /// The picture to write: .png, .jpg, .webp or .ppm; "-" writes a PNG to standard output
+    /// [default: the name of the scene or first model with .png, in the current folder]
     #[arg(short, long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(picture))]
-    pub(crate) out: PathBuf,
+    pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) shot: Shot,
 }
 
-/// A picture, whatever becomes of it.
+/// A picture: what it shows and how it is drawn.
 #[derive(Debug, Args)]
 pub(crate) struct Shot {
-    /// Models (.obj), and at most one scene (.marraztu) that they are put into
+    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) that they are put into; "-" is
+    /// standard input
     pub(crate) files: Vec<PathBuf>,
 
-    /// Width and height in pixels
+    /// Width and height in pixels; one number for a square
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
     pub(crate) size: Size,
+    /// Threads that read and draw [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<usize>,
+    #[command(flatten)]
+    pub(crate) talk: Talk,
 
     #[command(flatten)]
     pub(crate) reading: Reading,
@@ -114,28 +126,28 @@ pub(crate) struct Shot {
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Reading models")]
 pub(crate) struct Reading {
-    /// Which of the file's axes points up: y*, z
-    #[arg(long, hide_possible_values = true, value_name = "AXIS", value_parser = choice(&[("y", UpAxis::Y), ("z", UpAxis::Z)]))]
+    /// The axis of the file that points up: x, y*, z, -x, -y, -z. The model is turned, not mirrored
+    #[arg(long, hide_possible_values = true, allow_hyphen_values = true, value_name = "AXIS", value_parser = choice(&UP_AXES))]
     up: Option<UpAxis>,
-    /// What the file's coordinates are multiplied by
+    /// The factor that the file's coordinates are multiplied by
     #[arg(long, value_name = "FACTOR", value_parser = scale)]
     scale: Option<Scale>,
-    /// Turn polygons round that run clockwise seen from outside
+    /// Reverse all polygons, for files whose polygons run clockwise seen from outside
     #[arg(long)]
     flip_winding: bool,
 }
 
-/// What objects are made of.
+/// How the surfaces of objects look.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Surfaces, of all objects")]
 pub(crate) struct Surfaces {
     /// One of the 19 materials (brass, polished-gold, ruby ...), or "file" for the file's own
     #[arg(long, value_name = "NAME", value_parser = material)]
     pub(crate) material: Option<MaterialChoice>,
-    /// A picture laid over the objects: PNG, JPEG, BMP, TGA or GIF
+    /// A picture laid over the objects: PNG, JPEG, WebP, TIFF, BMP, TGA or GIF
     #[arg(long, value_name = "FILE")]
     pub(crate) texture: Option<PathBuf>,
-    /// What is shown: material, texture, or both lit (lit*)
+    /// What to show: material, texture (unlit), or both, lit (lit*)
     #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
         ("material", Surface::Material),
         ("texture", Surface::Texture),
@@ -149,7 +161,7 @@ pub(crate) struct Surfaces {
         ("auto", Sides::Auto),
     ]))]
     pub(crate) sides: Option<Sides>,
-    /// Compute normals even where the file has some
+    /// Compute normals even if the file has some
     #[arg(long)]
     pub(crate) no_file_normals: bool,
 }
@@ -161,25 +173,25 @@ pub(crate) struct Seeing {
     /// The camera to look through, by its place in the scene's list, from 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) camera: Option<u32>,
-    /// From where models alone are seen: degrees to the right, and up (30,20*); "0,0" is the front
+    /// The side that models alone are seen from: degrees to the right, and up (30,20*); "0,0" is the front
     #[arg(long, value_name = "RIGHT,UP", allow_hyphen_values = true, conflicts_with = "camera", value_parser = side)]
     pub(crate) from: Option<[f64; 2]>,
-    /// How space is brought onto the picture: perspective*, orthographic
+    /// The projection: perspective*, orthographic
     #[arg(long, hide_possible_values = true, value_name = "HOW", value_parser = choice(&[
         ("perspective", Projection::Perspective),
         ("orthographic", Projection::Orthographic),
     ]))]
     pub(crate) projection: Option<Projection>,
-    /// Seconds of the scene's clock, for what turns and circles
+    /// The time of the scene in seconds, for objects that turn and lights that circle
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) time: Option<f64>,
-    /// The slots of the lights that are on, as "0,2"; all others are out. "none" for darkness
+    /// The slots of the lights that are on, as "0,2"; all others are off. "none" for darkness
     #[arg(long, value_name = "SLOTS", value_parser = slots)]
     pub(crate) lights: Option<Slots>,
-    /// What is seen where nothing is: red, green and blue, each from 0 to 255
-    #[arg(long, value_name = "R,G,B", value_parser = color)]
+    /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name as "white"
+    #[arg(long, value_name = "COLOUR", value_parser = color)]
     pub(crate) background: Option<Color>,
-    /// Which normals light uses: face, vertex*
+    /// The normals that light uses: face, vertex*
     #[arg(long, hide_possible_values = true, value_name = "WHOSE", value_parser = choice(&[
         ("face", Normals::Face),
         ("vertex", Normals::Vertex),
@@ -191,7 +203,7 @@ pub(crate) struct Seeing {
     /// Draw edges over filled polygons
     #[arg(long, conflicts_with = "edges")]
     pub(crate) edges_over: bool,
-    /// Draw back faces, in red
+    /// Draw back faces in red
     #[arg(long)]
     pub(crate) back_faces: bool,
     /// Draw the normals of faces
@@ -200,24 +212,35 @@ pub(crate) struct Seeing {
     /// Draw the normals of vertices
     #[arg(long)]
     pub(crate) vertex_normals: bool,
-    /// The marks of cameras and bulbs: none (so for models alone), all*
+    /// The marks of cameras and bulbs: none (the default for models alone), all*
     #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[("none", false), ("all", true)]))]
     pub(crate) helpers: Option<bool>,
 }
 
-/// Says what files hold.
+/// Files to describe.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   marraztu info teapot.obj
   marraztu info --up z parts/*.obj shelf.marraztu")]
 pub(crate) struct Info {
-    /// Models (.obj) and scenes (.marraztu)
+    /// Models (.obj, .obj.gz) and scenes (.marraztu); "-" is standard input
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) reading: Reading,
 }
+
+/// The axes that may point up, by their words.
+const UP_AXES: [(&str, UpAxis); 6] = {
+    let mut axes = [("", UpAxis::Y); 6];
+    let mut i = 0;
+    while i < axes.len() {
+        axes[i] = (UpAxis::ALL[i].word(), UpAxis::ALL[i]);
+        i += 1;
+    }
+    axes
+};
 
 /// The slots of the lights that are on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -250,22 +273,9 @@ fn choice<T: Copy + Send + Sync>(
     })
 }
 
-/// Known before anything is drawn, for drawing may take long.
-fn picture(path: PathBuf) -> Result<PathBuf, String> {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    match ending.as_deref().and_then(|ending| ending.to_str()) {
-        Some("png" | "ppm") => Ok(path),
-        _ => Err("its name has to end in .png or .ppm".to_owned()),
-    }
-}
-
-pub(crate) fn size(text: &str) -> Result<Size, String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (1..=LONGEST_SIDE).contains(side));
-    let sides = text.split_once(['x', 'X']).map(|(width, height)| (side(width), side(height)));
-    match sides {
-        Some((Some(width), Some(height))) => Ok(Size::new(width, height)),
-        _ => Err(format!("write width x height, each from 1 to {LONGEST_SIDE}, as 800x600")),
-    }
+/// Refused before anything is drawn, which may take long.
+fn picture(path: PathBuf) -> Result<PathBuf, &'static str> {
+    if is_standard(&path) { Ok(path) } else { PictureFormat::of(&path).map(|_| path) }
 }
 
 fn scale(text: &str) -> Result<Scale, String> {
@@ -284,12 +294,6 @@ fn side(text: &str) -> Result<[f64; 2], String> {
         (Ok(right), Ok(up)) if up.abs() <= 90.0 => Ok([right, up]),
         _ => Err("write degrees to the right and degrees up, -90 to 90, as 30,15".to_owned()),
     }
-}
-
-fn color(text: &str) -> Result<Color, String> {
-    let channels: Option<Vec<u8>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    let channels = channels.and_then(|channels| <[u8; 3]>::try_from(channels).ok());
-    channels.map(Color).ok_or_else(|| "write red,green,blue, each from 0 to 255".to_owned())
 }
 
 fn slots(text: &str) -> Result<Slots, String> {
@@ -322,19 +326,11 @@ mod tests {
     }
 
     #[test]
-    fn sizes_colours_and_slots_are_read_or_refused() {
-        assert_eq!(size("640x480"), Ok(Size::new(640, 480)));
-        for wrong in ["640", "0x10", "10x0", "16385x1", "-1x5", "axb", "1x2x3", ""] {
-            assert!(size(wrong).is_err(), "{wrong}");
-        }
+    fn sides_slots_and_factors_are_read_or_refused() {
         assert_eq!(side("145, -20"), Ok([145.0, -20.0]));
         assert_eq!(side("-30"), Ok([-30.0, 0.0]));
         for wrong in ["", "a,b", "1,2,3", "0,91", "0,NaN", "inf,0"] {
             assert!(side(wrong).is_err(), "{wrong}");
-        }
-        assert_eq!(color("1, 2,255"), Ok(Color([1, 2, 255])));
-        for wrong in ["1,2", "1,2,3,4", "1,2,256", "red", ""] {
-            assert!(color(wrong).is_err(), "{wrong}");
         }
         assert_eq!(slots("0,2,12"), Ok(Slots([0, 2, 12].into())));
         assert_eq!(slots("none"), Ok(Slots([].into())));

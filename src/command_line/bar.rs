@@ -1,4 +1,5 @@
-//! A bar for work that takes long, on standard error, where that is a terminal.
+//! How far work has come, on standard error: a bar if that is a terminal, else nothing, or lines if
+//! they are asked for.
 
 use std::io::IsTerminal;
 use std::sync::Arc;
@@ -9,10 +10,19 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use marraztu::io::Progress;
 
+use super::say;
+use super::talk;
+
 /// Work that takes less is not worth a bar.
 const PATIENCE: Duration = Duration::from_millis(700);
 
-/// Shows a bar for as long as it lives, once the work takes long.
+/// How often it is looked how far the work has come.
+const PERIOD: Duration = Duration::from_millis(60);
+
+/// A line is printed for each of these steps, in per cent.
+const STEP: u64 = 10;
+
+/// Shows how far work has come, for as long as it lives.
 #[derive(Debug)]
 pub(crate) struct Bar {
     done: Arc<AtomicBool>,
@@ -24,44 +34,75 @@ impl Bar {
     pub(crate) fn of(what: &str, progress: &Progress) -> Self {
         let style = ProgressStyle::with_template("{msg} [{bar:30}] {percent}%");
         let progress = progress.clone();
-        Self::start(what, style.ok(), move |bar| bar.set_position(thousandths(&progress)))
+        Self::start(what, style.ok(), move || Some(thousandths(&progress)))
     }
 
     /// Watches work of which only the end is known.
     pub(crate) fn unmeasured(what: &str) -> Self {
         let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
-        Self::start(what, style.ok(), ProgressBar::tick)
+        Self::start(what, style.ok(), || None)
     }
 
     fn start(
         what: &str,
         style: Option<ProgressStyle>,
-        show: impl Fn(&ProgressBar) + Send + 'static,
+        thousandths: impl Fn() -> Option<u64> + Send + 'static,
     ) -> Self {
         let done = Arc::new(AtomicBool::new(false));
-        if !std::io::stderr().is_terminal() {
-            return Self { done, thread: None };
-        }
         let (watched, what) = (Arc::clone(&done), what.to_owned());
-        let watch = move || {
-            let begin = Instant::now();
-            let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
-            if let Some(style) = style {
-                bar.set_style(style);
-            }
-            bar.set_message(what);
-            while !watched.load(Ordering::Relaxed) {
-                if bar.is_hidden() && begin.elapsed() > PATIENCE {
-                    bar.set_draw_target(ProgressDrawTarget::stderr());
-                }
-                show(&bar);
-                std::thread::park_timeout(Duration::from_millis(60));
-            }
-            bar.finish_and_clear();
-        };
+        let builder = || Builder::new().name("bar".to_owned());
         // Without a thread there is no bar, and the work is done all the same.
-        Self { done, thread: Builder::new().name("bar".to_owned()).spawn(watch).ok() }
+        let thread = if talk::is_quiet() {
+            None
+        } else if std::io::stderr().is_terminal() {
+            builder().spawn(move || show(&what, style, &thousandths, &watched)).ok()
+        } else if talk::tells_progress() {
+            builder().spawn(move || tell(&what, &thousandths, &watched)).ok()
+        } else {
+            None
+        };
+        Self { done, thread }
     }
+}
+
+/// A bar, once the work takes long.
+fn show(
+    what: &str,
+    style: Option<ProgressStyle>,
+    thousandths: &dyn Fn() -> Option<u64>,
+    done: &AtomicBool,
+) {
+    let begin = Instant::now();
+    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
+    if let Some(style) = style {
+        bar.set_style(style);
+    }
+    bar.set_message(what.to_owned());
+    while !done.load(Ordering::Relaxed) {
+        if bar.is_hidden() && begin.elapsed() > PATIENCE {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        match thousandths() {
+            Some(thousandths) => bar.set_position(thousandths),
+            None => bar.tick(),
+        }
+        std::thread::park_timeout(PERIOD);
+    }
+    bar.finish_and_clear();
+}
+
+/// Lines, from the first step that is reached to the end: "drawing: 40%".
+fn tell(what: &str, thousandths: &dyn Fn() -> Option<u64>, done: &AtomicBool) {
+    let mut told = 0;
+    while !done.load(Ordering::Relaxed) {
+        let percent = thousandths().unwrap_or(0) / 10 / STEP * STEP;
+        if percent > told && percent < 100 {
+            say("progress", &format_args!("{what}: {percent}%"));
+            told = percent;
+        }
+        std::thread::park_timeout(PERIOD);
+    }
+    say("progress", &format_args!("{what}: 100%"));
 }
 
 impl Drop for Bar {

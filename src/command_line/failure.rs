@@ -12,7 +12,7 @@ use marraztu::scene::CommandError;
 /// Why a command fails, in one sentence.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// The arguments cannot be meant together.
+    /// Invalid arguments.
     #[error(transparent)]
     Usage(Box<clap::Error>),
     /// What failed has been said already.

@@ -4,20 +4,21 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-use marraztu::io::describe;
+use marraztu::io::{Input, Progress, describe};
 use marraztu::scene::{LoadOptions, Observer, Projection, Scene, View};
 
-use super::arguments::{Info, Reading};
+use super::arguments::Info;
 use super::failure::Failure;
 use super::say;
-use super::stage::{Stage, is_scene, load};
+use super::stage::{Stage, input, is_scene, is_standard, load};
 
 /// Describes each file; one that cannot be read does not keep the others from it.
 pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
     let options = arguments.reading.options();
+    let input = input(&arguments.files)?;
     let mut failed = false;
     for (i, file) in arguments.files.iter().enumerate() {
-        let described = match description(file, &options) {
+        let described = match description(file, input.as_ref(), &options) {
             Ok(described) => described,
             Err(failure) => {
                 say("error", &failure);
@@ -35,11 +36,20 @@ pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
     if failed { Err(Failure::Told) } else { Ok(()) }
 }
 
-fn description(file: &Path, options: &LoadOptions) -> Result<String, Failure> {
-    if !is_scene(file) {
-        return Ok(describe(&load(file, options)?));
+fn description(
+    file: &Path,
+    input: Option<&Input>,
+    options: &LoadOptions,
+) -> Result<String, Failure> {
+    let input = input.filter(|_| is_standard(file));
+    if !input.map_or_else(|| is_scene(file), Input::is_scene) {
+        let loaded = match input {
+            Some(input) => input.model(options, &Progress::new())?,
+            None => load(file, options)?,
+        };
+        return Ok(describe(&loaded));
     }
-    let stage = Stage::of(&[file.to_owned()], &Reading::default())?;
+    let stage = Stage::of_scene(file, input)?;
     let mut text = scene_text(file, &stage.scene, &stage.view);
     for finding in &stage.findings {
         // Writing to a text cannot fail.

@@ -4,15 +4,16 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use fearless_simd::Level;
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::job::{self, Mode};
 use marraztu::scene::{LoadOptions, Samples};
 
-use super::arguments::size;
-use super::draw_along;
 use super::failure::Failure;
 use super::stage::load;
+use super::values::{size, threads};
+use super::{draw_along, say};
 
 /// What is drawn, how, and for how long.
 #[derive(Debug, Args)]
@@ -21,59 +22,82 @@ Draws a mesh from an orbit, lit by five lights, and prints one line of comma-sep
 R, label, mesh, triangles, mode, size, samples, frames, median and shortest milliseconds a frame,
 processor milliseconds a frame, the same three again, and how many pixels are covered.
 
-Exit status 3 says that this mode or number of samples is not drawn, or not with these instructions.")]
+Exit status 3: this mode, number of samples or set of instructions is not supported.")]
 pub(crate) struct Job {
     /// The model (.obj)
     #[arg(long)]
     pub(crate) mesh: PathBuf,
-    /// How it is drawn: flat, gouraud, phong, depth, wire
+    /// How to draw it: flat, gouraud, phong, depth, wire
     #[arg(long)]
     pub(crate) mode: String,
-    /// The picture's size
+    /// Width and height in pixels; one number for a square
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
     pub(crate) size: Size,
-    /// Samples a pixel: 1, 4, 16, 64
+    /// Samples per pixel: 1, 4, 16, 64
     #[arg(long, default_value_t = 1)]
     pub(crate) msaa: u32,
-    /// Frames to measure at the most
+    /// The most frames to measure
     #[arg(long, default_value_t = 200)]
     pub(crate) frames: usize,
-    /// Frames to draw before
+    /// Frames to draw first, without measuring them
     #[arg(long, default_value_t = 3)]
     pub(crate) warm: usize,
     /// Milliseconds after which measuring stops
     #[arg(long, default_value_t = 1000.0)]
     pub(crate) budget: f64,
-    /// From where the camera looks at the origin
+    /// Distance of the camera from the origin, at which it looks
     #[arg(long, default_value_t = 290.0)]
     pub(crate) dist: f64,
-    /// The camera looks straight at the mesh and hardly turns
+    /// Look straight at the mesh and hardly turn
     #[arg(long)]
     pub(crate) face: bool,
-    /// The mesh is left where its file has it
+    /// Leave the mesh where its file has it
     #[arg(long)]
     pub(crate) raw: bool,
-    /// The first frame's picture (.ppm, .png)
+    /// Save the first frame's picture: .ppm, .png, .jpg or .webp
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
-    /// What the line calls this program
+    /// The label of the line
     #[arg(long, default_value = "marraztu")]
     pub(crate) label: String,
-    /// Instructions that it is drawn with: best, avx512, avx2, sse4.2, plain. The picture is the same
+    /// Instructions to draw with: best, avx512, avx2, sse4.2, plain. The picture is the same
     #[arg(long, value_name = "SET", default_value = "best")]
     pub(crate) instructions: String,
-    /// Threads that draw; all cores where it is not said
-    #[arg(long)]
+    /// Threads that draw [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
+}
+
+/// The exit status of a job that this program does not do.
+const UNSUPPORTED: u8 = 3;
+
+/// How a job is drawn; else a sentence that says what is not supported.
+fn supported(arguments: &Job) -> Result<(Mode, Samples, Level), String> {
+    let Job { mode, msaa, instructions, .. } = arguments;
+    let mode = Mode::named(mode).ok_or_else(|| {
+        format!("the mode \"{mode}\" is not supported; there are flat, gouraud, phong, depth, wire")
+    })?;
+    let samples = Samples::ALL.into_iter().find(|samples| samples.count() == *msaa);
+    let samples = samples.ok_or_else(|| {
+        format!("{msaa} samples per pixel are not supported; there are 1, 4, 16 and 64")
+    })?;
+    let level = job::instructions(instructions).ok_or_else(|| {
+        format!(
+            "the instructions \"{instructions}\" are unknown, or this processor does not have \
+             them; there are best, avx512, avx2, sse4.2, plain"
+        )
+    })?;
+    Ok((mode, samples, level))
 }
 
 /// Measures a job and prints its line. Gives the exit status.
 pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
-    let samples = Samples::ALL.into_iter().find(|samples| samples.count() == arguments.msaa);
-    let level = job::instructions(&arguments.instructions);
-    let (Some(mode), Some(samples), Some(level)) = (Mode::named(&arguments.mode), samples, level)
-    else {
-        return Ok(3);
+    let (mode, samples, level) = match supported(arguments) {
+        Ok(supported) => supported,
+        Err(reason) => {
+            say("error", &reason);
+            return Ok(UNSUPPORTED);
+        }
     };
     draw_along(arguments.threads);
     let loaded = load(&arguments.mesh, &LoadOptions::default())?;

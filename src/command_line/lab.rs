@@ -18,18 +18,20 @@ use marraztu::lab::sweep::{Question, sweep};
 use marraztu::scene::{AXES, Axis, Settings};
 
 use super::accuracy::Accuracy;
-use super::arguments::{Reading, Seeing, Surfaces, size};
+use super::arguments::{Reading, Seeing, Surfaces};
 use super::bar::Bar;
 use super::draw_along;
 use super::failure::Failure;
 use super::render::staged;
+use super::talk::Talk;
+use super::values::{size, threads};
 
 /// What is measured, and what is told.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Each choice of each axis is timed against the default, in turn with it, and its picture is judged
-against the most exact one. Into --out go table.txt, table.csv, report.json, scatter.svg, scatter.png,
-the exact picture, and pictures of the error of what is chosen, amplified 1, 16 and 256 times.
+Times each choice of each axis in turn with the default, and compares its picture with the most exact
+one. --out gets table.txt, table.csv, report.json, scatter.svg, scatter.png, the exact picture, and
+pictures of the error of the chosen settings, amplified 1, 16 and 256 times.
 
 Examples:
   marraztu lab --quick
@@ -40,19 +42,19 @@ pub(crate) struct Lab {
     /// Models (.obj), and at most one scene (.marraztu) that they are put into
     pub(crate) files: Vec<PathBuf>,
 
-    /// The folder for tables, plots and pictures; made where it is not there
+    /// The folder for tables, plots and pictures; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Width and height in pixels
+    /// Width and height in pixels; one number for a square
     #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
     size: Size,
-    /// Which axes are looked at; all where it is not said
+    /// The axes to measure [default: all]
     #[arg(long, value_name = "AXIS,...", value_delimiter = ',', value_parser = axis_words())]
     axes: Vec<String>,
-    /// Fewer and shorter measurements: some 20 seconds for the first scene
+    /// Measure less often and for less time: some 20 seconds for the first scene
     #[arg(long)]
     quick: bool,
-    /// What stands for an error in budgets and plot: rmse*, largest, differing, flip
+    /// The error metric of budgets and plot: rmse*, largest, differing, flip
     #[arg(long, value_name = "MEASURE", default_value = "rmse", hide_default_value = true, hide_possible_values = true, value_parser = measure_words())]
     measure: String,
     /// Name the fastest choice whose error is at most this
@@ -61,12 +63,14 @@ pub(crate) struct Lab {
     /// Name the most exact choice that takes at most this
     #[arg(long, value_name = "MILLISECONDS", value_parser = above_zero)]
     budget_ms: Option<f64>,
-    /// Say for one pixel, instead, which axis its error comes from
+    /// Only explain one pixel: which axis its error comes from
     #[arg(long, value_name = "X,Y", conflicts_with_all = ["quick", "axes", "max_error", "budget_ms", "out"], value_parser = pixel)]
     pixel: Option<Pixel>,
-    /// Threads that draw; all cores where it is not said
-    #[arg(long)]
+    /// Threads that draw [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
+    #[command(flatten)]
+    talk: Talk,
 
     #[command(flatten)]
     reading: Reading,
@@ -84,6 +88,7 @@ struct Pixel([usize; 2]);
 
 /// Measures, and tells what was found.
 pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
+    arguments.talk.apply();
     draw_along(arguments.threads);
     let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
     let stage = staged(files, reading, surfaces, seeing, accuracy)?;

@@ -1,7 +1,7 @@
 //! From arguments to the editor, a picture or a description, and back with an exit status.
 //!
-//! 0 where all was done, 1 where something failed, 2 where the arguments cannot be meant. What was
-//! asked for goes to standard output, everything said about it to standard error.
+//! 0 on success, 1 if something failed, 2 for invalid arguments. What was asked for goes to standard
+//! output, everything said about it to standard error.
 
 mod accuracy;
 mod arguments;
@@ -11,10 +11,14 @@ mod info;
 mod job;
 mod keys;
 mod lab;
+mod open;
 mod plan;
 mod prove;
 mod render;
 mod stage;
+mod talk;
+mod target;
+mod values;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -28,7 +32,7 @@ use self::failure::Failure;
 pub(crate) fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(wrong) => return usage(&wrong),
+        Err(wrong) => return usage(&open::misspelt().unwrap_or(wrong)),
     };
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
@@ -41,7 +45,7 @@ pub(crate) fn run() -> ExitCode {
             Ok(status) => return ExitCode::from(status),
             Err(failure) => Err(failure),
         },
-        None => marraztu::app::run(arguments.files).map_err(Failure::from),
+        None => open::open(arguments.files),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

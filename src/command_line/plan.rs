@@ -16,8 +16,8 @@ use super::render;
 /// A picture whose effects are listed.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Takes the files and options of `render`. Each effect that the renderer knows is on or left out, with the
-reason; what is on is counted in pixels, and with --measure in milliseconds.
+Takes the files and options of `render`. Lists each effect of the renderer as on or left out, with the
+reason; what is on is counted in pixels and, with --measure, in milliseconds.
 
 Examples:
   marraztu plan
@@ -27,13 +27,13 @@ pub(crate) struct Plan {
     #[command(flatten)]
     shot: Shot,
 
-    /// Measure what each effect costs in time: pairs of frames with it and without
+    /// Measure what each effect costs in time, by pairs of frames with it and without it
     #[arg(long)]
     measure: bool,
-    /// About how long to measure
+    /// How long to measure, roughly
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, requires = "measure")]
     seconds: f64,
-    /// How the list is written
+    /// The format of the list
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
 }

@@ -1,4 +1,4 @@
-//! `marraztu prove`: what is claimed of the program, put to the proof.
+//! `marraztu prove`: checks the program's guarantees.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -16,30 +16,30 @@ use super::say;
 /// Which claims, and in how many cases.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Cases come in lots, and the number of a lot alone says what is in it. A counterexample is named by
-its lot; --from LOT --count 1 looks at it again.
+Cases are generated in lots, each from its number alone. A counterexample is named by its lot;
+--from LOT --count 1 checks it again.
 
 Examples:
-  marraztu prove                          every claim, in the numbers that the project promises
+  marraztu prove                          every claim, in the number of cases that is promised
   marraztu prove fans --count 1000000     one claim, in a million cases
-  marraztu prove instructions             a frame's instructions, with lights that are off and without
-  marraztu prove pictures                 the sums of a dozen pictures, to compare processors by")]
+  marraztu prove instructions             count a frame's instructions with and without unlit lights
+  marraztu prove pictures                 checksums of a dozen pictures, to compare processors")]
 pub(crate) struct Prove {
-    /// The claim: its name, as the list of `marraztu prove --list` has it; all where none is named
+    /// The claim, by its name in `marraztu prove --list` [default: all]
     pub(crate) name: Option<String>,
-    /// How many cases to look at; the promised number where it is not said
+    /// How many cases to check [default: the promised number]
     #[arg(long, value_name = "N")]
     pub(crate) count: Option<u64>,
     /// The first lot
     #[arg(long, value_name = "LOT", default_value_t = 0)]
     pub(crate) from: u64,
-    /// Draws one of the frames whose instructions are counted, and nothing else
+    /// Draw one of the frames whose instructions are counted, and nothing else
     #[arg(long, hide = true, value_enum)]
     pub(crate) draw_counted: Option<Counted>,
-    /// Lists the claims
+    /// List the claims
     #[arg(long)]
     pub(crate) list: bool,
-    /// Writes what was seen of each claim into a file in this folder too, for docs/stability.sh
+    /// Also write the result of each claim into a file in this folder, for docs/stability.sh
     #[arg(long, value_name = "FOLDER")]
     pub(crate) figures: Option<PathBuf>,
 }

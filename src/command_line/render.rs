@@ -4,32 +4,41 @@ use std::path::PathBuf;
 
 use marraztu::base::image::Size;
 use marraztu::edit::{frame, items};
-use marraztu::io;
+use marraztu::io::{self, Progress};
 use marraztu::render::{FramePlan, Renderer, Unseen, unseen};
 use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
 
 use super::accuracy::Accuracy;
 use super::arguments::{Reading, Render, Seeing, Shot, Slots, Surfaces};
 use super::bar::Bar;
+use super::draw_along;
 use super::failure::Failure;
-use super::say;
 use super::stage::{Stage, usage};
+use super::talk::note;
+use super::target::Target;
 
 /// Draws the picture that the arguments describe.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
+    let target = Target::of(arguments)?;
     let stage = stage(&arguments.shot)?;
-    let bar = Bar::unmeasured("drawing");
+    target.spare_inputs(&inputs(&arguments.shot), &stage)?;
+    let progress = Progress::new();
+    let bar = Bar::of("drawing", &progress);
     for (_, object) in stage.scene.objects.iter() {
         object.model.mesh.draw_as_filed();
     }
     let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.shot.size);
     let mut renderer = Renderer::default();
-    renderer.render(&plan);
+    renderer.render_watched(&plan, &|done, all| {
+        // Nothing cancels this.
+        let _ = progress.reached(done, all);
+    });
     drop(bar);
     tell_unseen(&mut renderer, &stage, arguments.shot.size);
-    let picture = renderer.picture();
-    let _bar = Bar::unmeasured(&format!("writing {}", arguments.out.display()));
-    io::save_picture(&arguments.out, picture)?;
+    target.write(renderer.picture())?;
+    if let (None, Target::File(path)) = (&arguments.out, &target) {
+        note(&format_args!("the picture is in {}", path.display()));
+    }
     // With this the process ends: to take a million vertices out of memory before only takes time.
     std::mem::forget((stage, plan, renderer));
     Ok(())
@@ -56,13 +65,22 @@ fn tell_unseen(renderer: &mut Renderer, stage: &Stage, size: Size) {
             2 => " and of 1 other object".to_owned(),
             n => format!(" and of {} other objects", n - 1),
         };
-        say("note", &format!("nothing is seen of {}{others}: {reason}{remedy}", names[0]));
+        note(&format_args!("nothing is seen of {}{others}: {reason}{remedy}", names[0]));
     }
+}
+
+/// All files that are named as something to read.
+fn inputs(shot: &Shot) -> Vec<PathBuf> {
+    shot.files.iter().chain(&shot.surfaces.texture).cloned().collect()
 }
 
 /// Reads the files and arranges everything as it is asked for. What was found in the files is told.
 pub(super) fn stage(shot: &Shot) -> Result<Stage, Failure> {
-    let Shot { files, reading, surfaces, seeing, accuracy, .. } = shot;
+    let Shot { files, reading, surfaces, seeing, accuracy, talk, threads, .. } = shot;
+    talk.apply();
+    if threads.is_some() {
+        draw_along(*threads);
+    }
     staged(files, reading, surfaces, seeing, accuracy)
 }
 
@@ -77,7 +95,7 @@ pub(crate) fn staged(
     let mut stage = Stage::of(files, reading)?;
     cover(&mut stage, surfaces)?;
     for finding in &stage.findings {
-        say("note", finding);
+        note(finding);
     }
     look(&mut stage, seeing)?;
     stage.settings = accuracy.of(&stage.settings);
@@ -99,11 +117,7 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
         object.sides = surfaces.sides.unwrap_or(object.sides);
         object.file_normals &= !surfaces.no_file_normals;
     };
-    let ids: Vec<_> = stage.scene.objects.ids().collect();
-    for id in ids {
-        stage.change(items::change_object(&stage.scene, id, change)?)?;
-    }
-    Ok(())
+    stage.change(items::change_all_objects(&stage.scene, change))
 }
 
 /// Looks at the scene as it is asked for.
@@ -135,7 +149,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
             let from = seeing.from.unwrap_or(frame::MODELS_FROM);
             match frame::models(&stage.scene, &stage.view, from) {
                 Ok(command) => stage.change(command)?,
-                Err(refusal) => say("note", &refusal),
+                Err(refusal) => note(&refusal),
             }
         }
         None => {}

@@ -1,13 +1,17 @@
 //! The scene that files make: a scene file or the first scene, with models put into it.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use marraztu::base::Shared;
 use marraztu::edit::{items, selection};
-use marraztu::io::{self, Finding, Loaded, Progress};
-use marraztu::scene::{Command, LoadOptions, MaterialChoice, Object, Scene, Settings, View};
+use marraztu::io::{self, Finding, Input, Loaded, Progress};
+use marraztu::scene::{
+    Command, LoadOptions, MaterialChoice, Model, Object, Scene, Settings, Sides, View,
+};
 
 use super::arguments::{Arguments, Reading};
 use super::bar::Bar;
@@ -27,8 +31,16 @@ pub(crate) struct Stage {
 impl Stage {
     /// Reads the files.
     pub(crate) fn of(files: &[PathBuf], reading: &Reading) -> Result<Self, Failure> {
-        let (scenes, models): (Vec<&PathBuf>, Vec<&PathBuf>) =
-            files.iter().partition(|file| is_scene(file));
+        let input = input(files)?;
+        // Before any of them is read, which may take long.
+        for file in files.iter().filter(|file| !is_standard(file)) {
+            io::check_file(file)?;
+        }
+        let holds_scene = |file: &&PathBuf| match &input {
+            Some(input) if is_standard(file) => input.is_scene(),
+            _ => is_scene(file),
+        };
+        let (scenes, models): (Vec<&PathBuf>, Vec<&PathBuf>) = files.iter().partition(holds_scene);
         if scenes.len() > 1 {
             return Err(usage("only one scene can be drawn at a time"));
         }
@@ -38,12 +50,10 @@ impl Stage {
             ));
         }
         let mut stage = match scenes.first() {
-            Some(scene) => Self::of_scene(scene)?,
+            Some(scene) => Self::of_scene(scene, input.as_ref())?,
             None => Self::first(models.is_empty()),
         };
-        for model in models {
-            stage.add(model, &reading.options())?;
-        }
+        stage.add(&models, input.as_ref(), &reading.options())?;
         stage.findings = io::joined(stage.findings);
         Ok(stage)
     }
@@ -60,10 +70,14 @@ impl Stage {
         }
     }
 
-    fn of_scene(file: &Path) -> Result<Self, Failure> {
+    /// The scene of a file, or of standard input.
+    pub(super) fn of_scene(file: &Path, input: Option<&Input>) -> Result<Self, Failure> {
         let progress = Progress::new();
         let bar = Bar::of(&format!("reading {}", file.display()), &progress);
-        let opened = io::open(file, &progress)?;
+        let opened = match input.filter(|_| is_standard(file)) {
+            Some(input) => input.scene(&progress)?,
+            None => io::open(file, &progress)?,
+        };
         drop(bar);
         Ok(Self {
             scene: opened.scene,
@@ -74,12 +88,42 @@ impl Stage {
         })
     }
 
-    /// Puts a model into the scene as the editor does, with its file's own material.
-    fn add(&mut self, file: &Path, options: &LoadOptions) -> Result<(), Failure> {
-        let Loaded { model, findings } = load(file, options)?;
-        self.findings.extend(findings);
-        let object = Object::new(Shared::new(model), MaterialChoice::File);
-        self.change(items::insert_object(&self.scene, object))
+    /// Puts models into the scene as the editor does, with their files' own materials. A file that is
+    /// named several times is read once.
+    fn add(
+        &mut self,
+        files: &[&PathBuf],
+        input: Option<&Input>,
+        options: &LoadOptions,
+    ) -> Result<(), Failure> {
+        let [first, ..] = files else { return Ok(()) };
+        let progress = Progress::new();
+        let what = match files.len() {
+            1 => format!("reading {}", first.display()),
+            count => format!("reading {count} models"),
+        };
+        let _bar = Bar::of(&what, &progress);
+        let mut read: BTreeMap<PathBuf, Shared<Model>> = BTreeMap::new();
+        let mut objects = Vec::with_capacity(files.len());
+        for (i, file) in files.iter().enumerate() {
+            let place = std::path::absolute(file).unwrap_or_else(|_empty| file.to_path_buf());
+            let model = match read.entry(place) {
+                Entry::Occupied(known) => known.get().clone(),
+                Entry::Vacant(new) => {
+                    let progress = progress.part(share(i, files.len()), share(i + 1, files.len()));
+                    let Loaded { model, findings } = match input.filter(|_| is_standard(file)) {
+                        Some(input) => input.model(options, &progress)?,
+                        None => io::load(file, options, &progress)?,
+                    };
+                    self.findings.extend(findings);
+                    new.insert(Shared::new(model)).clone()
+                }
+            };
+            // Also a model from standard input, which has no file's name.
+            let sides = Sides::Auto;
+            objects.push(Object { sides, ..Object::new(model, MaterialChoice::File) });
+        }
+        self.change(items::insert_objects(&self.scene, objects))
     }
 
     /// Changes the scene, and makes the view fit it.
@@ -98,12 +142,31 @@ pub(crate) fn load(file: &Path, options: &LoadOptions) -> Result<Loaded, Failure
     Ok(io::load(file, options, &progress)?)
 }
 
+/// What standard input holds, if it is among the files.
+pub(crate) fn input(files: &[PathBuf]) -> Result<Option<Input>, Failure> {
+    match files.iter().filter(|file| is_standard(file)).count() {
+        0 => Ok(None),
+        1 => Ok(Some(Input::read(std::io::stdin().lock())?)),
+        _ => Err(usage("standard input can be read once: name - once")),
+    }
+}
+
+/// Whether a file's name stands for standard input or output.
+pub(crate) fn is_standard(file: &Path) -> bool {
+    file == Path::new("-")
+}
+
+#[expect(clippy::cast_precision_loss, reason = "for the eye")]
+fn share(i: usize, of: usize) -> f64 {
+    i as f64 / of as f64
+}
+
 /// Whether a file's name says that it is a scene.
 pub(crate) fn is_scene(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(io::SCENE_ENDING))
 }
 
-/// Arguments that cannot be meant together.
+/// Invalid arguments, or arguments that contradict each other.
 pub(crate) fn usage(reason: &str) -> Failure {
     Failure::Usage(Box::new(Arguments::command().error(ErrorKind::ArgumentConflict, reason)))
 }

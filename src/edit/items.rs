@@ -1,10 +1,11 @@
 //! New items, their removal, and everything about them but where they are.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::BTreeSet;
 
 use glam::DVec3;
 
 use super::Refusal;
+use super::names::Names;
 use crate::base::Shared;
 use crate::scene::{
     Camera, CameraId, Command, CommandError, Item, ItemId, Lens, Light, LightId, LightKind,
@@ -16,11 +17,24 @@ pub const MOST_PARTS: usize = 1000;
 
 /// Puts an object into the scene, at the front of the list.
 #[must_use]
-pub fn insert_object(scene: &Scene, mut object: Object) -> Command {
-    let taken = scene.objects.iter().map(|(_, other)| &*other.name).collect();
-    object.name = free_name(&taken, &object.name);
-    let id = ObjectId(scene.next_id);
-    inserted(scene, 0, Item::Object(id, Box::new(object)))
+pub fn insert_object(scene: &Scene, object: Object) -> Command {
+    insert_objects(scene, vec![object])
+}
+
+/// Puts objects into the scene, each at the front of the list, so that the last comes first.
+#[must_use]
+pub fn insert_objects(scene: &Scene, objects: Vec<Object>) -> Command {
+    let mut names: Names<'_> = scene.objects.iter().map(|(_, other)| &*other.name).collect();
+    let mut commands = vec![Command::NextId(scene.next_id)];
+    let mut next_id = scene.next_id;
+    for mut object in objects {
+        object.name = names.take(&object.name);
+        let item = Item::Object(ObjectId(next_id), Box::new(object));
+        commands.push(Command::Insert { at: 0, item });
+        next_id += 1;
+    }
+    commands[0] = Command::NextId(next_id);
+    Command::Batch(commands)
 }
 
 /// The key `F`: a camera at the centre of the world, looking along -Z, with the model and material
@@ -193,15 +207,10 @@ pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
 
 /// What the objects are called that an object's parts become.
 fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::with_capacity(parts.len());
-    for part in parts {
-        let own = names.iter().map(|name| &**name);
-        let others = scene.objects.iter().filter(|(_, other)| !std::ptr::eq(*other, object));
-        let taken = others.map(|(_, other)| &*other.name).chain(own).collect();
-        let name = free_name(&taken, &object.model.mesh.parts()[*part as usize].name);
-        names.push(name);
-    }
-    names
+    let others = scene.objects.iter().filter(|(_, other)| !std::ptr::eq(*other, object));
+    let mut names: Names<'_> = others.map(|(_, other)| &*other.name).collect();
+    let name = |part: &u32| names.take(&object.model.mesh.parts()[*part as usize].name);
+    parts.iter().map(name).collect()
 }
 
 /// Gives a camera another lens.
@@ -227,6 +236,17 @@ pub fn change_object(
     let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut object);
     Ok(Command::Replace(Item::Object(id, Box::new(object))))
+}
+
+/// Changes what of all objects is neither their places nor their spins, in one step.
+#[must_use]
+pub fn change_all_objects(scene: &Scene, change: impl Fn(&mut Object)) -> Command {
+    let changed = |(id, object): (ObjectId, &Object)| {
+        let mut object = object.clone();
+        change(&mut object);
+        Command::Replace(Item::Object(id, Box::new(object)))
+    };
+    Command::Batch(scene.objects.iter().map(changed).collect())
 }
 
 /// Changes what of a camera is not its pose.
@@ -258,8 +278,8 @@ pub fn change_light(
 }
 
 fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
-    let taken = scene.cameras.iter().map(|(_, other)| &*other.name).collect();
-    camera.name = free_name(&taken, &camera.name);
+    let mut names: Names<'_> = scene.cameras.iter().map(|(_, other)| &*other.name).collect();
+    camera.name = names.take(&camera.name);
     let id = CameraId(scene.next_id);
     inserted(scene, scene.cameras.len(), Item::Camera(id, Box::new(camera)))
 }
@@ -268,8 +288,8 @@ fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
     if let LightKind::Spot { owner, .. } = &light.kind {
         super::lights::check_owner(scene, owner)?;
     }
-    let taken = scene.lights.iter().map(|(_, other)| &*other.name).collect();
-    light.name = free_name(&taken, &light.name);
+    let mut names: Names<'_> = scene.lights.iter().map(|(_, other)| &*other.name).collect();
+    light.name = names.take(&light.name);
     light.slot = scene.free_slot();
     let id = LightId(scene.next_id);
     Ok(inserted(scene, scene.lights.len(), Item::Light(id, Box::new(light))))
@@ -296,18 +316,4 @@ const fn light_name(kind: &LightKind) -> &'static str {
         }
         LightKind::Spot { owner: SpotOwner::Fixed(_), .. } => "spot",
     }
-}
-
-/// `wish` where nothing is called so, else with the lowest number behind it that is free.
-fn free_name(taken: &HashSet<&str>, wish: &str) -> String {
-    if !taken.contains(wish) {
-        return wish.to_owned();
-    }
-    // "sun 2" goes on to "sun 3", not to "sun 2 2".
-    let stem = match wish.rsplit_once(' ') {
-        Some((stem, number)) if number.parse::<u32>().is_ok() => stem,
-        _ => wish,
-    };
-    let mut numbered = (2_u64..).map(|number| format!("{stem} {number}"));
-    numbered.find(|name| !taken.contains(&**name)).unwrap_or_else(|| wish.to_owned())
 }

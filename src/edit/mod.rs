@@ -10,6 +10,7 @@ pub mod items;
 pub mod lights;
 pub mod look;
 pub mod motion;
+mod names;
 pub mod place;
 mod put;
 mod refusal;

@@ -94,7 +94,7 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
 /// # Errors
 /// Where there is no other to go on to.
 pub fn next(scene: &Scene, view: &View, stroke: Stroke) -> Result<Selection, Refusal> {
-    fn after<K: Copy + PartialEq, T>(list: &List<K, T>, id: Option<K>) -> Option<K> {
+    fn after<K: Copy + Ord, T>(list: &List<K, T>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
     }
     let id = match view.subject {
@@ -234,11 +234,11 @@ pub fn settle(scene: &Scene, view: &mut View) {
     if scene.cameras.get(view.camera).is_none() {
         view.camera = scene.cameras.first().unwrap_or(view.camera);
     }
-    if view.object.is_none_or(|id| scene.objects.get(id).is_none()) {
+    if view.object.is_none_or(|id| !scene.objects.contains(id)) {
         view.object = scene.objects.first();
         view.polygons = view.polygons.as_ref().map(|_| PolygonMode::begin());
     }
-    if view.light.is_none_or(|id| scene.lights.get(id).is_none()) {
+    if view.light.is_none_or(|id| !scene.lights.contains(id)) {
         view.light = scene.lights.first();
     }
     if view.object.is_none() {
@@ -250,21 +250,22 @@ pub fn settle(scene: &Scene, view: &mut View) {
 }
 
 /// What of a list is selected after a change.
-fn followed<K: Copy + PartialEq, T>(
+fn followed<K: Copy + Ord, T>(
     before: &List<K, T>,
     after: &List<K, T>,
     selected: Option<K>,
 ) -> Option<K> {
-    if let Some(new) = after.ids().find(|id| before.position(*id).is_none()) {
+    if let Some(new) = after.first_since(before) {
         return Some(new);
     }
-    let is_there = |id: &K| after.position(*id).is_some();
-    let Some(at) = selected.and_then(|id| before.position(id)) else {
-        return selected.filter(is_there).or_else(|| after.first());
-    };
-    // The selected one itself, those after it, and then those before it from near to far.
-    let onwards = before.ids().skip(at);
-    let back = before.ids().take(at).rev();
+    let is_there = |id: &K| after.contains(*id);
+    if let Some(kept) = selected.filter(is_there) {
+        return Some(kept);
+    }
+    let Some(at) = selected.and_then(|id| before.position(id)) else { return after.first() };
+    // Those after it, and then those before it from near to far.
+    let onwards = (at + 1..before.len()).map_while(|at| before.id_at(at));
+    let back = (0..at).rev().map_while(|at| before.id_at(at));
     onwards.chain(back).find(is_there)
 }
 
@@ -288,5 +289,59 @@ fn keep_polygons(scene: &Scene, view: &mut View) {
             }
         }
         None => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+    use std::cmp::Ordering;
+
+    use super::*;
+
+    thread_local! {
+        static COMPARISONS: Cell<usize> = const { Cell::new(0) };
+    }
+
+    /// An id that counts how often it is compared with another.
+    #[derive(Clone, Copy, Debug)]
+    struct Counted(usize);
+
+    impl Ord for Counted {
+        fn cmp(&self, other: &Self) -> Ordering {
+            COMPARISONS.set(COMPARISONS.get() + 1);
+            self.0.cmp(&other.0)
+        }
+    }
+
+    impl PartialOrd for Counted {
+        fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+            Some(self.cmp(other))
+        }
+    }
+
+    impl PartialEq for Counted {
+        fn eq(&self, other: &Self) -> bool {
+            self.cmp(other) == Ordering::Equal
+        }
+    }
+
+    impl Eq for Counted {}
+
+    #[test]
+    fn a_change_of_one_of_ten_thousand_items_is_followed_by_a_few_comparisons() {
+        let list = |ids: &mut dyn Iterator<Item = usize>| -> List<Counted, usize> {
+            ids.map(|id| (Counted(id), id)).collect()
+        };
+        let before = list(&mut (0..10_000));
+        let selected = Some(Counted(9_999));
+        COMPARISONS.set(0);
+        assert!(followed(&before, &before.clone(), selected) == selected);
+        assert!(COMPARISONS.get() < 200, "{}", COMPARISONS.get());
+        // Lists that share nothing are walked through once.
+        let without = list(&mut (0..9_999));
+        COMPARISONS.set(0);
+        assert!(followed(&before, &without, selected) == Some(Counted(9_998)));
+        assert!(COMPARISONS.get() < 40_000, "{}", COMPARISONS.get());
     }
 }

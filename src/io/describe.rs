@@ -66,8 +66,9 @@ impl Text {
 
 fn describe_options(model: &Model, text: &mut Text) {
     let mut options = Vec::new();
-    if model.options.up == UpAxis::Z {
-        options.push("Z is up".to_owned());
+    let up = model.options.up;
+    if up != UpAxis::default() {
+        options.push(format!("{} is up", up.word().to_uppercase()));
     }
     let scale = model.options.scale.get();
     if (scale - 1.0).abs() > 0.0 {

@@ -1,42 +1,123 @@
 //! Pictures to the disk.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
-use image::{ExtendedColorType, ImageEncoder};
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::PngEncoder;
+use image::codecs::webp::WebPEncoder;
+use image::{ExtendedColorType, ImageEncoder, ImageError};
 
-use super::replace::{SaveError, Worth, replace};
+use super::replace::{SaveError, Worth, check_target, replace};
 use crate::base::image::Picture;
 
-/// Saves a picture as PNG or PPM, by the ending of its name.
-///
-/// A PNG has an alpha channel only where a pixel needs one; a PPM has none.
-///
-/// # Errors
-/// Where the name ends in anything else, or the file cannot be written; what was there before still
-/// is.
-pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    let content = match ending.as_deref().and_then(|ending| ending.to_str()) {
-        Some("png") => png(picture).map_err(|error| SaveError::new(path, error.to_string()))?,
-        Some("ppm") => ppm(picture),
-        _ => return Err(SaveError::new(path, "its name has to end in .png or .ppm")),
-    };
-    replace(path, &content, Worth::Product)
+/// The quality of a JPEG, from 1 to 100: differences to the picture are hardly seen.
+const JPEG_QUALITY: u8 = 92;
+
+/// How many bytes tell what format a picture has.
+const SIGNATURE: u64 = 64;
+
+/// Why a picture whose name ends otherwise is refused.
+const ENDINGS: &str = "its name has to end in .png, .jpg, .webp or .ppm";
+
+/// How a picture is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Every pixel as it is; with an alpha channel only if a pixel needs one.
+    Png,
+    /// Nearly as it is, and smaller; without alpha.
+    Jpeg,
+    /// Every pixel as it is, at most 16383 on a side.
+    WebP,
+    /// Three bytes a pixel, as they are; without alpha.
+    Ppm,
 }
 
-fn png(picture: &Picture) -> Result<Vec<u8>, image::ImageError> {
-    let opaque = picture.pixels().iter().all(|pixel| pixel[3] == 255);
-    let (bytes, color) = if opaque {
-        (opaque_bytes(picture), ExtendedColorType::Rgb8)
-    } else {
-        (picture.pixels().as_flattened().to_vec(), ExtendedColorType::Rgba8)
-    };
+impl PictureFormat {
+    /// The format that a file's name asks for by its ending.
+    ///
+    /// # Errors
+    /// Which endings there are, if it has none of them.
+    pub fn of(path: &Path) -> Result<Self, &'static str> {
+        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        match ending.as_deref().and_then(|ending| ending.to_str()) {
+            Some("png") => Ok(Self::Png),
+            Some("jpg" | "jpeg") => Ok(Self::Jpeg),
+            Some("webp") => Ok(Self::WebP),
+            Some("ppm") => Ok(Self::Ppm),
+            _ => Err(ENDINGS),
+        }
+    }
+
+    /// The picture as the bytes of a file.
+    ///
+    /// # Errors
+    /// The reason, if the format cannot hold it.
+    pub fn encode(self, picture: &Picture) -> Result<Vec<u8>, String> {
+        let mut content = Vec::new();
+        let encoded = match self {
+            Self::Png => write(picture, PngEncoder::new(&mut content)),
+            Self::WebP => write(picture, WebPEncoder::new_lossless(&mut content)),
+            Self::Jpeg => {
+                let encoder = JpegEncoder::new_with_quality(&mut content, JPEG_QUALITY);
+                write_opaque(picture, encoder)
+            }
+            Self::Ppm => {
+                content = ppm(picture);
+                Ok(())
+            }
+        };
+        encoded.map(|()| content).map_err(|error| error.to_string())
+    }
+}
+
+/// Saves a picture in the format that its name asks for.
+///
+/// # Errors
+/// If the name asks for none, or the file cannot be written; what was there before still is.
+pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
+    let fail = |reason: String| SaveError::new(path, reason);
+    let format = PictureFormat::of(path).map_err(|reason| fail(reason.to_owned()))?;
+    replace(path, &format.encode(picture).map_err(fail)?, Worth::Product)
+}
+
+/// Finds out, before anything is drawn, whether a picture could be saved at `path`. A file that is
+/// there already has to be a picture, or empty.
+///
+/// # Errors
+/// If it could not.
+pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
+    let fail = |reason: &str| SaveError::new(path, reason);
+    PictureFormat::of(path).map_err(fail)?;
+    check_target(path)?;
+    let mut begin = Vec::new();
+    let Ok(file) = File::open(path) else { return Ok(()) };
+    match file.take(SIGNATURE).read_to_end(&mut begin) {
+        Ok(0) => Ok(()),
+        Ok(_) if image::guess_format(&begin).is_ok() => Ok(()),
+        _ => Err(fail("there is a file of that name, and it is no picture; choose another name")),
+    }
+}
+
+/// Writes a picture with an alpha channel only if a pixel needs one.
+fn write(picture: &Picture, encoder: impl ImageEncoder) -> Result<(), ImageError> {
+    if picture.pixels().iter().all(|pixel| pixel[3] == 255) {
+        return write_opaque(picture, encoder);
+    }
+    let [width, height] = sides(picture);
+    let bytes = picture.pixels().as_flattened();
+    encoder.write_image(bytes, width, height, ExtendedColorType::Rgba8)
+}
+
+fn write_opaque(picture: &Picture, encoder: impl ImageEncoder) -> Result<(), ImageError> {
+    let [width, height] = sides(picture);
+    encoder.write_image(&opaque_bytes(picture), width, height, ExtendedColorType::Rgb8)
+}
+
+fn sides(picture: &Picture) -> [u32; 2] {
     let size = picture.size();
-    let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
-    let mut content = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut content);
-    encoder.write_image(&bytes, side(size.width), side(size.height), color)?;
-    Ok(content)
+    [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX))
 }
 
 fn ppm(picture: &Picture) -> Vec<u8> {
@@ -75,6 +156,49 @@ mod tests {
     }
 
     #[test]
+    fn a_webp_comes_back_as_it_went_and_a_jpeg_nearly() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.webp");
+        for alpha in [255, 7] {
+            save_picture(&path, &picture(alpha)).unwrap();
+            assert_eq!(load_picture(&path).unwrap(), picture(alpha));
+        }
+        let gray = Picture::filled(Size::new(16, 16), [100, 110, 120, 255]);
+        for name in ["a.jpg", "a.JPEG"] {
+            let path = folder.path().join(name);
+            save_picture(&path, &gray).unwrap();
+            assert!(std::fs::read(&path).unwrap().starts_with(b"\xFF\xD8\xFF"));
+            let [r, g, b, _] = load_picture(&path).unwrap().pixel(5, 5);
+            let near = |a: u8, b: u8| a.abs_diff(b) <= 2;
+            assert!(near(r, 100) && near(g, 110) && near(b, 120), "{r} {g} {b}");
+        }
+    }
+
+    #[test]
+    fn a_target_is_a_picture_or_a_new_file_in_a_folder_that_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let reason = |name: &str| {
+            let checked = check_picture_target(&folder.path().join(name));
+            checked.map_err(|error| error.reason)
+        };
+        save_picture(&folder.path().join("a.png"), &picture(255)).unwrap();
+        std::fs::write(folder.path().join("empty.jpg"), "").unwrap();
+        std::fs::write(folder.path().join("poem.ppm"), "Roses are red").unwrap();
+        std::fs::create_dir(folder.path().join("b.png")).unwrap();
+        assert_eq!(["a.png", "empty.jpg", "new.webp"].map(reason), [Ok(()), Ok(()), Ok(())]);
+        for (name, word) in [
+            ("poem.ppm", "it is no picture"),
+            ("b.png", "this is a folder"),
+            ("none/a.png", "does not exist"),
+            ("poem.ppm/a.png", "is no folder"),
+            ("a.tiff", "has to end in"),
+        ] {
+            assert!(reason(name).unwrap_err().contains(word), "{name}: {:?}", reason(name));
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4, "nothing was left there");
+    }
+
+    #[test]
     fn a_ppm_is_three_bytes_a_pixel_after_its_size() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ppm");
@@ -88,7 +212,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.tiff");
         let error = save_picture(&path, &picture(255)).unwrap_err();
-        let reason = "could not be saved: its name has to end in .png or .ppm";
+        let reason = "could not be saved: its name has to end in .png, .jpg, .webp or .ppm";
         assert_eq!(error.to_string(), format!("{} {reason}", path.display()));
         std::fs::create_dir(folder.path().join("b.png")).unwrap();
         assert!(save_picture(&folder.path().join("b.png"), &picture(255)).is_err());

@@ -16,6 +16,14 @@ const MOST_UTF_16: u64 = 1 << 30;
 /// How much is read between two looks at the progress.
 const PIECE: usize = 8 << 20;
 
+/// Finds out whether `path` is a file that can be read, without reading it.
+///
+/// # Errors
+/// If there is nothing, or no file: a folder, a device, a pipe that this program does not have open.
+pub fn check_file(path: &Path) -> Result<(), LoadError> {
+    readable(path).map(|_| ())
+}
+
 /// Opens a file of at most `most` bytes; says how many it has, as far as that is known beforehand.
 ///
 /// # Errors

@@ -7,6 +7,7 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use super::error::{reason, shown};
 
@@ -36,13 +37,30 @@ pub(super) enum Worth {
     Work,
 }
 
-/// Makes `content` the content of the file at `path`.
-pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), SaveError> {
-    let fail = |error: std::io::Error| match error.kind() {
-        ErrorKind::NotFound => SaveError::new(path, "there is no such folder"),
-        _ => SaveError::new(path, reason(&error)),
-    };
-    // A link goes on pointing where it points: the file behind it is replaced.
+/// Finds out whether a file could be written at `path`: its folder is there and can be written to.
+///
+/// # Errors
+/// If it could not.
+pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
+    let target = target(path)?;
+    check_folder(path, &target)?;
+    let beside = beside(&target, std::process::id());
+    let opened = OpenOptions::new().write(true).create_new(true).open(&beside);
+    let opened = opened.map(|_file| fs::remove_file(&beside));
+    match opened {
+        Err(error) if error.kind() == ErrorKind::PermissionDenied => {
+            let reason = format!("this user may not write to {}", folder_name(&target));
+            Err(SaveError::new(path, reason))
+        }
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+            Err(SaveError::new(path, reason(&error)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The file that is replaced: a link goes on pointing where it points.
+fn target(path: &Path) -> Result<PathBuf, SaveError> {
     let target = fs::canonicalize(path).unwrap_or_else(|_new| path.to_owned());
     if target.is_dir() {
         return Err(SaveError::new(path, "this is a folder, not a file"));
@@ -50,7 +68,41 @@ pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), S
     if target.file_name().is_none() {
         return Err(SaveError::new(path, "this is not a name for a file"));
     }
-    let beside = with_ending(&target, &format!(".{}.new", std::process::id()));
+    Ok(target)
+}
+
+fn check_folder(path: &Path, target: &Path) -> Result<(), SaveError> {
+    let folder = folder(target);
+    let reason = match folder.metadata() {
+        Ok(metadata) if metadata.is_dir() => return Ok(()),
+        Ok(_) => format!("{} is not a folder", folder.display()),
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            format!("{} does not exist", folder_name(target))
+        }
+        Err(error) => reason(&error),
+    };
+    Err(SaveError::new(path, reason))
+}
+
+fn folder(target: &Path) -> &Path {
+    match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// The folder of a file, for messages.
+fn folder_name(target: &Path) -> String {
+    format!("the folder {}/", folder(target).display())
+}
+
+/// Makes `content` the content of the file at `path`.
+pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), SaveError> {
+    let fail = |error: std::io::Error| SaveError::new(path, reason(&error));
+    let target = target(path)?;
+    check_folder(path, &target)?;
+    remove_left_over(&target);
+    let beside = beside(&target, std::process::id());
     let written = write(&beside, &target, content, worth);
     if written.is_err() {
         // Nothing more can be done where even that fails.
@@ -80,10 +132,7 @@ fn write(beside: &Path, target: &Path, content: &[u8], worth: Worth) -> std::io:
     }
     fs::rename(beside, target)?;
     // The name, too, should survive a loss of power; not every system lets one ask for it.
-    if let Some(folder) = target.parent() {
-        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    }
+    let _ = File::open(folder(target)).and_then(|folder| folder.sync_all());
     Ok(())
 }
 
@@ -91,4 +140,75 @@ fn with_ending(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
     PathBuf::from(name)
+}
+
+/// What a process writes beside the file that it replaces.
+fn beside(target: &Path, process: u32) -> PathBuf {
+    with_ending(target, &format!(".{process}.new"))
+}
+
+/// What was written beside a file longer ago than this belongs to no process that still writes it.
+const LONG_AGO: Duration = Duration::from_secs(60);
+
+/// Removes what processes that ended on the way have left beside a file.
+fn remove_left_over(target: &Path) {
+    let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
+    let is_left_over = |entry: &fs::DirEntry| {
+        let other = entry.file_name();
+        let process = other.to_str().and_then(|other| {
+            other.strip_prefix(name)?.strip_prefix('.')?.strip_suffix(".new")?.parse().ok()
+        });
+        let age = entry.metadata().and_then(|metadata| metadata.modified());
+        let age = age.ok().and_then(|written| written.elapsed().ok());
+        process.is_some_and(has_ended) && age.is_some_and(|age| age > LONG_AGO)
+    };
+    let entries = fs::read_dir(folder(target)).into_iter().flatten().flatten();
+    for entry in entries.filter(is_left_over) {
+        // Whoever may not remove it goes on without.
+        let _ = fs::remove_file(entry.path());
+    }
+}
+
+/// Whether a process has ended, as far as the system tells.
+fn has_ended(process: u32) -> bool {
+    let processes = Path::new("/proc");
+    process != std::process::id() && !processes.join(process.to_string()).exists()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::SystemTime;
+
+    use super::*;
+
+    /// The number of a process that has ended.
+    fn ended() -> u32 {
+        let mut child = std::process::Command::new("true").spawn().unwrap();
+        child.wait().unwrap();
+        child.id()
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn what_a_killed_process_left_beside_a_file_is_removed_when_the_file_is_saved_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let target = at("a.png");
+        let (gone, here) = (ended(), std::os::unix::process::parent_id());
+        let old =
+            [beside(&target, gone), beside(&target, here), at("b.png.1.new"), at("a.png.x.new")];
+        for path in &old {
+            fs::write(path, "half").unwrap();
+            let file = OpenOptions::new().write(true).open(path).unwrap();
+            file.set_modified(SystemTime::now() - 2 * LONG_AGO).unwrap();
+        }
+        let young = beside(&target, ended());
+        fs::write(&young, "half").unwrap();
+        replace(&target, b"whole", Worth::Product).unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"whole");
+        assert!(!old[0].exists(), "its process has ended, long ago");
+        assert!(old[1].exists(), "its process still runs");
+        assert!(old[2].exists() && old[3].exists(), "they are of other files");
+        assert!(young.exists(), "it was written a moment ago");
+    }
 }

@@ -24,7 +24,7 @@ const MOST_MEMORY: u64 = 2 << 30;
 const MOST_BYTES: usize = 2 << 30;
 
 /// What is said of a file of another kind.
-const UNKNOWN: &str = "this is not a PNG, JPEG, BMP, TGA or GIF";
+const UNKNOWN: &str = "this is not a PNG, JPEG, WebP, TIFF, BMP, TGA or GIF";
 
 /// Reads a texture that the user gives by hand: it repeats, and lies as the model's texture
 /// coordinates say.
@@ -46,7 +46,7 @@ pub fn load_texture_with(
     Pictures::default().texture(path, findings)
 }
 
-/// Reads a PNG, JPEG, BMP, TGA or GIF (its first picture), whatever its name ends in.
+/// Reads a PNG, JPEG, WebP, TIFF, BMP, TGA or GIF (its first picture), whatever its name ends in.
 ///
 /// # Errors
 /// If the file cannot be read, is not a picture, or is too large.
@@ -224,13 +224,13 @@ mod tests {
 
     #[test]
     fn every_kind_of_picture_is_read_whatever_its_name_ends_in() {
-        use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga};
+        use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga, Tiff, WebP};
         let folder = tempfile::tempdir().unwrap();
         let texels = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]];
         let drawn = image::RgbaImage::from_fn(8, 8, |x, y| {
             image::Rgba(texels[(x / 4 + y / 4 * 2) as usize])
         });
-        for format in [Bmp, Gif, Jpeg, Png, Tga] {
+        for format in [Bmp, Gif, Jpeg, Png, Tga, Tiff, WebP] {
             // Only a TGA has nothing in it that tells what it is.
             let path = folder.path().join(if format == Tga { "a.tga" } else { "a.picture" });
             let written = DynamicImage::from(drawn.clone()).to_rgb8();

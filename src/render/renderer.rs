@@ -88,9 +88,19 @@ impl Renderer {
 
     /// Draws all that is planned, whatever was drawn before.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
+        self.render_watched(plan, &|_, _| {})
+    }
+
+    /// Draws all that is planned, and tells between tiles how many of how many are painted: with
+    /// several samples a pixel each tile is painted in several passes, and counts in each.
+    pub fn render_watched(
+        &mut self,
+        plan: &FramePlan,
+        tell: &(dyn Fn(usize, usize) + Sync),
+    ) -> &Picture {
         self.finished = false;
         self.frame.forget();
-        self.redraw(plan, &|| true).expect("it is always wanted");
+        self.redraw_by(plan, &Watch::new(&|| true).telling(tell)).expect("it is always wanted");
         &self.picture
     }
 
@@ -105,7 +115,10 @@ impl Renderer {
         plan: &FramePlan,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Result<Changes, GivenUp> {
-        let watch = Watch::new(wanted);
+        self.redraw_by(plan, &Watch::new(wanted))
+    }
+
+    fn redraw_by(&mut self, plan: &FramePlan, watch: &Watch<'_>) -> Result<Changes, GivenUp> {
         let changes = self.changes(plan);
         self.built &= !changes.geometry;
         if plan.rules.frame(&changes).is_none() {
@@ -114,7 +127,7 @@ impl Renderer {
             // From one of the threads that draw, so that the caller sleeps and wakes once a frame.
             rayon::scope(|_| {
                 plan.prepare();
-                self.draw_changes(plan, &changes, &watch);
+                self.draw_changes(plan, &changes, watch);
             });
             if watch.is_given_up() {
                 return Err(GivenUp);
@@ -139,6 +152,8 @@ impl Renderer {
     fn draw_changes(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
         self.stages = Stages::default();
         let passes = passes(plan.samples);
+        let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
+        watch.expect_tiles(pictures * changes.tiles());
         let mut sums = Vec::new();
         if passes.len() > 1 || plan.lit_by_sample {
             // Whenever this is given up, the frame holds what is on none of the finished pictures.
@@ -398,6 +413,7 @@ impl Renderer {
                     if let (true, Some(sums)) = (pass.is_last, pass.sums.get(tile)) {
                         painter.put_means(&scenery, tile, sums, &bands[row]);
                     }
+                    watch.tile_is_painted();
                 }
             }
         });

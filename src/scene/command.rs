@@ -209,17 +209,14 @@ fn replace(scene: &mut Scene, item: Item) -> Result<Command, CommandError> {
     }
     let missing = CommandError::Missing(item.id());
     let before = match item {
-        Item::Object(id, mut object) => {
-            std::mem::swap(scene.objects.get_mut(id).ok_or(missing)?, &mut object);
-            Item::Object(id, object)
+        Item::Object(id, object) => {
+            Item::Object(id, Box::new(scene.objects.replace(id, *object).ok_or(missing)?))
         }
-        Item::Camera(id, mut camera) => {
-            std::mem::swap(scene.cameras.get_mut(id).ok_or(missing)?, &mut camera);
-            Item::Camera(id, camera)
+        Item::Camera(id, camera) => {
+            Item::Camera(id, Box::new(scene.cameras.replace(id, *camera).ok_or(missing)?))
         }
-        Item::Light(id, mut light) => {
-            std::mem::swap(scene.lights.get_mut(id).ok_or(missing)?, &mut light);
-            Item::Light(id, light)
+        Item::Light(id, light) => {
+            Item::Light(id, Box::new(scene.lights.replace(id, *light).ok_or(missing)?))
         }
     };
     Ok(Command::Replace(before))

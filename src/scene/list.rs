@@ -1,89 +1,341 @@
 //! Things in the order in which the user sees them, each under an id that is never used twice.
+//!
+//! A list is a persistent structure: a copy shares everything with its original, and a change copies
+//! only the few nodes that lead to it. So snapshots cost nothing, however long the list, and every
+//! question takes time in proportion to the logarithm of the length at most.
+//!
+//! Each thing has a label, a number that grows along the list. An id leads to its label, and a binary
+//! search for the label leads to the place. What is inserted gets a label between those of its
+//! neighbours; if there is none left, all labels are given anew: Dietz and Sleator, "Two Algorithms
+//! for Maintaining Order in a List", STOC 1987.
+
+use std::fmt;
+use std::sync::Arc;
+
+use imbl::ordmap::DiffItem;
+use imbl::{OrdMap, Vector};
+
+/// How far apart the labels of neighbours are at first.
+const STEP: i64 = 1 << 32;
+
+/// How far behind the label before it a new label is at most: things inserted one after the other
+/// find room there.
+const NEAR: u64 = 1 << 16;
 
 /// A list of things under ids.
-#[derive(Clone, Debug, PartialEq)]
 pub struct List<K, T> {
-    items: Vec<(K, T)>,
+    entries: Vector<Entry<K, T>>,
+    labels: OrdMap<K, i64>,
+}
+
+/// A thing in its place.
+#[derive(Debug)]
+struct Entry<K, T> {
+    label: i64,
+    id: K,
+    item: Arc<T>,
+}
+
+impl<K: Copy, T> Clone for Entry<K, T> {
+    fn clone(&self) -> Self {
+        Self { label: self.label, id: self.id, item: Arc::clone(&self.item) }
+    }
+}
+
+impl<K: Copy, T> Clone for List<K, T> {
+    fn clone(&self) -> Self {
+        Self { entries: self.entries.clone(), labels: self.labels.clone() }
+    }
+}
+
+impl<K: Copy + Ord + fmt::Debug, T: fmt::Debug> fmt::Debug for List<K, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_map().entries(self.iter()).finish()
+    }
 }
 
 impl<K, T> Default for List<K, T> {
     fn default() -> Self {
-        Self { items: Vec::new() }
+        Self { entries: Vector::new(), labels: OrdMap::new() }
     }
 }
 
-impl<K: Copy + PartialEq, T> List<K, T> {
+/// Lists that share what they hold are equal without a look at it.
+impl<K: PartialEq, T: PartialEq> PartialEq for List<K, T> {
+    fn eq(&self, other: &Self) -> bool {
+        let alike = |(a, b): (&Entry<K, T>, &Entry<K, T>)| {
+            a.id == b.id && (Arc::ptr_eq(&a.item, &b.item) || a.item == b.item)
+        };
+        self.entries.ptr_eq(&other.entries)
+            || (self.entries.len() == other.entries.len()
+                && self.entries.iter().zip(&other.entries).all(alike))
+    }
+}
+
+impl<K: Copy + Ord, T> List<K, T> {
     /// How many there are.
     #[must_use]
-    pub const fn len(&self) -> usize {
-        self.items.len()
+    pub fn len(&self) -> usize {
+        self.entries.len()
     }
 
     /// Whether there are none.
     #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.items.is_empty()
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
     }
 
     /// Where the thing stands in the list.
     #[must_use]
     pub fn position(&self, id: K) -> Option<usize> {
-        self.items.iter().position(|(other, _)| *other == id)
+        let label = self.labels.get(&id)?;
+        self.entries.binary_search_by_key(label, |entry| entry.label).ok()
+    }
+
+    /// Whether there is a thing under `id`.
+    #[must_use]
+    pub fn contains(&self, id: K) -> bool {
+        self.labels.contains_key(&id)
     }
 
     /// The thing under `id`.
     #[must_use]
     pub fn get(&self, id: K) -> Option<&T> {
-        self.items.iter().find(|(other, _)| *other == id).map(|(_, item)| item)
-    }
-
-    pub(super) fn get_mut(&mut self, id: K) -> Option<&mut T> {
-        self.items.iter_mut().find(|(other, _)| *other == id).map(|(_, item)| item)
+        Some(&*self.entries.get(self.position(id)?)?.item)
     }
 
     /// All of them, first to last.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (K, &T)> + ExactSizeIterator {
-        self.items.iter().map(|(id, item)| (*id, item))
+        self.entries.iter().map(|entry| (entry.id, &*entry.item))
     }
 
     /// Their ids, first to last.
     pub fn ids(&self) -> impl DoubleEndedIterator<Item = K> + ExactSizeIterator {
-        self.items.iter().map(|(id, _)| *id)
+        self.entries.iter().map(|entry| entry.id)
     }
 
     /// The first of them.
     #[must_use]
     pub fn first(&self) -> Option<K> {
-        self.items.first().map(|(id, _)| *id)
+        self.id_at(0)
     }
 
-    /// The one after `id`, the first after the last; the first where `id` is not there.
+    /// The one at a place of the list, counted from 0.
+    #[must_use]
+    pub fn id_at(&self, at: usize) -> Option<K> {
+        self.entries.get(at).map(|entry| entry.id)
+    }
+
+    /// The one after `id`, the first after the last; the first if `id` is not there.
     #[must_use]
     pub fn after(&self, id: Option<K>) -> Option<K> {
         let next = id.and_then(|id| self.position(id)).map_or(0, |at| at + 1);
-        self.items.get(next).or_else(|| self.items.first()).map(|(id, _)| *id)
+        self.id_at(next).or_else(|| self.first())
     }
 
     /// The one that takes over when `id` is removed: the next in the list, else the one before.
     #[must_use]
     pub fn successor(&self, id: K) -> Option<K> {
         let at = self.position(id)?;
-        let other = self.items.get(at + 1).or_else(|| self.items.get(at.checked_sub(1)?));
-        other.map(|(id, _)| *id)
+        self.id_at(at + 1).or_else(|| self.id_at(at.checked_sub(1)?))
     }
 
+    /// The first of those that `before` does not have. What both lists share is not looked at.
+    #[must_use]
+    pub fn first_since(&self, before: &Self) -> Option<K> {
+        let new = before.labels.diff(&self.labels).filter_map(|difference| match difference {
+            DiffItem::Add(id, label) => Some((*label, *id)),
+            DiffItem::Update { .. } | DiffItem::Remove(..) => None,
+        });
+        new.min_by_key(|(label, _)| *label).map(|(_, id)| id)
+    }
+
+    /// Inserts a thing before the one at `at`; past the end means last.
     pub(super) fn insert(&mut self, at: usize, id: K, item: T) {
-        self.items.insert(at.min(self.items.len()), (id, item));
+        let at = at.min(self.len());
+        let label = self.free_label(at).unwrap_or_else(|| {
+            self.label_anew();
+            self.free_label(at).expect("new labels leave room between them")
+        });
+        self.labels.insert(id, label);
+        self.entries.insert(at, Entry { label, id, item: Arc::new(item) });
     }
 
-    pub(super) fn remove(&mut self, id: K) -> Option<(usize, T)> {
-        let at = self.position(id)?;
-        Some((at, self.items.remove(at).1))
+    /// A label between those of the things at `at` and before it; `None` if there is none.
+    fn free_label(&self, at: usize) -> Option<i64> {
+        let label = |at: usize| self.entries.get(at).map(|entry| entry.label);
+        match (at.checked_sub(1).and_then(label), label(at)) {
+            (None, None) => Some(0),
+            (Some(before), None) => before.checked_add(STEP),
+            (None, Some(after)) => after.checked_sub(STEP),
+            (Some(before), Some(after)) => {
+                let step = (before.abs_diff(after) / 2).min(NEAR);
+                (step > 0).then_some(before.checked_add_unsigned(step)?)
+            }
+        }
+    }
+
+    fn label_anew(&mut self) {
+        let labels = std::iter::successors(Some(0), |label: &i64| label.checked_add(STEP));
+        for (entry, label) in self.entries.iter_mut().zip(labels) {
+            entry.label = label;
+            self.labels.insert(entry.id, label);
+        }
     }
 }
 
-impl<K: Copy + PartialEq, T> FromIterator<(K, T)> for List<K, T> {
+impl<K: Copy + Ord, T: Clone> List<K, T> {
+    /// Puts another thing in the place of the one under `id`, and gives back that one.
+    pub(super) fn replace(&mut self, id: K, item: T) -> Option<T> {
+        let at = self.position(id)?;
+        let entry = self.entries.get_mut(at)?;
+        Some(Arc::unwrap_or_clone(std::mem::replace(&mut entry.item, Arc::new(item))))
+    }
+
+    /// Takes the thing under `id` out, and gives back where it stood.
+    pub(super) fn remove(&mut self, id: K) -> Option<(usize, T)> {
+        let at = self.position(id)?;
+        self.labels.remove(&id);
+        Some((at, Arc::unwrap_or_clone(self.entries.remove(at).item)))
+    }
+}
+
+/// The ids have to be different ones.
+impl<K: Copy + Ord, T> FromIterator<(K, T)> for List<K, T> {
     fn from_iter<I: IntoIterator<Item = (K, T)>>(items: I) -> Self {
-        Self { items: items.into_iter().collect() }
+        let mut list = Self::default();
+        for (id, item) in items {
+            list.insert(usize::MAX, id, item);
+        }
+        list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+    use std::cmp::Ordering;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    thread_local! {
+        static COMPARISONS: Cell<usize> = const { Cell::new(0) };
+    }
+
+    /// An id that counts how often it is compared with another.
+    #[derive(Clone, Copy, Debug)]
+    struct Counted(u32);
+
+    impl Ord for Counted {
+        fn cmp(&self, other: &Self) -> Ordering {
+            COMPARISONS.set(COMPARISONS.get() + 1);
+            self.0.cmp(&other.0)
+        }
+    }
+
+    impl PartialOrd for Counted {
+        fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+            Some(self.cmp(other))
+        }
+    }
+
+    impl PartialEq for Counted {
+        fn eq(&self, other: &Self) -> bool {
+            self.cmp(other) == Ordering::Equal
+        }
+    }
+
+    impl Eq for Counted {}
+
+    /// How many comparisons `work` takes.
+    fn comparisons<R>(work: impl FnOnce() -> R) -> usize {
+        COMPARISONS.set(0);
+        work();
+        COMPARISONS.get()
+    }
+
+    #[test]
+    fn what_is_asked_of_ten_thousand_things_takes_a_few_comparisons_of_ids() {
+        let mut list: List<Counted, u32> = (0..10_000).map(|i| (Counted(i), i)).collect();
+        let before = list.clone();
+        let middle = Counted(5_000);
+        let few = 200;
+        assert!(comparisons(|| before.get(middle)) < few);
+        assert!(comparisons(|| before.position(middle)) < few);
+        assert!(comparisons(|| before.after(Some(middle))) < few);
+        assert!(comparisons(|| before.successor(middle)) < few);
+        assert!(comparisons(|| list.insert(0, Counted(10_000), 7)) < few);
+        assert!(comparisons(|| list.remove(Counted(9_000))) < few);
+        assert!(comparisons(|| list.replace(middle, 7)) < few);
+        assert!(comparisons(|| assert!(list.first_since(&before) == Some(Counted(10_000)))) < few);
+        assert!(comparisons(|| assert!(before == before.clone())) < few);
+    }
+
+    #[test]
+    fn a_copy_stays_what_it_was_and_shares_the_things_that_did_not_change() {
+        let mut list: List<u32, Vec<u32>> = (0..1_000).map(|i| (i, vec![i])).collect();
+        let before = list.clone();
+        list.replace(3, vec![7]);
+        list.remove(900);
+        assert_eq!((before.get(3), list.get(3)), (Some(&vec![3]), Some(&vec![7])));
+        assert_eq!((before.len(), list.len()), (1_000, 999));
+        let shared = list
+            .iter()
+            .filter(|(id, item)| before.get(*id).is_some_and(|other| std::ptr::eq(other, *item)));
+        assert_eq!(shared.count(), 998);
+    }
+
+    #[test]
+    fn there_is_room_in_the_same_place_for_any_number_of_things() {
+        let mut list: List<u32, ()> = [(0, ()), (1, ())].into_iter().collect();
+        for id in 2..500 {
+            list.insert(1, id, ());
+        }
+        let expected: Vec<u32> = [0].into_iter().chain((2..500).rev()).chain([1]).collect();
+        assert_eq!(list.ids().collect::<Vec<_>>(), expected);
+        assert!(expected.iter().enumerate().all(|(at, id)| list.position(*id) == Some(at)));
+    }
+
+    /// A change of a list: at which place, and which.
+    fn change() -> impl Strategy<Value = (usize, u8)> {
+        (0_usize..40, 0_u8..4)
+    }
+
+    proptest! {
+        #[test]
+        fn a_list_does_what_a_plain_vector_does(changes in prop::collection::vec(change(), 0..200)) {
+            let mut list: List<usize, usize> = List::default();
+            let mut plain: Vec<(usize, usize)> = Vec::new();
+            for (next, (at, what)) in changes.into_iter().enumerate() {
+                let before = list.clone();
+                let there = plain.get(at).map(|(id, _)| *id);
+                match (what, there) {
+                    (0 | 1, _) | (_, None) => {
+                        list.insert(at, next, next);
+                        plain.insert(at.min(plain.len()), (next, next));
+                        prop_assert_eq!(list.first_since(&before), Some(next));
+                        prop_assert_eq!(before.first_since(&list), None);
+                    }
+                    (2, Some(id)) => {
+                        prop_assert_eq!(list.remove(id), Some((at, plain.remove(at).1)));
+                        prop_assert_eq!(before.first_since(&list), Some(id));
+                    }
+                    (_, Some(id)) => {
+                        let old = std::mem::replace(&mut plain[at].1, next);
+                        prop_assert_eq!(list.replace(id, next), Some(old));
+                        prop_assert_eq!(list.first_since(&before), None);
+                    }
+                }
+                prop_assert!(list != before);
+                let all: Vec<(usize, usize)> = list.iter().map(|(id, item)| (id, *item)).collect();
+                prop_assert_eq!(&all, &plain);
+                for (at, (id, item)) in plain.iter().enumerate() {
+                    prop_assert_eq!(list.position(*id), Some(at));
+                    prop_assert_eq!(list.get(*id), Some(item));
+                }
+            }
+        }
     }
 }

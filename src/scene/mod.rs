@@ -55,6 +55,8 @@ pub use view::{
     Transformation, View,
 };
 
+use std::collections::BTreeSet;
+
 use glam::{DMat3, DMat4};
 use serde::{Deserialize, Serialize};
 
@@ -125,17 +127,17 @@ impl Scene {
     #[must_use]
     pub fn contains(&self, id: ItemId) -> bool {
         match id {
-            ItemId::Object(id) => self.objects.get(id).is_some(),
-            ItemId::Camera(id) => self.cameras.get(id).is_some(),
-            ItemId::Light(id) => self.lights.get(id).is_some(),
+            ItemId::Object(id) => self.objects.contains(id),
+            ItemId::Camera(id) => self.cameras.contains(id),
+            ItemId::Light(id) => self.lights.contains(id),
         }
     }
 
     /// The lowest slot that no light has.
     #[must_use]
     pub fn free_slot(&self) -> u32 {
-        let taken = |slot: &u32| self.lights.iter().any(|(_, light)| light.slot == *slot);
-        (0..).find(|slot| !taken(slot)).unwrap_or(0)
+        let taken: BTreeSet<u32> = self.lights.iter().map(|(_, light)| light.slot).collect();
+        (0..).find(|slot| !taken.contains(slot)).unwrap_or(0)
     }
 
     /// The view that a scene is first seen in: the first object, camera and light (the sun where

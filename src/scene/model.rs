@@ -37,14 +37,57 @@ pub struct LoadOptions {
     pub winding: Winding,
 }
 
-/// Which of a file's axes points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// Which of a file's axes points up. What it holds is turned by the shortest rotation that brings
+/// that axis to +Y, never mirrored; -Y is brought there by half a turn about X.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
 pub enum UpAxis {
-    /// As here.
+    /// +X: (x, y, z) of the file is (-y, x, z) here, a quarter turn about Z.
+    X,
+    /// +Y, as here.
     #[default]
     Y,
-    /// (x, y, z) of the file is (x, z, -y) here.
+    /// +Z: (x, y, z) of the file is (x, z, -y) here, a quarter turn about X.
     Z,
+    /// -X: (x, y, z) of the file is (y, -x, z) here, a quarter turn about Z.
+    MinusX,
+    /// -Y: (x, y, z) of the file is (x, -y, -z) here, half a turn about X.
+    MinusY,
+    /// -Z: (x, y, z) of the file is (x, -z, y) here, a quarter turn about X.
+    MinusZ,
+}
+
+impl UpAxis {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::X, Self::Y, Self::Z, Self::MinusX, Self::MinusY, Self::MinusZ];
+
+    /// As people write it: "z", "-z".
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::MinusX => "-x",
+            Self::MinusY => "-y",
+            Self::MinusZ => "-z",
+        }
+    }
+
+    /// A position or direction of the file, turned so that this axis points up.
+    #[must_use]
+    pub fn upright(self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        match self {
+            Self::X => [-y, x, z],
+            Self::Y => [x, y, z],
+            Self::Z => [x, z, -y],
+            Self::MinusX => [y, -x, z],
+            Self::MinusY => [x, -y, -z],
+            Self::MinusZ => [x, -z, y],
+        }
+    }
 }
 
 /// A factor that is finite and more than 0.
@@ -87,7 +130,9 @@ impl TryFrom<f64> for Scale {
 }
 
 /// Which way a file's polygons run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
 pub enum Winding {
     /// Counter-clockwise seen from outside, as here.
     #[default]
@@ -132,4 +177,28 @@ pub enum Wrap {
     Repeat,
     /// Its border.
     Clamp,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::math::Axis;
+
+    #[test]
+    fn every_up_axis_is_turned_up_and_nothing_is_mirrored() {
+        for up in UpAxis::ALL {
+            let [x, y, z] = Axis::ALL.map(|axis| {
+                let turned = up.upright(axis.unit().as_vec3().to_array());
+                glam::DVec3::from_array(turned.map(f64::from))
+            });
+            assert_eq!(glam::DMat3::from_cols(x, y, z).determinant(), 1.0, "{up:?}");
+            let sign = if up.word().starts_with('-') { -1.0 } else { 1.0 };
+            let axis = match up.word().trim_start_matches('-') {
+                "x" => x,
+                "y" => y,
+                _ => z,
+            };
+            assert_eq!(axis * sign, glam::DVec3::Y, "{up:?}");
+        }
+    }
 }

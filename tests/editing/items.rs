@@ -34,6 +34,40 @@ fn a_new_object_goes_to_the_front_and_is_selected() {
 }
 
 #[test]
+fn objects_that_come_together_are_those_that_come_one_after_the_other() {
+    let objects = || {
+        ["plate", "object 2", "plate", "object", "plate 2"].map(|name| {
+            let mut object = Object::new(common::model(), MaterialChoice::File);
+            object.name = name.to_owned();
+            object
+        })
+    };
+    let mut one_by_one = desk(Subject::Object);
+    for object in objects() {
+        one_by_one.perform(Ok(items::insert_object(&one_by_one.scene, object)));
+    }
+    let mut together = desk(Subject::Object);
+    let before = together.scene.clone();
+    let back = together.perform(Ok(items::insert_objects(&together.scene, objects().into())));
+    assert_eq!(names(&together)[..3], ["plate 3", "object", "plate 2"]);
+    assert!(together.scene == one_by_one.scene && together.view == one_by_one.view);
+    together.perform(Ok(back));
+    assert!(together.scene == before);
+}
+
+#[test]
+fn a_change_of_all_objects_is_one_step() {
+    let mut desk = desk(Subject::Object);
+    let before = desk.scene.clone();
+    let back = desk.perform(Ok(items::change_all_objects(&desk.scene, |object| {
+        object.visible = false;
+    })));
+    assert!(desk.scene.objects.iter().all(|(_, object)| !object.visible));
+    desk.perform(Ok(back));
+    assert!(desk.scene == before);
+}
+
+#[test]
 fn a_new_camera_stands_at_the_centre_of_the_world_and_is_selected() {
     let mut desk = desk(Subject::Camera);
     let command = items::insert_camera(&desk.scene, common::model(), MaterialChoice::File);

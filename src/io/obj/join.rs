@@ -24,7 +24,7 @@ use crate::io::findings::{FindingKind, Findings};
 use crate::io::progress::{Cancelled, Progress};
 
 /// The most bytes of a text.
-pub(super) const MOST_BYTES: usize = 4 << 30;
+pub(in crate::io) const MOST_BYTES: usize = 4 << 30;
 
 /// The most bytes of a statement.
 const MOST_STATEMENT: usize = 256 << 20;

@@ -28,17 +28,20 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use self::join::{Content, MOST_BYTES};
+pub(in crate::io) use self::join::MOST_BYTES;
+
+use self::join::Content;
 use self::parts::PartNames;
 use self::sound::FaceRuns;
 use super::error::{LoadError, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::mtl::Library;
+use super::packed::{Unpacked, unpacked_name};
 use super::progress::Progress;
 use super::read;
 use super::texture::Pictures;
 use crate::scene::{
-    CornerLists, LoadOptions, Mesh, MeshSource, Model, Part, UpAxis, Winding, dvec3, newell,
+    CornerLists, LoadOptions, Mesh, MeshSource, Model, Part, Winding, dvec3, newell,
 };
 
 /// Why a file without anything in it is refused.
@@ -56,7 +59,8 @@ pub struct Loaded {
     pub findings: Vec<Finding>,
 }
 
-/// Reads an OBJ file, with the MTL files and textures that it names.
+/// Reads an OBJ file, with the MTL files and textures that it names. If its name ends in `.gz`, it is
+/// unpacked.
 ///
 /// # Errors
 /// If the file cannot be read, is not an OBJ file, has a number that cannot be read, or has faces of
@@ -75,7 +79,12 @@ pub(super) fn load_with(
     let file = shown(path);
     let (text, size) = read::open(path, MOST_BYTES)?;
     let mut findings = Findings::new(&file);
-    let content = content(text, size, &file, &mut findings, &progress.part(0.0, 0.6))?;
+    let part = progress.part(0.0, 0.6);
+    let content = match unpacked_name(&file) {
+        // How much it is when it is unpacked is not known; a text has about four times as much.
+        Some(_) => content(Unpacked::new(text), 4 * size, &file, &mut findings, &part)?,
+        None => content(text, size, &file, &mut findings, &part)?,
+    };
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut library = Library::new(pictures);
     read_libraries(&mut library, &content, folder, &mut findings);
@@ -152,7 +161,8 @@ fn model(
     note_crossings(&mesh, &faces, &mut findings);
     progress.reached(1, 1)?;
 
-    let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let name = Path::new(unpacked_name(file).unwrap_or(file)).file_stem().unwrap_or_default();
+    let name = name.to_string_lossy().into_owned();
     let model = Model { name, source: None, options: *options, mesh, materials, edge_color };
     let findings = findings.into_list().into_iter().chain(of_materials).collect();
     Ok(Loaded { model, findings: joined(findings) })
@@ -293,10 +303,7 @@ fn source(
 
 /// Turns and scales what a file has as it is asked for.
 fn place(positions: &mut [[f32; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
-    let up = |[x, y, z]: [f32; 3]| match options.up {
-        UpAxis::Y => [x, y, z],
-        UpAxis::Z => [x, z, -y],
-    };
+    let up = |row| options.up.upright(row);
     let scale = options.scale.get();
     #[expect(clippy::cast_possible_truncation, reason = "the caller looks whether it is finite")]
     let scaled = |x: f32| if scale == 1.0 { x } else { (f64::from(x) * scale) as f32 };

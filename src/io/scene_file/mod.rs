@@ -24,7 +24,7 @@ use super::replace::{SaveError, Worth, replace};
 use super::texture::Pictures;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
-use crate::scene::{LoadOptions, Model, Scale, Scene, Settings, Texture, View};
+use crate::scene::{LoadOptions, Model, Scale, Scene, Settings, Texture, UpAxis, View, Winding};
 
 /// What the names of scene files end in, without the point.
 pub const SCENE_ENDING: &str = "marraztu";
@@ -144,7 +144,7 @@ pub fn open_with(
 }
 
 /// Opens the text of a scene file that is called `name` and seen from `folder`.
-pub(super) fn open_text(
+pub(in crate::io) fn open_text(
     text: &str,
     name: &str,
     folder: PathBuf,
@@ -201,12 +201,24 @@ fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
     Err(SceneFileError::Line { file: name.to_owned(), line, column, reason })
 }
 
+/// What tells one model of a scene file from another: its name or path, and how it is read.
+type ModelKey = (String, Option<(UpAxis, u64, Winding)>);
+
+fn key(model: &FileModel) -> ModelKey {
+    match model {
+        FileModel::Own(name) => (name.clone(), None),
+        FileModel::File { path, up, scale, winding } => {
+            (path.clone(), Some((*up, scale.to_bits(), *winding)))
+        }
+    }
+}
+
 /// The models and textures that a scene file names, loaded.
 struct Files<'a> {
     folder: PathBuf,
     relocated: &'a BTreeMap<PathBuf, PathBuf>,
-    models: Vec<(FileModel, Shared<Model>)>,
-    textures: Vec<(String, Shared<Texture>)>,
+    models: BTreeMap<ModelKey, Shared<Model>>,
+    textures: BTreeMap<String, Shared<Texture>>,
     /// Those of models and of textures: one file may be both.
     pictures: Pictures,
     findings: Vec<Finding>,
@@ -214,14 +226,9 @@ struct Files<'a> {
 
 impl<'a> Files<'a> {
     fn new(folder: PathBuf, relocated: &'a BTreeMap<PathBuf, PathBuf>) -> Self {
-        Self {
-            folder,
-            relocated,
-            models: Vec::new(),
-            textures: Vec::new(),
-            pictures: Pictures::default(),
-            findings: Vec::new(),
-        }
+        let (models, textures) = (BTreeMap::new(), BTreeMap::new());
+        let pictures = Pictures::default();
+        Self { folder, relocated, models, textures, pictures, findings: Vec::new() }
     }
 
     /// Where a file is that the scene file names.
@@ -237,12 +244,9 @@ impl<'a> Files<'a> {
         progress: &Progress,
     ) -> Result<(), SceneFileError> {
         let of_objects = file.objects.iter().map(|object| &object.model);
-        let mut models: Vec<&FileModel> = Vec::new();
-        for model in of_objects.chain(file.cameras.iter().map(|camera| &camera.model)) {
-            if !models.contains(&model) {
-                models.push(model);
-            }
-        }
+        let all = of_objects.chain(file.cameras.iter().map(|camera| &camera.model));
+        let mut keys = BTreeSet::new();
+        let models: Vec<&FileModel> = all.filter(|model| keys.insert(key(model))).collect();
         let textures: BTreeSet<&str> = file
             .objects
             .iter()
@@ -253,7 +257,7 @@ impl<'a> Files<'a> {
         for (i, model) in models.iter().enumerate() {
             let (from, to) = (share(i, models.len()), share(i + 1, models.len()));
             let loaded = self.load_model(model, name, &progress.part(from, to))?;
-            self.models.push(((*model).clone(), loaded));
+            self.models.insert(key(model), loaded);
         }
         for path in textures {
             let texture = match super::own_texture(path) {
@@ -263,7 +267,7 @@ impl<'a> Files<'a> {
                     self.pictures.texture(&place, &mut self.findings)?
                 }
             };
-            self.textures.push((path.to_owned(), texture));
+            self.textures.insert(path.to_owned(), texture);
         }
         Ok(())
     }
@@ -321,13 +325,11 @@ fn share(i: usize, of: usize) -> f64 {
 
 impl open::Needs for Files<'_> {
     fn model(&self, model: &FileModel) -> Shared<Model> {
-        let found = self.models.iter().find(|(other, _)| other == model);
-        found.map(|(_, model)| model.clone()).expect("every model of the file was loaded")
+        self.models.get(&key(model)).expect("every model of the file was loaded").clone()
     }
 
     fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
-        let found = self.textures.iter().find(|(path, _)| *path == texture.path);
-        let (_, plain) = found.expect("every texture of the file was loaded");
+        let plain = self.textures.get(&texture.path).expect("every texture of the file was loaded");
         let FileTexture { wrap, offset, scale, .. } = *texture;
         if (plain.wrap, plain.offset, plain.scale) == (wrap, offset, scale) {
             return plain.clone();

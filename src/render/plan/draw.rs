@@ -1,6 +1,7 @@
 //! What is drawn, and by which stages.
 
 use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::{DMat3, DMat4};
 
@@ -138,6 +139,16 @@ impl Pipeline {
         key.join(" + ")
     }
 
+    /// A number that equal pipelines share, and different ones hardly ever.
+    pub(super) fn fingerprint(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        match self {
+            Self::Flat(color) => color.0.hash(&mut hasher),
+            Self::Shaded(shaded) => shaded.hash_into(&mut hasher),
+        }
+        hasher.finish()
+    }
+
     /// Whether a texture decides where it is drawn.
     pub(in crate::render) const fn is_cutout(&self) -> bool {
         matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
@@ -168,6 +179,39 @@ pub(in crate::render) struct Shaded {
     pub(in crate::render) texture: Option<Shared<Texture>>,
     /// The material's opacity where the texture's alpha may bring it below one half.
     pub(in crate::render) cutout: Option<f64>,
+}
+
+impl Shaded {
+    /// Hashes what equal surfaces have in common; of equal textures, where they came from.
+    fn hash_into(&self, hasher: &mut DefaultHasher) {
+        let Self {
+            matter,
+            light,
+            places,
+            tiled,
+            dropped,
+            cut_off,
+            vertex_colors,
+            tint,
+            texture,
+            cutout,
+        } = self;
+        let Matter { ambient, diffuse, specular, exponent, floor, least_cosine } = matter;
+        for color in [ambient, diffuse, specular, tint] {
+            color.map(bits).hash(hasher);
+        }
+        [*exponent, *floor, *least_cosine, *dropped, *cut_off].map(bits).hash(hasher);
+        (*places, *tiled, *vertex_colors, cutout.map(bits)).hash(hasher);
+        for stage in light.iter().flatten() {
+            (stage.effect.name, stage.lamp).hash(hasher);
+        }
+        texture.as_ref().map(|texture| &texture.source).hash(hasher);
+    }
+}
+
+/// The bits of a number, the same for 0 and -0, which are equal.
+fn bits(x: f64) -> u64 {
+    (x + 0.0).to_bits()
 }
 
 /// One light on one surface.
@@ -206,4 +250,44 @@ pub(in crate::render) enum Form {
     Reflection,
     /// (N.H)^Ns
     HalfVector,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shaded(change: impl FnOnce(&mut Shaded)) -> u64 {
+        let mut shaded = Shaded {
+            matter: Matter::default(),
+            light: Some(Vec::new()),
+            places: false,
+            tiled: false,
+            dropped: 0.0,
+            cut_off: 0.0,
+            vertex_colors: false,
+            tint: [1.0; 3],
+            texture: None,
+            cutout: None,
+        };
+        change(&mut shaded);
+        Pipeline::Shaded(shaded).fingerprint()
+    }
+
+    #[test]
+    fn equal_pipelines_share_a_fingerprint_and_others_are_told_apart() {
+        let plain = shaded(|_| {});
+        assert_eq!(shaded(|shaded| shaded.dropped = -0.0), plain, "0 and -0 are equal");
+        let others = [
+            shaded(|shaded| shaded.matter.diffuse[1] = 0.5),
+            shaded(|shaded| shaded.matter.exponent = 9.0),
+            shaded(|shaded| shaded.matter.floor = -3.0),
+            shaded(|shaded| shaded.tint[2] = 0.5),
+            shaded(|shaded| shaded.cutout = Some(1.0)),
+            shaded(|shaded| shaded.vertex_colors = true),
+            Pipeline::Flat(Color::WHITE).fingerprint(),
+            Pipeline::Flat(Color::BACK_FACE).fingerprint(),
+        ];
+        let all: BTreeSet<u64> = others.into_iter().chain([plain]).collect();
+        assert_eq!(all.len(), 9);
+    }
 }

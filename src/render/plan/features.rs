@@ -45,7 +45,7 @@ pub(super) const fn presence(item: ItemId) -> Effect {
 impl Planner<'_> {
     /// Notes what a draw has of everything that is not a light.
     pub(super) fn note_features(&self, into: &mut Planning, object: &Object, draw: &Draw) {
-        let Planning { plan, notes } = into;
+        let Planning { plan, notes, .. } = into;
         let facts = || {
             let pipelines = draw.part_pipelines.iter().flatten();
             let pipelines = pipelines.map(|pipeline| &plan.pipelines[*pipeline as usize]);

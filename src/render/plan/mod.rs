@@ -20,6 +20,7 @@ mod turning;
 mod uses;
 mod without;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DMat4;
@@ -99,6 +100,8 @@ pub(in crate::render) enum Eye {
 struct Planning {
     plan: FramePlan,
     notes: Notes,
+    /// The places of the plan's pipelines by their fingerprints.
+    places: HashMap<u64, Vec<u32>>,
 }
 
 impl FramePlan {
@@ -128,7 +131,7 @@ impl FramePlan {
         settings: &Settings,
         size: Size,
     ) -> (Self, Vec<EffectUse>) {
-        let Planning { plan, notes } =
+        let Planning { plan, notes, .. } =
             Self::planned(Rules::sound(), Notes::wanted, scene, view, settings, size);
         (plan, notes.into_uses())
     }
@@ -186,7 +189,7 @@ impl FramePlan {
             leave_out: settings.leave_out,
             rules,
         };
-        let mut into = Planning { plan, notes };
+        let mut into = Planning { plan, notes, places: HashMap::new() };
         let shining = lamps(&mut into, scene, view, &observer);
         let planner = Planner { scene, view, settings, observer, shining };
         planner.add_objects(&mut into);
@@ -228,13 +231,19 @@ impl FramePlan {
     pub fn keys(&self) -> Vec<String> {
         self.pipelines.iter().map(Pipeline::key).collect()
     }
+}
 
+impl Planning {
     /// The place of a pipeline among those of the frame.
     fn pipeline(&mut self, pipeline: Pipeline) -> u32 {
-        let at = self.pipelines.iter().position(|other| *other == pipeline).unwrap_or_else(|| {
-            self.pipelines.push(pipeline);
-            self.pipelines.len() - 1
-        });
-        u32::try_from(at).expect("fewer than 2^32 pipelines")
+        let pipelines = &mut self.plan.pipelines;
+        let alike = self.places.entry(pipeline.fingerprint()).or_default();
+        let same = alike.iter().find(|at| pipelines[**at as usize] == pipeline);
+        same.copied().unwrap_or_else(|| {
+            let at = u32::try_from(pipelines.len()).expect("fewer than 2^32 pipelines");
+            pipelines.push(pipeline);
+            alike.push(at);
+            at
+        })
     }
 }

@@ -239,7 +239,7 @@ impl Planner<'_> {
             let Some(placement) = marks::world_from_diamond(&self.observer, position) else {
                 continue;
             };
-            let pipeline = into.plan.pipeline(Pipeline::Flat(marks::YELLOW));
+            let pipeline = into.pipeline(Pipeline::Flat(marks::YELLOW));
             let draw = Draw {
                 part_pipelines: vec![Some(pipeline)],
                 filled: true,

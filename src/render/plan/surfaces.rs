@@ -68,7 +68,7 @@ impl Planner<'_> {
             return None;
         }
         if !ground.seen {
-            return Some(into.plan.pipeline(Pipeline::Flat(Color([0; 3]))));
+            return Some(into.pipeline(Pipeline::Flat(Color([0; 3]))));
         }
         let mesh = &object.model.mesh;
         let rules = into.plan.rules.clone();
@@ -88,7 +88,7 @@ impl Planner<'_> {
             cutout: texture.filter(has_holes).map(|_| look.opacity),
             ..self.lit(into, ground, &look)
         };
-        Some(into.plan.pipeline(Pipeline::Shaded(shaded)))
+        Some(into.pipeline(Pipeline::Shaded(shaded)))
     }
 
     /// The light of a material.
@@ -217,7 +217,7 @@ impl Planner<'_> {
         matter: &Matter,
         stages: &mut Vec<Stage>,
     ) -> f64 {
-        let Planning { plan, notes } = into;
+        let Planning { plan, notes, .. } = into;
         let tell = |stage: &Stage, bound: f64| {
             let shining = self.shining.iter().find(|shining| shining.lamp == stage.lamp);
             let Some(Shining { id, name, .. }) = shining else { return };

@@ -24,6 +24,8 @@ pub(in crate::render) struct TilePlan {
     region: Option<Region>,
     /// By pipeline: what was decided, if it was in this tile.
     decided: Vec<Option<Decided>>,
+    /// The pipelines about which something was decided in this tile.
+    seen: Vec<usize>,
     /// The places of the stages that are kept, list behind list.
     kept: Vec<u32>,
     /// Those of the list that is being made.
@@ -60,7 +62,9 @@ impl TilePlan {
         visibility: &Visibility,
         bounds: PixelBox,
     ) {
-        self.decided.clear();
+        for pipeline in self.seen.drain(..) {
+            self.decided[pipeline] = None;
+        }
         self.kept.clear();
         let tiled =
             |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
@@ -68,9 +72,7 @@ impl TilePlan {
         let tiled = middles && plan.pipelines.iter().any(tiled);
         let depths = tiled.then(|| visibility.depths(level));
         self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));
-        if self.region.is_some() {
-            self.decided.resize(plan.pipelines.len(), None);
-        }
+        self.decided.resize(plan.pipelines.len(), None);
     }
 
     /// The lights of a surface in this tile.
@@ -89,7 +91,9 @@ impl TilePlan {
             Some(decided) => decided,
             None => self.decide(plan, shaded, stages, &region),
         };
-        self.decided[at] = Some(decided);
+        if self.decided[at].replace(decided).is_none() {
+            self.seen.push(at);
+        }
         let Decided { from, to, places, dropped } = decided;
         TileLight { stages, kept: Some(&self.kept[from..to]), places, dropped }
     }

@@ -4,6 +4,7 @@
 //! away, behind something else or outside of the picture is never lit. Whichever thread asks first,
 //! the light is the same.
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use fearless_simd::Level;
@@ -56,9 +57,10 @@ impl<T: Light> Lit<T> {
             return;
         }
         for (i, draw) in (0_u32..).zip(&plan.draws) {
-            for pipeline in 0..u32::try_from(plan.pipelines.len()).unwrap_or(u32::MAX) {
+            let own: BTreeSet<u32> = draw.part_pipelines.iter().flatten().copied().collect();
+            for pipeline in own {
                 let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { continue };
-                if shaded.light.is_none() || !draw.part_pipelines.contains(&Some(pipeline)) {
+                if shaded.light.is_none() {
                     continue;
                 }
                 for back in [false, true] {
@@ -81,11 +83,13 @@ impl<T: Light> Lit<T> {
     /// The light of a draw by a pipeline, on the front and on the back; the same where only one side
     /// is lit.
     pub(super) fn tables(&self, draw: u32, pipeline: u32) -> [&Table<T>; 2] {
-        let mut tables = self.tables[..self.used]
-            .iter()
-            .filter(|table| (table.draw, table.pipeline) == (draw, pipeline));
-        let front = tables.next().expect("what is lit at vertices was made ready");
-        [front, tables.next().unwrap_or(front)]
+        // They were made ready in this order.
+        let of = |table: &Table<T>| (table.draw, table.pipeline);
+        let tables = &self.tables[..self.used];
+        let first = tables.partition_point(|table| of(table) < (draw, pipeline));
+        let mut own = tables[first..].iter().take_while(|table| of(table) == (draw, pipeline));
+        let front = own.next().expect("what is lit at vertices was made ready");
+        [front, own.next().unwrap_or(front)]
     }
 
     /// Puts the centres and the normals of some faces of a draw into a batch, in view space.

@@ -173,7 +173,13 @@ impl Shown<'_> {
                 .width(ui.available_width())
                 .truncate();
             let shown = combo.show_ui(ui, |ui| {
+                let size = egui::vec2(1.0, ui.spacing().interact_size.y);
                 for to in owners {
+                    // Only those in sight are made, however many objects there are.
+                    if !ui.is_rect_visible(egui::Rect::from_min_size(ui.cursor().min, size)) {
+                        ui.allocate_space(size);
+                        continue;
+                    }
                     let name = owner_name(scene, &to);
                     if ui.selectable_label(to == *owner, name).clicked() && to != *owner {
                         let command = lights::set_owner(scene, self.id, to);

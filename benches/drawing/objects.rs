@@ -1,0 +1,62 @@
+//! How long a scene of many objects takes: `objects/N` a frame, `objects/insert/N` to put them into a
+//! scene, `objects/move/N` one command on one of them, with what the editor does after it.
+
+use criterion::{BenchmarkId, Criterion};
+use glam::{DMat4, DVec3};
+use marraztu::base::Shared;
+use marraztu::base::math::Axis;
+use marraztu::edit::transform::{self, Sign};
+use marraztu::edit::{Stroke, items, selection};
+use marraztu::scene::{MaterialChoice, Model, Object, Placed, PresetId};
+
+use super::shapes;
+use super::stage::{FULL, Stage};
+
+/// How many there are.
+const COUNTS: [u32; 4] = [1_000, 2_000, 4_000, 10_000];
+
+pub(crate) fn measure(criterion: &mut Criterion) {
+    let quad = shapes::sheet(2);
+    let mut group = criterion.benchmark_group("objects");
+    for count in COUNTS {
+        let empty = Stage::new(&quad, FULL);
+        let objects = objects(&quad, count);
+        group.bench_function(BenchmarkId::new("insert", count), |b| {
+            b.iter(|| {
+                let (mut scene, mut view) = (empty.scene.clone(), empty.view.clone());
+                let command = items::insert_objects(&scene, objects.clone());
+                command.apply(&mut scene).expect("they fit");
+                selection::follow(&empty.scene, &scene, &mut view);
+                view.object
+            });
+        });
+        let mut stage = Stage::new(&quad, FULL);
+        let command = items::insert_objects(&stage.scene, objects);
+        command.apply(&mut stage.scene).expect("they fit");
+        selection::follow(&empty.scene, &stage.scene, &mut stage.view);
+        group.bench_function(BenchmarkId::new("move", count), |b| {
+            b.iter(|| {
+                let (mut scene, mut view) = (stage.scene.clone(), stage.view.clone());
+                let moved = transform::step(&scene, &view, Axis::X, Sign::Positive, Stroke::First);
+                moved.expect("it can be moved").apply(&mut scene).expect("it fits");
+                selection::follow(&stage.scene, &scene, &mut view);
+                scene == stage.scene
+            });
+        });
+        group.bench_function(BenchmarkId::from_parameter(count), |b| stage.measure(b));
+    }
+}
+
+/// Squares side by side, each in a material of its own.
+fn objects(model: &Shared<Model>, count: u32) -> Vec<Object> {
+    let object = |i: u32| {
+        let mut material = PresetId::RUBY.get().material;
+        material.exponent = 1.0 + f64::from(i) / 100.0;
+        let mut object = Object::new(model.clone(), MaterialChoice::Own(material));
+        let place = DVec3::new(f64::from(i % 100) - 50.0, f64::from(i / 100) - 50.0, 0.0) * 0.3;
+        let placement = DMat4::from_translation(place) * DMat4::from_scale(DVec3::splat(0.1));
+        object.placement = Placed::new(placement);
+        object
+    };
+    (0..count).map(object).collect()
+}

@@ -1,0 +1,47 @@
+//! What is said on standard error beside errors: notes, and how far the work has come.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Args;
+
+use super::say;
+
+static QUIET: AtomicBool = AtomicBool::new(false);
+static PROGRESS: AtomicBool = AtomicBool::new(false);
+
+/// How much is said.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Messages")]
+pub(crate) struct Talk {
+    /// Print errors only: no notes on files, no progress
+    #[arg(short, long, conflicts_with = "progress")]
+    quiet: bool,
+    /// Print progress in per cent, a line at a time, even if standard error is no terminal
+    #[arg(long)]
+    progress: bool,
+}
+
+impl Talk {
+    /// From here on as much is said.
+    pub(crate) fn apply(&self) {
+        QUIET.store(self.quiet, Ordering::Relaxed);
+        PROGRESS.store(self.progress, Ordering::Relaxed);
+    }
+}
+
+/// Says something that is not an error, unless nothing of the kind is wanted.
+pub(crate) fn note(what: &dyn std::fmt::Display) {
+    if !is_quiet() {
+        say("note", what);
+    }
+}
+
+/// Whether only errors are said.
+pub(super) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Whether progress is told in lines, wherever they go.
+pub(super) fn tells_progress() -> bool {
+    PROGRESS.load(Ordering::Relaxed)
+}

@@ -1,0 +1,107 @@
+//! Values of options, from text.
+
+use marraztu::base::color::Color;
+use marraztu::base::image::Size;
+
+/// The longest side that a picture may have.
+const LONGEST_SIDE: usize = 16_384;
+
+/// Colours that have a name, as in CSS.
+const COLORS: [(&str, [u8; 3]); 10] = [
+    ("black", [0, 0, 0]),
+    ("white", [255, 255, 255]),
+    ("gray", [128, 128, 128]),
+    ("grey", [128, 128, 128]),
+    ("red", [255, 0, 0]),
+    ("green", [0, 128, 0]),
+    ("blue", [0, 0, 255]),
+    ("yellow", [255, 255, 0]),
+    ("cyan", [0, 255, 255]),
+    ("magenta", [255, 0, 255]),
+];
+
+/// A picture's size: "800x600", or "800" for a square.
+pub(super) fn size(text: &str) -> Result<Size, String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=LONGEST_SIDE).contains(side));
+    let sides = text.split_once(['x', 'X']).unwrap_or((text, text));
+    match (side(sides.0), side(sides.1)) {
+        (Some(width), Some(height)) => Ok(Size::new(width, height)),
+        _ => Err(format!(
+            "write width x height, each from 1 to {LONGEST_SIDE}, as 800x600; or 800 for a square"
+        )),
+    }
+}
+
+/// A colour: "255,128,0", "#ff8000", "#f80", or a name.
+pub(super) fn color(text: &str) -> Result<Color, String> {
+    let text = text.trim();
+    let named = COLORS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
+    let color = match text.strip_prefix('#') {
+        Some(digits) => hexadecimal(digits),
+        None => named.map(|(_, color)| *color).or_else(|| decimal(text)),
+    };
+    color.map(Color).ok_or_else(|| {
+        "write red,green,blue, each from 0 to 255; or #rrggbb, #rgb, black, white, gray, red, \
+         green, blue, yellow, cyan or magenta"
+            .to_owned()
+    })
+}
+
+fn decimal(text: &str) -> Option<[u8; 3]> {
+    let channels: Option<Vec<u8>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    channels?.try_into().ok()
+}
+
+/// Six digits, two a channel, or three, each of which stands for two of itself.
+fn hexadecimal(digits: &str) -> Option<[u8; 3]> {
+    let digits: Option<Vec<u8>> =
+        digits.chars().map(|digit| u8::try_from(digit.to_digit(16)?).ok()).collect();
+    match digits?[..] {
+        [r, g, b] => Some([r, g, b].map(|digit| 17 * digit)),
+        [r, s, g, h, b, c] => Some([16 * r + s, 16 * g + h, 16 * b + c]),
+        _ => None,
+    }
+}
+
+/// How many threads draw.
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| (1..=1024).contains(count));
+    count.ok_or_else(|| "write a whole number from 1 to 1024".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_rectangles_or_squares() {
+        assert_eq!(size("640x480"), Ok(Size::new(640, 480)));
+        assert_eq!(size("640"), Ok(Size::new(640, 640)));
+        for wrong in ["0", "0x10", "10x0", "16385x1", "-1x5", "axb", "1x2x3", "x", "640x", ""] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn colours_are_numbers_hexadecimal_digits_or_names() {
+        for (text, color) in [
+            ("1, 2,255", [1, 2, 255]),
+            ("#fff", [255; 3]),
+            ("#1a2", [17, 170, 34]),
+            ("#0a10FF", [10, 16, 255]),
+            ("white", [255; 3]),
+            ("Gray", [128; 3]),
+        ] {
+            assert_eq!(super::color(text), Ok(Color(color)), "{text}");
+        }
+        for wrong in ["1,2", "1,2,3,4", "1,2,256", "reddish", "", "#", "#ffff", "#ggg", "#+1+1+1"] {
+            assert!(color(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn threads_are_one_or_more() {
+        assert_eq!(threads("3"), Ok(3));
+        assert!(["0", "-1", "many", "1025"].iter().all(|wrong| threads(wrong).is_err()));
+    }
+}

@@ -1,0 +1,51 @@
+//! Files that gzip has packed.
+
+use std::io::{Error, ErrorKind, Read};
+
+use flate2::read::MultiGzDecoder;
+
+/// The bytes that every gzip archive begins with (RFC 1952, section 2.3.1).
+pub(super) const MAGIC: &[u8] = b"\x1F\x8B";
+
+/// What the names of packed files end in.
+const ENDING: &str = ".gz";
+
+/// A file's name without the ending of gzip; `None` if it does not have that ending.
+pub(super) fn unpacked_name(name: &str) -> Option<&str> {
+    let (stem, ending) = name.split_at_checked(name.len().checked_sub(ENDING.len())?)?;
+    ending.eq_ignore_ascii_case(ENDING).then_some(stem)
+}
+
+/// Unpacks what it reads. How much that may be is for the reader to limit.
+pub(super) struct Unpacked<R>(MultiGzDecoder<R>);
+
+impl<R: Read> Unpacked<R> {
+    pub(super) fn new(packed: R) -> Self {
+        Self(MultiGzDecoder::new(packed))
+    }
+}
+
+impl<R: Read> Read for Unpacked<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        self.0.read(bytes).map_err(|error| match error.kind() {
+            ErrorKind::InvalidInput | ErrorKind::InvalidData | ErrorKind::UnexpectedEof => {
+                Error::other("the gzip archive is damaged")
+            }
+            _ => error,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_with_the_ending_are_of_packed_files() {
+        assert_eq!(unpacked_name("teapot.obj.gz"), Some("teapot.obj"));
+        assert_eq!(unpacked_name("teapot.obj.GZ"), Some("teapot.obj"));
+        for other in ["teapot.obj", "gz", "", "\u{e9}\u{e9}", "a.gz.obj"] {
+            assert_eq!(unpacked_name(other), None, "{other}");
+        }
+    }
+}
