@@ -7,7 +7,7 @@ use clap::Args;
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::job::{self, Mode};
-use marraztu::scene::{LoadOptions, Samples};
+use marraztu::scene::{Crease, LoadOptions, Samples};
 
 use super::arguments::size;
 use super::draw_along;
@@ -76,7 +76,9 @@ pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
         return Ok(3);
     };
     draw_along(arguments.threads);
-    let loaded = load(&arguments.mesh, &LoadOptions::default())?;
+    // The job has normals of its own.
+    let options = LoadOptions { crease: Crease::SMOOTH, ..LoadOptions::default() };
+    let loaded = load(&arguments.mesh, &options)?;
     let measured = job::run(
         &job::Job {
             mode,

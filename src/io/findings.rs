@@ -58,6 +58,8 @@ kinds! {
     FaceShort: "a face has fewer than three corners, and is left out", "# faces have fewer than three corners, and are left out";
     /// A face with a corner that is no number.
     FaceUnreadable: "a face has a corner that is no number (\"@\"), and is left out", "# faces have corners that are no numbers (as \"@\"), and are left out";
+    /// A smoothing group that is no number.
+    SmoothingUnreadable: "a smoothing group is neither a number nor \"off\" (\"@\"), and is taken as off", "# smoothing groups are neither numbers nor \"off\" (as \"@\"), and are taken as off";
     /// Lines and points, which are not drawn.
     LineOrPoint: "a statement \"@\" is left out: only faces are drawn", "# statements \"@\" are left out: only faces are drawn";
     /// Curves and surfaces that are not polygons.
@@ -141,6 +143,7 @@ impl FindingKind {
         matches!(
             self,
             Self::FaceUnreadable
+                | Self::SmoothingUnreadable
                 | Self::PolygonCrosses
                 | Self::MtlStray
                 | Self::MtlNumber

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use super::mesh::index;
+use super::mesh::{Shape, index};
 use super::mesh_build::{Outlines, triangles};
 use super::mesh_edges::{Edge, Edges};
 use super::mesh_points::shown_normal;
@@ -27,11 +27,16 @@ pub struct Facet {
 #[derive(Default)]
 pub(super) struct Found {
     corners: OnceLock<Vec<Corner>>,
+    order: OnceLock<DrawOrder>,
+}
+
+/// What was asked for, and does not depend on the normals of vertices.
+#[derive(Default)]
+pub(super) struct FoundOfShape {
     triangles: OnceLock<Vec<Triangle>>,
     normals: OnceLock<Vec<[f32; 3]>>,
     facets: OnceLock<Vec<Facet>>,
     edges: OnceLock<Edges>,
-    order: OnceLock<DrawOrder>,
     edge_order: OnceLock<EdgeOrder>,
 }
 
@@ -40,20 +45,21 @@ impl Mesh {
     #[must_use]
     pub fn corners(&self) -> &[Corner] {
         once::<Vec<_>>(&self.found.corners, || {
+            let vertices = &self.shape.corners;
             let corner = |i: usize| Corner {
-                position: self.corners.vertices[i],
-                uv: self.corners.uvs.get(i).copied().unwrap_or(NONE),
-                smooth: self.corners.smooth(i),
-                filed: self.corners.filed(i),
+                position: vertices[i],
+                uv: self.shape.corner_uvs.get(i).copied().unwrap_or(NONE),
+                smooth: self.corners.smooth(vertices, i),
+                filed: self.corners.filed(vertices, i),
             };
-            (0..self.corners.vertices.len()).into_par_iter().map(corner).collect()
+            (0..vertices.len()).into_par_iter().map(corner).collect()
         })
     }
 
     /// The triangles of all polygons, in the order of the polygons.
     #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
-        once::<Vec<_>>(&self.found.triangles, || triangles(&self.outlines()))
+        once::<Vec<_>>(&self.shape.found.triangles, || triangles(&self.outlines()))
     }
 
     /// The polygon that a triangle belongs to.
@@ -68,14 +74,14 @@ impl Mesh {
 
     /// Whether each polygon is one triangle.
     #[inline(always)]
-    fn has_triangles_only(&self) -> bool {
-        self.triangle_count() == self.polygon_count()
+    const fn has_triangles_only(&self) -> bool {
+        self.triangles_only
     }
 
     /// How many triangles there are.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        self.corners.vertices.len() - 2 * self.polygon_count()
+        self.shape.corners.len() - 2 * self.polygon_count()
     }
 
     /// The corners of a triangle, as places in [`Self::corners`].
@@ -89,7 +95,7 @@ impl Mesh {
     /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
     #[must_use]
     pub fn polygon_normals(&self) -> &[[f32; 3]] {
-        once::<Vec<_>>(&self.found.normals, || {
+        once::<Vec<_>>(&self.shape.found.normals, || {
             let outlines = self.outlines();
             let polygons = 0..self.polygon_count();
             polygons.into_par_iter().map(|i| shown_normal(outlines.normal(i))).collect()
@@ -99,7 +105,7 @@ impl Mesh {
     /// What it takes to light each polygon as a whole.
     #[must_use]
     pub fn facets(&self) -> &[Facet] {
-        once::<Vec<_>>(&self.found.facets, || {
+        once::<Vec<_>>(&self.shape.found.facets, || {
             let facet = |(normal, polygon): (&[f32; 3], u32)| Facet {
                 centre: self.polygon_centre(polygon).as_vec3().to_array(),
                 normal: *normal,
@@ -124,7 +130,7 @@ impl Mesh {
     /// The edges in the order in which they are drawn fastest.
     #[must_use]
     pub fn edge_order(&self) -> &EdgeOrder {
-        once(&self.found.edge_order, || EdgeOrder::new(self))
+        once(&self.shape.found.edge_order, || EdgeOrder::new(self))
     }
 
     /// The sides of all polygons, each once.
@@ -140,12 +146,19 @@ impl Mesh {
     }
 
     fn edge_table(&self) -> &Edges {
-        once(&self.found.edges, || Edges::of(self))
+        once(&self.shape.found.edges, || Edges::of(self))
     }
 
     /// The outlines of all polygons.
     pub(super) fn outlines(&self) -> Outlines<'_> {
-        Outlines { places: &self.positions, corners: &self.corners.vertices, starts: &self.starts }
+        self.shape.outlines()
+    }
+}
+
+impl Shape {
+    /// The outlines of all polygons.
+    pub(super) fn outlines(&self) -> Outlines<'_> {
+        Outlines { places: &self.positions, corners: &self.corners, starts: &self.starts }
     }
 }
 

@@ -22,7 +22,7 @@ use super::replace::{SaveError, Worth, replace};
 use super::texture::load_texture;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
-use crate::scene::{LoadOptions, Model, Scale, Scene, Settings, Texture, View};
+use crate::scene::{Crease, LoadOptions, Model, Scale, Scene, Settings, Texture, View};
 
 /// What the names of scene files end in, without the point.
 pub const SCENE_ENDING: &str = "marraztu";
@@ -257,6 +257,12 @@ impl<'a> Files<'a> {
         Err(SceneFileError::Missing { file: name.to_owned(), missing })
     }
 
+    /// The same file, loaded with another crease angle: it is not read twice.
+    fn with_other_crease(&self, model: &FileModel) -> Option<&Shared<Model>> {
+        let mut loaded = self.models.iter();
+        loaded.find(|(other, _)| other.differs_in_crease_alone(model)).map(|(_, loaded)| loaded)
+    }
+
     fn load_model(
         &mut self,
         model: &FileModel,
@@ -267,15 +273,32 @@ impl<'a> Files<'a> {
         match model {
             FileModel::Own(own) => super::own_model(own)
                 .ok_or_else(|| fail(format!("the program has no model of its own \"{own}\""))),
-            FileModel::File { path, up, scale, winding } => {
+            FileModel::File { path, up, scale, winding, crease } => {
                 let scale = Scale::new(*scale)
                     .ok_or_else(|| fail(format!("{path}: its scale has to be above 0")))?;
-                let options = LoadOptions { up: *up, scale, winding: *winding };
+                let crease = Crease::new(*crease).ok_or_else(|| {
+                    fail(format!("{path}: its crease angle has to be from 0 to 180 degrees"))
+                })?;
+                if let Some(other) = self.with_other_crease(model) {
+                    return Ok(Shared::new(other.with_crease(crease)));
+                }
+                let options = LoadOptions { up: *up, scale, winding: *winding, crease };
                 let loaded = super::load(&self.place(path), &options, progress)?;
                 self.findings.extend(loaded.findings);
                 Ok(Shared::new(loaded.model))
             }
         }
+    }
+}
+
+impl FileModel {
+    /// Whether another one is the same but for its crease angle.
+    fn differs_in_crease_alone(&self, other: &Self) -> bool {
+        let mut other = other.clone();
+        if let (Self::File { crease, .. }, Self::File { crease: others, .. }) = (self, &mut other) {
+            *others = *crease;
+        }
+        *self == other
     }
 }
 
