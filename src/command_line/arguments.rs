@@ -15,7 +15,8 @@ use super::prove::Prove;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::scene::{
-    LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Surface, UpAxis, Winding,
+    Crease, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Surface, UpAxis,
+    Winding,
 };
 
 /// The longest side that a picture may have.
@@ -122,6 +123,10 @@ pub(crate) struct Reading {
     /// Turn polygons round that run clockwise seen from outside
     #[arg(long)]
     flip_winding: bool,
+    /// Degrees between faces up to which their edge is smooth, if the file has neither normals nor
+    /// smoothing groups: 60*, 0 for flat faces, 180 to smooth all
+    #[arg(long, value_name = "DEGREES", value_parser = crease)]
+    crease: Option<Crease>,
 }
 
 /// What objects are made of.
@@ -222,12 +227,13 @@ impl Reading {
             up: self.up.unwrap_or_default(),
             scale: self.scale.unwrap_or_default(),
             winding: if self.flip_winding { Winding::Turned } else { Winding::Kept },
+            crease: self.crease.unwrap_or_default(),
         }
     }
 
     /// Whether anything of it was said.
     pub(crate) const fn is_said(&self) -> bool {
-        self.up.is_some() || self.scale.is_some() || self.flip_winding
+        self.up.is_some() || self.scale.is_some() || self.flip_winding || self.crease.is_some()
     }
 }
 
@@ -263,6 +269,11 @@ pub(crate) fn size(text: &str) -> Result<Size, String> {
 fn scale(text: &str) -> Result<Scale, String> {
     let factor = text.parse().ok().and_then(Scale::new);
     factor.ok_or_else(|| "a scale is a finite number above 0".to_owned())
+}
+
+fn crease(text: &str) -> Result<Crease, String> {
+    let crease = text.parse().ok().and_then(Crease::new);
+    crease.ok_or_else(|| "a crease angle is a number of degrees from 0 to 180".to_owned())
 }
 
 fn finite(text: &str) -> Result<f64, String> {
