@@ -79,6 +79,7 @@ fn help_says_what_there_is_and_version_which() {
         "up",
         "scale",
         "flip-winding",
+        "crease",
         "texture",
         "camera",
         "from",
@@ -368,6 +369,32 @@ fn normals_of_the_file_can_be_passed_over() {
     assert!(drawn(folder.path(), &["square.obj", "--no-file-normals"]) != plain);
 }
 
+/// Two squares that meet at an angle of 45 degrees.
+const ROOF: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 4 0 -2\nv 4 2 -2\nf 1 2 3 4\nf 2 5 6 3\n";
+
+#[test]
+fn edges_sharper_than_the_crease_angle_that_is_asked_for_are_sharp() {
+    let folder = folder();
+    std::fs::write(folder.path().join("roof.obj"), ROOF).unwrap();
+    let drawn = |crease: &[&str]| drawn(folder.path(), &[&["roof.obj"], crease].concat());
+    let smooth = drawn(&["--crease", "180"]);
+    let flat = drawn(&["--crease", "0"]);
+    assert!(flat != smooth);
+    assert!(drawn(&[]) == smooth, "60 degrees are more than 45");
+    assert!(drawn(&["--crease", "45"]) == smooth && drawn(&["--crease", "44.9"]) == flat);
+    assert!(drawn(&["--normals", "face"]) == flat);
+    for command in
+        [&["info", "--crease", "44.5"][..], &["plan", "--size", "8x8", "--crease", "44.5"]]
+    {
+        let (out, _) = ends_with(0, folder.path(), &[command, &["roof.obj"]].concat());
+        assert_eq!(
+            command[0] == "info",
+            out.contains("smoothing       crease 44.5 degrees"),
+            "{out}"
+        );
+    }
+}
+
 #[test]
 fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
     let folder = folder();
@@ -411,6 +438,9 @@ fn arguments_that_cannot_be_meant_end_with_2_and_draw_nothing() {
         (&["render", "-o", "a.png", "--lights", "x"], "numbers"),
         (&["render", "-o", "a.png", "--edges", "--edges-over"], "cannot be used with"),
         (&["render", "-o", "a.png", "--up", "z"], "name one"),
+        (&["render", "-o", "a.png", "--crease", "60"], "name one"),
+        (&["render", "-o", "a.png", "square.obj", "--crease", "181"], "from 0 to 180"),
+        (&["render", "-o", "a.png", "square.obj", "--crease", "NaN"], "from 0 to 180"),
         (&["render", "-o", "a.png", "--nonsense"], "--nonsense"),
         (&["info"], "<FILES>"),
         (&["--nonsense"], "--nonsense"),

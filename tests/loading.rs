@@ -271,7 +271,8 @@ fn a_colour_of_edges_is_a_statement_or_a_comment() {
 fn the_axes_the_scale_and_the_winding_are_as_asked_for() {
     let text = "v 1 2 3\nv 2 2 3\nv 1 3 3\nvn 0 1 0.5\nf 1//1 2//1 3//1\n";
     let with = |up, scale, winding| {
-        let options = LoadOptions { up, scale: Scale::new(scale).unwrap(), winding };
+        let scale = Scale::new(scale).unwrap();
+        let options = LoadOptions { up, scale, winding, ..LoadOptions::default() };
         parse(text.as_bytes(), "a.obj", None, &options, &Progress::new())
     };
     let mesh = with(UpAxis::Z, 10.0, Winding::Kept).unwrap().model.mesh;

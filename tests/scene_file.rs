@@ -10,18 +10,19 @@ use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math;
+use marraztu::edit::items::set_crease;
 use marraztu::io::{
     FindingKind, Progress, SceneFileError, default_scene, load, load_texture, open, open_with,
     save, save_picture, to_text,
 };
 use marraztu::scene::{
-    Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Coverage, DepthFormat,
-    Fill, Filter, Frame, Interpolation, Item, LeaveOut, Lens, Light, LightAt, LightId, LightKind,
-    LoadOptions, Material, MaterialChoice, NormalLength, NormalMatrix, Normalising, Normals,
-    Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId, Projection,
-    Rounding, Samples, Scale, Scene, Settings, Sides, SpecularForm, SpecularPower, Spin, SpotOwner,
-    Steps, Subject, Subpixels, Surface, Texture, Transformation, UpAxis, VertexArithmetic, View,
-    Winding, Wrap,
+    Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Coverage, Crease,
+    DepthFormat, Fill, Filter, Frame, Interpolation, Item, LeaveOut, Lens, Light, LightAt, LightId,
+    LightKind, LoadOptions, Material, MaterialChoice, NormalLength, NormalMatrix, Normalising,
+    Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId,
+    Projection, Rounding, Samples, Scale, Scene, Settings, Sides, SpecularForm, SpecularPower,
+    Spin, SpotOwner, Steps, Subject, Subpixels, Surface, Texture, Transformation, UpAxis,
+    VertexArithmetic, View, Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -46,8 +47,12 @@ fn insert(scene: &mut Scene, at: usize, item: Item) {
 fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
     let [a, b, c, d] = numbers;
     let (mut scene, _) = default_scene();
-    let options =
-        LoadOptions { up: UpAxis::Z, scale: Scale::new(2.5).unwrap(), winding: Winding::Turned };
+    let options = LoadOptions {
+        up: UpAxis::Z,
+        scale: Scale::new(2.5).unwrap(),
+        winding: Winding::Turned,
+        crease: Crease::new(12.5).unwrap(),
+    };
     let cube = load(&folder.join("models/cube.obj"), &options, &Progress::new()).unwrap().model;
     let plain = load_texture(&folder.join("chess.png")).unwrap();
     let texture =
@@ -507,6 +512,35 @@ fn one_model_in_many_objects_is_read_once_and_shared() {
     let opened = open(&path, &Progress::new()).unwrap();
     let model = |id| &opened.scene.objects.get(ObjectId(id)).unwrap().model;
     assert!(Shared::same(model(20), model(21)));
+}
+
+#[test]
+fn objects_of_one_file_keep_their_crease_angles() {
+    let folder = folder();
+    let (mut scene, view, settings) = rich(folder.path(), [1.0, 2.0, 3.0, 4.0]);
+    for (id, degrees) in [(21, 90.0), (20, 180.0)] {
+        let crease = Crease::new(degrees).unwrap();
+        set_crease(&scene, ObjectId(id), crease).unwrap().apply(&mut scene).unwrap();
+    }
+    let path = folder.path().join("a.marraztu");
+    save(&path, &scene, &view, &settings).unwrap();
+    let opened = open(&path, &Progress::new()).unwrap();
+    assert_eq!(opened.scene, without_stacks(&scene));
+    let model = |id| &opened.scene.objects.get(ObjectId(id)).unwrap().model;
+    assert_eq!([20, 21].map(|id| model(id).options.crease.get()), [180.0, 90.0]);
+    assert!(model(20).shares_file_with(model(21)), "the file is read once");
+
+    // Files from before there were creases have the default.
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replace("crease: 180.0,", "").replace("crease: 90.0,", "")).unwrap();
+    let opened = open(&path, &Progress::new()).unwrap().scene;
+    let model = |id| &opened.objects.get(ObjectId(id)).unwrap().model;
+    assert_eq!([20, 21].map(|id| model(id).options.crease), [Crease::default(); 2]);
+
+    std::fs::write(&path, text.replace("crease: 180.0", "crease: 181.0")).unwrap();
+    let error = open(&path, &Progress::new()).unwrap_err().to_string();
+    let reason = "models/cube.obj: its crease angle has to be from 0 to 180 degrees";
+    assert_eq!(error, format!("a.marraztu: {reason}"));
 }
 
 #[test]

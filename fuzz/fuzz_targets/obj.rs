@@ -5,7 +5,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use marraztu_fuzz::io::{Progress, describe, parse};
-use marraztu_fuzz::scene::{LoadOptions, Scale, UpAxis, Winding};
+use marraztu_fuzz::scene::{Crease, LoadOptions, Scale, UpAxis, Winding};
 
 fuzz_target!(|data: &[u8]| {
     let Some((options, text)) = data.split_first() else { return };
@@ -13,6 +13,7 @@ fuzz_target!(|data: &[u8]| {
         up: if options & 1 == 0 { UpAxis::Y } else { UpAxis::Z },
         winding: if options & 2 == 0 { Winding::Kept } else { Winding::Turned },
         scale: Scale::new(if options & 4 == 0 { 1.0 } else { 1e30 }).expect("above 0"),
+        crease: Crease::new(if options & 8 == 0 { 60.0 } else { 180.0 }).expect("within range"),
     };
     let Ok(loaded) = parse(text, "a.obj", None, &options, &Progress::new()) else { return };
     assert!(describe(&loaded).starts_with("name"));

@@ -8,8 +8,11 @@ use super::dialogs::take_focus;
 use super::panels::color_picker::swatch;
 use super::panels::spheres::{self, Sphere};
 use crate::base::color::Color;
+use crate::edit::items;
 use crate::io::Loaded;
-use crate::scene::{LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding};
+use crate::scene::{
+    Crease, LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding,
+};
 
 /// The choice of a material.
 #[derive(Debug)]
@@ -19,6 +22,7 @@ pub(super) struct MaterialDialog {
     choices: MaterialChoices,
     own: Material,
     scale: f64,
+    crease: f64,
 }
 
 /// What is chosen.
@@ -54,9 +58,9 @@ impl MaterialDialog {
         material: MaterialChoice,
         options: LoadOptions,
     ) -> Self {
-        let scale = options.scale.get();
+        let (scale, crease) = (options.scale.get(), options.crease.get());
         let choices = MaterialChoices { material, options, texture: None };
-        Self { loaded, choices, own: Material::default(), scale }
+        Self { loaded, choices, own: Material::default(), scale, crease }
     }
 
     pub(super) fn set_texture(&mut self, path: PathBuf) {
@@ -135,6 +139,10 @@ impl MaterialDialog {
     }
 
     fn options_ui(&mut self, ui: &mut Ui) -> Option<End> {
+        let idle = self.loaded.as_ref().and_then(|(_, loaded)| {
+            let why = items::why_no_crease(&loaded.model, true)?;
+            Some(format!("Off: {why}"))
+        });
         let options = &mut self.choices.options;
         let mut end = None;
         egui::CollapsingHeader::new("How the file is read").show(ui, |ui| {
@@ -153,6 +161,17 @@ impl MaterialDialog {
             let mut turned = options.winding == Winding::Turned;
             ui.checkbox(&mut turned, "Faces are inside out: turn them");
             options.winding = if turned { Winding::Turned } else { Winding::Kept };
+            ui.horizontal(|ui| {
+                let label = ui.label("Crease angle");
+                let value = egui::DragValue::new(&mut self.crease).speed(0.5).range(0.0..=180.0);
+                let field = ui.add_enabled(idle.is_none(), value.suffix(" deg"));
+                let hint = "Edges between faces that differ by more degrees are sharp";
+                field
+                    .labelled_by(label.id)
+                    .on_hover_text(hint)
+                    .on_disabled_hover_text(idle.as_deref().unwrap_or(hint));
+                options.crease = Crease::new(self.crease).unwrap_or_default();
+            });
             ui.horizontal(|ui| {
                 let texture = self.choices.texture.as_deref().map(file_name);
                 ui.label(format!("Texture: {}", texture.as_deref().unwrap_or("the file's own")));

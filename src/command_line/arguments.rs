@@ -19,8 +19,8 @@ use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::io::PictureFormat;
 use marraztu::scene::{
-    LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides, Surface, UpAxis,
-    Winding,
+    Crease, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides, Surface,
+    UpAxis, Winding,
 };
 
 /// Edits and draws 3D scenes of .obj models, on the CPU alone.
@@ -135,6 +135,10 @@ pub(crate) struct Reading {
     /// Reverse all polygons, for files whose polygons run clockwise seen from outside
     #[arg(long)]
     flip_winding: bool,
+    /// Degrees between faces up to which their edge is smooth, if the file has neither normals nor
+    /// smoothing groups: 60*, 0 for flat faces, 180 to smooth all
+    #[arg(long, value_name = "DEGREES", value_parser = crease)]
+    crease: Option<Crease>,
 }
 
 /// How the surfaces of objects look.
@@ -253,12 +257,13 @@ impl Reading {
             up: self.up.unwrap_or_default(),
             scale: self.scale.unwrap_or_default(),
             winding: if self.flip_winding { Winding::Turned } else { Winding::Kept },
+            crease: self.crease.unwrap_or_default(),
         }
     }
 
     /// Whether anything of it was said.
     pub(crate) const fn is_said(&self) -> bool {
-        self.up.is_some() || self.scale.is_some() || self.flip_winding
+        self.up.is_some() || self.scale.is_some() || self.flip_winding || self.crease.is_some()
     }
 }
 
@@ -281,6 +286,11 @@ fn picture(path: PathBuf) -> Result<PathBuf, &'static str> {
 fn scale(text: &str) -> Result<Scale, String> {
     let factor = text.parse().ok().and_then(Scale::new);
     factor.ok_or_else(|| "a scale is a finite number above 0".to_owned())
+}
+
+fn crease(text: &str) -> Result<Crease, String> {
+    let crease = text.parse().ok().and_then(Crease::new);
+    crease.ok_or_else(|| "a crease angle is a number of degrees from 0 to 180".to_owned())
 }
 
 fn finite(text: &str) -> Result<f64, String> {

@@ -8,7 +8,7 @@ use fearless_simd::Level;
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::job::{self, Mode};
-use marraztu::scene::{LoadOptions, Samples};
+use marraztu::scene::{Crease, LoadOptions, Samples};
 
 use super::failure::Failure;
 use super::stage::load;
@@ -100,7 +100,9 @@ pub(crate) fn job(arguments: &Job) -> Result<u8, Failure> {
         }
     };
     draw_along(arguments.threads);
-    let loaded = load(&arguments.mesh, &LoadOptions::default())?;
+    // The job has normals of its own.
+    let options = LoadOptions { crease: Crease::SMOOTH, ..LoadOptions::default() };
+    let loaded = load(&arguments.mesh, &options)?;
     let measured = job::run(
         &job::Job {
             mode,

@@ -46,7 +46,7 @@ impl Stage {
         }
         if models.is_empty() && reading.is_said() {
             return Err(usage(
-                "--up, --scale and --flip-winding say how models are read: name one",
+                "--up, --scale, --flip-winding and --crease say how models are read: name one",
             ));
         }
         let mut stage = match scenes.first() {

@@ -8,8 +8,8 @@ use super::Refusal;
 use super::names::Names;
 use crate::base::Shared;
 use crate::scene::{
-    Camera, CameraId, Command, CommandError, Item, ItemId, Lens, Light, LightId, LightKind,
-    MaterialChoice, Model, Object, ObjectId, Placed, Pose, Scene, SpotOwner,
+    Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId, LightKind,
+    MaterialChoice, Model, Object, ObjectId, Placed, Pose, Scene, Smoothing, SpotOwner,
 };
 
 /// More parts than this are not made objects at once: the outline could not be read any more.
@@ -222,6 +222,39 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refu
         return Err(CommandError::Lens.into());
     }
     change_camera(scene, id, |camera| camera.lens = lens)
+}
+
+/// Why a crease angle changes nothing of a model, if it does not.
+#[must_use]
+pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
+    if model.source.is_none() {
+        Some("the program's own models are smooth all over")
+    } else if matches!(model.mesh.smoothing(), Smoothing::Groups(_)) {
+        Some("the file has smoothing groups, which are used instead")
+    } else if file_normals && model.mesh.has_file_normals_only() {
+        Some("the file has normals, which are used instead")
+    } else {
+        None
+    }
+}
+
+/// Gives the model of an object another crease angle. Another object of the same file that has this
+/// angle already shares its model with it.
+///
+/// # Errors
+/// If the object is gone, or the angle has no effect on it.
+pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Result<Command, Refusal> {
+    let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
+    if let Some(reason) = why_no_crease(&object.model, object.file_normals) {
+        return Err(Refusal::NoCrease(reason));
+    }
+    let now = &object.model;
+    let is_wanted =
+        |other: &&Shared<Model>| other.options.crease == crease && other.shares_file_with(now);
+    let mut others = scene.objects.iter().map(|(_, object)| &object.model);
+    let found = others.find(is_wanted).cloned();
+    let model = found.unwrap_or_else(|| Shared::new(now.with_crease(crease)));
+    change_object(scene, id, |object| object.model = model)
 }
 
 /// Changes what of an object is neither its place nor its spin.

@@ -98,6 +98,9 @@ pub enum Refusal {
     /// Nothing turns, nothing to apply.
     #[error("the object does not turn by itself")]
     NotSpinning,
+    /// The edges of the model are smooth or sharp by something else.
+    #[error("the crease angle has no effect: {0}")]
+    NoCrease(&'static str),
     /// Only a bulb circles.
     #[error("only a bulb can circle")]
     NotABulb,

@@ -10,8 +10,8 @@ use super::texture::own_picture;
 use crate::base::Shared;
 use crate::base::once::get_or_compute;
 use crate::scene::{
-    Camera, CameraId, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model, Object,
-    ObjectId, Placed, Pose, PresetId, Scene, Texture, View, Wrap,
+    Camera, CameraId, Crease, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model,
+    Object, ObjectId, Placed, Pose, PresetId, Scene, Texture, View, Wrap,
 };
 
 /// A model that the program carries.
@@ -31,7 +31,8 @@ impl Asset {
     fn model(&self) -> Shared<Model> {
         let read = || {
             let file = format!("{}.obj", self.name);
-            let loaded = parse(self.text, &file, None, &LoadOptions::default(), &Progress::new());
+            let options = LoadOptions { crease: Crease::SMOOTH, ..LoadOptions::default() };
+            let loaded = parse(self.text, &file, None, &options, &Progress::new());
             Shared::new(loaded.expect("the program's own models are sound").model)
         };
         get_or_compute(&self.model, read).clone()

@@ -1,9 +1,10 @@
 //! What a file holds, as plain text: the answer of `marraztu info FILE`.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::obj::Loaded;
-use crate::scene::{FileMaterial, Mesh, Model, UpAxis, Winding};
+use crate::scene::{FileMaterial, Mesh, Model, Smoothing, UpAxis, Winding};
 
 /// The shape, parts, materials and findings of a loaded file, line by line.
 #[must_use]
@@ -99,10 +100,23 @@ fn describe_mesh(mesh: &Mesh, text: &mut Text) {
     }
     let yes = |present: bool| if present { "yes" } else { "no" };
     text.line("normals", if mesh.has_file_normals() { "the file's" } else { "computed" });
+    text.line("smoothing", &smoothing(mesh));
     let uv = mesh.corners().iter().any(|corner| corner.uv != crate::scene::NONE);
     text.line("texture coords", yes(uv));
     text.line("vertex colours", yes(!mesh.colors().is_empty()));
     text.line("closed", &closed(mesh));
+}
+
+/// "crease 60 degrees", "3 groups".
+fn smoothing(mesh: &Mesh) -> String {
+    match mesh.smoothing() {
+        _ if mesh.has_file_normals_only() => "by the file's normals".to_owned(),
+        Smoothing::Crease(crease) => format!("crease {} degrees", short(crease.get())),
+        Smoothing::Groups(groups) => {
+            let groups: BTreeSet<u32> = groups.iter().copied().filter(|i| *i != 0).collect();
+            if groups.is_empty() { "off".to_owned() } else { number_of(groups.len(), "group") }
+        }
+    }
 }
 
 /// "12,480 (480 triangles, 12,000 quads)".
@@ -266,6 +280,7 @@ triangles       6
 box             (-1, 0, -1) to (1, 2, 1)
 size            2 x 2 x 2
 normals         computed
+smoothing       crease 60 degrees
 texture coords  no
 vertex colours  no
 closed          yes (8 edges, each of two faces)

@@ -93,6 +93,8 @@ kinds! {
     FaceShort: "a face has fewer than three corners and is skipped", "# faces have fewer than three corners and are skipped";
     /// A face with a corner that is not a number.
     FaceUnreadable: "a face has a corner that is not a number (\"@\") and is skipped", "# faces have corners that are not numbers (such as \"@\") and are skipped";
+    /// A smoothing group that is not a number.
+    SmoothingUnreadable: "a smoothing group is neither a number nor \"off\" (\"@\") and is taken as off", "# smoothing groups are neither numbers nor \"off\" (such as \"@\") and are taken as off";
     /// Lines and points, which are not drawn.
     LineOrPoint: "a statement \"@\" is skipped: only faces are drawn", "# statements \"@\" are skipped: only faces are drawn";
     /// Curves and surfaces that are not polygons.
@@ -184,6 +186,7 @@ impl FindingKind {
         matches!(
             self,
             Self::FaceUnreadable
+                | Self::SmoothingUnreadable
                 | Self::PolygonCrosses
                 | Self::MtlStray
                 | Self::MtlNumber

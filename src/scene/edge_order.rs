@@ -35,7 +35,7 @@ impl EdgeOrder {
         for triangle in &mesh.draw_order().triangles {
             let corners = mesh.triangle(triangle.number as usize);
             for (corner, vertex) in corners.into_iter().zip(triangle.vertices) {
-                vertices[mesh.corners.vertices[corner] as usize] = vertex;
+                vertices[mesh.shape.corners[corner] as usize] = vertex;
             }
         }
         let edges = mesh.edges().iter().enumerate().map(|(number, edge)| DrawEdge {

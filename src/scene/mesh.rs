@@ -4,15 +4,17 @@
 //! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
 //! polygon names the point it has with computed normals and the one it has with the file's.
 //!
-//! What not every picture needs is found when it is first asked for (`mesh_found`).
+//! What not every picture needs is found when it is first asked for (`mesh_found`). Meshes that differ
+//! in their computed normals alone share everything else.
 //!
 //! The fields are private and the constructor checks them, so that no index is ever out of range.
 
 use glam::DVec3;
 
-use super::Bounds;
-use super::mesh_found::Found;
+use super::mesh_found::{Found, FoundOfShape};
 use super::mesh_points::CornerPoints;
+use super::{Bounds, Smoothing};
+use crate::base::Shared;
 
 /// In place of an index: there is none.
 pub const NONE: u32 = u32::MAX;
@@ -36,6 +38,8 @@ pub struct MeshSource {
     pub polygon_parts: Vec<u32>,
     /// The parts; at least one where there is a polygon.
     pub parts: Vec<Part>,
+    /// Which polygons share the normals that are computed.
+    pub smoothing: Smoothing,
 }
 
 /// A corner of a polygon as the file names it.
@@ -65,7 +69,7 @@ pub struct Corner {
     pub position: u32,
     /// Its place on the texture, or [`NONE`].
     pub uv: u32,
-    /// Its point with the computed normal.
+    /// Its point with the computed normal: the mean of the faces around that are smooth with its own.
     pub smooth: u32,
     /// Its point with the file's normal where every corner of the polygon has one, else `smooth`.
     pub filed: u32,
@@ -91,28 +95,54 @@ pub struct Triangle {
 
 /// The shape of a model: polygons over shared vertices, and what follows from them.
 pub struct Mesh {
+    pub(super) shape: Shared<Shape>,
+    pub(super) smoothing: Smoothing,
+    pub(super) points: Vec<Point>,
+    pub(super) corners: CornerPoints,
+    /// Whether each polygon is one triangle.
+    pub(super) triangles_only: bool,
+    pub(super) found: Found,
+}
+
+/// What of a mesh does not depend on its normals.
+pub(super) struct Shape {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) colors: Vec<[f32; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
-    pub(super) points: Vec<Point>,
-    pub(super) corners: CornerPoints,
+    /// The vertex of each corner.
+    pub(super) corners: Vec<u32>,
+    /// The place on the texture of each corner, or [`NONE`]; empty if no corner has one.
+    pub(super) corner_uvs: Vec<u32>,
     pub(super) starts: Vec<u32>,
     pub(super) polygon_parts: Vec<u32>,
     pub(super) without_area: Vec<u32>,
     pub(super) parts: Vec<Part>,
     pub(super) bounds: Option<Bounds>,
     pub(super) mean: DVec3,
-    pub(super) found: Found,
+    pub(super) found: FoundOfShape,
+}
+
+impl PartialEq for Shape {
+    fn eq(&self, other: &Self) -> bool {
+        self.positions == other.positions
+            && self.colors == other.colors
+            && self.uvs == other.uvs
+            && self.corners == other.corners
+            && self.corner_uvs == other.corner_uvs
+            && self.starts == other.starts
+            && self.polygon_parts == other.polygon_parts
+            && self.parts == other.parts
+    }
 }
 
 /// What is worked out when it is first asked for is left out: it is no part of what a mesh is.
 impl std::fmt::Debug for Mesh {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Mesh")
-            .field("positions", &self.positions)
-            .field("corners", &self.corners.vertices)
-            .field("starts", &self.starts)
-            .field("parts", &self.parts)
+            .field("positions", &self.shape.positions)
+            .field("corners", &self.shape.corners)
+            .field("starts", &self.shape.starts)
+            .field("parts", &self.shape.parts)
             .finish_non_exhaustive()
     }
 }
@@ -139,14 +169,10 @@ pub enum MeshError {
 
 impl PartialEq for Mesh {
     fn eq(&self, other: &Self) -> bool {
-        self.positions == other.positions
-            && self.colors == other.colors
-            && self.uvs == other.uvs
+        self.shape == other.shape
+            && self.smoothing == other.smoothing
             && self.points == other.points
-            && self.corners() == other.corners()
-            && self.starts == other.starts
-            && self.polygon_parts == other.polygon_parts
-            && self.parts == other.parts
+            && self.corners == other.corners
     }
 }
 
@@ -154,23 +180,23 @@ impl Mesh {
     /// Where the vertices are, in object space.
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
-        &self.positions
+        &self.shape.positions
     }
 
     /// Red, green and blue of each vertex, or nothing where the file has no colours.
     #[must_use]
     pub fn colors(&self) -> &[[f32; 3]] {
-        &self.colors
+        &self.shape.colors
     }
 
     /// Places on the texture.
     #[must_use]
     pub fn uvs(&self) -> &[[f32; 2]] {
-        &self.uvs
+        &self.shape.uvs
     }
 
-    /// Vertices with their normals. The first are those with computed normals, one a vertex, in the
-    /// order of [`Self::positions`].
+    /// Vertices with their normals. The first are one a vertex, in the order of [`Self::positions`],
+    /// each with a computed normal; then there are further computed ones, and the file's.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
@@ -179,7 +205,7 @@ impl Mesh {
     /// How many polygons there are.
     #[must_use]
     pub fn polygon_count(&self) -> usize {
-        self.polygon_parts.len()
+        self.shape.polygon_parts.len()
     }
 
     /// The corners of one polygon.
@@ -191,19 +217,20 @@ impl Mesh {
     /// Where the corners of one polygon stand in [`Self::corners`].
     #[must_use]
     pub fn corners_of(&self, polygon: u32) -> std::ops::Range<usize> {
-        self.starts[polygon as usize] as usize..self.starts[polygon as usize + 1] as usize
+        self.shape.starts[polygon as usize] as usize
+            ..self.shape.starts[polygon as usize + 1] as usize
     }
 
     /// The part that each polygon belongs to.
     #[must_use]
     pub fn polygon_parts(&self) -> &[u32] {
-        &self.polygon_parts
+        &self.shape.polygon_parts
     }
 
     /// The polygons without area, which have no normal of their own; ascending.
     #[must_use]
     pub fn without_area(&self) -> &[u32] {
-        &self.without_area
+        &self.shape.without_area
     }
 
     /// The mean of a polygon's corners.
@@ -224,7 +251,7 @@ impl Mesh {
     /// The runs of the file's `o`, `g` and `usemtl`.
     #[must_use]
     pub fn parts(&self) -> &[Part] {
-        &self.parts
+        &self.shape.parts
     }
 
     /// Whether any polygon has normals of the file's own.
@@ -233,16 +260,28 @@ impl Mesh {
         !self.corners.filed.is_empty()
     }
 
+    /// Whether every polygon has normals of the file's own.
+    #[must_use]
+    pub const fn has_file_normals_only(&self) -> bool {
+        self.has_file_normals() && self.corners.filed_only
+    }
+
+    /// Which polygons share the normals that are computed.
+    #[must_use]
+    pub const fn smoothing(&self) -> &Smoothing {
+        &self.smoothing
+    }
+
     /// The extent of the vertices; `None` where there are none.
     #[must_use]
-    pub const fn bounds(&self) -> Option<Bounds> {
-        self.bounds
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.shape.bounds
     }
 
     /// The mean of the vertices: what cameras in analysis look at.
     #[must_use]
-    pub const fn mean(&self) -> DVec3 {
-        self.mean
+    pub fn mean(&self) -> DVec3 {
+        self.shape.mean
     }
 }
 

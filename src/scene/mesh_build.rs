@@ -6,11 +6,15 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::mesh::{index, mean};
-use super::mesh_found::Found;
-use super::mesh_points::{Normals, points_and_corners};
+use super::mesh::{Shape, index, mean};
+use super::mesh_found::{Found, FoundOfShape};
+use super::mesh_points::{Computed, points_and_corners};
 use super::triangulate::Triangulator;
-use super::{Bounds, Mesh, MeshError, MeshSource, NONE, SourceCorner, Triangle, dvec3, newell};
+use super::{
+    Bounds, Crease, Mesh, MeshError, MeshSource, NONE, Smoothing, SourceCorner, Triangle, dvec3,
+    newell,
+};
+use crate::base::Shared;
 use crate::base::lists::concatenated;
 use crate::base::math;
 
@@ -72,29 +76,63 @@ impl Mesh {
     pub fn from_lists(source: MeshSource, corners: CornerLists) -> Result<Self, MeshError> {
         check(&source, &corners)?;
         let starts = running_sum(&source.arities);
-        let outlines =
-            Outlines { places: &source.positions, corners: &corners.positions, starts: &starts };
-        let normals = Normals::of(&outlines, source.positions.len());
+        let triangles_only = corners.positions.len() == 3 * source.arities.len();
         let positions = || source.positions.iter().copied().map(dvec3);
         // Two sums that have to be taken in their order, beside what is not summed.
-        let ((points, corners), (bounds, mean)) = rayon::join(
-            || points_and_corners(&source, corners, &starts, &normals),
+        let ((computed, corner_points), (bounds, mean)) = rayon::join(
+            || points_and_corners(&source, &corners, &starts),
             || (Bounds::of(positions()), mean(positions())),
         );
-        Ok(Self {
+        let shape = Shape {
             bounds,
             mean,
-            without_area: normals.without_area,
+            without_area: computed.without_area,
             positions: source.positions,
             colors: source.colors,
             uvs: source.uvs,
-            points,
-            corners,
+            corners: corners.positions,
+            corner_uvs: corners.uvs,
             starts,
             polygon_parts: source.polygon_parts,
             parts: source.parts,
+            found: FoundOfShape::default(),
+        };
+        Ok(Self {
+            shape: Shared::new(shape),
+            smoothing: source.smoothing,
+            points: computed.points,
+            corners: corner_points,
+            triangles_only,
             found: Found::default(),
         })
+    }
+
+    /// The mesh with another crease angle, which shares with this one all but the normals. Where the
+    /// file has smoothing groups, it is the same mesh again.
+    #[must_use]
+    pub fn with_crease(&self, crease: Crease) -> Self {
+        let smoothing = match &self.smoothing {
+            Smoothing::Crease(_) => Smoothing::Crease(crease),
+            groups @ Smoothing::Groups(_) => groups.clone(),
+        };
+        let outlines = self.outlines();
+        let computed = Computed::of(&outlines, self.positions().len(), &smoothing);
+        let (points, corners) =
+            self.corners.with_computed(&self.points, computed, outlines.corners);
+        Self {
+            shape: self.shape.clone(),
+            smoothing,
+            points,
+            corners,
+            triangles_only: self.triangles_only,
+            found: Found::default(),
+        }
+    }
+
+    /// Whether the other is the same mesh up to the crease angle, by [`Self::with_crease`].
+    #[must_use]
+    pub fn shares_shape_with(&self, other: &Self) -> bool {
+        Shared::same(&self.shape, &other.shape)
     }
 }
 
@@ -179,6 +217,9 @@ fn check(source: &MeshSource, corners: &CornerLists) -> Result<(), MeshError> {
     length("corners", corners.positions.len() as u64 == all)?;
     length("corners", right(&corners.uvs) && right(&corners.normals))?;
     length("parts of polygons", source.polygon_parts.len() == source.arities.len())?;
+    if let Smoothing::Groups(groups) = &source.smoothing {
+        length("smoothing groups", groups.len() == source.arities.len())?;
+    }
     length("colours", [0, source.positions.len()].contains(&source.colors.len()))?;
     let finite = |what, right: bool| if right { Ok(()) } else { Err(MeshError::NotFinite(what)) };
     let all = |rows: &[[f32; 3]]| rows.par_iter().all(|row| row.iter().all(|x| x.is_finite()));

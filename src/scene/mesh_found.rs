@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::closed::is_closed;
-use super::mesh::index;
+use super::mesh::{Shape, index};
 use super::mesh_build::{Outlines, triangles};
 use super::mesh_edges::{Edge, Edges};
 use super::mesh_points::shown_normal;
@@ -48,11 +48,16 @@ pub enum Derived {
 #[derive(Default)]
 pub(super) struct Found {
     corners: OnceLock<Vec<Corner>>,
+    order: OnceLock<DrawOrder>,
+}
+
+/// What was asked for, and does not depend on the normals of vertices.
+#[derive(Default)]
+pub(super) struct FoundOfShape {
     triangles: OnceLock<Vec<Triangle>>,
     normals: OnceLock<Vec<[f32; 3]>>,
     facets: OnceLock<Vec<Facet>>,
     edges: OnceLock<Edges>,
-    order: OnceLock<DrawOrder>,
     edge_order: OnceLock<EdgeOrder>,
     closed: OnceLock<bool>,
 }
@@ -62,20 +67,21 @@ impl Mesh {
     #[must_use]
     pub fn corners(&self) -> &[Corner] {
         get_or_compute::<Vec<_>>(&self.found.corners, || {
+            let vertices = &self.shape.corners;
             let corner = |i: usize| Corner {
-                position: self.corners.vertices[i],
-                uv: self.corners.uvs.get(i).copied().unwrap_or(NONE),
-                smooth: self.corners.smooth(i),
-                filed: self.corners.filed(i),
+                position: vertices[i],
+                uv: self.shape.corner_uvs.get(i).copied().unwrap_or(NONE),
+                smooth: self.corners.smooth(vertices, i),
+                filed: self.corners.filed(vertices, i),
             };
-            (0..self.corners.vertices.len()).into_par_iter().map(corner).collect()
+            (0..vertices.len()).into_par_iter().map(corner).collect()
         })
     }
 
     /// The triangles of all polygons, in the order of the polygons.
     #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
-        get_or_compute::<Vec<_>>(&self.found.triangles, || triangles(&self.outlines()))
+        get_or_compute::<Vec<_>>(&self.shape.found.triangles, || triangles(&self.outlines()))
     }
 
     /// The polygon that a triangle belongs to.
@@ -105,14 +111,14 @@ impl Mesh {
 
     /// Whether each polygon is one triangle.
     #[inline(always)]
-    fn has_triangles_only(&self) -> bool {
-        self.triangle_count() == self.polygon_count()
+    const fn has_triangles_only(&self) -> bool {
+        self.triangles_only
     }
 
     /// How many triangles there are.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        self.corners.vertices.len() - 2 * self.polygon_count()
+        self.shape.corners.len() - 2 * self.polygon_count()
     }
 
     /// The corners of a triangle, as places in [`Self::corners`].
@@ -126,7 +132,7 @@ impl Mesh {
     /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
     #[must_use]
     pub fn polygon_normals(&self) -> &[[f32; 3]] {
-        get_or_compute::<Vec<_>>(&self.found.normals, || {
+        get_or_compute::<Vec<_>>(&self.shape.found.normals, || {
             let outlines = self.outlines();
             let polygons = 0..self.polygon_count();
             polygons.into_par_iter().map(|i| shown_normal(outlines.normal(i))).collect()
@@ -136,7 +142,7 @@ impl Mesh {
     /// What it takes to light each polygon as a whole.
     #[must_use]
     pub fn facets(&self) -> &[Facet] {
-        get_or_compute::<Vec<_>>(&self.found.facets, || {
+        get_or_compute::<Vec<_>>(&self.shape.found.facets, || {
             let facet = |(normal, polygon): (&[f32; 3], u32)| Facet {
                 centre: self.polygon_centre(polygon).as_vec3().to_array(),
                 normal: *normal,
@@ -150,7 +156,7 @@ impl Mesh {
     /// the other.
     #[must_use]
     pub fn is_closed(&self) -> bool {
-        *get_or_compute(&self.found.closed, || is_closed(&self.outlines()))
+        *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))
     }
 
     /// The triangles and vertices in the order in which they are drawn fastest.
@@ -168,7 +174,7 @@ impl Mesh {
     /// The edges in the order in which they are drawn fastest.
     #[must_use]
     pub fn edge_order(&self) -> &EdgeOrder {
-        get_or_compute(&self.found.edge_order, || EdgeOrder::new(self))
+        get_or_compute(&self.shape.found.edge_order, || EdgeOrder::new(self))
     }
 
     /// The sides of all polygons, each once.
@@ -184,11 +190,18 @@ impl Mesh {
     }
 
     fn edge_table(&self) -> &Edges {
-        get_or_compute(&self.found.edges, || Edges::of(self))
+        get_or_compute(&self.shape.found.edges, || Edges::of(self))
     }
 
     /// The outlines of all polygons.
     pub(super) fn outlines(&self) -> Outlines<'_> {
-        Outlines { places: &self.positions, corners: &self.corners.vertices, starts: &self.starts }
+        self.shape.outlines()
+    }
+}
+
+impl Shape {
+    /// The outlines of all polygons.
+    pub(super) fn outlines(&self) -> Outlines<'_> {
+        Outlines { places: &self.positions, corners: &self.corners, starts: &self.starts }
     }
 }

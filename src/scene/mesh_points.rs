@@ -5,7 +5,8 @@ use rayon::prelude::*;
 
 use super::mesh::index;
 use super::mesh_build::Outlines;
-use super::{CornerLists, MeshSource, NONE, Point, dvec3};
+use super::mesh_fans::{Limit, Rule, fan_points};
+use super::{CornerLists, Crease, MeshSource, NONE, Point, Smoothing, dvec3};
 use crate::base::math;
 
 /// Unit normals that cancel out leave only their rounding errors, which are less.
@@ -17,18 +18,73 @@ const LONGEST: usize = 64;
 /// Polygons whose normals are held with all their digits at a time: few enough to stay in a cache.
 const BLOCK: usize = 1 << 15;
 
-/// What the normals of polygons are around each vertex.
+/// What is computed of the normals of polygons.
 #[derive(Debug)]
-pub(super) struct Normals {
+pub(super) struct Computed {
     /// The polygons without area; ascending.
     pub(super) without_area: Vec<u32>,
+    /// The points of corners: the first are one a vertex.
+    pub(super) points: Vec<Point>,
+    /// The point of each corner; empty if each has its vertex's.
+    of_corners: Vec<u32>,
+}
+
+impl Computed {
+    pub(super) fn of(outlines: &Outlines<'_>, vertices: usize, smoothing: &Smoothing) -> Self {
+        let rule = match smoothing {
+            Smoothing::Crease(crease) if *crease == Crease::SMOOTH => None,
+            Smoothing::Crease(crease) => Some(Rule::Crease(Limit::new(*crease))),
+            Smoothing::Groups(groups) => match groups.first() {
+                Some(0) | None => Some(Rule::Groups(groups)),
+                Some(one) if groups.par_iter().all(|group| group == one) => None,
+                Some(_) => Some(Rule::Groups(groups)),
+            },
+        };
+        rule.map_or_else(
+            || Normals::of(outlines, vertices).points(outlines),
+            |rule| Self::with_fans(outlines, vertices, rule),
+        )
+    }
+
+    fn with_fans(outlines: &Outlines<'_>, vertices: usize, rule: Rule<'_>) -> Self {
+        let polygons = 0..outlines.starts.len() - 1;
+        let normal = |polygon: usize| outlines.normal(polygon).unwrap_or(DVec3::ZERO);
+        let normals: Vec<DVec3> = polygons.into_par_iter().map(normal).collect();
+        let without = normals.par_iter().enumerate().filter(|(_, normal)| **normal == DVec3::ZERO);
+        let without_area = without.map(|(polygon, _)| index(polygon)).collect();
+        let (points, of_corners) = fan_points(outlines, vertices, &normals, rule);
+        Self { without_area, points, of_corners }
+    }
+}
+
+/// What the normals of polygons are around each vertex.
+#[derive(Debug)]
+struct Normals {
+    /// The polygons without area; ascending.
+    without_area: Vec<u32>,
     /// For each vertex the sum of the unit normals of the polygons around it; a polygon that names
     /// the vertex twice is around it once.
-    pub(super) sums: Vec<DVec3>,
+    sums: Vec<DVec3>,
 }
 
 impl Normals {
-    pub(super) fn of(outlines: &Outlines<'_>, vertices: usize) -> Self {
+    /// The points of corners, each with the mean of all faces around its vertex.
+    fn points(self, outlines: &Outlines<'_>) -> Computed {
+        let smooth = |vertex: u32| {
+            let sum = self.sums[vertex as usize];
+            let normal = if cancels(sum) { None } else { math::unit(sum) };
+            Point { position: vertex, normal: shown_normal(normal) }
+        };
+        let vertices = 0..index(self.sums.len());
+        let mut points: Vec<Point> = vertices.into_par_iter().map(smooth).collect();
+        let mut of_corners = Vec::new();
+        if self.sums.par_iter().any(|sum| cancels(*sum)) {
+            of_corners = alone(outlines, &self, &mut points);
+        }
+        Computed { without_area: self.without_area, points, of_corners }
+    }
+
+    fn of(outlines: &Outlines<'_>, vertices: usize) -> Self {
         let count = outlines.starts.len() - 1;
         let mut normals = Self { without_area: Vec::new(), sums: vec![DVec3::ZERO; vertices] };
         let mut last_polygon = vec![NONE; vertices];
@@ -72,65 +128,81 @@ impl Normals {
     }
 }
 
-/// The points of a mesh's corners, as a list for each thing that they name.
-#[derive(Debug, Default)]
+/// The points of a mesh's corners.
+#[derive(Debug, Default, PartialEq)]
 pub(super) struct CornerPoints {
-    /// The vertex of each corner.
-    pub(super) vertices: Vec<u32>,
-    /// Its place on the texture, or [`NONE`]; empty where no corner has one.
-    pub(super) uvs: Vec<u32>,
-    /// Its point with the computed normal; empty where each has its vertex's.
+    /// The point of each corner with the computed normal; empty if each has its vertex's.
     smooth: Vec<u32>,
-    /// Its point with the file's normal; empty where no corner has one.
+    /// The point of each corner with the file's normal; empty if no corner has one.
     pub(super) filed: Vec<u32>,
+    /// The points from here on have normals of the file.
+    first_filed: u32,
+    /// Whether all corners have normals of the file.
+    pub(super) filed_only: bool,
 }
 
 impl CornerPoints {
-    /// The point of a corner with the computed normal.
-    pub(super) fn smooth(&self, corner: usize) -> u32 {
-        let list = if self.smooth.is_empty() { &self.vertices } else { &self.smooth };
+    /// The point of a corner with the computed normal; `vertices` are those of all corners.
+    pub(super) fn smooth(&self, vertices: &[u32], corner: usize) -> u32 {
+        let list = if self.smooth.is_empty() { vertices } else { &self.smooth };
         list[corner]
     }
 
     /// Its point with the file's normal, or else with the computed one.
-    pub(super) fn filed(&self, corner: usize) -> u32 {
-        if self.filed.is_empty() { self.smooth(corner) } else { self.filed[corner] }
+    pub(super) fn filed(&self, vertices: &[u32], corner: usize) -> u32 {
+        if self.filed.is_empty() { self.smooth(vertices, corner) } else { self.filed[corner] }
     }
 
     /// Whether the points of all corners with computed normals are numbered as the vertices.
     pub(super) const fn are_vertices(&self) -> bool {
         self.smooth.is_empty()
     }
+
+    /// The points and those of the corners, with other computed normals and the same ones of the
+    /// file.
+    pub(super) fn with_computed(
+        &self,
+        points: &[Point],
+        computed: Computed,
+        vertices: &[u32],
+    ) -> (Vec<Point>, Self) {
+        let Computed { points: mut all, of_corners, .. } = computed;
+        let mut corners =
+            Self { smooth: of_corners, first_filed: index(all.len()), ..Self::default() };
+        if !self.filed.is_empty() {
+            let filed = |corner: usize| match self.filed[corner].checked_sub(self.first_filed) {
+                Some(place) => corners.first_filed + place,
+                None => corners.smooth(vertices, corner),
+            };
+            corners.filed = (0..vertices.len()).into_par_iter().map(filed).collect();
+            corners.filed_only = self.filed_only;
+            all.extend_from_slice(&points[self.first_filed as usize..]);
+        }
+        (all, corners)
+    }
 }
 
-/// The points of a mesh, and its corners, which name them.
+/// What is computed of a mesh's normals, with the file's normals behind, and the points of its
+/// corners.
 pub(super) fn points_and_corners(
     source: &MeshSource,
-    lists: CornerLists,
+    lists: &CornerLists,
     starts: &[u32],
-    normals: &Normals,
-) -> (Vec<Point>, CornerPoints) {
-    let CornerLists { positions: vertices, uvs, normals: filed } = lists;
-    let mut corners = CornerPoints { vertices, uvs, ..CornerPoints::default() };
-    let smooth = |vertex: u32| {
-        let sum = normals.sums[vertex as usize];
-        let normal = if cancels(sum) { None } else { math::unit(sum) };
-        Point { position: vertex, normal: shown_normal(normal) }
-    };
-    let vertices = 0..index(normals.sums.len());
-    let mut points: Vec<Point> = vertices.into_par_iter().map(smooth).collect();
-    if normals.sums.par_iter().any(|sum| cancels(*sum)) {
-        let outlines = Outlines { places: &source.positions, corners: &corners.vertices, starts };
-        corners.smooth = alone(&outlines, normals, &mut points);
+) -> (Computed, CornerPoints) {
+    let outlines = Outlines { places: &source.positions, corners: &lists.positions, starts };
+    let mut computed = Computed::of(&outlines, source.positions.len(), &source.smoothing);
+    let smooth = std::mem::take(&mut computed.of_corners);
+    let first_filed = index(computed.points.len());
+    let mut corners = CornerPoints { smooth, first_filed, ..CornerPoints::default() };
+    if !lists.normals.is_empty() {
+        corners.filed = filed_points(source, lists, starts, &corners, &mut computed.points);
+        corners.filed_only = corners.filed.par_iter().all(|point| *point >= first_filed);
     }
-    if !filed.is_empty() {
-        corners.filed = filed_points(source, &filed, starts, &corners, &mut points);
-    }
-    (points, corners)
+    (computed, corners)
 }
 
 /// Whether the unit normals whose sum this is cancel out.
-fn cancels(sum: DVec3) -> bool {
+pub(super) fn cancels(sum: DVec3) -> bool {
     sum.length() <= CANCELLED
 }
 
@@ -159,11 +231,12 @@ fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) ->
 /// so of none.
 fn filed_points(
     source: &MeshSource,
-    normals: &[u32],
+    lists: &CornerLists,
     starts: &[u32],
     corners: &CornerPoints,
     points: &mut Vec<Point>,
 ) -> Vec<u32> {
+    let CornerLists { positions: vertices, normals, .. } = lists;
     let unit = |normal: &[f32; 3]| math::unit(dvec3(*normal)).map(narrow);
     let units: Vec<Option<[f32; 3]>> = source.normals.par_iter().map(unit).collect();
     let unit = |i: usize| *units.get(normals[i] as usize)?;
@@ -173,14 +246,14 @@ fn filed_points(
     let mut chained: Vec<(u32, u32)> = Vec::new();
     let first = points.len();
     let mut filed: Vec<u32> =
-        (0..corners.vertices.len()).into_par_iter().map(|i| corners.smooth(i)).collect();
+        (0..vertices.len()).into_par_iter().map(|i| corners.smooth(vertices, i)).collect();
     for polygon in starts.windows(2) {
         let own = polygon[0] as usize..polygon[1] as usize;
         if !own.clone().all(|i| unit(i).is_some()) {
             continue;
         }
         for i in own {
-            let (vertex, normal) = (corners.vertices[i], normals[i]);
+            let (vertex, normal) = (vertices[i], normals[i]);
             let mut at = last[vertex as usize];
             let mut looked_at = 0;
             while at != NONE && chained[at as usize].0 != normal {
@@ -204,6 +277,6 @@ pub(super) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
     narrow(normal.unwrap_or(DVec3::Z))
 }
 
-fn narrow(v: DVec3) -> [f32; 3] {
+pub(super) fn narrow(v: DVec3) -> [f32; 3] {
     v.as_vec3().to_array()
 }

@@ -13,8 +13,10 @@ mod light;
 mod list;
 mod material;
 mod mesh;
+mod mesh_around;
 mod mesh_build;
 mod mesh_edges;
+mod mesh_fans;
 mod mesh_found;
 mod mesh_points;
 mod mesh_splits;
@@ -41,7 +43,9 @@ pub use mesh::{
 pub use mesh_build::CornerLists;
 pub use mesh_edges::Edge;
 pub use mesh_found::{Derived, Facet};
-pub use model::{FileMaterial, LoadOptions, Model, Scale, Texture, UpAxis, Winding, Wrap};
+pub use model::{
+    Crease, FileMaterial, LoadOptions, Model, Scale, Smoothing, Texture, UpAxis, Winding, Wrap,
+};
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
 pub use placed::Placed;

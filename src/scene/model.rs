@@ -25,6 +25,28 @@ pub struct Model {
     pub edge_color: Option<Color>,
 }
 
+impl Model {
+    /// The model with another crease angle; the file is not read again.
+    #[must_use]
+    pub fn with_crease(&self, crease: Crease) -> Self {
+        Self {
+            name: self.name.clone(),
+            source: self.source.clone(),
+            options: LoadOptions { crease, ..self.options },
+            mesh: self.mesh.with_crease(crease),
+            materials: self.materials.clone(),
+            edge_color: self.edge_color,
+        }
+    }
+
+    /// Whether both come from one reading of a file, so that they differ at most in their crease
+    /// angles.
+    #[must_use]
+    pub fn shares_file_with(&self, other: &Self) -> bool {
+        self.mesh.shares_shape_with(&other.mesh)
+    }
+}
+
 /// How a file is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -35,6 +57,8 @@ pub struct LoadOptions {
     pub scale: Scale,
     /// Whether its polygons run clockwise seen from outside, and have to be turned.
     pub winding: Winding,
+    /// Up to which angle its edges are smooth, if it has no smoothing groups.
+    pub crease: Crease,
 }
 
 /// Which of a file's axes points up. What it holds is turned by the shortest rotation that brings
@@ -126,6 +150,64 @@ impl TryFrom<f64> for Scale {
 
     fn try_from(factor: f64) -> Result<Self, Self::Error> {
         Self::new(factor).ok_or("a scale must be a finite number above 0")
+    }
+}
+
+/// The angle between the normals of two faces up to which the edge between them is smooth, in degrees
+/// from 0 to 180.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(into = "f64", try_from = "f64")]
+pub struct Crease(f64);
+
+impl Crease {
+    /// All faces around a vertex are smooth with each other, whether they share edges or not.
+    pub const SMOOTH: Self = Self(180.0);
+
+    /// `degrees`, if they are from 0 to 180.
+    #[must_use]
+    pub fn new(degrees: f64) -> Option<Self> {
+        (0.0..=180.0).contains(&degrees).then_some(Self(degrees))
+    }
+
+    /// The angle in degrees.
+    #[must_use]
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+}
+
+impl Default for Crease {
+    fn default() -> Self {
+        Self(60.0)
+    }
+}
+
+impl From<Crease> for f64 {
+    fn from(crease: Crease) -> Self {
+        crease.0
+    }
+}
+
+impl TryFrom<f64> for Crease {
+    type Error = &'static str;
+
+    fn try_from(degrees: f64) -> Result<Self, Self::Error> {
+        Self::new(degrees).ok_or("a crease angle must be from 0 to 180 degrees")
+    }
+}
+
+/// Which polygons share the normals that are computed for their corners.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Smoothing {
+    /// Those that are connected by edges no sharper than this.
+    Crease(Crease),
+    /// Those in the same smoothing group: the group of each polygon, 0 for none.
+    Groups(Vec<u32>),
+}
+
+impl Default for Smoothing {
+    fn default() -> Self {
+        Self::Crease(Crease::SMOOTH)
     }
 }
 

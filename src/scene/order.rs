@@ -126,6 +126,7 @@ impl DrawOrder {
         };
         let [x, y, z] = [0, 1, 2].map(coordinate);
         let mut order = Self { x, y, z, triangles, ..Self::default() };
+        let vertices = &mesh.shape.corners;
         order.smooth = if mesh.corners.are_vertices() {
             let normal = |vertex: &u32| mesh.points()[*vertex as usize].normal;
             Points {
@@ -134,10 +135,10 @@ impl DrawOrder {
                 vertices: Vec::new(),
             }
         } else {
-            order.points_of(mesh, |corner| mesh.corners.smooth(corner))
+            order.points_of(mesh, |corner| mesh.corners.smooth(vertices, corner))
         };
         if mesh.has_file_normals() {
-            order.filed = order.points_of(mesh, |corner| mesh.corners.filed(corner));
+            order.filed = order.points_of(mesh, |corner| mesh.corners.filed(vertices, corner));
         }
         order
     }
@@ -199,7 +200,7 @@ impl DrawOrder {
 
 /// The vertices of a triangle, as the mesh numbers them.
 fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
-    mesh.triangle(number).map(|corner| mesh.corners.vertices[corner])
+    mesh.triangle(number).map(|corner| mesh.shape.corners[corner])
 }
 
 /// The place of a triangle's middle on the curve, ten bits for each axis.

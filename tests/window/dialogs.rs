@@ -6,13 +6,16 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use egui::accesskit::Role;
 use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
+use egui_kittest::kittest::NodeT as _;
 use marraztu::app::action::Action;
 use marraztu::app::ask::Ask;
 use marraztu::app::chord::Chord::{Command, Lower, Named, Upper};
 use marraztu::scene::{MaterialChoice, ObjectId, PresetId, Sides};
 
 use crate::editor::Editor;
+use crate::panels::{click, control, type_text};
 
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
@@ -149,6 +152,40 @@ fn a_model_is_loaded_by_key_path_and_material() {
     editor.press(Command(Key::Z));
     editor.press(Command(Key::Z));
     assert!(editor.scene().objects == before.objects);
+}
+
+#[test]
+fn a_model_is_read_with_the_crease_angle_that_is_typed() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::tall();
+    editor.ask(Ask::LoadFiles(vec![path]));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.click_label("How the file is read");
+    for _ in 0..30 {
+        editor.settle();
+    }
+    click(&mut editor, Role::SpinButton, "Crease angle");
+    type_text(&mut editor, "95");
+    editor.press(Named(Key::Enter));
+    editor.click_label("Load");
+    editor.wait_until(|editor| editor.steps() == 1);
+    let scene = editor.scene();
+    let (_, object) = scene.objects.iter().next().unwrap();
+    assert_eq!((&*object.name, object.model.options.crease.get()), ("cube", 95.0));
+    assert_eq!(object.model.mesh.points().len(), 8, "right angles are smooth then");
+}
+
+#[test]
+fn the_crease_angle_is_off_if_the_file_has_smoothing_groups() {
+    let (_folder, path) = folder_with("cube.obj", &format!("s 1\n{CUBE}"));
+    let mut editor = Editor::tall();
+    editor.ask(Ask::LoadFiles(vec![path]));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.click_label("How the file is read");
+    for _ in 0..30 {
+        editor.settle();
+    }
+    assert!(control(&editor, Role::SpinButton, "Crease angle").accesskit_node().is_disabled());
 }
 
 #[test]

@@ -6,15 +6,18 @@
 
 use egui::accesskit::Role;
 use egui::{Key, PointerButton, Pos2, vec2};
+use egui_kittest::kittest::NodeT as _;
 use glam::DVec3;
 use marraztu::app::action::Action;
 use marraztu::app::ask::Ask;
 use marraztu::app::chord::Chord::{Command, Either, Lower, Named, Upper};
+use marraztu::base::Shared;
 use marraztu::base::color::Color;
-use marraztu::edit::{Gesture, place};
+use marraztu::edit::{Gesture, items, place};
+use marraztu::io::{Progress, parse};
 use marraztu::scene::{
-    Camera, CameraMode, ItemId, Light, LightKind, MaterialChoice, Object, PresetId, Sides,
-    SpotOwner, Surface, View,
+    Camera, CameraMode, ItemId, Light, LightKind, LoadOptions, MaterialChoice, Model, Object,
+    ObjectId, PresetId, Sides, SpotOwner, Surface, View,
 };
 
 use crate::editor::Editor;
@@ -444,4 +447,99 @@ fn the_fields_show_what_the_keys_do() {
     editor.perform(Action::StepXUp);
     let shown = control(&editor, Role::SpinButton, "Position X").value();
     assert_eq!(shown.as_deref(), Some("X -90"));
+}
+
+/// Adds a model of a file with this text, and selects it. Gives its id.
+fn with_model(editor: &mut Editor, text: &str) -> ObjectId {
+    let options = LoadOptions::default();
+    let loaded = parse(text.as_bytes(), "a.obj", None, &options, &Progress::new()).unwrap();
+    let model = Model { source: Some("/a.obj".into()), ..loaded.model };
+    let object = Object::new(Shared::new(model), MaterialChoice::File);
+    let command = items::insert_object(&editor.scene(), object);
+    editor.ask(Ask::Change { command, gesture: Gesture::Whole, label: "Load".to_owned() });
+    editor.view().object.unwrap()
+}
+
+const TENT: &str = "v 0 0 0\nv 1 1 0\nv 2 0 0\nv 0 0 1\nv 1 1 1\nv 2 0 1\nf 1 2 5 4\nf 2 3 6 5\n";
+
+#[test]
+fn a_crease_angle_makes_edges_sharp_or_smooth_in_one_step() {
+    let mut editor = with_object();
+    let id = with_model(&mut editor, TENT);
+    let points = |editor: &Editor| object(editor).model.mesh.points().len();
+    assert_eq!(points(&editor), 8, "90 degrees are sharp");
+    let (before, steps) = (editor.scene(), editor.steps());
+    type_into(&mut editor, "Crease angle", "45*2");
+    assert_eq!((object(&editor).model.options.crease.get(), points(&editor)), (90.0, 6));
+    assert_eq!(editor.steps(), steps + 1);
+    drag(&mut editor, Role::SpinButton, "Crease angle", -60.0);
+    let dragged = object(&editor).model.options.crease.get();
+    assert!(dragged < 90.0 && points(&editor) == 8, "{dragged}");
+    assert_eq!(editor.steps(), steps + 2);
+    editor.press(Command(Key::Z));
+    assert_eq!((object(&editor).model.options.crease.get(), points(&editor)), (90.0, 6));
+    editor.press(Command(Key::Z));
+    assert!(editor.scene() == before);
+
+    // A copy shares the model again once it has the same angle.
+    let copy = items::duplicate(&editor.scene(), ItemId::Object(id)).unwrap();
+    editor.ask(Ask::Change { command: copy, gesture: Gesture::Whole, label: "Copy".to_owned() });
+    type_into(&mut editor, "Crease angle", "120");
+    let model = |editor: &Editor, id| editor.scene().objects.get(id).unwrap().model.clone();
+    let copy = editor.view().object.unwrap();
+    assert!(copy != id && !Shared::same(&model(&editor, id), &model(&editor, copy)));
+    type_into(&mut editor, "Crease angle", "60");
+    assert!(Shared::same(&model(&editor, id), &model(&editor, copy)));
+}
+
+#[test]
+fn the_crease_angle_is_off_if_it_has_no_effect() {
+    let disabled = |editor: &Editor| {
+        control(editor, Role::SpinButton, "Crease angle").accesskit_node().is_disabled()
+    };
+    let mut editor = with_object();
+    assert!(disabled(&editor), "the program's own models are smooth");
+    with_model(&mut editor, TENT);
+    assert!(!disabled(&editor));
+    with_model(&mut editor, &format!("s off\n{TENT}"));
+    assert!(disabled(&editor));
+    let filed = TENT.replace("f 1 2 5 4", "vn 0 1 0\nf 1//1 2//1 5//1 4//1");
+    with_model(&mut editor, &filed);
+    assert!(!disabled(&editor), "one face has no normals");
+    with_model(&mut editor, &filed.replace("f 2 3 6 5", "f 2//1 3//1 6//1 5//1"));
+    assert!(disabled(&editor));
+    click(&mut editor, Role::CheckBox, "Normals of the file");
+    assert!(!disabled(&editor), "the file's normals are passed over");
+}
+
+#[test]
+fn a_large_mesh_gets_its_crease_angle_when_the_drag_ends() {
+    let side = 460_u32;
+    let mut text = String::new();
+    for i in 0..side * side {
+        text += &format!("v {} {} {}\n", i % side, i / side, i % side % 2);
+    }
+    for i in (0..side * (side - 1)).filter(|i| i % side != side - 1) {
+        text += &format!("f {} {} {} {}\n", i + 1, i + 2, i + side + 2, i + side + 1);
+    }
+    let mut editor = with_object();
+    with_model(&mut editor, &text);
+    editor.perform(Action::ToggleVisible);
+    let (before, steps) = (object(&editor).model, editor.steps());
+    assert!(before.mesh.polygon_count() > 200_000);
+    let at = control(&editor, Role::SpinButton, "Crease angle").rect().center();
+    editor.hover(at);
+    editor.button(at, PointerButton::Primary, true);
+    for by in [20.0, 40.0, 60.0] {
+        editor.hover(at + vec2(by, 0.0));
+        assert!(Shared::same(&object(&editor).model, &before), "nothing is computed while dragged");
+    }
+    editor.button(at + vec2(60.0, 0.0), PointerButton::Primary, false);
+    editor.settle();
+    let after = object(&editor).model;
+    assert!(after.options.crease.get() > 80.0, "{:?}", after.options.crease);
+    assert!(after.mesh.points().len() < before.mesh.points().len());
+    assert_eq!(editor.steps(), steps + 1);
+    editor.press(Command(Key::Z));
+    assert!(Shared::same(&object(&editor).model, &before));
 }

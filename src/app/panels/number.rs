@@ -136,7 +136,7 @@ impl<'a> Number<'a> {
             state.cursor.set_char_range(Some(CCursorRange::select_all_str(&exact(value))));
             state.store(ui.ctx(), id);
         }
-        let response = response.on_hover_ui(|ui| {
+        let response = response.on_disabled_hover_text(self.hint).on_hover_ui(|ui| {
             ui.label(self.hint);
             ui.label(RichText::new("Drag, or click and type a number or a sum").weak());
         });

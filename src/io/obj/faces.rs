@@ -20,7 +20,11 @@ pub(super) struct Faces {
     pub(super) refused: Option<(u32, String)>,
 }
 
-/// Faces of one part on lines that follow each other, with the same number of corners.
+/// The smoothing group of faces before the first `s` of a chunk: the one that holds where it begins.
+pub(super) const INHERITED: u32 = u32::MAX;
+
+/// Faces of one part on lines that follow each other, with the same number of corners and the same
+/// smoothing group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Run {
     pub(super) faces: u32,
@@ -28,6 +32,8 @@ pub(super) struct Run {
     /// The line of the first one.
     pub(super) line: u32,
     pub(super) part: u32,
+    /// 0 for none, or [`INHERITED`].
+    pub(super) smoothing: u32,
 }
 
 impl Run {
@@ -72,11 +78,9 @@ impl Faces {
         }
     }
 
-    /// Takes up a face of so many corners, which were pushed last.
+    /// Takes up a face, as a run of its own, whose corners were pushed last.
     #[inline]
-    pub(super) fn end_face(&mut self, corners: usize, line: u32, part: u32) {
-        let corners = u32::try_from(corners).unwrap_or(NONE);
-        let face = Run { faces: 1, corners, line, part };
+    pub(super) fn end_face(&mut self, face: Run) {
         if !self.runs.last_mut().is_some_and(|run| run.take(face)) {
             self.runs.push(face);
         }
@@ -84,6 +88,14 @@ impl Faces {
 }
 
 impl Piece {
+    /// Takes up a face of so many corners, which were pushed last.
+    #[inline]
+    pub(super) fn end_face(&mut self, corners: usize, line: u32) {
+        let corners = u32::try_from(corners).unwrap_or(NONE);
+        let (part, smoothing) = (self.parts.place(), self.smoothing);
+        self.faces.end_face(Run { faces: 1, corners, line, part, smoothing });
+    }
+
     pub(super) fn face(&mut self, rest: &[u8], line: u32) -> Result<(), Stop> {
         // A minus in a comment stops the piece, too: nothing is lost but time.
         if self.before.is_none() && rest.contains(&b'-') {
@@ -123,7 +135,7 @@ impl Piece {
             fault = Some((FindingKind::FaceShort, String::new(), reason));
         }
         match fault {
-            None => self.faces.end_face(corners, line, self.parts.place()),
+            None => self.end_face(corners, line),
             Some((kind, name, reason)) => {
                 self.findings.add(kind, &name, Some(line));
                 self.faces.refused.get_or_insert((line, reason));

@@ -12,10 +12,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use rayon::prelude::*;
 
 use super::chunks::{Chunks, Sizes};
+use super::faces::INHERITED;
 use super::lines::{Lines, unmarked};
 use super::parts::{PartNames, Parts};
 use super::scan::{Counts, NO_COLOR, Piece, Rows, Stop};
-use super::sound::{SoundFaces, SoundPiece, Totals};
+use super::sound::{Before, SoundFaces, SoundPiece, Totals};
 use super::{EMPTY, no_obj};
 use crate::base::color::Color;
 use crate::base::lists::concatenated;
@@ -47,6 +48,8 @@ pub(super) struct Content {
     pub(super) vertices: u32,
     pub(super) faces: SoundFaces,
     pub(super) parts: Vec<PartNames>,
+    /// Whether any statement `s` says which faces are smooth.
+    pub(super) has_smoothing: bool,
     /// What follows `mtllib`, with its lines.
     pub(super) libraries: Vec<(u32, String)>,
     pub(super) edge_color: Option<Color>,
@@ -203,9 +206,10 @@ fn joined(
     let mut parts = Parts::default();
     let mut libraries = Vec::new();
     let mut edge_color = None;
-    // What of a piece depends on those before it: its lines, and its parts.
+    let has_smoothing = pieces.iter().any(|piece| piece.smoothing != INHERITED);
     let mut befores = Vec::new();
     let mut lines = 0_u32;
+    let mut smoothing = 0;
     for piece in &mut pieces {
         if let Some(Stop::Wrong(line, reason)) = &piece.stop {
             return Err(LoadError::line(file, lines.saturating_add(*line), reason));
@@ -213,7 +217,11 @@ fn joined(
         let named = std::mem::take(&mut piece.libraries).into_iter();
         libraries.extend(named.map(|(line, name)| (lines.saturating_add(line), name)));
         edge_color = edge_color.or(piece.edge_color);
-        befores.push((lines, parts.append(&piece.parts, lines)));
+        let places = parts.append(&piece.parts, lines);
+        befores.push(Before { lines, parts: places, smoothing });
+        if piece.smoothing != INHERITED {
+            smoothing = piece.smoothing;
+        }
         findings.append(std::mem::take(&mut piece.findings), lines);
         lines = lines.saturating_add(piece.lines);
     }
@@ -232,14 +240,23 @@ fn joined(
 
     let count = vertices.count;
     let totals = [vertices, uv_totals, normal_totals];
-    let sound = |(piece, (lines, places)): (Piece, (u32, Vec<u32>))| {
-        SoundPiece::of(piece.faces, &totals, lines, &places)
-    };
+    let sound = |(piece, before): (Piece, Before)| SoundPiece::of(piece.faces, &totals, &before);
     let sound: Vec<SoundPiece> = pieces.into_par_iter().zip(befores).map(sound).collect();
     let faces = SoundFaces::of(sound, findings);
     let parts = parts.list;
     let vertices = count;
-    Ok(Content { positions, uvs, normals, colors, vertices, faces, parts, libraries, edge_color })
+    Ok(Content {
+        positions,
+        uvs,
+        normals,
+        colors,
+        vertices,
+        faces,
+        parts,
+        has_smoothing,
+        libraries,
+        edge_color,
+    })
 }
 
 /// Why so many of something are refused, where they are: with all that follows from it, a corner

@@ -41,7 +41,8 @@ use super::progress::Progress;
 use super::read;
 use super::texture::Pictures;
 use crate::scene::{
-    CornerLists, LoadOptions, Mesh, MeshSource, Model, Part, Winding, dvec3, newell,
+    CornerLists, Crease, LoadOptions, Mesh, MeshSource, Model, Part, Smoothing, Winding, dvec3,
+    newell,
 };
 
 /// Why a file without anything in it is refused.
@@ -270,11 +271,16 @@ fn source(
     parts: Vec<Part>,
     options: &LoadOptions,
 ) -> Option<(MeshSource, CornerLists)> {
-    let Content { mut positions, uvs, mut normals, colors, .. } = content;
-    if *options != LoadOptions::default() {
+    let Content { mut positions, uvs, mut normals, colors, has_smoothing, .. } = content;
+    if (LoadOptions { crease: Crease::default(), ..*options }) != LoadOptions::default() {
         place(&mut positions, &mut normals, options);
     }
     let (arities, polygon_parts) = (faces.arities(), faces.parts());
+    let smoothing = if has_smoothing {
+        Smoothing::Groups(faces.smoothing())
+    } else {
+        Smoothing::Crease(options.crease)
+    };
     let mut corners = content.faces.corners;
     if options.winding == Winding::Turned {
         let CornerLists { positions, uvs, normals } = &mut corners;
@@ -297,6 +303,7 @@ fn source(
         arities,
         polygon_parts,
         parts,
+        smoothing,
     };
     finite.then_some((source, corners))
 }

@@ -74,7 +74,7 @@ impl Piece {
             self.faces.truncate(begin);
             return None;
         }
-        self.faces.end_face(corners, line, self.parts.place());
+        self.end_face(corners, line);
         after
     }
 }

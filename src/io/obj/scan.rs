@@ -7,7 +7,7 @@
 //!
 //! Most lines are read by the quick way (`quick`); what that leaves is read here.
 
-use super::faces::Faces;
+use super::faces::{Faces, INHERITED};
 use super::lines::{Line, Lines, excerpt, number, words};
 use super::parts::Parts;
 use crate::base::color::{Color, byte};
@@ -32,6 +32,8 @@ pub(super) struct Piece {
     pub(super) colors: Vec<[f32; 3]>,
     pub(super) faces: Faces,
     pub(super) parts: Parts,
+    /// The smoothing group of the next face: 0 for none, or [`INHERITED`].
+    pub(super) smoothing: u32,
     /// What follows `mtllib`, with its lines.
     pub(super) libraries: Vec<(u32, String)>,
     pub(super) edge_color: Option<Color>,
@@ -96,6 +98,7 @@ impl Piece {
             colors: Vec::new(),
             faces: Faces::default(),
             parts: Parts::default(),
+            smoothing: INHERITED,
             libraries: Vec::new(),
             edge_color: None,
             findings: Findings::default(),
@@ -168,8 +171,9 @@ impl Piece {
             b"l" | b"p" => {
                 self.findings.add(FindingKind::LineOrPoint, &excerpt(keyword), Some(line.number));
             }
-            b"s" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap"
-            | b"maplib" | b"shadow_obj" | b"trace_obj" | b"t" => {}
+            b"s" => self.smoothing(rest, line.number),
+            b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap" | b"maplib"
+            | b"shadow_obj" | b"trace_obj" | b"t" => {}
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf"
             | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech"
             | b"stech" => {
@@ -226,6 +230,17 @@ impl Piece {
             self.findings.note(FindingKind::NormalNotFinite, line);
         }
         Ok(())
+    }
+
+    /// `s group` and `s off`.
+    fn smoothing(&mut self, rest: &[u8], line: u32) {
+        let text = rest.split(|b| *b == b'#').next().unwrap_or_default().trim_ascii();
+        let number = || std::str::from_utf8(text).ok()?.parse().ok();
+        let group = if text == b"off" { Some(0) } else { number() };
+        self.smoothing = group.filter(|group| *group != INHERITED).unwrap_or_else(|| {
+            self.findings.add(FindingKind::SmoothingUnreadable, &excerpt(text), Some(line));
+            0
+        });
     }
 
     /// `# color r g b`.

@@ -1,6 +1,6 @@
 //! Which faces of a file can be used, and what is odd about them.
 
-use super::faces::{Faces, Run, WRONG};
+use super::faces::{Faces, INHERITED, Run, WRONG};
 use crate::base::lists::concatenated;
 use crate::io::findings::{FindingKind, Findings};
 use crate::scene::{CornerLists, NONE, SourceCorner};
@@ -36,6 +36,17 @@ pub(super) struct SoundFaces {
     pub(super) runs: Vec<Run>,
     /// The first face that cannot be used, with the reason.
     pub(super) refused: Option<(u32, String)>,
+}
+
+/// What of a chunk depends on those before it.
+#[derive(Debug)]
+pub(super) struct Before {
+    /// How many lines are before it.
+    pub(super) lines: u32,
+    /// The places of its parts in the file's list.
+    pub(super) parts: Vec<u32>,
+    /// The smoothing group where it begins.
+    pub(super) smoothing: u32,
 }
 
 /// The sound faces of one chunk.
@@ -74,10 +85,13 @@ impl Without {
 
 impl SoundPiece {
     /// Leaves out faces whose vertices are not there, and takes from corners what is not there.
-    /// `lines` are before the chunk; `parts` are the places of its parts in the file's list.
-    pub(super) fn of(mut faces: Faces, totals: &[Totals; 3], lines: u32, parts: &[u32]) -> Self {
+    pub(super) fn of(mut faces: Faces, totals: &[Totals; 3], before: &Before) -> Self {
+        let Before { lines, ref parts, smoothing } = *before;
         for run in &mut faces.runs {
             (run.line, run.part) = (run.line.saturating_add(lines), parts[run.part as usize]);
+            if run.smoothing == INHERITED {
+                run.smoothing = smoothing;
+            }
         }
         if let Some((line, _)) = &mut faces.refused {
             *line = line.saturating_add(lines);
@@ -158,7 +172,6 @@ impl SoundPiece {
         let [mut wrong_uv, mut wrong_normal] = [false; 2];
         let [mut no_uv, mut no_normal] = [0; 2];
         let begin = self.faces.corners();
-        let corners = face.len();
         for i in face {
             let corner = SourceCorner {
                 position: vertices.place(lists.positions[i]).unwrap_or(NONE),
@@ -169,7 +182,7 @@ impl SoundPiece {
             no_normal += usize::from(corner.normal == NONE);
             self.faces.push(corner);
         }
-        self.faces.end_face(corners, of.line, of.part);
+        self.faces.end_face(Run { faces: 1, ..of });
         self.without[0].note(no_uv, of.line);
         self.without[1].note(no_normal, of.line);
         let odd = [
@@ -251,6 +264,11 @@ impl FaceRuns {
     /// The part of each face, in order.
     pub(super) fn parts(&self) -> Vec<u32> {
         self.by_face(|run| run.part)
+    }
+
+    /// The smoothing group of each face, in order.
+    pub(super) fn smoothing(&self) -> Vec<u32> {
+        self.by_face(|run| run.smoothing)
     }
 
     fn by_face(&self, number: impl Fn(&Run) -> u32) -> Vec<u32> {

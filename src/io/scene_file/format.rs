@@ -55,6 +55,8 @@ pub(super) enum FileModel {
         scale: f64,
         #[serde(default)]
         winding: Winding,
+        #[serde(default = "crease")]
+        crease: f64,
     },
 }
 
@@ -332,6 +334,10 @@ fn yes() -> bool {
 
 fn one() -> f64 {
     1.0
+}
+
+fn crease() -> f64 {
+    crate::scene::Crease::default().get()
 }
 
 fn ones() -> [f64; 2] {

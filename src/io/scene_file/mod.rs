@@ -24,7 +24,9 @@ use super::replace::{SaveError, Worth, replace};
 use super::texture::Pictures;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
-use crate::scene::{LoadOptions, Model, Scale, Scene, Settings, Texture, UpAxis, View, Winding};
+use crate::scene::{
+    Crease, LoadOptions, Model, Scale, Scene, Settings, Texture, UpAxis, View, Winding,
+};
 
 /// What the names of scene files end in, without the point.
 pub const SCENE_ENDING: &str = "marraztu";
@@ -201,14 +203,15 @@ fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
     Err(SceneFileError::Line { file: name.to_owned(), line, column, reason })
 }
 
-/// What tells one model of a scene file from another: its name or path, and how it is read.
-type ModelKey = (String, Option<(UpAxis, u64, Winding)>);
+/// What tells one model of a scene file from another: its name or path, and how it is read. The crease
+/// angle comes last: files that differ in it alone stand side by side.
+type ModelKey = (String, Option<(UpAxis, u64, Winding, u64)>);
 
 fn key(model: &FileModel) -> ModelKey {
     match model {
         FileModel::Own(name) => (name.clone(), None),
-        FileModel::File { path, up, scale, winding } => {
-            (path.clone(), Some((*up, scale.to_bits(), *winding)))
+        FileModel::File { path, up, scale, winding, crease } => {
+            (path.clone(), Some((*up, scale.to_bits(), *winding, crease.to_bits())))
         }
     }
 }
@@ -295,6 +298,15 @@ impl<'a> Files<'a> {
         Err(SceneFileError::Missing { file: name.to_owned(), missing })
     }
 
+    /// The same file, loaded with another crease angle: it is not read twice.
+    fn with_other_crease(&self, model: &FileModel) -> Option<&Shared<Model>> {
+        let (path, options) = key(model);
+        let (up, scale, winding, _) = options?;
+        let with = |crease| (path.clone(), Some((up, scale, winding, crease)));
+        let mut others = self.models.range(with(0)..=with(u64::MAX));
+        others.next().map(|(_, loaded)| loaded)
+    }
+
     fn load_model(
         &mut self,
         model: &FileModel,
@@ -305,10 +317,16 @@ impl<'a> Files<'a> {
         match model {
             FileModel::Own(own) => super::own_model(own)
                 .ok_or_else(|| fail(format!("there is no built-in model \"{own}\""))),
-            FileModel::File { path, up, scale, winding } => {
+            FileModel::File { path, up, scale, winding, crease } => {
                 let scale = Scale::new(*scale)
                     .ok_or_else(|| fail(format!("the scale of {path} has to be above 0")))?;
-                let options = LoadOptions { up: *up, scale, winding: *winding };
+                let crease = Crease::new(*crease).ok_or_else(|| {
+                    fail(format!("the crease angle of {path} has to be from 0 to 180 degrees"))
+                })?;
+                if let Some(other) = self.with_other_crease(model) {
+                    return Ok(Shared::new(other.with_crease(crease)));
+                }
+                let options = LoadOptions { up: *up, scale, winding: *winding, crease };
                 let place = self.place(path);
                 let loaded = load_with(&place, &options, &mut self.pictures, progress)?;
                 self.findings.extend(loaded.findings);

@@ -52,9 +52,9 @@ fn file_model(model: &Model, folder: &Path) -> Result<FileModel, String> {
             Err(format!("the model \"{name}\" is in no file"))
         };
     };
-    let LoadOptions { up, scale, winding } = *options;
+    let LoadOptions { up, scale, winding, crease } = *options;
     let path = file_path(source, folder)?;
-    Ok(FileModel::File { path, up, scale: scale.get(), winding })
+    Ok(FileModel::File { path, up, scale: scale.get(), winding, crease: crease.get() })
 }
 
 fn file_path(path: &Path, folder: &Path) -> Result<String, String> {

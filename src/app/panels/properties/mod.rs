@@ -1,6 +1,7 @@
 //! The properties of the selected item.
 
 mod camera;
+mod crease;
 mod light;
 mod material;
 mod object;

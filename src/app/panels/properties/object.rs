@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use super::super::color_picker::swatch;
 use super::super::controls::{Choice, Switch, change, choices, fact, row, section};
 use super::super::number::{Number, keep_angles, kept_angles, short, vector};
-use super::{material, number_row, steps_ui, surface};
+use super::{crease, material, number_row, steps_ui, surface};
 use crate::app::ask::Ask;
 use crate::app::material_dialog::grouped;
 use crate::app::state::State;
@@ -139,7 +139,7 @@ fn spin_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object
 
 fn drawing_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
     let scene = &state.scene;
-    let mut set = |verb: &str, gesture, command| {
+    let set = |asks: &mut Vec<Ask>, verb: &str, gesture, command| {
         change(asks, format!("{verb} {}", object.name), gesture, command);
     };
     let sides = [
@@ -154,7 +154,7 @@ fn drawing_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, obj
     if let Some(clicked) = choices(ui, &all) {
         let to = sides[clicked].1;
         let command = items::change_object(scene, id, |object| object.sides = to);
-        set("Change the sides of", Gesture::Whole, command);
+        set(asks, "Change the sides of", Gesture::Whole, command);
     }
     let file_normals = Switch {
         enabled: object.model.mesh.has_file_normals(),
@@ -166,13 +166,14 @@ fn drawing_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, obj
     };
     if file_normals.ui(ui).on_hover_text(hint).clicked() {
         let command = items::change_object(scene, id, |object| object.file_normals ^= true);
-        set("Change the normals of", Gesture::Whole, command);
+        set(asks, "Change the normals of", Gesture::Whole, command);
     }
+    crease::show(ui, state, asks, id, object);
     row(ui, "Edges", |ui| {
         let hint = "Edges and normals are drawn in it";
         if let Some((color, gesture)) = swatch(ui, "Edge colour", hint, object.edge_color) {
             let command = items::change_object(scene, id, |object| object.edge_color = color);
-            set("Colour the edges of", gesture, command);
+            set(asks, "Colour the edges of", gesture, command);
         }
     });
 }

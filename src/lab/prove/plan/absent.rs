@@ -106,6 +106,7 @@ fn with_unused_material(model: &Shared<Model>, dice: &mut Dice) -> Shared<Model>
         arities: polygons.map(|p| u32::try_from(count(p)).expect("few")).collect(),
         polygon_parts: mesh.polygon_parts().to_vec(),
         parts: mesh.parts().iter().map(part).collect(),
+        smoothing: mesh.smoothing().clone(),
     };
     Shared::new(Model {
         name: model.name.clone(),

@@ -1,0 +1,76 @@
+//! The crease angle of an object's model.
+
+use egui::Ui;
+
+use super::super::controls::change;
+use super::super::number::Number;
+use super::number_row;
+use crate::app::ask::Ask;
+use crate::app::state::State;
+use crate::edit::{Gesture, items};
+use crate::scene::{Crease, Object, ObjectId};
+
+/// A mesh of more polygons than this gets its new normals when the drag ends: to compute them for
+/// every frame would be too slow.
+const MOST_WHILE_DRAGGED: usize = 200_000;
+
+pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+    let idle =
+        items::why_no_crease(&object.model, object.file_normals).map(|why| format!("Off: {why}"));
+    let hint = idle.as_deref().unwrap_or(
+        "Edges between faces that differ by more degrees are sharp: 0 for flat faces, 180 for none",
+    );
+    let waiting = Waiting::of(ui);
+    let now = waiting.map_or(object.model.options.crease.get(), |waiting| waiting.degrees);
+    let number = Number::new("Crease angle", hint).speed(0.5).range(0.0..=180.0).suffix(" deg");
+    let row = |ui: &mut Ui| number_row(ui, "Crease angle", number, now);
+    let mut changed = ui.add_enabled_ui(idle.is_none(), row).inner;
+    if object.model.mesh.polygon_count() > MOST_WHILE_DRAGGED {
+        changed = Waiting::until_let_go(ui, waiting, changed);
+    }
+    if let Some((crease, gesture)) = changed.and_then(|(to, by)| Some((Crease::new(to)?, by))) {
+        let command = items::set_crease(&state.scene, id, crease);
+        change(asks, format!("Change the crease angle of {}", object.name), gesture, command);
+    }
+}
+
+/// An angle that waits for the end of a drag.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    degrees: f64,
+    /// The frame that last showed it: a drag goes on from frame to frame.
+    frame: u64,
+}
+
+impl Waiting {
+    fn of(ui: &Ui) -> Option<Self> {
+        let frame = ui.ctx().cumulative_frame_nr();
+        let waiting: Option<Self> = ui.data(|data| data.get_temp(Self::id(ui)));
+        waiting.filter(|waiting| frame <= waiting.frame + 1)
+    }
+
+    fn id(ui: &Ui) -> egui::Id {
+        ui.scope_id().with("crease angle")
+    }
+
+    /// What is left of a change while a drag goes on: nothing, until the button is let go.
+    fn until_let_go(
+        ui: &Ui,
+        waiting: Option<Self>,
+        changed: Option<(f64, Gesture)>,
+    ) -> Option<(f64, Gesture)> {
+        let degrees = match changed {
+            Some((_, Gesture::Whole)) => return changed,
+            Some((degrees, Gesture::Part(_))) => degrees,
+            None => waiting?.degrees,
+        };
+        let dragged = ui.input(|input| input.pointer.any_down());
+        if dragged {
+            let waiting = Self { degrees, frame: ui.ctx().cumulative_frame_nr() };
+            ui.data_mut(|data| data.insert_temp(Self::id(ui), waiting));
+            return None;
+        }
+        ui.data_mut(|data| data.remove::<Self>(Self::id(ui)));
+        Some((degrees, Gesture::Whole))
+    }
+}
