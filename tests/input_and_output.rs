@@ -128,7 +128,7 @@ fn a_model_or_a_scene_comes_from_standard_input_and_the_picture_goes_to_standard
     let (out, _) = ends_with(0, folder.path(), &["info", "-"], &text);
     assert!(String::from_utf8(out).unwrap().contains("r_falke"));
     let (_, err) = ends_with(1, folder.path(), &["render", "-"], b"v 1 2\n");
-    assert!(err.starts_with("error: standard input, line 1: "), "{err}");
+    assert!(err.starts_with("error: standard input:1: "), "{err}");
     let (_, err) = ends_with(2, folder.path(), &["render", "-", "-"], SQUARE.as_bytes());
     assert!(err.contains("can be read once"), "{err}");
 }
@@ -189,7 +189,8 @@ fn colours_of_the_background_threads_and_axes_that_point_up_are_taken_as_people_
     ends_with(2, folder.path(), &["render", "--threads", "0"], b"");
     // The square faces +Z: with -Z up it lies on its face.
     let seen = |up: &str, from: &str| {
-        let picture = drawn(folder.path(), &["square.obj", "--up", up, "--from", from], b"");
+        let all = ["square.obj", "--sides", "one", "--up", up, "--from", from];
+        let picture = drawn(folder.path(), &all, b"");
         picture.pixel(48, 32) != picture.pixel(0, 0)
     };
     assert!(seen("y", "0,0") && seen("x", "0,0") && seen("-x", "0,0"));
@@ -267,5 +268,7 @@ fn many_models_are_drawn_and_one_that_is_named_twice_is_read_once() {
     let mut all = vec!["render", "--size", "64", "--out", "a.png"];
     all.extend(["square.obj", "./square.obj"].iter().cycle().take(2_000));
     let (_, err) = ends_with(0, folder.path(), &all, b"");
-    assert_eq!(err.lines().count(), 1, "{err}");
+    assert_eq!(err.matches("a face refers to a vertex").count(), 1, "{err}");
+    // All but one are behind the one that is seen: that is a few lines, however many they are.
+    assert!(err.lines().count() <= 3, "{err}");
 }

@@ -99,7 +99,7 @@ fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
     let (kind, text) = only(&loaded);
     assert_eq!(kind, FindingKind::TextureUnreadable);
     let path = loaded.model.source.as_ref().unwrap().display();
-    let reason = "this is not a PNG, JPEG, BMP, TGA or GIF (line 5)";
+    let reason = "this is not a PNG, JPEG, WebP, TIFF, BMP, TGA or GIF (line 5)";
     assert_eq!(text, format!("the texture cannot be read: {path}: {reason}"));
 }
 

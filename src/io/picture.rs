@@ -190,7 +190,7 @@ mod tests {
             ("poem.ppm", "it is no picture"),
             ("b.png", "this is a folder"),
             ("none/a.png", "does not exist"),
-            ("poem.ppm/a.png", "is no folder"),
+            ("poem.ppm/a.png", "is not a folder"),
             ("a.tiff", "has to end in"),
         ] {
             assert!(reason(name).unwrap_err().contains(word), "{name}: {:?}", reason(name));

@@ -4,7 +4,7 @@
 //! bytes. What is picked is asked of the last picture that was finished, also after a frame that was
 //! given up.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
@@ -282,31 +282,24 @@ impl Renderer {
         pixels
     }
 
-    /// Those of some items of which the last picture shows nothing.
-    pub(super) fn missing(&mut self, mut items: BTreeSet<ItemId>) -> BTreeSet<ItemId> {
+    /// The item that the last picture shows at each pixel, row by row from the top; nothing if all of
+    /// these items are seen.
+    pub(super) fn items_unless_all_seen(
+        &mut self,
+        mut items: BTreeSet<ItemId>,
+    ) -> Option<Vec<Option<ItemId>>> {
+        let mut pixels = vec![None; self.seen_size().area()];
         let mut last = None;
-        self.look(|renderer, plan, _, word| {
-            if let Some((draw, _)) =
-                renderer.seen(plan, word).filter(|(draw, _)| last != Some(*draw))
-            {
-                last = Some(draw);
-                items.remove(&plan.draws[draw as usize].item);
+        self.look(|renderer, plan, at, word| {
+            let seen = renderer.seen(plan, word).map(|(draw, _)| plan.draws[draw as usize].item);
+            pixels[at] = seen;
+            if seen != last {
+                last = seen;
+                seen.map(|item| items.remove(&item));
             }
             if items.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        items
-    }
-
-    /// The item that the last picture shows at the most of these pixels; `None` if it shows none.
-    pub(super) fn most_seen(&mut self, pixels: &[bool]) -> Option<ItemId> {
-        let mut counts: BTreeMap<ItemId, usize> = BTreeMap::new();
-        self.look(|renderer, plan, at, word| {
-            if let Some((draw, _)) = renderer.seen(plan, word).filter(|_| pixels[at]) {
-                *counts.entry(plan.draws[draw as usize].item).or_default() += 1;
-            }
-            ControlFlow::Continue(())
-        });
-        counts.into_iter().max_by_key(|(_, count)| *count).map(|(item, _)| item)
+        (!items.is_empty()).then_some(pixels)
     }
 
     /// Says of each effect of the last picture how many pixels it takes part in, and gives by how many

@@ -69,21 +69,19 @@ pub fn unseen(
     size: Size,
 ) -> Vec<(ObjectId, Unseen)> {
     let wanted = scene.objects.iter().filter(|(id, object)| is_wanted(view, *id, object));
-    let wanted = wanted.map(|(id, _)| ItemId::Object(id)).collect();
-    let missing = renderer.missing(wanted);
-    if missing.is_empty() {
-        return Vec::new();
-    }
+    let wanted: BTreeSet<ItemId> = wanted.map(|(id, _)| ItemId::Object(id)).collect();
+    let Some(whole) = renderer.items_unless_all_seen(wanted.clone()) else { return Vec::new() };
+    let seen: BTreeSet<ItemId> = whole.iter().flatten().copied().collect();
     let left_out = left_out(scene, view, settings, size);
-    let mut alone = Alone { scene, view, size, renderer: Renderer::default() };
-    let objects = missing.into_iter().filter_map(|item| match item {
-        ItemId::Object(id) => Some(id),
+    let mut alone = Alone { scene, view, size, whole, renderer: Renderer::default() };
+    let objects = wanted.difference(&seen).filter_map(|item| match item {
+        ItemId::Object(id) => Some(*id),
         ItemId::Camera(_) | ItemId::Light(_) => None,
     });
     let reason = |(i, id)| {
         let planned = left_out.get(&ItemId::Object(id)).cloned();
         let reason = match planned {
-            planned if i < EXAMINED => alone.reason(renderer, id, planned),
+            planned if i < EXAMINED => alone.reason(id, planned),
             Some(reason) => Unseen::LeftOut(reason),
             None => Unseen::Unexamined,
         };
@@ -128,24 +126,21 @@ struct Alone<'a> {
     scene: &'a Scene,
     view: &'a View,
     size: Size,
+    /// The item at each pixel of the whole picture.
+    whole: Vec<Option<ItemId>>,
     renderer: Renderer,
 }
 
 impl Alone<'_> {
     /// Why an object is not seen, of which the plan gives this reason if it leaves it out.
-    fn reason(
-        &mut self,
-        whole: &mut Renderer,
-        id: ObjectId,
-        left_out: Option<Cow<'static, str>>,
-    ) -> Unseen {
+    fn reason(&mut self, id: ObjectId, left_out: Option<Cow<'static, str>>) -> Unseen {
         let Some(object) = self.scene.objects.get(id) else {
             return Unseen::LeftOut("it is not in the scene".into());
         };
         let faces = object.model.mesh.polygon_count();
         if left_out.is_none() {
             let seen = self.draw(id, |_| {});
-            if let Some(by) = whole.most_seen(&seen) {
+            if let Some(by) = self.most_seen(&seen) {
                 return Unseen::Covered { by };
             }
         }
@@ -162,6 +157,16 @@ impl Alone<'_> {
             };
         }
         Unseen::TurnedAway { faces }
+    }
+
+    /// The item that the whole picture shows at the most of these pixels; `None` if it shows none.
+    fn most_seen(&self, pixels: &[bool]) -> Option<ItemId> {
+        let mut counts: BTreeMap<ItemId, usize> = BTreeMap::new();
+        let chosen = self.whole.iter().zip(pixels).filter(|(_, chosen)| **chosen);
+        for item in chosen.filter_map(|(item, _)| *item) {
+            *counts.entry(item).or_default() += 1;
+        }
+        counts.into_iter().max_by_key(|(_, count)| *count).map(|(item, _)| item)
     }
 
     fn is_empty(&mut self, id: ObjectId, change: impl FnOnce(&mut Object)) -> bool {
