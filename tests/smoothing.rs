@@ -419,7 +419,8 @@ fn by_definition(mesh: &Mesh, crease: f64) -> Vec<Vec<DVec3>> {
 }
 
 proptest! {
-    /// Faces of any shape over a few vertices: many around each, many at each edge, some without area.
+    /// Faces of any shape over a few vertices: many around each, many at each edge, some without
+    /// area.
     #[test]
     fn normals_are_as_defined(
         places in prop::collection::vec([0..4_i32, 0..4_i32, 0..4_i32], 4..9),

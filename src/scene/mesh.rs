@@ -4,8 +4,8 @@
 //! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
 //! polygon names the point it has with computed normals and the one it has with the file's.
 //!
-//! What not every picture needs is found when it is first asked for (`mesh_found`). Meshes that differ
-//! in their computed normals alone share everything else.
+//! What not every picture needs is found when it is first asked for (`mesh_found`). Meshes that
+//! differ in their computed normals alone share everything else.
 //!
 //! The fields are private and the constructor checks them, so that no index is ever out of range.
 
@@ -69,7 +69,7 @@ pub struct Corner {
     pub position: u32,
     /// Its place on the texture, or [`NONE`].
     pub uv: u32,
-    /// Its point with the computed normal: the mean of the faces around that are smooth with its own.
+    /// Its point with the computed normal.
     pub smooth: u32,
     /// Its point with the file's normal where every corner of the polygon has one, else `smooth`.
     pub filed: u32,
@@ -195,8 +195,8 @@ impl Mesh {
         &self.shape.uvs
     }
 
-    /// Vertices with their normals. The first are one a vertex, in the order of [`Self::positions`],
-    /// each with a computed normal; then there are further computed ones, and the file's.
+    /// Vertices with their normals. The first are one a vertex, each with a computed normal, in the
+    /// order of [`Self::positions`]; further computed normals follow, then those of the file.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points

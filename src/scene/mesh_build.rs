@@ -107,8 +107,8 @@ impl Mesh {
         })
     }
 
-    /// The mesh with another crease angle, which shares with this one all but the normals. Where the
-    /// file has smoothing groups, it is the same mesh again.
+    /// The mesh with another crease angle, which shares all but the normals with this one. A mesh
+    /// with smoothing groups stays as it is.
     #[must_use]
     pub fn with_crease(&self, crease: Crease) -> Self {
         let smoothing = match &self.smoothing {

@@ -1,11 +1,11 @@
 //! The computed normals of corners if some edges stay sharp.
 //!
 //! The faces around a vertex fall into fans: the faces of a fan are smooth with each other, directly
-//! or through other faces of the fan, and each of their corners has the mean of the fan's unit
-//! normals. The first fan has the point with the vertex's own number, the others have further points.
+//! or through other faces of the fan, and their corners have the mean of the fan's unit normals. The
+//! first fan has the point with the vertex's own number, the others have further points.
 //!
-//! In a fine model nearly every vertex has one fan, which is found without looking at its edges: for
-//! the sum S of the unit normals n_i of k faces, |S| = sum of n_i . S/|S|, so
+//! In a fine model nearly every vertex has one fan, which is found without looking at its edges: if
+//! the unit normals n_i of k faces have the sum S, then |S| = sum of n_i . S/|S|, so
 //!
 //!   |S| >= k - 1 + cos(crease / 2)
 //!
@@ -23,8 +23,8 @@ use super::mesh_points::{cancels, narrow, shown_normal};
 use super::{Crease, NONE, Point, dvec3};
 use crate::base::math;
 
-/// How much sharper than the crease an edge may be, in degrees: the numbers of files have some six
-/// digits, so that right angles are right only to that.
+/// How much sharper than the crease angle a smooth edge may be, in degrees. Files have numbers of
+/// some six digits, so a right angle in them is right only up to that.
 const TOLERANCE: f64 = 1e-4;
 
 /// More faces than this around a vertex or an edge are sorted before they are compared.
@@ -66,8 +66,8 @@ impl Limit {
     ///
     ///   tan(angle / 2) = |a - b| / |a + b|
     ///
-    /// Exact for small and for large angles; Kahan, "How Futile are Mindless Assessments of Roundoff
-    /// in Floating-Point Computation?", 2006.
+    /// Exact for small and for large angles; Kahan, "How Futile are Mindless Assessments of
+    /// Roundoff in Floating-Point Computation?", 2006.
     fn joins(&self, a: DVec3, b: DVec3) -> bool {
         (a - b).length_squared() * self.cos2 <= (a + b).length_squared() * self.sin2
     }
@@ -172,8 +172,8 @@ impl Sorter<'_> {
         block
     }
 
-    /// The sum of the normals of the faces around a vertex, and how many faces there are; a face that
-    /// names the vertex twice counts once, one without area not at all.
+    /// The sum of the normals of the faces around a vertex, and how many faces there are. A face
+    /// that names the vertex twice counts once, a face without area not at all.
     fn sum(&self, corners: &[u32]) -> (DVec3, usize) {
         let mut sum = DVec3::ZERO;
         let [mut faces, mut last] = [0, NONE as usize];

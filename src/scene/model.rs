@@ -153,8 +153,8 @@ impl TryFrom<f64> for Scale {
     }
 }
 
-/// The angle between the normals of two faces up to which the edge between them is smooth, in degrees
-/// from 0 to 180.
+/// The angle between the normals of two faces up to which the edge between them is smooth: 0 to 180
+/// degrees.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(into = "f64", try_from = "f64")]
 pub struct Crease(f64);

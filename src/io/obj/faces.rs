@@ -20,7 +20,7 @@ pub(super) struct Faces {
     pub(super) refused: Option<(u32, String)>,
 }
 
-/// The smoothing group of faces before the first `s` of a chunk: the one that holds where it begins.
+/// The smoothing group of faces before the first `s` of a chunk: that of the chunk before.
 pub(super) const INHERITED: u32 = u32::MAX;
 
 /// Faces of one part on lines that follow each other, with the same number of corners and the same
