@@ -270,7 +270,8 @@ mod tests {
     fn a_jpeg_that_ends_early_is_read_with_a_finding_wherever_it_is_cut() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.jpg");
-        let noise = |x: u32, y: u32| image::Rgb([(x * 37 + y * 91) as u8, (x * y) as u8, x as u8]);
+        let noise =
+            |x: u32, y: u32| image::Rgb([x * 37 + y * 91, x * y, x].map(|n| n.to_le_bytes()[0]));
         image::RgbImage::from_fn(64, 64, noise).save(&path).unwrap();
         let whole = std::fs::read(&path).unwrap();
         let found = |bytes: &[u8]| {
