@@ -539,8 +539,8 @@ fn objects_of_one_file_keep_their_crease_angles() {
 
     std::fs::write(&path, text.replace("crease: 180.0", "crease: 181.0")).unwrap();
     let error = open(&path, &Progress::new()).unwrap_err().to_string();
-    let reason = "models/cube.obj: its crease angle has to be from 0 to 180 degrees";
-    assert_eq!(error, format!("a.marraztu: {reason}"));
+    let reason = "the crease angle of models/cube.obj has to be from 0 to 180 degrees";
+    assert_eq!(error, format!("{}: {reason}", path.display()));
 }
 
 #[test]
