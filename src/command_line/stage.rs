@@ -1,17 +1,18 @@
 //! The scene that files make: a scene file or the first scene, with models put into it.
 
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use marraztu::base::Shared;
 use marraztu::edit::{items, selection};
-use marraztu::io::{self, Finding, Input, Loaded, Progress};
+use marraztu::io::{self, Finding, Input, LoadError, Loaded, Progress};
 use marraztu::scene::{
     Command, LoadOptions, MaterialChoice, Model, Object, Scene, Settings, Sides, View,
 };
+use rayon::prelude::*;
 
 use super::arguments::{Arguments, Reading};
 use super::bar::Bar;
@@ -103,26 +104,30 @@ impl Stage {
             count => format!("reading {count} models"),
         };
         let _bar = Bar::of(&what, &progress);
-        let mut read: BTreeMap<PathBuf, Shared<Model>> = BTreeMap::new();
-        let mut objects = Vec::with_capacity(files.len());
-        for (i, file) in files.iter().enumerate() {
-            let place = std::path::absolute(file).unwrap_or_else(|_empty| file.to_path_buf());
-            let model = match read.entry(place) {
-                Entry::Occupied(known) => known.get().clone(),
-                Entry::Vacant(new) => {
-                    let progress = progress.part(share(i, files.len()), share(i + 1, files.len()));
-                    let Loaded { model, findings } = match input.filter(|_| is_standard(file)) {
-                        Some(input) => input.model(options, &progress)?,
-                        None => io::load(file, options, &progress)?,
-                    };
-                    self.findings.extend(findings);
-                    new.insert(Shared::new(model)).clone()
-                }
-            };
-            // Also a model from standard input, which has no file's name.
-            let sides = Sides::Auto;
-            objects.push(Object { sides, ..Object::new(model, MaterialChoice::File) });
+        let place =
+            |file: &Path| std::path::absolute(file).unwrap_or_else(|_empty| file.to_owned());
+        let places: Vec<PathBuf> = files.iter().map(|file| place(file)).collect();
+        // Each once, in the order in which they are named.
+        let mut numbers: BTreeMap<&Path, usize> = BTreeMap::new();
+        let mut once: Vec<&PathBuf> = Vec::new();
+        for (file, place) in files.iter().zip(&places) {
+            numbers.entry(place).or_insert_with(|| {
+                once.push(file);
+                once.len() - 1
+            });
         }
+        let mut models: Vec<Shared<Model>> = Vec::with_capacity(once.len());
+        for loaded in load_all(&once, input, options, &progress) {
+            let Loaded { model, findings } = loaded?;
+            self.findings.extend(findings);
+            models.push(Shared::new(model));
+        }
+        let object = |place: &PathBuf| {
+            let model = models[numbers[place.as_path()]].clone();
+            // Also a model from standard input, which has no file's name.
+            Object { sides: Sides::Auto, ..Object::new(model, MaterialChoice::File) }
+        };
+        let objects = places.iter().map(object).collect();
         self.change(items::insert_objects(&self.scene, objects))
     }
 
@@ -156,9 +161,24 @@ pub(crate) fn is_standard(file: &Path) -> bool {
     file == Path::new("-")
 }
 
-#[expect(clippy::cast_precision_loss, reason = "for the eye")]
-fn share(i: usize, of: usize) -> f64 {
-    i as f64 / of as f64
+/// Reads models, several at a time: of many small files one alone leaves most threads idle.
+fn load_all(
+    files: &[&PathBuf],
+    input: Option<&Input>,
+    options: &LoadOptions,
+    progress: &Progress,
+) -> Vec<Result<Loaded, LoadError>> {
+    let done = AtomicUsize::new(0);
+    let load = |file: &&PathBuf| {
+        let own = if files.len() == 1 { progress.clone() } else { Progress::new() };
+        let loaded = match input.filter(|_| is_standard(file)) {
+            Some(input) => input.model(options, &own),
+            None => io::load(file, options, &own),
+        };
+        progress.reached(done.fetch_add(1, Ordering::Relaxed) + 1, files.len())?;
+        loaded
+    };
+    files.par_iter().map(load).collect()
 }
 
 /// Whether a file's name says that it is a scene.
