@@ -1,5 +1,6 @@
 //! The corners around each vertex of a mesh.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::mesh::index;
@@ -63,6 +64,14 @@ impl Around {
             }
         });
         Self { starts, corners, polygons: Polygons::of(outlines) }
+    }
+
+    /// The normals of all polygons, if some are so large that one cannot be computed for each corner.
+    pub(super) fn large_normals(&self, outlines: &Outlines<'_>) -> Option<Vec<Option<DVec3>>> {
+        matches!(self.polygons, Polygons::Mixed(_)).then(|| {
+            let polygons = 0..outlines.starts.len() - 1;
+            polygons.into_par_iter().map(|polygon| outlines.normal(polygon)).collect()
+        })
     }
 
     /// The corners around a vertex, ascending.

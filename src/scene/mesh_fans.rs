@@ -74,16 +74,15 @@ impl Limit {
 }
 
 /// The points of all corners, the first of them one a vertex; and the point of each corner, or
-/// nothing if each has its vertex's. `normals` are those of the polygons, 0 for one without area.
+/// nothing if each has its vertex's. `sums` are those of the unit normals around each vertex.
 pub(super) fn fan_points(
     outlines: &Outlines<'_>,
-    vertices: usize,
-    normals: &[DVec3],
+    sums: &[DVec3],
     rule: Rule<'_>,
 ) -> (Vec<Point>, Vec<u32>) {
-    let around = Around::of(outlines, vertices);
-    let sorter = Sorter { outlines, normals, around, rule };
-    let mut points = vec![Point { position: 0, normal: [0.0; 3] }; vertices];
+    let around = Around::of(outlines, sums.len());
+    let sorter = Sorter { outlines, sums, normals: around.large_normals(outlines), around, rule };
+    let mut points = vec![Point { position: 0, normal: [0.0; 3] }; sums.len()];
     let blocks = points.par_chunks_mut(BLOCK).enumerate();
     let blocks: Vec<Block> = blocks.map(|(i, own)| sorter.block(i * BLOCK, own)).collect();
     drop(sorter);
@@ -115,6 +114,7 @@ struct Block {
 #[derive(Debug, Default)]
 struct Fans {
     polygons: Vec<u32>,
+    normals: Vec<DVec3>,
     /// Each corner with the place of its face.
     corners: Vec<(u32, u32)>,
     /// An earlier face of the same fan; the first one names itself.
@@ -148,7 +148,9 @@ impl Fans {
 
 struct Sorter<'a> {
     outlines: &'a Outlines<'a>,
-    normals: &'a [DVec3],
+    sums: &'a [DVec3],
+    /// The normals of polygons, if they take long to compute again.
+    normals: Option<Vec<Option<DVec3>>>,
     around: Around,
     rule: Rule<'a>,
 }
@@ -159,47 +161,38 @@ impl Sorter<'_> {
         let mut block = Block::default();
         let mut fans = Fans::default();
         for (vertex, point) in (first..).zip(points) {
-            point.position = index(vertex);
+            *point = Point { position: index(vertex), normal: shown_normal(None) };
             let corners = self.around.corners(vertex);
-            let (sum, faces) = self.sum(corners);
-            if self.is_one_fan(corners, sum, faces) {
+            let sum = self.sums[vertex];
+            if self.is_one_fan(corners, sum) {
                 point.normal = shown_normal(math::unit(sum));
             } else {
                 self.find_fans(corners, point.position, &mut fans);
-                self.add_points(&mut fans, point, &mut block);
+                Self::add_points(&mut fans, point, &mut block);
             }
         }
         block
     }
 
-    /// The sum of the normals of the faces around a vertex, and how many faces there are. A face
-    /// that names the vertex twice counts once, a face without area not at all.
-    fn sum(&self, corners: &[u32]) -> (DVec3, usize) {
-        let mut sum = DVec3::ZERO;
-        let [mut faces, mut last] = [0, NONE as usize];
-        for corner in corners {
-            let polygon = self.around.polygon(*corner);
-            let normal = self.normals[polygon];
-            if polygon != last && normal != DVec3::ZERO {
-                sum += normal;
-                faces += 1;
-            }
-            last = polygon;
+    /// The normal of a polygon; `None` for one without area.
+    fn normal(&self, polygon: usize) -> Option<DVec3> {
+        match &self.normals {
+            Some(normals) => normals[polygon],
+            None => self.outlines.normal(polygon),
         }
-        (sum, faces)
     }
 
-    /// Whether all faces around a vertex are one fan, as far as that is quickly seen.
+    /// Whether all faces around a vertex are one fan, as far as that is quickly seen. Those without
+    /// area, and those that name the vertex twice, make the sum of the normals too short for it.
     #[expect(clippy::cast_precision_loss, reason = "few faces")]
-    fn is_one_fan(&self, corners: &[u32], sum: DVec3, faces: usize) -> bool {
-        if faces < 2 {
+    fn is_one_fan(&self, corners: &[u32], sum: DVec3) -> bool {
+        if corners.len() < 2 {
             return true;
         }
         match self.rule {
             Rule::Crease(limit) => {
-                faces == corners.len()
-                    && faces <= FEW
-                    && sum.length() >= faces as f64 - limit.slack
+                corners.len() <= FEW
+                    && sum.length() >= corners.len() as f64 - limit.slack
                     && self.is_connected(corners)
             }
             Rule::Groups(groups) => {
@@ -246,14 +239,14 @@ impl Sorter<'_> {
     /// Sorts the faces around a vertex into fans.
     fn find_fans(&self, corners: &[u32], vertex: u32, fans: &mut Fans) {
         fans.polygons.clear();
+        fans.normals.clear();
         fans.corners.clear();
         for corner in corners {
             let polygon = self.around.polygon(*corner);
-            if self.normals[polygon] == DVec3::ZERO {
-                continue;
-            }
             if fans.polygons.last() != Some(&index(polygon)) {
+                let Some(normal) = self.normal(polygon) else { continue };
                 fans.polygons.push(index(polygon));
+                fans.normals.push(normal);
             }
             fans.corners.push((*corner, index(fans.polygons.len() - 1)));
         }
@@ -293,7 +286,7 @@ impl Sorter<'_> {
         if edge.len() <= FEW {
             for (i, (_, a)) in edge.iter().enumerate() {
                 for (_, b) in &edge[i + 1..] {
-                    self.join_two(*a, *b, limit, fans);
+                    Self::join_two(*a, *b, limit, fans);
                 }
             }
             return;
@@ -302,13 +295,12 @@ impl Sorter<'_> {
         // each other are so from neighbour to neighbour.
         let sorted = self.sorted_about_edge(edge, vertex, fans);
         for (a, b) in sorted.iter().zip(sorted.iter().cycle().skip(1)) {
-            self.join_two(*a, *b, limit, fans);
+            Self::join_two(*a, *b, limit, fans);
         }
     }
 
-    fn join_two(&self, a: u32, b: u32, limit: Limit, fans: &mut Fans) {
-        let normal = |face: u32| self.normals[fans.polygons[face as usize] as usize];
-        if limit.joins(normal(a), normal(b)) {
+    fn join_two(a: u32, b: u32, limit: Limit, fans: &mut Fans) {
+        if limit.joins(fans.normals[a as usize], fans.normals[b as usize]) {
             fans.join(a, b);
         }
     }
@@ -319,7 +311,7 @@ impl Sorter<'_> {
         let along = math::unit(place(edge[0].0) - place(vertex)).unwrap_or(DVec3::Z);
         let (x, y) = along.any_orthonormal_pair();
         let angle = |(_, face): &(u32, u32)| {
-            let normal = self.normals[fans.polygons[*face as usize] as usize];
+            let normal = fans.normals[*face as usize];
             (libm::atan2(normal.dot(y), normal.dot(x)), *face)
         };
         let mut sorted: Vec<(f64, u32)> = edge.iter().map(angle).collect();
@@ -329,22 +321,20 @@ impl Sorter<'_> {
 
     /// Gives each fan around a vertex a point: the first one the vertex's own. The faces of a fan
     /// whose normals cancel out have a point each.
-    fn add_points(&self, fans: &mut Fans, own: &mut Point, block: &mut Block) {
+    fn add_points(fans: &mut Fans, own: &mut Point, block: &mut Block) {
         let faces = 0..index(fans.polygons.len());
-        let normal = |fans: &Fans, face: u32| self.normals[fans.polygons[face as usize] as usize];
         fans.sums.clear();
         fans.sums.resize(fans.polygons.len(), DVec3::ZERO);
         for face in faces.clone() {
             let first = fans.first(face);
-            let normal = normal(fans, face);
-            fans.sums[first as usize] += normal;
+            fans.sums[first as usize] += fans.normals[face as usize];
         }
         fans.points.clear();
         for face in faces {
             let first = fans.first(face);
             let sum = fans.sums[first as usize];
             let of_fan = if cancels(sum) {
-                narrow(normal(fans, face))
+                narrow(fans.normals[face as usize])
             } else if first == face {
                 shown_normal(math::unit(sum))
             } else {

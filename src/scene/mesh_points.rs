@@ -40,20 +40,10 @@ impl Computed {
                 Some(_) => Some(Rule::Groups(groups)),
             },
         };
-        rule.map_or_else(
-            || Normals::of(outlines, vertices).points(outlines),
-            |rule| Self::with_fans(outlines, vertices, rule),
-        )
-    }
-
-    fn with_fans(outlines: &Outlines<'_>, vertices: usize, rule: Rule<'_>) -> Self {
-        let polygons = 0..outlines.starts.len() - 1;
-        let normal = |polygon: usize| outlines.normal(polygon).unwrap_or(DVec3::ZERO);
-        let normals: Vec<DVec3> = polygons.into_par_iter().map(normal).collect();
-        let without = normals.par_iter().enumerate().filter(|(_, normal)| **normal == DVec3::ZERO);
-        let without_area = without.map(|(polygon, _)| index(polygon)).collect();
-        let (points, of_corners) = fan_points(outlines, vertices, &normals, rule);
-        Self { without_area, points, of_corners }
+        let normals = Normals::of(outlines, vertices);
+        let Some(rule) = rule else { return normals.points(outlines) };
+        let (points, of_corners) = fan_points(outlines, &normals.sums, rule);
+        Self { without_area: normals.without_area, points, of_corners }
     }
 }
 
@@ -214,9 +204,14 @@ fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) ->
     let alone = |i: &u32| cancelled[vertices[*i as usize] as usize];
     let alone: Vec<u32> = (0..index(vertices.len())).into_par_iter().filter(alone).collect();
     let mut smooth = Vec::new();
+    // A polygon's corners follow each other: its normal is computed once for all of them.
+    let mut last = (usize::MAX, None);
     for i in alone {
         let polygon = outlines.starts.partition_point(|start| *start <= i) - 1;
-        if let Some(normal) = outlines.normal(polygon) {
+        if last.0 != polygon {
+            last = (polygon, outlines.normal(polygon));
+        }
+        if let Some(normal) = last.1 {
             if smooth.is_empty() {
                 smooth = vertices.to_vec();
             }
