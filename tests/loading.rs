@@ -563,6 +563,20 @@ fn a_face_of_a_million_corners_is_cut_up() {
     assert_eq!(findings, []);
 }
 
+/// Each corner of a face without area has the face's normal, which is computed once.
+#[test]
+fn a_face_of_many_corners_without_area_is_read_as_quickly_as_others() {
+    let corners = 200_000_u32;
+    for place in [|_: u32| 1, |i: u32| i] {
+        let vertices = (0..corners).map(|i| format!("v {} 0 0\n", place(i)));
+        let face = (1..=corners).map(|i| format!(" {i}"));
+        let text = vertices.chain(["f".to_owned()]).chain(face).collect::<String>();
+        let (mesh, findings) = described(&text);
+        assert_eq!(mesh.triangles().len(), corners as usize - 2);
+        assert_eq!(kinds(&findings), [FindingKind::FaceNoArea]);
+    }
+}
+
 #[test]
 fn a_line_without_end_is_refused_in_a_short_message() {
     for text in ["x".repeat(5_000_000), format!("v 0 0 {}", "9x".repeat(2_500_000))] {

@@ -142,9 +142,14 @@ fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) ->
     let alone = |i: &u32| cancelled[vertices[*i as usize] as usize];
     let alone: Vec<u32> = (0..index(vertices.len())).into_par_iter().filter(alone).collect();
     let mut smooth = Vec::new();
+    // A polygon's corners follow each other: its normal is computed once for all of them.
+    let mut last = (usize::MAX, None);
     for i in alone {
         let polygon = outlines.starts.partition_point(|start| *start <= i) - 1;
-        if let Some(normal) = outlines.normal(polygon) {
+        if last.0 != polygon {
+            last = (polygon, outlines.normal(polygon));
+        }
+        if let Some(normal) = last.1 {
             if smooth.is_empty() {
                 smooth = vertices.to_vec();
             }
