@@ -10,7 +10,7 @@
 //! What is closer together than rounding can tell counts as touching.
 //!
 //! Looking for ears may take time that grows with the square of the corners. For more than a thousand
-//! of them it is limited, and what is left is cut by a line that sweeps over it ([`sweep`]), with
+//! of them it is limited, and what is left is cut by a line that sweeps over it (`sweep`), with
 //! slimmer triangles.
 //!
 //! Ear clipping is Meisters', "Polygons Have Ears", American Mathematical Monthly 1975. A hole that
