@@ -44,7 +44,7 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Says of which objects nothing is seen, and why: a line for each reason.
+/// Notes why nothing of some objects is seen: a line for each reason.
 fn tell_unseen(renderer: &mut Renderer, stage: &Stage, size: Size) {
     let Stage { scene, view, settings, .. } = stage;
     let mut reasons: Vec<(Unseen, Vec<&str>)> = Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! Found by elimination: the object is drawn alone, then alone from both sides, then alone and opaque.
 //! The first picture that shows it names what hid it before. The picture itself costs nothing more;
-//! only objects of which nothing is seen are drawn again.
+//! only objects that are not seen are drawn again.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -56,8 +56,8 @@ impl fmt::Display for Unseen {
     }
 }
 
-/// The objects that the user wants to see in the picture that the renderer drew last, and of which
-/// nothing is seen. The picture is the one of these values.
+/// The objects that should be seen in the picture that the renderer drew last, but are not. The picture
+/// is the one of these values.
 ///
 /// Objects that the user hid, as a whole or part by part, are left out of the list.
 #[must_use]
@@ -132,7 +132,7 @@ struct Alone<'a> {
 }
 
 impl Alone<'_> {
-    /// Why an object is not seen, of which the plan gives this reason if it leaves it out.
+    /// Why an object is not seen; `left_out` is the plan's reason if it leaves the object out.
     fn reason(&mut self, id: ObjectId, left_out: Option<Cow<'static, str>>) -> Unseen {
         let Some(object) = self.scene.objects.get(id) else {
             return Unseen::LeftOut("it is not in the scene".into());
@@ -173,7 +173,7 @@ impl Alone<'_> {
         !self.draw(id, change).contains(&true)
     }
 
-    /// Where a changed object is seen if it is alone: a flag for each pixel.
+    /// The pixels at which a changed object is seen if it is alone, as a flag for each pixel.
     fn draw(&mut self, id: ObjectId, change: impl FnOnce(&mut Object)) -> Vec<bool> {
         let mut own = self.scene.objects.get(id).expect("it is in the scene").clone();
         change(&mut own);
