@@ -497,3 +497,27 @@ fn what_shows_nowhere_paints_no_tile() {
     let changes = renderer.redraw(&plan(&scene), &|| true).unwrap();
     assert!(changes.is_nothing() && *changes.cause() == Cause::Items(Vec::new()));
 }
+
+#[test]
+fn edges_that_stand_over_the_border_of_a_tile_are_drawn_again_on_both_sides() {
+    // In parallel projection a pixel is 1000 / 128 units wide; the border of the tiles is at 0.
+    let pixel = 1000.0 / 128.0;
+    for offset in [-1.5, -1.0, -0.5, -0.01, 0.0, 0.01, 0.5, 1.0] {
+        for wide_lines in [false, true] {
+            let [x, y] = [offset - 20.0, 20.0 - offset].map(|pixels: f64| pixels * pixel);
+            let (mut scene, view) = scene(&[(square(), at(20.0 * pixel, x, y, 0.0))]);
+            let projection = Projection::Orthographic;
+            let view = View { projection, wide_lines, edges_over_fill: true, ..view };
+            let plan = |scene: &Scene| {
+                FramePlan::new(scene, &view, &Settings::default(), Size::new(128, 128))
+            };
+            let mut renderer = Renderer::default();
+            renderer.render(&plan(&scene));
+            edit(&mut scene, ObjectId(10), |object| object.edge_color = Color([0, 255, 0]));
+            renderer.redraw(&plan(&scene), &|| true).unwrap();
+            let again = renderer.picture().clone();
+            let anew = Renderer::default().render(&plan(&scene)).clone();
+            assert!(again == anew, "{offset} pixels beside the border, wide lines: {wide_lines}");
+        }
+    }
+}

@@ -77,3 +77,49 @@ pub(super) fn clusters(
 ) -> Vec<Cluster> {
     triangles.par_chunks(CLUSTER).map(|some| Cluster::of(some, &place)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From -1 to 1, by Marsaglia's xorshift.
+    fn real(state: &mut u64) -> f64 {
+        *state ^= *state << 13;
+        *state ^= *state >> 7;
+        *state ^= *state << 17;
+        f64::from(u32::try_from(*state >> 33).unwrap()) / f64::from(1_u32 << 30) - 1.0
+    }
+
+    #[test]
+    fn every_corner_lies_in_the_ball_and_every_normal_in_the_cone() {
+        let mut state = 1;
+        for round in 0..200 {
+            // Leaves that are nearly flat, far from the origin, to triangles in all directions.
+            let rough = [1e-3, 0.1, 1.0][round % 3];
+            let away = DVec3::splat([0.0, 5e3][round % 2]);
+            let mut place = || {
+                let [x, y, z] = [0, 1, 2].map(|_| real(&mut state));
+                (away + DVec3::new(x, y, z * rough)).as_vec3().as_dvec3()
+            };
+            let places: Vec<DVec3> = (0..3 * CLUSTER).map(|_| place()).collect();
+            let triangle = |number: usize| {
+                let at = |i: usize| u32::try_from(3 * number + i).unwrap();
+                DrawTriangle { vertices: [at(0), at(1), at(2)], number: at(0) / 3 }
+            };
+            let triangles: Vec<DrawTriangle> = (0..CLUSTER).map(triangle).collect();
+            let [cluster] = clusters(&triangles, |i| places[i as usize])[..] else { panic!() };
+            let centre = DVec3::from_array(cluster.centre.map(f64::from));
+            for place in &places {
+                assert!(place.distance(centre) <= f64::from(cluster.radius), "round {round}");
+            }
+            let axis = DVec3::from_array(cluster.axis.map(f64::from)).normalize_or_zero();
+            for corners in places.as_chunks::<3>().0 {
+                let [a, b, c] = *corners;
+                let across = (b - a).cross(c - a);
+                let cosine = axis.dot(across.normalize_or_zero());
+                assert!(cosine >= f64::from(cluster.cosine), "round {round}");
+                assert!(across.length() >= f64::from(cluster.least_area), "round {round}");
+            }
+        }
+    }
+}
