@@ -12,7 +12,7 @@ use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::lab::prove::stage::{self, Flat};
-use marraztu::render::geometry::coverage::Snapped;
+use marraztu::render::screen::coverage::Snapped;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Aim, Arithmetic, Axis, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,

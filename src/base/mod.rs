@@ -1,10 +1,12 @@
-//! What every floor stands on: mathematics, colours, pictures, shared values.
+//! What every floor stands on: mathematics, colours, pictures, shared values, parallel work.
 
+pub(crate) mod cancellation;
 pub mod color;
 pub mod image;
 pub mod lists;
 pub mod math;
 pub mod once;
 mod shared;
+pub(crate) mod work_stealing;
 
 pub use shared::Shared;

@@ -8,9 +8,9 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use super::plan::Draw;
 use super::{Effect, FramePlan, Renderer, State};
 use crate::base::image::Size;
+use crate::render::frame::draw::Draw;
 use crate::scene::{
     Fill, ItemId, LightAt, List, MaterialChoice, Object, ObjectId, Scene, Settings, Sides, Surface,
     View,

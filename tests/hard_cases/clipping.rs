@@ -6,7 +6,7 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::lab::prove::dice::Dice;
 use marraztu::lab::prove::exact::span;
 use marraztu::lab::prove::stage::{self, Flat};
-use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Fill, Filter, List, MeshSource, Object, ObjectId, Part, Placed, Pose, Settings, Sides,

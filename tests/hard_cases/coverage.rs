@@ -6,7 +6,7 @@ use marraztu::lab::prove::dice::Dice;
 use marraztu::lab::prove::exact::{span, wind};
 use marraztu::lab::prove::pictures::{levels, samples};
 use marraztu::lab::prove::stage::{self, Flat};
-use marraztu::render::geometry::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
+use marraztu::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     LoadOptions, MeshSource, Object, ObjectId, Projection, Settings, View, Winding,

@@ -5,7 +5,7 @@ use marraztu::base::image::Size;
 use marraztu::lab::prove::dice::Dice;
 use marraztu::lab::prove::double_double::Double;
 use marraztu::lab::prove::stage::{self, FAR, Flat};
-use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Command, ItemId, MaterialChoice, ObjectId, PresetId, Projection, Scene, Settings, Sides,

@@ -6,7 +6,7 @@ use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{Refusal, Stroke, place};
 use marraztu::lab::prove::dice::Dice;
 use marraztu::lab::prove::double_double::Double;
-use marraztu::render::geometry::coverage::{Snapped, Triangle, doubled_area};
+use marraztu::render::screen::coverage::{Snapped, Triangle, doubled_area};
 use marraztu::scene::{
     Frame, Light, LightId, LightKind, List, ObjectId, Placed, Scene, Settings, Sides, Subject,
     Transformation, View, newell,

@@ -6,7 +6,7 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::lab::prove::dice::Dice;
 use marraztu::lab::prove::stage::{self, Flat};
 use marraztu::render::Renderer;
-use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::scene::{
     Arithmetic, Filter, LightAt, Material, MaterialChoice, MeshSource, NONE, ObjectId, Part,
     Settings, SourceCorner, Surface, Texture, View, Wrap,

@@ -5,7 +5,7 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::edit::{Stroke, place};
 use marraztu::lab::prove::dice::Dice;
 use marraztu::lab::prove::pictures::levels;
-use marraztu::render::numbers::real::{Power, Real as _};
+use marraztu::render::simd::{Power, Real as _};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Aim, Arithmetic, Command, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
+use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 
 /// The first column of row `y` whose centre lies to the right of where the side from `p` to `q`
 /// crosses the row; `None` where it does not.

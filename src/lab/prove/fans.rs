@@ -10,7 +10,7 @@ use super::exact::{span, wind};
 use super::stage::{self, Flat};
 use super::{Proof, Tally};
 use crate::render::Renderer;
-use crate::render::geometry::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
+use crate::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
 
 pub(super) const PROOF: Proof = Proof {
     name: "fans",

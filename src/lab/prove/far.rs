@@ -4,7 +4,7 @@ use super::dice::Dice;
 use super::fans::compare;
 use super::stage::Flat;
 use super::{Proof, Tally};
-use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
+use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 
 pub(super) const PROOF: Proof = Proof {
     name: "samples",

@@ -52,7 +52,6 @@ pub static PROOFS: &[Proof] = &[
     undo::PROOF,
     sizes::PROOF,
     plan::PLAN,
-    plan::RULES,
     plan::FAINT,
     plan::ABSENT,
 ];

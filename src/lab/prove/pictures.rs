@@ -12,7 +12,7 @@ use super::stage::{self, Flat};
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::io;
-use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
+use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     AXES, Arithmetic, Command, Fill, Filter, Item, LightAt, LoadOptions, Mesh, MeshSource, Model,

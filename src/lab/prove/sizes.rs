@@ -6,7 +6,7 @@ use super::fans::seen;
 use super::stage::{self, Flat};
 use super::{Proof, Tally};
 use crate::base::image::Size;
-use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
+use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::Settings;
 

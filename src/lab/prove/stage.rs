@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3};
 use crate::base::Shared;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
-use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
+use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     Camera, CameraId, Lens, List, LoadOptions, MaterialChoice, Mesh, MeshSource, Model, NONE,

@@ -6,7 +6,8 @@ use std::borrow::Cow;
 
 use super::planner::Planner;
 use super::uses::{Effect, EffectUse, State, Thing};
-use super::{Back, Draw, Pipeline, Planning, Shaded};
+use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
+use crate::render::plan::Planning;
 use crate::scene::{Filter, ItemId, LightAt, Normals, Object, Settings, Sides, Surface};
 
 /// What a row reads.
@@ -26,7 +27,7 @@ const FEATURES: &[Feature] = &[
     Feature(Effect::Surfaces, surfaces),
     Feature(Effect::Normals, normals),
     Feature(Effect::Texture, texture),
-    Feature(Effect::Holes, holes),
+    Feature(Effect::AlphaTest, holes),
     Feature(Effect::VertexColors, vertex_colors),
     Feature(Effect::BackFaces, back_faces),
     Feature(Effect::Edges, |it| switched(it.draw.lines.edges)),
@@ -35,7 +36,7 @@ const FEATURES: &[Feature] = &[
 ];
 
 /// What a thing's being seen is called.
-pub(super) const fn presence(item: ItemId) -> Effect {
+pub(crate) const fn presence(item: ItemId) -> Effect {
     match item {
         ItemId::Object(_) => Effect::Surfaces,
         ItemId::Camera(_) | ItemId::Light(_) => Effect::Marks,

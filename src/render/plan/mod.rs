@@ -6,94 +6,31 @@
 //! tile (`TilePlan`).
 
 mod bounded;
-mod count;
-mod draw;
-mod features;
+pub(crate) mod features;
+mod helpers;
 mod lamps;
 mod observer;
 mod planner;
 mod range;
-pub mod rules;
+mod rules;
 mod surfaces;
-mod tile;
+pub(crate) mod tile;
 mod turning;
-mod uses;
+pub(crate) mod uses;
 mod without;
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
-use glam::DMat4;
-
-pub(super) use self::draw::{Back, Draw, Lines, Pipeline, Shaded, Stage};
 use self::lamps::lamps;
-pub(super) use self::observer::ObserverSpace;
+use self::observer::ObserverSpace;
 use self::planner::Planner;
-use self::rules::Rules;
-pub(super) use self::tile::{TileLight, TilePlan};
-pub use self::turning::Turning;
 use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectUse, State, Thing};
-use super::effects::Lamp;
-use super::ways::Ways;
-use crate::base::color::Color;
 use crate::base::image::Size;
-use crate::scene::{
-    Arithmetic, Filter, LeaveOut, LightAt, LightId, Projection, Samples, Scene, Settings, View,
-};
-
-/// Everything that a frame needs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FramePlan {
-    /// Pixels.
-    pub(in crate::render) size: Size,
-    /// What is seen where nothing is.
-    pub(in crate::render) background: Color,
-    /// Where V goes.
-    pub(in crate::render) eye: Eye,
-    /// The numbers that light is computed in.
-    pub(in crate::render) arithmetic: Arithmetic,
-    /// Where light is evaluated.
-    pub(in crate::render) light_at: LightAt,
-    /// In how many places of a pixel it is asked what is seen.
-    pub(in crate::render) samples: Samples,
-    /// Whether each of them is lit, as if it were the middle of a pixel: then `light_at` says pixels.
-    pub(in crate::render) lit_by_sample: bool,
-    /// How far from the middles of pixels it is looked, in parts of a pixel: where there is a picture for
-    /// each sample, in the plan of one of those.
-    pub(in crate::render) shift: [i32; 2],
-    /// What textures give between their texels.
-    pub(in crate::render) filter: Filter,
-    /// Which ways are not those that every picture is drawn by.
-    pub(in crate::render) ways: Ways,
-    /// Where the observer is and which way they look.
-    pub(in crate::render) view_from_world: DMat4,
-    /// `clip_from_view`.
-    pub(in crate::render) clip_from_view: DMat4,
-    /// Width of lines in pixels: 1 or 2.
-    pub(in crate::render) line_width: i32,
-    /// The lights that shine, the oldest first.
-    pub(in crate::render) lamps: Vec<Lamp>,
-    /// Whose they are.
-    pub(in crate::render) lights: Vec<LightId>,
-    /// What is drawn, in the order that decides between equal depths.
-    pub(in crate::render) draws: Vec<Draw>,
-    /// The different ways in which surfaces are drawn.
-    pub(in crate::render) pipelines: Vec<Pipeline>,
-    /// What may be left out of a tile.
-    pub(in crate::render) leave_out: LeaveOut,
-    /// By what rules.
-    pub(in crate::render) rules: Arc<Rules>,
-}
-
-/// Where directions to the observer go.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::render) enum Eye {
-    /// To the origin of view space: perspective.
-    Point,
-    /// Along +Z: parallel projection.
-    Parallel,
-}
+use crate::render::frame::draw::Pipeline;
+use crate::render::frame::variants::Variants;
+use crate::render::frame::{Eye, FramePlan, Rules};
+use crate::scene::{Arithmetic, LightAt, Projection, Samples, Scene, Settings, View};
 
 /// A plan while it is made.
 #[derive(Debug)]
@@ -108,19 +45,14 @@ impl FramePlan {
     /// Plans the picture of a scene: `size` in pixels, at least 1 x 1.
     #[must_use]
     pub fn new(scene: &Scene, view: &View, settings: &Settings, size: Size) -> Self {
-        Self::by(Rules::sound(), scene, view, settings, size)
+        Self::planned(Rules::Applied, Notes::default, scene, view, settings, size).plan
     }
 
-    /// The same by rules of one's own.
+    /// Plans the same picture with everything that the scene names, needed or not: slower, and what
+    /// [`Self::new`] is tested against.
     #[must_use]
-    pub fn by(
-        rules: Arc<Rules>,
-        scene: &Scene,
-        view: &View,
-        settings: &Settings,
-        size: Size,
-    ) -> Self {
-        Self::planned(rules, Notes::default, scene, view, settings, size).plan
+    pub fn of_everything(scene: &Scene, view: &View, settings: &Settings, size: Size) -> Self {
+        Self::planned(Rules::Ignored, Notes::default, scene, view, settings, size).plan
     }
 
     /// The same plan as [`Self::new`], with every effect that it has and does without.
@@ -132,20 +64,20 @@ impl FramePlan {
         size: Size,
     ) -> (Self, Vec<EffectUse>) {
         let Planning { plan, notes, .. } =
-            Self::planned(Rules::sound(), Notes::wanted, scene, view, settings, size);
+            Self::planned(Rules::Applied, Notes::wanted, scene, view, settings, size);
         (plan, notes.into_uses())
     }
 
     /// Plans in the numbers that are asked for, or in 64 bits where 32 have no room.
     fn planned(
-        rules: Arc<Rules>,
+        rules: Rules,
         notes: fn() -> Notes,
         scene: &Scene,
         view: &View,
         settings: &Settings,
         size: Size,
     ) -> Planning {
-        let as_asked = Self::planned_in(rules.clone(), notes(), scene, view, settings, size);
+        let as_asked = Self::planned_in(rules, notes(), scene, view, settings, size);
         if settings.arithmetic == Arithmetic::F64 || as_asked.plan.has_room() {
             return as_asked;
         }
@@ -154,7 +86,7 @@ impl FramePlan {
     }
 
     fn planned_in(
-        rules: Arc<Rules>,
+        rules: Rules,
         notes: Notes,
         scene: &Scene,
         view: &View,
@@ -178,7 +110,7 @@ impl FramePlan {
             lit_by_sample: by_sample && settings.samples != Samples::One,
             shift: [0; 2],
             filter: settings.filter,
-            ways: Ways::of(settings),
+            variants: Variants::of(settings),
             view_from_world: observer.view_from_world,
             clip_from_view: observer.clip_from_view,
             line_width: if view.wide_lines { 2 } else { 1 },
@@ -205,31 +137,6 @@ impl FramePlan {
             });
         }
         into
-    }
-
-    /// The plan of the picture that is seen where samples lie that are shifted by so many parts of a pixel
-    /// from the middles of their pixels.
-    pub(super) fn seen_from(&self, shift: [i32; 2]) -> Self {
-        Self { shift, ..self.clone() }
-    }
-
-    /// Computes everything of the meshes that drawing reads. Threads that draw compute nothing of it
-    /// themselves: see [`together`](crate::render::shares::together).
-    pub(in crate::render) fn prepare(&self) {
-        self.draws.iter().for_each(|draw| draw.prepare(self));
-    }
-
-    /// Pixels.
-    #[must_use]
-    pub const fn size(&self) -> Size {
-        self.size
-    }
-
-    /// The names of the effects that each way of drawing a surface is made of, in order: two frames
-    /// with the same keys do the same work for each pixel.
-    #[must_use]
-    pub fn keys(&self) -> Vec<String> {
-        self.pipelines.iter().map(Pipeline::key).collect()
     }
 }
 

@@ -4,8 +4,8 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use crate::base::image::Size;
 use crate::base::math;
-use crate::render::geometry::clip::Screen;
-use crate::render::region::Region;
+use crate::render::lights::region::Region;
+use crate::render::screen::clip::Screen;
 use crate::scene::{Lens, Projection, Scene, View};
 
 /// How far is seen in the unit of view space: at least so far, and less than twice as far.
@@ -28,13 +28,13 @@ fn unit(lens: &Lens, projection: Projection) -> f64 {
 /// units far: so light of 32 bits is the same for scenes of atoms and of stars, and for scenes of
 /// ordinary size the unit is the world's.
 #[derive(Debug)]
-pub(in crate::render) struct ObserverSpace {
+pub(crate) struct ObserverSpace {
     /// How many units of view space a unit of the world is.
-    pub(in crate::render) unit: f64,
-    pub(in crate::render) world_from_view: DMat4,
-    pub(in crate::render) view_from_world: DMat4,
-    pub(in crate::render) clip_from_view: DMat4,
-    pub(in crate::render) size: Size,
+    pub(crate) unit: f64,
+    pub(crate) world_from_view: DMat4,
+    pub(crate) view_from_world: DMat4,
+    pub(crate) clip_from_view: DMat4,
+    pub(crate) size: Size,
 }
 
 impl ObserverSpace {

@@ -8,13 +8,15 @@ use super::features::presence;
 use super::lamps::Shining;
 use super::rules::Thing;
 use super::surfaces::Ground;
-use super::turning::Turning;
+use super::turning::turning_of;
 use super::uses::{self, EffectUse, State};
-use super::{Back, Draw, Lines, ObserverSpace, Pipeline, Planning};
 use crate::base::{Shared, color::Color, math};
-use crate::render::marks;
-use crate::render::region::Region;
-use crate::render::ways::Ways;
+use crate::render::frame::draw::{Back, Draw, Lines, Pipeline};
+use crate::render::frame::variants::Variants;
+use crate::render::lights::region::Region;
+use crate::render::plan::Planning;
+use crate::render::plan::helpers;
+use crate::render::plan::observer::ObserverSpace;
 use crate::scene::{
     Fill, ItemId, LightAt, LightId, LightKind, Model, NormalLength, NormalMatrix, NormalSource,
     Object, ObjectId, Observer, Scene, Settings, VertexArithmetic, View,
@@ -139,12 +141,12 @@ impl Planner<'_> {
             return left_out(into, item, &object.name, "it has no vertices");
         };
         let thing = Thing { observer: &self.observer, draw: &draw, bounds };
-        let rules = into.plan.rules.clone();
+        let rules = into.plan.rules;
         let reason = if mesh.polygon_count() == 0 {
             Some("it has no faces")
         } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
             Some("its placement is flat: it has no inside and no outside")
-        } else if into.plan.ways.has_rare_geometry() {
+        } else if into.plan.variants.has_rare_geometry() {
             // Where it is seen is not where it is.
             None
         } else {
@@ -156,7 +158,7 @@ impl Planner<'_> {
         if draw.part_pipelines.is_empty() {
             let seen = rules.surfaces(&thing).is_none();
             let (region, tiled) = self.region(&draw, bounds.corners());
-            let turning = Turning::of(&draw, self.settings.light);
+            let turning = turning_of(&draw, self.settings.light);
             let ground = Ground { item, object, region, turning, tiled, seen };
             draw.part_pipelines = self.part_pipelines(into, &ground);
         }
@@ -185,7 +187,7 @@ impl Planner<'_> {
             let error = 2e-6 * exact.reach();
             return (Some(Region::placed(draw.view_from_object, corners, error)), false);
         }
-        let sure = !Ways::of(self.settings).has_rare_geometry();
+        let sure = !Variants::of(self.settings).has_rare_geometry();
         if !sure || !self.observer.holds(draw.clip_from_object, corners) {
             return (None, false);
         }
@@ -226,7 +228,7 @@ impl Planner<'_> {
                 name: camera.name.clone(),
                 ..Object::new(camera.model.clone(), camera.material.clone())
             };
-            let placement = marks::world_from_mark(camera);
+            let placement = helpers::world_from_mark(camera);
             let draw = Draw {
                 back: if self.view.back_faces { Back::Red } else { Back::Left },
                 lines: self.lines(&mark.model, mark.edge_color),
@@ -236,14 +238,14 @@ impl Planner<'_> {
         }
         let on = self.scene.lights.iter().filter(|(_, light)| light.on);
         for (id, position) in on.filter_map(|(id, _)| self.bulb_place(id)) {
-            let Some(placement) = marks::world_from_diamond(&self.observer, position) else {
+            let Some(placement) = helpers::world_from_diamond(&self.observer, position) else {
                 continue;
             };
-            let pipeline = into.pipeline(Pipeline::Flat(marks::YELLOW));
+            let pipeline = into.pipeline(Pipeline::Flat(helpers::YELLOW));
             let draw = Draw {
                 part_pipelines: vec![Some(pipeline)],
                 filled: true,
-                ..self.draw(ItemId::Light(id), marks::diamond(), placement)
+                ..self.draw(ItemId::Light(id), helpers::diamond(), placement)
             };
             let name =
                 self.scene.lights.get(id).map_or_else(String::new, |light| light.name.clone());

@@ -3,18 +3,19 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use super::draw::Form;
 use super::lamps::Shining;
 use super::planner::Planner;
 use super::rules::{Covering, Meeting, Reading};
-use super::turning::Turning;
 use super::uses::{self, Class, Effect, EffectUse, State};
-use super::{Pipeline, Planning, Shaded, Stage, bounded};
 use crate::base::image::{Picture, Size};
 use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color};
-use crate::render::effects::Matter;
-use crate::render::region::Region;
+use crate::render::frame::draw::Form;
+use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::lights::PhongMaterial;
+use crate::render::lights::region::Region;
+use crate::render::lights::turning::Turning;
+use crate::render::plan::{Planning, bounded};
 use crate::scene::{
     Arithmetic, ItemId, LeaveOut, LightAt, Object, PartLook, SpecularForm, Surface, Texture, Wrap,
 };
@@ -71,7 +72,7 @@ impl Planner<'_> {
             return Some(into.pipeline(Pipeline::Flat(Color([0; 3]))));
         }
         let mesh = &object.model.mesh;
-        let rules = into.plan.rules.clone();
+        let rules = into.plan.rules;
         let texture = look.texture.filter(|_| !mesh.uvs().is_empty());
         let texture = match rules.texture(texture.map(|texture| &**texture)) {
             Some(_) => None,
@@ -117,7 +118,7 @@ impl Planner<'_> {
             (matter, shaded.cut_off) = self.cut(into, ground, matter, &mut stages);
         }
         shaded.matter = matter;
-        shaded.places = into.plan.rules.places(&Reading::of(stages.iter())).is_none();
+        shaded.places = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
         // Tile by tile where some light shines on a part of space only, or is too faint in some.
         shaded.tiled = ground.tiled
             && (self.settings.leave_out == LeaveOut::HalfStep
@@ -127,13 +128,13 @@ impl Planner<'_> {
     }
 
     /// The power of 2 below which powers of highlights count as 0.
-    fn floor(&self, into: &Planning, region: Option<&Region>, matter: &Matter) -> f64 {
+    fn floor(&self, into: &Planning, region: Option<&Region>, matter: &PhongMaterial) -> f64 {
         // By what the scene says, and not by what is left of it after leaving out.
         let with_highlight = |shining: &&Shining| {
             let lamp = &into.plan.lamps[shining.lamp as usize];
             shining.shines
                 && matter.mirrors(lamp)
-                && (shining.effect.needless)(lamp, matter).is_none()
+                && (shining.effect.is_noop)(lamp, matter).is_none()
         };
         let lit = || self.shining.iter().filter(with_highlight);
         // A highlight that is stronger than its light reaches further down, and so does one of a light
@@ -143,7 +144,7 @@ impl Planner<'_> {
         // off here would be all that its polygons show.
         let arriving = |shining: &Shining| {
             let lamp = &into.plan.lamps[shining.lamp as usize];
-            (shining.effect.arrives)(lamp, region)
+            (shining.effect.max_falloff)(lamp, region)
         };
         let arriving = match self.settings.light {
             LightAt::Face | LightAt::Vertex => 1.0,
@@ -161,7 +162,12 @@ impl Planner<'_> {
     }
 
     /// The lights that a material needs, in the order of the scene.
-    fn stages(&self, into: &mut Planning, ground: &Ground<'_>, matter: &Matter) -> Vec<Stage> {
+    fn stages(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        matter: &PhongMaterial,
+    ) -> Vec<Stage> {
         let mut stages = Vec::new();
         let mut no_highlight = Some("no light is on it");
         for Shining { id, name, effect, lamp, .. } in &self.shining {
@@ -181,7 +187,7 @@ impl Planner<'_> {
                 continue;
             }
             let plain = into.plan.rules.highlight(&meeting);
-            if effect.reads_places {
+            if effect.reads_positions {
                 no_highlight = no_highlight.and(plain);
             }
             let highlight = match self.settings.specular {
@@ -214,7 +220,7 @@ impl Planner<'_> {
         &self,
         into: &mut Planning,
         ground: &Ground<'_>,
-        matter: &Matter,
+        matter: &PhongMaterial,
         stages: &mut Vec<Stage>,
     ) -> f64 {
         let Planning { plan, notes, .. } = into;
@@ -240,9 +246,9 @@ impl Planner<'_> {
         &self,
         into: &mut Planning,
         ground: &Ground<'_>,
-        matter: Matter,
+        matter: PhongMaterial,
         stages: &mut [Stage],
-    ) -> (Matter, f64) {
+    ) -> (PhongMaterial, f64) {
         let lit = (&into.plan.lamps[..], &matter);
         let region = ground.region.as_ref();
         let Some(power) = bounded::least_power(stages, lit, region) else { return (matter, 0.0) };
@@ -273,15 +279,15 @@ const LARGEST: f64 = 1e30;
 
 /// What a part reflects. A file may say anything: what is no number reflects nothing, and an exponent
 /// below 0 would make a highlight of what is not one.
-fn coefficients(look: &PartLook<'_>) -> Matter {
+fn coefficients(look: &PartLook<'_>) -> PhongMaterial {
     let material = look.material;
     let number = |k: f64| if k.is_nan() { 0.0 } else { k };
     let held = |color: [f64; 3]| color.map(|k| number(k).clamp(-LARGEST, LARGEST));
-    Matter {
+    PhongMaterial {
         ambient: held(material.ambient),
         diffuse: held(material.diffuse),
         specular: held(material.specular),
         exponent: number(material.exponent).clamp(0.0, LARGEST),
-        ..Matter::default()
+        ..PhongMaterial::default()
     }
 }

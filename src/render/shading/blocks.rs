@@ -3,17 +3,17 @@
 //! Where all that is to do is to mix colours, or to light what is there, that is one pass without a list;
 //! all else goes the way of other blocks.
 
+use super::barycentrics::ShadingNumber;
 use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::surface::{Out, Scenery, Shader};
-use super::whole::{BlockLight, Blocks, Canvas};
-use crate::render::effects::Light;
-use crate::render::plan::{Back, Pipeline};
+use crate::render::frame::draw::{Back, Pipeline};
+use crate::render::shading::full_blocks::{BlockLight, Blocks, Canvas};
 use crate::scene::{LightAt, Rounding};
 
-impl<T: Light> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers as a whole.
-    pub(super) fn whole_blocks(
+    pub(crate) fn whole_blocks(
         &mut self,
         scenery: &Scenery<'_, T>,
         number: u32,
@@ -50,7 +50,7 @@ impl<T: Light> Shader<T> {
             return false;
         };
         let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
-        if !mixed || group.draw.back == Back::Red || plan.ways.mixes_one_by_one() {
+        if !mixed || group.draw.back == Back::Red || plan.variants.mixes_one_by_one() {
             return false;
         }
         let tables = lit.tables(group.draw_index, group.pipeline);
@@ -79,9 +79,9 @@ impl<T: Light> Shader<T> {
         };
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
         let textured = shaded.texture.is_some() || shaded.vertex_colors;
-        let rare = plan.ways.has_rare_places()
-            || plan.ways.rare_roots().is_some()
-            || plan.ways.rounding != Rounding::Nearest;
+        let rare = plan.variants.has_rare_places()
+            || plan.variants.rare_roots().is_some()
+            || plan.variants.rounding != Rounding::Nearest;
         if shaded.light.is_none() || !pixels || textured || rare || group.draw.back == Back::Red {
             return false;
         }

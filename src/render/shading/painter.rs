@@ -7,21 +7,21 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use super::barycentrics::ShadingNumber;
 use super::colors::Sums;
 use super::resolve::Samples;
 use super::surface::{Out, Scenery, Shader};
-use super::whole::{Blocks, Canvas};
 use crate::base::color::Color;
 use crate::base::image::Size;
-use crate::render::effects::Light;
-use crate::render::geometry::coverage::PixelBox;
-use crate::render::geometry::places::{ALL, FOUR};
-use crate::render::geometry::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
-use crate::render::plan::FramePlan;
-use crate::render::visibility::tile::Visibility;
+use crate::render::frame::FramePlan;
+use crate::render::raster::tile::Visibility;
+use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::sample_positions::{ALL, FOUR};
+use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::render::shading::full_blocks::{Blocks, Canvas};
 
 /// The pixels of a tile; tiles are counted along rows.
-pub(in crate::render) fn bounds_of(tile: usize, size: Size) -> PixelBox {
+pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
     let [columns, _] = tiles_of(size);
     let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
     let (left, top) = (tile % columns * TILE, tile / columns * TILE);
@@ -33,10 +33,10 @@ pub(in crate::render) fn bounds_of(tile: usize, size: Size) -> PixelBox {
 
 /// The rows of the picture that a row of tiles lies in.
 #[derive(Debug)]
-pub(in crate::render) struct Band<'a> {
-    pub(in crate::render) pixels: &'a mut [[u8; 4]],
+pub(crate) struct Band<'a> {
+    pub(crate) pixels: &'a mut [[u8; 4]],
     /// For each of its tiles the colour that fills it as a whole, where one is known to.
-    pub(in crate::render) filled: &'a mut [Option<Color>],
+    pub(crate) filled: &'a mut [Option<Color>],
 }
 
 /// A band that nobody else has.
@@ -50,7 +50,7 @@ const ROW: usize = BLOCK as usize;
 const BLOCKS: usize = TILE_SIDE / ROW;
 
 /// The colours of a tile over several passes, block by block; nothing before the first.
-pub(in crate::render) type TileSums = Mutex<Vec<Sums>>;
+pub(crate) type TileSums = Mutex<Vec<Sums>>;
 
 /// Where a block of a tile begins.
 const fn corner_in_tile(block: usize) -> [usize; 2] {
@@ -60,7 +60,7 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
 /// Draws one tile after another. No line of the cache has parts of two of these.
 #[derive(Debug)]
 #[repr(align(128))]
-pub(in crate::render) struct Painter<T> {
+pub(crate) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
     samples: Samples,
@@ -68,7 +68,7 @@ pub(in crate::render) struct Painter<T> {
     pixels: Vec<[u8; 4]>,
 }
 
-impl<T: Light> Default for Painter<T> {
+impl<T: ShadingNumber> Default for Painter<T> {
     fn default() -> Self {
         Self {
             shader: Shader::default(),
@@ -79,19 +79,14 @@ impl<T: Light> Default for Painter<T> {
     }
 }
 
-impl<T: Light> Painter<T> {
+impl<T: ShadingNumber> Painter<T> {
     /// Gets ready for another frame.
-    pub(in crate::render) const fn begin(&mut self) {
+    pub(crate) const fn begin(&mut self) {
         self.shader.begin();
     }
 
     /// Paints a tile of the picture, whose band is given.
-    pub(in crate::render) fn paint(
-        &mut self,
-        scenery: &Scenery<'_, T>,
-        tile: usize,
-        band: &Mutex<Band<'_>>,
-    ) {
+    pub(crate) fn paint(&mut self, scenery: &Scenery<'_, T>, tile: usize, band: &Mutex<Band<'_>>) {
         let Scenery { level, plan, frame, .. } = *scenery;
         let (size, background) = (plan.size, plan.background);
         let bounds = bounds_of(tile, size);
@@ -101,7 +96,7 @@ impl<T: Light> Painter<T> {
         if frame.is_empty(tile) || self.visibility.is_empty() {
             return Self::fill(tile, size, background, &mut locked(band));
         }
-        self.shader.tile.begin((level, plan), &self.visibility, bounds);
+        self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
         let (column, place) = Self::place(tile, size);
         if let (true, Ok(mut band)) = (whole, band.try_lock()) {
@@ -192,7 +187,7 @@ impl<T: Light> Painter<T> {
             let background = plan.background.opaque();
             return to.iter_mut().for_each(|to| to.add_everywhere(background, 1));
         }
-        self.shader.tile.begin((level, plan), &self.visibility, bounds);
+        self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
         self.blocks(scenery, bounds, &mut canvas);
@@ -205,7 +200,7 @@ impl<T: Light> Painter<T> {
     }
 
     /// Adds the colours of four samples of a tile, or of the one that is looked at, to those of others.
-    pub(in crate::render) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &TileSums) {
+    pub(crate) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &TileSums) {
         let Scenery { level, plan, frame, .. } = *scenery;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
         to.resize(BLOCK_PIXELS, Sums::default());
@@ -217,7 +212,7 @@ impl<T: Light> Painter<T> {
         let Self { shader, visibility, samples, .. } = self;
         if !empty {
             visibility.draw(level, plan, frame, (tile, bounds));
-            shader.tile.begin((level, plan), visibility, bounds);
+            shader.tile.begin(plan, bounds, || visibility.depths(level));
         }
         for (block, to) in to.iter_mut().enumerate() {
             if empty || !visibility.shows(block) {
@@ -236,7 +231,7 @@ impl<T: Light> Painter<T> {
     }
 
     /// Puts the means of all samples of a tile into its band of the picture.
-    pub(in crate::render) fn put_means(
+    pub(crate) fn put_means(
         &mut self,
         scenery: &Scenery<'_, T>,
         tile: usize,

@@ -1,59 +1,64 @@
 //! From what is seen to colours.
 //!
-//! A block's pixels are listed by the triangles that they show ([`Items`]). What is known of these is
-//! fetched once for each triangle ([`Faces`]), taken from there by the pixels ([`Located`]), lit
+//! A block's pixels are listed by the triangles that they show ([`Fragments`]). What is known of these is
+//! fetched once for each triangle ([`TriangleAttributes`]), taken from there by the pixels ([`Barycentrics`]), lit
 //! ([`Batch`]), and made bytes. Light that is evaluated at faces is evaluated at the faces of the
 //! block; no pixel asks where it lies.
 
 use fearless_simd::Level;
 
+use super::barycentric_variants::locate_by_variant;
+use super::barycentrics::ShadingNumber;
 use super::colors::{Colors, Form, Sums};
-use super::faces::Faces;
-use super::finish::{Finish, Own};
 use super::groups::{Group, group_of, one_group};
 use super::interpolate::{Mixed, mix, surroundings};
-use super::items::Items;
 use super::light::{Lighting, Lit, Table, run};
-use super::located::Located;
-use super::shines::Shines;
-use super::whole::Canvas;
 use crate::base::color::Color;
-use crate::render::effects::{BATCH, Batch, Light, Rows};
-use crate::render::geometry::frame::Frame;
-use crate::render::geometry::places::ALL;
-use crate::render::geometry::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::render::numbers::pick::SLOTS;
-use crate::render::plan::{Back, FramePlan, Pipeline, Shaded, Stage, TilePlan};
-use crate::render::visibility::words::{Seen, seen};
-use crate::render::ways::bytes::{FinishBy, thresholds};
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::{Back, Pipeline, Shaded, Stage};
+use crate::render::lights::{Batch, Rows};
+use crate::render::plan::tile::TilePlan;
+use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::visibility_buffer::{Visible, seen};
+use crate::render::screen::sample_positions::ALL;
+use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::render::shading::barycentrics::Barycentrics;
+use crate::render::shading::fragments::Fragments;
+use crate::render::shading::full_blocks::Canvas;
+use crate::render::shading::light_terms::LightTerms;
+use crate::render::shading::quantize::{Finish, Own};
+use crate::render::shading::rounding::{FinishBy, thresholds};
+use crate::render::shading::triangle_attributes::TriangleAttributes;
+use crate::render::simd::BATCH;
+use crate::render::simd::gather::SLOTS;
 use crate::scene::{LightAt, Rounding};
 
 /// What colouring pixels reads.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::render) struct Scenery<'a, T> {
-    pub(in crate::render) level: Level,
-    pub(in crate::render) plan: &'a FramePlan,
-    pub(in crate::render) frame: &'a Frame,
-    pub(in crate::render) lit: &'a Lit<T>,
-    pub(in crate::render) shines: &'a Shines<T>,
+pub(crate) struct Scenery<'a, T> {
+    pub(crate) level: Level,
+    pub(crate) plan: &'a FramePlan,
+    pub(crate) frame: &'a ScreenGeometry,
+    pub(crate) lit: &'a Lit<T>,
+    pub(crate) shines: &'a LightTerms<T>,
 }
 
 /// Colours pixels. Each thread has its own.
 #[derive(Debug)]
-pub(super) struct Shader<T> {
+pub(crate) struct Shader<T> {
     /// The lights of the tile that is coloured.
-    pub(super) tile: TilePlan,
-    pub(super) items: Items,
-    pub(super) faces: Faces<T>,
-    pub(super) located: Located<T>,
-    pub(super) batch: Batch<T>,
-    pub(super) texels: Rows<T>,
+    pub(crate) tile: TilePlan,
+    pub(crate) items: Fragments,
+    pub(crate) faces: TriangleAttributes<T>,
+    pub(crate) located: Barycentrics<T>,
+    pub(crate) batch: Batch<T>,
+    pub(crate) texels: Rows<T>,
     colors: Colors,
 }
 
 /// Where colours of a block go.
 #[derive(Debug)]
-pub(super) enum Out<'a, 'b> {
+pub(crate) enum Out<'a, 'b> {
     /// Into a tile, from a place on.
     Tile(&'a mut Canvas<'b>, usize),
     /// To what other samples show.
@@ -71,13 +76,13 @@ enum Mixture {
     Light,
 }
 
-impl<T: Light> Default for Shader<T> {
+impl<T: ShadingNumber> Default for Shader<T> {
     fn default() -> Self {
         Self {
             tile: TilePlan::default(),
-            items: Items::default(),
-            faces: Faces::default(),
-            located: Located::default(),
+            items: Fragments::default(),
+            faces: TriangleAttributes::default(),
+            located: Barycentrics::default(),
             batch: Batch::default(),
             texels: [[T::default(); BATCH]; 3],
             colors: Colors::default(),
@@ -85,15 +90,15 @@ impl<T: Light> Default for Shader<T> {
     }
 }
 
-impl<T: Light> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// Gets ready for another frame.
-    pub(super) const fn begin(&mut self) {
+    pub(crate) const fn begin(&mut self) {
         self.faces.forget();
     }
 
     /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on. What
     /// shows the background is left as it is; says whether anything else is shown.
-    pub(super) fn block(
+    pub(crate) fn block(
         &mut self,
         scenery: &Scenery<'_, T>,
         words: &[u64; BLOCK_PIXELS],
@@ -105,7 +110,7 @@ impl<T: Light> Shader<T> {
         while lines != 0 {
             let i = lines.trailing_zeros() as usize;
             lines &= lines - 1;
-            if let Seen::Line(line) = seen(words[i]) {
+            if let Visible::Line(line) = seen(words[i]) {
                 canvas.pixels[at + canvas.place(in_block(i))] =
                     scenery.frame.line_color(scenery.plan, line);
             }
@@ -117,7 +122,7 @@ impl<T: Light> Shader<T> {
     }
 
     /// Colours the pixels of the list.
-    pub(super) fn color_items(
+    pub(crate) fn color_items(
         &mut self,
         scenery: &Scenery<'_, T>,
         corner: [i32; 2],
@@ -131,7 +136,7 @@ impl<T: Light> Shader<T> {
     }
 
     /// Colours the pixels of a block that one triangle covers as a whole.
-    pub(super) fn whole_block(
+    pub(crate) fn whole_block(
         &mut self,
         scenery: &Scenery<'_, T>,
         number: u32,
@@ -144,7 +149,7 @@ impl<T: Light> Shader<T> {
     }
 
     /// Colours pixels that are coloured together.
-    pub(super) fn color_group(
+    pub(crate) fn color_group(
         &mut self,
         scenery: &Scenery<'_, T>,
         group: &Group<'_>,
@@ -158,7 +163,7 @@ impl<T: Light> Shader<T> {
         match out {
             Out::Tile(canvas, at) => self.copy(canvas, *at),
             Out::Sums(sums) => {
-                let Items { len, places, shares, .. } = &self.items;
+                let Fragments { len, places, shares, .. } = &self.items;
                 sums.add_all(&self.colors, &places[..*len], &shares[..*len]);
             }
         }
@@ -225,7 +230,7 @@ impl<T: Light> Shader<T> {
         let Scenery { level, plan, .. } = *scenery;
         let draw = group.draw;
         let textured = shaded.texture.is_some() || shaded.vertex_colors;
-        let rounding = plan.ways.rounding;
+        let rounding = plan.variants.rounding;
         // Every pixel has its own colour.
         let each = textured || rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
@@ -233,9 +238,15 @@ impl<T: Light> Shader<T> {
         let new = self.take(scenery, group, places);
         if places {
             self.located.find(level, &self.items, &self.faces, (plan, draw));
-            if plan.ways.has_rare_places() {
+            if plan.variants.has_rare_places() {
                 let corners = scenery.frame.corners_of(plan, group.draw_index);
-                plan.ways.locate(&self.items, &self.faces, corners, &mut self.located);
+                locate_by_variant(
+                    plan.variants,
+                    &self.items,
+                    &self.faces,
+                    corners,
+                    &mut self.located,
+                );
             }
         }
         self.batch.len = self.items.len;
@@ -271,7 +282,7 @@ impl<T: Light> Shader<T> {
 
     /// Takes the triangles of the list, and where they are if the pixels have `places`. Says whether
     /// they are others than before.
-    pub(super) fn take(
+    pub(crate) fn take(
         &mut self,
         scenery: &Scenery<'_, T>,
         group: &Group<'_>,
@@ -333,7 +344,7 @@ impl<T: Light> Shader<T> {
         }
         let Self { items, faces, located, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
-        if colored && plan.ways.rounding == Rounding::Nearest {
+        if colored && plan.variants.rounding == Rounding::Nearest {
             mix(level, items, faces, located, Mixed::Colors(colors));
             return Mixture::Bytes;
         }
@@ -354,7 +365,7 @@ impl<T: Light> Shader<T> {
     }
 
     /// Lets the faces carry the diffuse light of their corners, or their colours.
-    pub(super) fn carry_diffuse(
+    pub(crate) fn carry_diffuse(
         &mut self,
         scenery: &Scenery<'_, T>,
         group: &Group<'_>,

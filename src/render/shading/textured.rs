@@ -2,17 +2,18 @@
 
 use fearless_simd::dispatch;
 
+use super::barycentrics::ShadingNumber;
 use super::groups::Group;
 use super::surface::{Scenery, Shader};
-use super::texels::{color, uv, uv_ways, uvs};
-use super::texture;
-use crate::render::effects::Light;
-use crate::render::numbers::pick::SLOTS;
-use crate::render::plan::Shaded;
+use super::texels::{color, uv_ways};
+use crate::render::frame::draw::Shaded;
+use crate::render::simd::gather::SLOTS;
+use crate::render::texture::sample;
+use crate::render::texture::uv::{uv, uvs};
 
-impl<T: Light> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
-    pub(super) fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+    pub(crate) fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
         let (plan, draw) = (scenery.plan, group.draw);
         let mips = shaded.texture.as_ref().and_then(|texture| scenery.shines.mips_of(texture));
         let Self { items, faces, located, texels, .. } = self;
@@ -35,7 +36,7 @@ impl<T: Light> Shader<T> {
             {
                 let uv = uv(corners, weights);
                 let texel = match mips {
-                    None => texture::sample::<T>(texture, uv, plan.filter),
+                    None => sample::sample::<T>(texture, uv, plan.filter),
                     Some(mips) => mips.sample(
                         uv,
                         uv_ways(
