@@ -5,6 +5,7 @@ pub mod image;
 pub mod lists;
 pub mod math;
 pub mod once;
+pub mod rng;
 mod shared;
 
 pub use shared::Shared;

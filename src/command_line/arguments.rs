@@ -11,10 +11,10 @@ use super::job::Job;
 use super::keys::Keys;
 use super::lab::Lab;
 use super::plan::Plan;
-use super::prove::Prove;
 use super::stage::is_standard;
 use super::talk::Talk;
 use super::values::{color, size, threads};
+use super::verify::Verify;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::io::PictureFormat;
@@ -65,8 +65,8 @@ pub(crate) enum Headless {
     Lab(Box<Lab>),
     /// Measure one drawing job, in a form that other renderers share
     Job(Job),
-    /// Check the program's guarantees on any number of generated cases
-    Prove(Prove),
+    /// Check that this processor draws the same pictures as every other
+    Verify(Verify),
 }
 
 /// A picture, and the file that it goes to.

@@ -7,6 +7,7 @@ use clap::Args;
 use fearless_simd::Level;
 use marraztu::base::image::Size;
 use marraztu::io;
+use marraztu::lab::instructions::named as instructions_named;
 use marraztu::lab::job::{self, Mode};
 use marraztu::scene::{Crease, LoadOptions, Samples};
 
@@ -81,7 +82,7 @@ fn supported(arguments: &Job) -> Result<(Mode, Samples, Level), String> {
     let samples = samples.ok_or_else(|| {
         format!("{msaa} samples per pixel are not supported; there are 1, 4, 16 and 64")
     })?;
-    let level = job::instructions(instructions).ok_or_else(|| {
+    let level = instructions_named(instructions).ok_or_else(|| {
         format!(
             "the instructions \"{instructions}\" are unknown, or this processor does not have \
              them; there are best, avx512, avx2, sse4.2, plain"

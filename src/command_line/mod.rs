@@ -13,12 +13,12 @@ mod keys;
 mod lab;
 mod open;
 mod plan;
-mod prove;
 mod render;
 mod stage;
 mod talk;
 mod target;
 mod values;
+mod verify;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -40,7 +40,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Keys(arguments)) => keys::keys(&arguments),
         Some(Headless::Plan(arguments)) => plan::plan(&arguments),
         Some(Headless::Lab(arguments)) => lab::lab(&arguments),
-        Some(Headless::Prove(arguments)) => prove::prove(&arguments),
+        Some(Headless::Verify(arguments)) => verify::verify(&arguments),
         Some(Headless::Job(arguments)) => match job::job(&arguments) {
             Ok(status) => return ExitCode::from(status),
             Err(failure) => Err(failure),

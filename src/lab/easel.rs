@@ -1,8 +1,7 @@
 //! What pictures are drawn on, so that they can be timed and judged.
 
-use fearless_simd::Level;
-
 use super::error::Shot;
+use super::hash::fnv1a;
 use crate::base::image::{Picture, Size};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{Samples, Scene, Settings, View};
@@ -88,18 +87,8 @@ impl Easel for Studio {
     }
 }
 
-/// The set of instructions that pictures are drawn with: "Avx2".
-#[must_use]
-pub fn instructions() -> String {
-    let level = format!("{:?}", Level::new());
-    level.split(['(', ' ', '{']).next().unwrap_or_default().to_owned()
-}
-
-/// A number for a picture, the same for the same bytes on every machine: FNV-1a of Fowler, Noll and
-/// Vo, over words of 32 bits, one a pixel.
+/// A number for a picture, the same for the same bytes on every machine: FNV-1a over its pixels.
 #[must_use]
 pub fn hash(picture: &Picture) -> u64 {
-    picture.pixels().iter().fold(0xcbf2_9ce4_8422_2325, |hash, pixel| {
-        (hash ^ u64::from(u32::from_le_bytes(*pixel))).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+    fnv1a(picture.pixels().iter().map(|pixel| u64::from(u32::from_le_bytes(*pixel))))
 }

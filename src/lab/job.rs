@@ -75,24 +75,6 @@ pub struct Job {
     pub level: Level,
 }
 
-/// The instructions with a name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, which every processor of this
-/// kind has. None where this processor lacks them, or nobody calls any by this name.
-#[must_use]
-pub fn instructions(name: &str) -> Option<Level> {
-    let best = Level::new();
-    match name {
-        "best" => Some(best),
-        "plain" => Some(Level::baseline()),
-        #[cfg(target_arch = "x86_64")]
-        "avx512" => best.as_avx512().map(Level::Avx512),
-        #[cfg(target_arch = "x86_64")]
-        "avx2" => best.as_avx2().map(Level::Avx2),
-        #[cfg(target_arch = "x86_64")]
-        "sse4.2" => best.as_sse4_2().map(Level::Sse4_2),
-        _ => None,
-    }
-}
-
 /// What was measured.
 #[derive(Clone, Debug)]
 pub struct Measured {

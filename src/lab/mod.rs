@@ -1,5 +1,5 @@
-//! What drawing costs in time, what accuracy costs, and what drawing is proved to do: measured, never
-//! guessed.
+//! What drawing costs in time and what accuracy costs, measured, never guessed; and whether this processor
+//! draws the listed pictures.
 
 pub mod blame;
 pub mod candidates;
@@ -9,10 +9,12 @@ pub mod easel;
 pub mod error;
 pub mod flip;
 pub mod front;
+pub mod hash;
+pub mod instructions;
 pub mod job;
 pub mod kernels;
 pub mod pairs;
-pub mod prove;
+pub mod pictures;
 pub mod report;
 pub mod statistics;
 pub mod sweep;

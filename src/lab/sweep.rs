@@ -4,12 +4,14 @@
 //! against itself; the spread of that control is the floor under which no difference means anything.
 //! Then every candidate is measured against the default, in the same process, in turn with it.
 
+use fearless_simd::Level;
 use serde::Serialize;
 
 use super::candidates::{Candidate, Candidates, Group, LeftOut, Thoroughness, candidates};
 use super::clock::Clock;
-use super::easel::{Easel, Studio, hash, instructions};
+use super::easel::{Easel, Studio, hash};
 use super::error::{Error, Shot};
+use super::instructions;
 use super::kernels::{self, Kernel};
 use super::pairs::{Ratio, Unmeasured, Watch, measure};
 use super::statistics::Quartiles;
@@ -251,7 +253,7 @@ impl Bench<'_> {
         Findings {
             size: [self.size.width, self.size.height],
             threads: rayon::current_num_threads(),
-            instructions: instructions(),
+            instructions: instructions::name_of(Level::new()),
             thoroughness: self.question.thoroughness.word,
             control,
             floor,

@@ -9,5 +9,7 @@ mod bench;
 mod planted;
 mod program;
 mod promise;
+#[path = "../random_scenes/mod.rs"]
+mod random_scenes;
 mod told;
 mod words;

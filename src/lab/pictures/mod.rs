@@ -1,16 +1,19 @@
-//! A dozen pictures and more by their sums: the same on every processor.
+//! The listed pictures: the same bytes on every processor.
 //!
-//! The sum is FNV-1a (Fowler, Noll and Vo) in 64 bits, over width, height and the bytes of the
-//! pixels. The list of what the sums are is `tests/pictures.sums`; `marraztu prove pictures` prints it
-//! for the machine that it runs on.
+//! Some show one thing each, and one is drawn for each choice of each axis of accuracy. Their sums are
+//! listed in `tests/pictures.sums`, and that list is part of the program: `marraztu verify` draws the
+//! pictures and compares.
+
+pub mod flat;
 
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 
-use super::dice::Dice;
-use super::stage::{self, Flat};
+use self::flat::Flat;
+use super::hash::fnv1a;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
+use crate::base::rng::Rng;
 use crate::io;
 use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
@@ -20,37 +23,22 @@ use crate::scene::{
     SpecularPower, Texture, View, Wrap,
 };
 
-/// Pixels to a side.
+/// The width and height of the pictures in pixels.
 const SIDE: usize = 128;
 
-/// The levels of instructions that this processor has, the oldest first.
-#[must_use]
-pub fn levels() -> Vec<Level> {
-    let best = Level::new();
-    let mut levels = vec![Level::baseline()];
-    #[cfg(target_arch = "x86_64")]
-    levels.extend(
-        [best.as_sse4_2().map(Level::Sse4_2), best.as_avx2().map(Level::Avx2)]
-            .into_iter()
-            .flatten(),
-    );
-    levels.push(best);
-    levels
-}
-
-/// A picture that has to come out the same everywhere.
+/// A picture whose bytes are the same on every processor.
 #[derive(Debug)]
-pub struct Sample {
+pub struct TestPicture {
     /// What it shows.
     pub name: String,
     plan: FramePlan,
 }
 
-impl Sample {
-    /// The picture's sum, drawn with these instructions by these many threads.
+impl TestPicture {
+    /// The sum of the picture, drawn with these instructions by this number of threads.
     ///
     /// # Panics
-    /// Where the system has no more threads to give.
+    /// If the system has no more threads to give.
     #[must_use]
     pub fn sum(&self, level: Level, threads: usize) -> u64 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -59,26 +47,41 @@ impl Sample {
     }
 }
 
-/// FNV-1a over a picture.
+/// FNV-1a over the width, the height and the bytes of a picture.
 #[must_use]
 pub fn sum(picture: &Picture) -> u64 {
     let Size { width, height } = picture.size();
     let sides = [width, height].map(|side| (side as u64).to_le_bytes());
     let bytes = sides.as_flattened().iter().chain(picture.pixels().as_flattened());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |sum, byte| {
-        (sum ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+    fnv1a(bytes.copied().map(u64::from))
 }
 
-/// The dozen.
+/// The list: the name of each picture with its sum.
+///
+/// # Panics
+/// If a line of the list is neither a comment nor a sum and a name.
 #[must_use]
-pub fn samples() -> Vec<Sample> {
+pub fn listed() -> Vec<(&'static str, u64)> {
+    let line = |line: &'static str| {
+        let (sum, name) = line.split_once("  ")?;
+        Some((name, u64::from_str_radix(sum, 16).ok()?))
+    };
+    include_str!("../../../tests/pictures.sums")
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|text| line(text).expect("a line has a sum and a name"))
+        .collect()
+}
+
+/// The pictures, in the order of the list.
+#[must_use]
+pub fn all() -> Vec<TestPicture> {
     let (scene, view) = io::default_scene();
     let near = nearer(&scene);
     let settings = Settings::default();
-    let sample = |name: &str, scene: &Scene, view: &View, settings: Settings| {
+    let picture = |name: &str, scene: &Scene, view: &View, settings: Settings| {
         let plan = FramePlan::new(scene, view, &settings, Size::new(SIDE, SIDE));
-        Sample { name: String::from(name), plan }
+        TestPicture { name: String::from(name), plan }
     };
     let (arithmetic, power) = (Arithmetic::F64, SpecularPower::Library);
     let exact = Settings { arithmetic, power, ..settings };
@@ -97,24 +100,24 @@ pub fn samples() -> Vec<Sample> {
     let each_lit = Settings { light: LightAt::Sample, ..of(Samples::Four) };
     let half = Settings { specular: SpecularForm::HalfVector, ..settings };
     let (textured, rough) = (textured(&near), Settings { filter: Filter::Nearest, ..settings });
-    let (stage, from_above) = stage::scene(&[scattered()], SIDE);
+    let (stage, from_above) = flat::scene(&[scattered()], SIDE);
     let mut all = vec![
-        sample("first scene", &scene, &view, settings),
-        sample("first scene in f64", &scene, &view, exact),
-        sample("near", &near, &view, settings),
-        sample("near, lit at vertices", &near, &view, at(LightAt::Vertex)),
-        sample("near, lit at faces", &near, &view, at(LightAt::Face)),
-        sample("near, half-vector", &near, &view, half),
-        sample("face normals", &near, &faces, settings),
-        sample("in parallel", &scene, &parallel, settings),
-        sample("edges and back faces", &near, &edges, settings),
-        sample("edges and normals over", &near, &drawn, settings),
-        sample("texture", &textured, &view, settings),
-        sample("texture, nearest", &textured, &view, rough),
-        sample("scattered triangles", &stage, &from_above, settings),
-        sample("four samples", &near, &drawn, of(Samples::Four)),
-        sample("sixteen samples", &stage, &from_above, of(Samples::Sixteen)),
-        sample("four samples, each lit", &near, &drawn, each_lit),
+        picture("first scene", &scene, &view, settings),
+        picture("first scene in f64", &scene, &view, exact),
+        picture("near", &near, &view, settings),
+        picture("near, lit at vertices", &near, &view, at(LightAt::Vertex)),
+        picture("near, lit at faces", &near, &view, at(LightAt::Face)),
+        picture("near, half-vector", &near, &view, half),
+        picture("face normals", &near, &faces, settings),
+        picture("in parallel", &scene, &parallel, settings),
+        picture("edges and back faces", &near, &edges, settings),
+        picture("edges and normals over", &near, &drawn, settings),
+        picture("texture", &textured, &view, settings),
+        picture("texture, nearest", &textured, &view, rough),
+        picture("scattered triangles", &stage, &from_above, settings),
+        picture("four samples", &near, &drawn, of(Samples::Four)),
+        picture("sixteen samples", &stage, &from_above, of(Samples::Sixteen)),
+        picture("four samples, each lit", &near, &drawn, each_lit),
     ];
     let bent = bent(&textured);
     for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))
@@ -122,13 +125,13 @@ pub fn samples() -> Vec<Sample> {
         let rare = choice.of(&settings);
         if rare != settings && rare.is_alike_everywhere() {
             let name = format!("{} {}", axis.key, choice.word);
-            all.push(sample(&name, &bent, &view, rare));
+            all.push(picture(&name, &bent, &view, rare));
         }
     }
     all
 }
 
-/// The same, stretched, with a texture that has light on it.
+/// The same with its first object stretched.
 fn bent(scene: &Scene) -> Scene {
     change(scene, |object| {
         let stretch = DMat4::from_scale(DVec3::new(1.0, 0.4, 1.0));
@@ -136,7 +139,7 @@ fn bent(scene: &Scene) -> Scene {
     })
 }
 
-/// The first scene with everything about its first object, which is cut by the near plane.
+/// The first scene with its first object moved so near that the near plane cuts it.
 fn nearer(scene: &Scene) -> Scene {
     change(scene, |object| {
         let place = DMat4::from_translation(DVec3::new(5.0, -8.0, 370.0));
@@ -145,10 +148,10 @@ fn nearer(scene: &Scene) -> Scene {
     })
 }
 
-/// The same with a picture of noise laid over it.
+/// The same with a texture of noise on its first object.
 fn textured(scene: &Scene) -> Scene {
-    let mut dice = Dice::new(5);
-    let texels = (0..64).map(|_| dice.bits().to_le_bytes());
+    let mut rng = Rng::new(5);
+    let texels = (0..64).map(|_| rng.bits().to_le_bytes());
     let texels = texels.map(|[r, g, b, ..]| [r, g, b, 255]).collect();
     let texture = Shared::new(Texture {
         source: std::path::PathBuf::new(),
@@ -163,7 +166,7 @@ fn textured(scene: &Scene) -> Scene {
     })
 }
 
-/// A leaning square of two by two quads with places on the texture.
+/// A leaning square of 2 x 2 quads with texture coordinates.
 fn wall() -> Shared<Model> {
     let mut source = MeshSource {
         parts: vec![Part { name: "wall".to_owned(), material: None }],
@@ -201,15 +204,15 @@ fn change(scene: &Scene, change: impl FnOnce(&mut Object)) -> Scene {
     scene
 }
 
-/// Triangles of all sizes, over and under each other.
+/// Overlapping triangles of all sizes.
 fn scattered() -> Vec<Flat> {
-    let mut dice = Dice::new(7);
+    let mut rng = Rng::new(7);
     let far = i32::try_from(SIDE).expect("small") * SUBPIXELS;
     let mut triangle = |_| {
         let mut corner =
-            || Snapped { x: dice.between(-far / 2, 2 * far), y: dice.between(-far / 2, 2 * far) };
+            || Snapped { x: rng.between(-far / 2, 2 * far), y: rng.between(-far / 2, 2 * far) };
         let corners = [corner(), corner(), corner()];
-        let distances = [0, 1, 2].map(|_| f64::from(dice.between(0, 1024)));
+        let distances = [0, 1, 2].map(|_| f64::from(rng.between(0, 1024)));
         Flat { corners, distances }
     };
     (0..300).map(&mut triangle).collect()

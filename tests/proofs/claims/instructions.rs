@@ -7,42 +7,42 @@ use std::hint::black_box;
 
 use fearless_simd::Level;
 
+use marraztu::base::image::Size;
+use marraztu::base::rng::Rng;
+use marraztu::io;
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::Settings;
+
 use super::absent::with_lights_off;
-use super::samples::Sample;
-use crate::base::image::Size;
-use crate::io;
-use crate::lab::prove::dice::Dice;
-use crate::render::{FramePlan, Renderer};
-use crate::scene::Settings;
+use super::random_scenes::RandomScene;
 
 /// The function that counting is switched on in, as callgrind's patterns have it.
-pub const COUNTED: &str = "*counted_frame*";
+pub(crate) const COUNTED: &str = "*counted_frame*";
 
 /// How many lights are off in the second frame.
-pub const LIGHTS_OFF: u32 = 100;
+pub(crate) const LIGHTS_OFF: u32 = 100;
 
 /// Which of the two frames is counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Frame {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Frame {
     /// The first scene.
     Plain,
     /// The same among [`LIGHTS_OFF`] lights that are off.
-    WithLightsOff,
+    LightsOff,
 }
 
 /// Draws both frames, and the one that is wanted once more to be counted.
 ///
 /// # Errors
 /// Where this thread draws already together with others.
-pub fn draw(frame: Frame) -> Result<(), rayon::ThreadPoolBuildError> {
+pub(crate) fn draw(frame: Frame) -> Result<(), rayon::ThreadPoolBuildError> {
     // All on this thread, for counting is switched on for the thread that comes by.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()?;
     let (scene, view) = io::default_scene();
-    let it =
-        Sample { seed: 0, scene, view, settings: Settings::default(), size: Size::new(128, 128) };
-    let more = with_lights_off(&it, LIGHTS_OFF, &mut Dice::new(1));
-    let plan = |it: &Sample| FramePlan::new(&it.scene, &it.view, &it.settings, it.size);
-    let plans = [plan(&it), plan(&more)];
+    let (settings, size) = (Settings::default(), Size::new(128, 128));
+    let it = RandomScene { seed: 0, scene, view, settings, size };
+    let more = with_lights_off(&it, LIGHTS_OFF, &mut Rng::new(1));
+    let plans = [it.plan(), more.plan()];
     let mut renderer = Renderer::new(level());
     pool.install(|| {
         for plan in plans.iter().chain(&plans) {
@@ -50,7 +50,7 @@ pub fn draw(frame: Frame) -> Result<(), rayon::ThreadPoolBuildError> {
         }
         match frame {
             Frame::Plain => counted_frame(&mut renderer, &plans[0]),
-            Frame::WithLightsOff => counted_frame(&mut renderer, &plans[1]),
+            Frame::LightsOff => counted_frame(&mut renderer, &plans[1]),
         }
     });
     Ok(())

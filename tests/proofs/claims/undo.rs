@@ -2,29 +2,31 @@
 
 use glam::{DVec2, DVec3};
 
-use super::dice::Dice;
 use super::{Proof, Tally};
-use crate::base::Shared;
-use crate::base::image::Size;
-use crate::base::math::Axis;
-use crate::edit::lights::{self, Channel};
-use crate::edit::look::{self, Pointer};
-use crate::edit::transform::{self, Sign};
-use crate::edit::{Gesture, History, Refusal, Stroke, frame, items, motion, place, selection};
-use crate::io;
-use crate::scene::{
+use marraztu::base::Shared;
+use marraztu::base::image::Size;
+use marraztu::base::math::Axis;
+use marraztu::base::rng::Rng;
+use marraztu::edit::lights::{self, Channel};
+use marraztu::edit::look::{self, Pointer};
+use marraztu::edit::transform::{self, Sign};
+use marraztu::edit::{Gesture, History, Refusal, Stroke, frame, items, motion, place, selection};
+use marraztu::io;
+use marraztu::scene::{
     Command, Frame, ItemId, LightKind, MaterialChoice, Model, Scene, Settings, SpotOwner, Subject,
     Transformation, View,
 };
 
-pub(super) const PROOF: Proof = Proof {
+pub(crate) const PROOF: Proof = Proof {
     name: "undo",
     claim: "commands of every kind are undone and redone bit for bit, and a scene saved on the way \
             is, opened again, the one that undo and redo come back to",
     unit: "commands",
-    lot: COMMANDS,
-    tested: COMMANDS,
+    batch: COMMANDS,
+    quick: COMMANDS,
     whole: COMMANDS,
+    shows: &[],
+    regressions: &[],
     check,
 };
 
@@ -33,15 +35,15 @@ const COMMANDS: u64 = 100_000;
 /// After how many commands the scene is saved.
 const SAVED: u64 = 2500;
 
-fn check(lot: u64) -> Result<Tally, String> {
-    let mut dice = Dice::new(lot);
+fn check(batch: u64) -> Result<Tally, String> {
+    let mut rng = Rng::new(batch);
     let (mut scene, mut view) = io::default_scene();
     let mut history = History::new();
     let start = every_bit(&scene);
     let mut saved: Vec<(usize, String)> = Vec::new();
     let (mut performed, mut refused) = (0, 0);
     while performed < COMMANDS {
-        let Ok(command) = anything(&scene, &mut view, &mut dice) else {
+        let Ok(command) = anything(&scene, &mut view, &mut rng) else {
             refused += 1;
             if refused > 8 * COMMANDS {
                 return Err("hardly anything can be done any more".to_owned());
@@ -49,8 +51,8 @@ fn check(lot: u64) -> Result<Tally, String> {
             continue;
         };
         let before = scene.clone();
-        let gesture = match dice.below(4) {
-            0 => Gesture::Part(dice.below(2)),
+        let gesture = match rng.below(4) {
+            0 => Gesture::Part(rng.below(2)),
             _ => Gesture::Whole,
         };
         history
@@ -70,7 +72,7 @@ fn check(lot: u64) -> Result<Tally, String> {
     let steps = history.steps().len();
     walk(&mut scene, &mut history, [&start, &end], &saved)?;
     for (position, text) in &saved {
-        reopen(text, lot).map_err(|what| format!("saved at step {position}: {what}"))?;
+        reopen(text, batch).map_err(|what| format!("saved at step {position}: {what}"))?;
     }
     let mut tally = Tally::default();
     tally.count("commands", performed);
@@ -116,8 +118,8 @@ fn text(scene: &Scene) -> Result<String, String> {
 }
 
 /// Writes a file, opens it, and writes it again.
-fn reopen(file: &str, lot: u64) -> Result<(), String> {
-    let name = format!("marraztu-{}-{lot}.{}", std::process::id(), io::SCENE_ENDING);
+fn reopen(file: &str, batch: u64) -> Result<(), String> {
+    let name = format!("marraztu-{}-{batch}.{}", std::process::id(), io::SCENE_ENDING);
     let path = std::env::temp_dir().join(name);
     std::fs::write(&path, file).map_err(|error| error.to_string())?;
     let opened = io::open(&path, &io::Progress::new());
@@ -151,21 +153,21 @@ fn every_bit(scene: &Scene) -> String {
 }
 
 /// Anything that a person can do.
-fn anything(scene: &Scene, view: &mut View, dice: &mut Dice) -> Result<Command, Refusal> {
-    let stroke = dice.one_of(&[Stroke::First, Stroke::First, Stroke::Continued]);
+fn anything(scene: &Scene, view: &mut View, rng: &mut Rng) -> Result<Command, Refusal> {
+    let stroke = rng.one_of(&[Stroke::First, Stroke::First, Stroke::Continued]);
     view.time += 0.1;
-    let item = any_item(scene, dice).ok_or(Refusal::Gone)?;
+    let item = any_item(scene, rng).ok_or(Refusal::Gone)?;
     let object = || view.object.ok_or(Refusal::NoObject);
-    match dice.below(15) {
-        0..6 => placing(scene, view, dice, stroke),
+    match rng.below(15) {
+        0..6 => placing(scene, view, rng, stroke),
         6 => transform::toggle_analysis(scene, view),
-        7 => looking(scene, view, dice, stroke),
+        7 => looking(scene, view, rng, stroke),
         8 => items::duplicate(scene, item).and_then(|command| few(scene, command)),
         9 => items::remove(scene, item),
         10 => items::toggle_shown(scene, item),
-        11 => items::reorder(scene, item, dice.index(5)),
-        12 => lighting(scene, view, dice),
-        13 => motion::toggle_spin(scene, object()?, dice.one_of(&Axis::ALL), view.time),
+        11 => items::reorder(scene, item, rng.index(5)),
+        12 => lighting(scene, view, rng),
+        13 => motion::toggle_spin(scene, object()?, rng.one_of(&Axis::ALL), view.time),
         _ => {
             let chosen = selection::select(scene, view, item)?;
             *view = chosen.view;
@@ -178,41 +180,36 @@ fn anything(scene: &Scene, view: &mut View, dice: &mut Dice) -> Result<Command, 
 fn placing(
     scene: &Scene,
     view: &mut View,
-    dice: &mut Dice,
+    rng: &mut Rng,
     stroke: Stroke,
 ) -> Result<Command, Refusal> {
     use Transformation::{Rotation, Scaling, Translation};
-    match dice.below(8) {
+    match rng.below(8) {
         0..5 => {
             let all = [Subject::Camera, Subject::Object, Subject::Light];
-            selection::set_subject(view, dice.one_of(&all));
-            let kind = dice.one_of(&[Translation, Rotation, Scaling]);
+            selection::set_subject(view, rng.one_of(&all));
+            let kind = rng.one_of(&[Translation, Rotation, Scaling]);
             // Refused where the subject cannot be scaled: then the old one stays.
             let _ = selection::set_transformation(view, kind);
-            view.frame = dice.one_of(&[Frame::Local, Frame::Global]);
-            let sign = dice.one_of(&[Sign::Positive, Sign::Negative]);
-            transform::step(scene, view, dice.one_of(&Axis::ALL), sign, stroke)
+            view.frame = rng.one_of(&[Frame::Local, Frame::Global]);
+            let sign = rng.one_of(&[Sign::Positive, Sign::Negative]);
+            transform::step(scene, view, rng.one_of(&Axis::ALL), sign, stroke)
         }
-        5 => transform::rotate(scene, view, dice.vector(10.0), dice.real(-10.0, 10.0), stroke),
+        5 => transform::rotate(scene, view, rng.vector(10.0), rng.real(-10.0, 10.0), stroke),
         6 => {
             let object = view.object.ok_or(Refusal::NoObject)?;
-            place::object_turn(scene, view, object, dice.vector(200.0), stroke)
+            place::object_turn(scene, view, object, rng.vector(200.0), stroke)
         }
         _ => transform::take_back(scene, view),
     }
 }
 
 /// Looks from somewhere else.
-fn looking(
-    scene: &Scene,
-    view: &View,
-    dice: &mut Dice,
-    stroke: Stroke,
-) -> Result<Command, Refusal> {
+fn looking(scene: &Scene, view: &View, rng: &mut Rng, stroke: Stroke) -> Result<Command, Refusal> {
     let size = Size::new(640, 480);
-    let at = DVec2::new(dice.real(120.0, 520.0), dice.real(40.0, 440.0));
-    let amount: DVec3 = dice.vector(10.0);
-    match dice.below(4) {
+    let at = DVec2::new(rng.real(120.0, 520.0), rng.real(40.0, 440.0));
+    let amount: DVec3 = rng.vector(10.0);
+    match rng.below(4) {
         0 => look::orbit(scene, view, amount.x, amount.y, stroke),
         1 => look::pan(scene, view, at, size, stroke),
         2 => look::zoom(scene, view, amount.z, Pointer { at, depth: None }, size, stroke),
@@ -221,15 +218,15 @@ fn looking(
 }
 
 /// Changes lights, and adds lights and cameras.
-fn lighting(scene: &Scene, view: &View, dice: &mut Dice) -> Result<Command, Refusal> {
-    match dice.below(4) {
+fn lighting(scene: &Scene, view: &View, rng: &mut Rng) -> Result<Command, Refusal> {
+    match rng.below(4) {
         0 => {
-            let channel = dice.one_of(&[Channel::Red, Channel::Green, Channel::Blue]);
-            lights::step_color(scene, view, channel, dice.one_of(&[-1, 1]))
+            let channel = rng.one_of(&[Channel::Red, Channel::Green, Channel::Blue]);
+            lights::step_color(scene, view, channel, rng.one_of(&[-1, 1]))
         }
-        1 => lights::step_aperture(scene, view, dice.one_of(&[-5.0, 5.0])),
+        1 => lights::step_aperture(scene, view, rng.one_of(&[-5.0, 5.0])),
         2 => {
-            let owner = match view.object.filter(|_| dice.chance(2)) {
+            let owner = match view.object.filter(|_| rng.one_in(2)) {
                 Some(object) => SpotOwner::Object(object),
                 None => lights::fixed(),
             };
@@ -249,10 +246,10 @@ fn few(scene: &Scene, command: Command) -> Result<Command, Refusal> {
     if all < 20 { Ok(command) } else { Err(Refusal::TooLarge) }
 }
 
-fn any_item(scene: &Scene, dice: &mut Dice) -> Option<ItemId> {
+fn any_item(scene: &Scene, rng: &mut Rng) -> Option<ItemId> {
     let objects = scene.objects.ids().map(ItemId::Object);
     let cameras = scene.cameras.ids().map(ItemId::Camera);
     let all: Vec<ItemId> =
         objects.chain(cameras).chain(scene.lights.ids().map(ItemId::Light)).collect();
-    (!all.is_empty()).then(|| dice.one_of(&all))
+    (!all.is_empty()).then(|| rng.one_of(&all))
 }

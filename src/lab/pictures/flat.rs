@@ -1,8 +1,8 @@
-//! A scene whose units are pixels, and whose pictures say which triangle is seen where.
+//! Scenes in units of pixels, whose pictures tell which triangle each pixel shows.
 //!
-//! Seen in parallel by a picture whose side is a power of two, a corner in parts of a pixel comes to
-//! the screen without any rounding. Each triangle has a colour of its own, without light, which is
-//! its number: so coverage, depth and order can be read off a picture, pixel by pixel.
+//! In orthographic projection, with a side that is a power of two, a corner in parts of a pixel reaches
+//! the screen without any rounding. The colour of each triangle, which no light changes, is its number:
+//! coverage, depth and order can be read off a picture, pixel by pixel.
 
 use glam::{DMat4, DVec3};
 
@@ -30,7 +30,7 @@ pub struct Flat {
 }
 
 impl Flat {
-    /// A triangle half-way to what is farthest.
+    /// A triangle at half of the farthest distance.
     #[must_use]
     pub const fn new(corners: [Snapped; 3]) -> Self {
         Self { corners, distances: [FAR / 2.0; 3] }
@@ -50,11 +50,11 @@ pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
     (usize::from(r) | usize::from(g) << 8 | usize::from(b) << 16).checked_sub(1)
 }
 
-/// The scene of some triangles for a picture with a side that is a power of two; each object has one
-/// list of them, and the first object is the oldest. Triangles are numbered through.
+/// A scene of one object for each list of triangles, the oldest first, for a picture with a side that is
+/// a power of two. Triangles are numbered through all lists.
 ///
 /// # Panics
-/// Where a coordinate has more than 24 bits, so that a mesh could not hold it.
+/// If a coordinate has more than 24 bits, which a mesh cannot hold.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
@@ -97,13 +97,13 @@ pub fn draw((scene, view): &(Scene, View), side: usize, renderer: &mut Renderer)
     renderer.render(&plan).clone()
 }
 
-/// Draws some triangles as one object.
+/// Draws triangles as one object.
 #[must_use]
-pub fn draw_flat(triangles: &[Flat], side: usize, renderer: &mut Renderer) -> Picture {
+pub fn draw_triangles(triangles: &[Flat], side: usize, renderer: &mut Renderer) -> Picture {
     draw(&scene(&[triangles.to_vec()], side), side, renderer)
 }
 
-/// Where a corner in parts of a pixel stands in the world.
+/// The position in the world of a corner in parts of a pixel.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn place(corner: Snapped, distance: f64, side: usize) -> DVec3 {
@@ -140,7 +140,7 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
     })
 }
 
-/// The placement that moves a stage by whole or broken pixels, down and to the right.
+/// The placement that moves a scene by a number of pixels to the right and down.
 #[must_use]
 pub fn moved(right: f64, down: f64) -> DMat4 {
     DMat4::from_translation(DVec3::new(right, -down, 0.0))

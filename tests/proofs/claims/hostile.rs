@@ -7,13 +7,13 @@
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::Tally;
-use super::dice::Dice;
-use crate::base::color::Color;
-use crate::base::image::{Picture, Size};
-use crate::base::{Shared, math};
-use crate::edit::transform::{self, Sign};
-use crate::edit::{Stroke, place};
-use crate::scene::{
+use marraztu::base::color::Color;
+use marraztu::base::image::{Picture, Size};
+use marraztu::base::rng::Rng;
+use marraztu::base::{Shared, math};
+use marraztu::edit::transform::{self, Sign};
+use marraztu::edit::{Stroke, place};
+use marraztu::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
     Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
     MeshSource, Model, NONE, NormalLength, Normals, Object, ObjectId, Observer, Orbit, Part,
@@ -63,8 +63,8 @@ const HARD: [f64; 26] = [
 ];
 
 /// Makes hostile things.
-pub(super) struct Hostile {
-    pub(super) dice: Dice,
+pub(crate) struct Hostile {
+    pub(crate) rng: Rng,
     /// One of so many numbers is from the hard places.
     rarity: u64,
     /// Places of vertices in the world: lamps like to stand there.
@@ -72,29 +72,29 @@ pub(super) struct Hostile {
 }
 
 impl Hostile {
-    pub(super) fn new(seed: u64) -> Self {
-        let mut dice = Dice::new(seed);
-        let rarity = dice.one_of(&[2, 5, 20, 60, 1000]);
-        Self { dice, rarity, surfaces: vec![DVec3::ZERO] }
+    pub(crate) fn new(seed: u64) -> Self {
+        let mut rng = Rng::new(seed);
+        let rarity = rng.one_of(&[2, 5, 20, 60, 1000]);
+        Self { rng, rarity, surfaces: vec![DVec3::ZERO] }
     }
 
     /// A number that should be from -`size` to `size`.
     fn number(&mut self, size: f64) -> f64 {
-        if !self.dice.chance(self.rarity) {
-            return self.dice.real(-size, size);
+        if !self.rng.one_in(self.rarity) {
+            return self.rng.real(-size, size);
         }
-        let special = match self.dice.below(12) {
+        let special = match self.rng.below(12) {
             0 => f64::NAN,
             1 => f64::INFINITY,
-            _ => self.dice.one_of(&HARD),
+            _ => self.rng.one_of(&HARD),
         };
-        if self.dice.chance(2) { special } else { -special }
+        if self.rng.one_in(2) { special } else { -special }
     }
 
     /// A number that should be from 0 to `size`.
     fn amount(&mut self, size: f64) -> f64 {
         let number = self.number(size);
-        if self.dice.chance(self.rarity) { number } else { number.abs() }
+        if self.rng.one_in(self.rarity) { number } else { number.abs() }
     }
 
     fn vector(&mut self, size: f64) -> DVec3 {
@@ -107,19 +107,19 @@ impl Hostile {
     }
 
     fn bool(&mut self) -> bool {
-        self.dice.chance(2)
+        self.rng.one_in(2)
     }
 
-    pub(super) fn scene(&mut self, tally: &mut Tally) -> (Scene, View) {
+    pub(crate) fn scene(&mut self, tally: &mut Tally) -> (Scene, View) {
         let mut scene = Scene::with_camera(self.camera(Pose::facing_minus_z(DVec3::Z * 400.0)));
-        for id in 1..=self.dice.between(1, 4).unsigned_abs() {
+        for id in 1..=self.rng.between(1, 4).unsigned_abs() {
             if let Some(object) = self.object() {
                 let item = Item::Object(ObjectId(id), Box::new(object));
                 try_out(&mut scene, Command::Insert { at: 0, item }, tally);
             }
         }
-        let on_surface = self.dice.one_of(&self.surfaces.clone());
-        for (slot, id) in (10..10 + self.dice.below(6)).zip(10..) {
+        let on_surface = self.rng.one_of(&self.surfaces.clone());
+        for (slot, id) in (10..10 + self.rng.below(6)).zip(10..) {
             let light = self.light(u32::try_from(slot).unwrap_or(0), on_surface);
             let item = Item::Light(LightId(id), Box::new(light));
             try_out(&mut scene, Command::Insert { at: 0, item }, tally);
@@ -131,7 +131,7 @@ impl Hostile {
             try_out(&mut scene, Command::Replace(item), tally);
         }
         let view = self.view(&scene);
-        for _ in 0..self.dice.below(4) {
+        for _ in 0..self.rng.below(4) {
             if let Some(command) = self.command(&scene, &view) {
                 try_out(&mut scene, command, tally);
             }
@@ -141,10 +141,9 @@ impl Hostile {
 
     fn command(&mut self, scene: &Scene, view: &View) -> Option<Command> {
         let object = view.object?;
-        let (v, stroke) =
-            (self.vector(10.0), self.dice.one_of(&[Stroke::First, Stroke::Continued]));
-        let axis = self.dice.one_of(&math::Axis::ALL);
-        match self.dice.below(7) {
+        let (v, stroke) = (self.vector(10.0), self.rng.one_of(&[Stroke::First, Stroke::Continued]));
+        let axis = self.rng.one_of(&math::Axis::ALL);
+        match self.rng.below(7) {
             0 => transform::translate(scene, view, v, stroke),
             1 => transform::rotate(scene, view, v, self.number(7.0), stroke),
             2 => transform::stretch(scene, view, v, stroke),
@@ -157,8 +156,8 @@ impl Hostile {
     }
 
     fn model(&mut self) -> Option<Shared<Model>> {
-        let vertices = self.dice.between(3, 12).unsigned_abs();
-        let (uvs, normals) = (self.dice.index(5), self.dice.index(5));
+        let vertices = self.rng.between(3, 12).unsigned_abs();
+        let (uvs, normals) = (self.rng.index(5), self.rng.index(5));
         let mut source = MeshSource {
             positions: (0..vertices).map(|_| self.narrow(60.0)).collect(),
             uvs: (0..uvs).map(|_| self.narrow(3.0)).collect(),
@@ -169,19 +168,19 @@ impl Hostile {
         if self.bool() {
             source.colors = (0..vertices).map(|_| self.narrow(1.0)).collect();
         }
-        let index = |dice: &mut Dice, n: usize| match n {
+        let index = |rng: &mut Rng, n: usize| match n {
             0 => NONE,
-            n => u32::try_from(dice.index(n)).unwrap_or(NONE),
+            n => u32::try_from(rng.index(n)).unwrap_or(NONE),
         };
-        for _ in 0..self.dice.between(1, 6) {
-            let corners = self.dice.between(3, 6).unsigned_abs();
+        for _ in 0..self.rng.between(1, 6) {
+            let corners = self.rng.between(3, 6).unsigned_abs();
             source.arities.push(corners);
             source.polygon_parts.push(0);
             for _ in 0..corners {
                 source.corners.push(SourceCorner {
-                    position: index(&mut self.dice, vertices as usize),
-                    uv: index(&mut self.dice, uvs),
-                    normal: index(&mut self.dice, normals),
+                    position: index(&mut self.rng, vertices as usize),
+                    uv: index(&mut self.rng, uvs),
+                    normal: index(&mut self.rng, normals),
                 });
             }
         }
@@ -198,7 +197,7 @@ impl Hostile {
 
     fn object(&mut self) -> Option<Object> {
         let model = self.model()?;
-        let material = match self.dice.below(3) {
+        let material = match self.rng.below(3) {
             0 => MaterialChoice::Preset(self.preset()),
             _ => MaterialChoice::Own(self.material()),
         };
@@ -207,12 +206,12 @@ impl Hostile {
         let mean = placement.transform_point3(object.model.mesh.polygon_centre(0));
         self.surfaces.push(mean);
         object.placement = Placed::new(placement);
-        if self.dice.chance(4) {
+        if self.rng.one_in(4) {
             let axes = [self.bool(), self.bool(), self.bool()];
             object.spin = Spin { axes, speed: self.number(90.0), since: self.number(1.0) };
         }
         object.surface =
-            self.dice.one_of(&[Surface::Material, Surface::Texture, Surface::TextureAndLight]);
+            self.rng.one_of(&[Surface::Material, Surface::Texture, Surface::TextureAndLight]);
         if self.bool() {
             object.texture = Some(self.texture());
         }
@@ -223,7 +222,7 @@ impl Hostile {
     }
 
     fn preset(&mut self) -> PresetId {
-        let at = self.dice.index(PresetId::all().len());
+        let at = self.rng.index(PresetId::all().len());
         PresetId::all().nth(at).unwrap_or(PresetId::SILVER)
     }
 
@@ -234,19 +233,19 @@ impl Hostile {
     }
 
     fn texture(&mut self) -> Shared<Texture> {
-        let pixels = (0..6).map(|_| self.dice.bits().to_le_bytes());
+        let pixels = (0..6).map(|_| self.rng.bits().to_le_bytes());
         let pixels = pixels.map(|[r, g, b, a, ..]| [r, g, b, a]).collect();
         Shared::new(Texture {
             source: std::path::PathBuf::new(),
             picture: Picture::from_pixels(Size::new(3, 2), pixels).unwrap_or_default().into(),
-            wrap: self.dice.one_of(&[Wrap::Repeat, Wrap::Clamp]),
+            wrap: self.rng.one_of(&[Wrap::Repeat, Wrap::Clamp]),
             offset: [self.number(2.0), self.number(2.0)],
             scale: [self.number(5.0), self.number(5.0)],
         })
     }
 
     fn placement(&mut self) -> DMat4 {
-        let axes = match self.dice.below(4) {
+        let axes = match self.rng.below(4) {
             0 => DMat3::from_cols(self.vector(1.0), self.vector(1.0), self.vector(1.0)),
             1 => DMat3::from_diagonal(self.vector(3.0)),
             2 => self.turn() * self.amount(3.0),
@@ -258,12 +257,12 @@ impl Hostile {
     }
 
     fn turn(&mut self) -> DMat3 {
-        let axis = math::unit(self.dice.vector(1.0)).unwrap_or(DVec3::Y);
-        math::rotation(axis, self.dice.real(0.0, 7.0))
+        let axis = math::unit(self.rng.vector(1.0)).unwrap_or(DVec3::Y);
+        math::rotation(axis, self.rng.real(0.0, 7.0))
     }
 
     fn pose(&mut self, on_surface: DVec3) -> Pose {
-        let eye = if self.dice.chance(3) { on_surface } else { self.vector(300.0) };
+        let eye = if self.rng.one_in(3) { on_surface } else { self.vector(300.0) };
         Pose { axes: self.turn(), ..Pose::facing_minus_z(eye) }
     }
 
@@ -282,7 +281,7 @@ impl Hostile {
         Camera {
             name: "camera".to_owned(),
             visible: self.bool(),
-            model: crate::io::cam_model(),
+            model: marraztu::io::cam_model(),
             material: MaterialChoice::Preset(PresetId::SILVER),
             pose: Placed::new(pose),
             lens,
@@ -290,16 +289,16 @@ impl Hostile {
     }
 
     fn light(&mut self, slot: u32, on_surface: DVec3) -> Light {
-        let place = if self.dice.chance(3) { on_surface } else { self.vector(200.0) };
+        let place = if self.rng.one_in(3) { on_surface } else { self.vector(200.0) };
         let direction = if self.bool() { self.turn().x_axis } else { self.vector(1.0) };
         let orbit = Orbit { on: self.bool(), speed: self.number(90.0), since: self.number(9.0) };
-        let owner = match self.dice.below(4) {
+        let owner = match self.rng.below(4) {
             0 => SpotOwner::SelectedObject,
             1 => SpotOwner::SelectedCamera,
             2 => SpotOwner::Object(ObjectId(1)),
             _ => SpotOwner::Fixed(Placed::new(Aim { position: place, direction })),
         };
-        let kind = match self.dice.below(4) {
+        let kind = match self.rng.below(4) {
             0 => LightKind::Ambient,
             1 => LightKind::Sun { direction: Placed::new(direction) },
             2 => LightKind::Bulb { position: Placed::new(place), orbit },
@@ -317,7 +316,7 @@ impl Hostile {
                 quadratic: self.amount(0.1),
             };
         }
-        light.color = self.dice.one_of(&[Color::WHITE, Color::BLACK, Color([1, 200, 90])]);
+        light.color = self.rng.one_of(&[Color::WHITE, Color::BLACK, Color([1, 200, 90])]);
         light
     }
 
@@ -325,33 +324,33 @@ impl Hostile {
         let mut view = scene.first_view();
         view.subject = Subject::Object;
         view.transformation = Transformation::Scaling;
-        view.frame = self.dice.one_of(&[Frame::Local, Frame::Global]);
+        view.frame = self.rng.one_of(&[Frame::Local, Frame::Global]);
         view.steps.scaling = self.number(2.0);
-        view.observer = self.dice.one_of(&[Observer::Camera, Observer::Camera, Observer::Object]);
-        view.projection = self.dice.one_of(&[Projection::Perspective, Projection::Orthographic]);
-        view.fill = self.dice.one_of(&[Fill::Filled, Fill::Filled, Fill::Edges]);
-        view.normals = self.dice.one_of(&[Normals::Vertex, Normals::Face]);
-        view.normal_length = self.dice.one_of(&[NormalLength::Units, NormalLength::BySize]);
-        (view.back_faces, view.edges_over_fill) = (self.bool(), self.dice.chance(4));
-        (view.face_normals, view.vertex_normals) = (self.dice.chance(4), self.dice.chance(4));
+        view.observer = self.rng.one_of(&[Observer::Camera, Observer::Camera, Observer::Object]);
+        view.projection = self.rng.one_of(&[Projection::Perspective, Projection::Orthographic]);
+        view.fill = self.rng.one_of(&[Fill::Filled, Fill::Filled, Fill::Edges]);
+        view.normals = self.rng.one_of(&[Normals::Vertex, Normals::Face]);
+        view.normal_length = self.rng.one_of(&[NormalLength::Units, NormalLength::BySize]);
+        (view.back_faces, view.edges_over_fill) = (self.bool(), self.rng.one_in(4));
+        (view.face_normals, view.vertex_normals) = (self.rng.one_in(4), self.rng.one_in(4));
         view.wide_lines = self.bool();
         view.time = self.number(10.0);
         view
     }
 
-    pub(super) fn settings(&mut self) -> Settings {
-        let samples = self.dice.one_of(&[Samples::One, Samples::One, Samples::Four]);
-        let mut light = self.dice.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]);
+    pub(crate) fn settings(&mut self) -> Settings {
+        let samples = self.rng.one_of(&[Samples::One, Samples::One, Samples::Four]);
+        let mut light = self.rng.one_of(&[LightAt::Face, LightAt::Vertex, LightAt::Pixel]);
         if light == LightAt::Pixel && samples != Samples::One && self.bool() {
             light = LightAt::Sample;
         }
         Settings {
-            arithmetic: self.dice.one_of(&[Arithmetic::F32, Arithmetic::F32, Arithmetic::F64]),
+            arithmetic: self.rng.one_of(&[Arithmetic::F32, Arithmetic::F32, Arithmetic::F64]),
             light,
             samples,
-            filter: self.dice.one_of(&[Filter::Nearest, Filter::Bilinear]),
-            specular: self.dice.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
-            leave_out: self.dice.one_of(&[LeaveOut::Unseen, LeaveOut::HalfStep]),
+            filter: self.rng.one_of(&[Filter::Nearest, Filter::Bilinear]),
+            specular: self.rng.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
+            leave_out: self.rng.one_of(&[LeaveOut::Unseen, LeaveOut::HalfStep]),
             ..Settings::default()
         }
     }

@@ -4,37 +4,39 @@
 use fearless_simd::Level;
 use glam::{DMat4, DVec3, DVec4};
 
-use super::dice::Dice;
 use super::hostile::Hostile;
 use super::{Proof, Tally};
-use crate::base::image::{Picture, Size};
-use crate::render::{FramePlan, Renderer};
-use crate::scene::{
+use marraztu::base::image::{Picture, Size};
+use marraztu::base::rng::Rng;
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{
     Aim, Arithmetic, Command, Item, Light, LightKind, MaterialChoice, Orbit, Placed, Scene,
     Settings, SpotOwner, View,
 };
 
-pub(super) const PROOF: Proof = Proof {
+pub(crate) const PROOF: Proof = Proof {
     name: "scenes",
     claim: "scenes of hostile numbers are refused and left as they were, or drawn: no panic, the \
             same bytes on all instructions, depths from 0 to 1, no light lost in 32 bits",
     unit: "scenes",
-    lot: SCENES,
-    tested: 30_000,
+    batch: SCENES,
+    quick: 30_000,
     whole: 1_000_000,
+    shows: &[],
+    regressions: &[2456],
     check,
 };
 
 const SCENES: u64 = 100;
 
-fn check(lot: u64) -> Result<Tally, String> {
+fn check(batch: u64) -> Result<Tally, String> {
     let mut tally = Tally::default();
     let [mut plain, mut best] = [Level::baseline(), Level::new()].map(Renderer::new);
     for i in 0..SCENES {
-        let mut hostile = Hostile::new(lot * SCENES + i);
+        let mut hostile = Hostile::new(batch * SCENES + i);
         let (scene, view) = hostile.scene(&mut tally);
         let settings = hostile.settings();
-        let size = Size::new(1 + hostile.dice.index(40), 1 + hostile.dice.index(40));
+        let size = Size::new(1 + hostile.rng.index(40), 1 + hostile.rng.index(40));
         let plan = FramePlan::new(&scene, &view, &settings, size);
         let first = plain.render(&plan).clone();
         let fail = |what: String| Err(format!("scene {i}: {what}"));
@@ -42,7 +44,7 @@ fn check(lot: u64) -> Result<Tally, String> {
             return fail(format!("instructions show at {at:?}"));
         }
         for _ in 0..2 {
-            let (x, y) = (hostile.dice.index(size.width), hostile.dice.index(size.height));
+            let (x, y) = (hostile.rng.index(size.width), hostile.rng.index(size.height));
             if let Some(hit) = best.hit(x, y)
                 && !(0.0..=1.0).contains(&hit.depth)
             {
@@ -67,12 +69,12 @@ fn check(lot: u64) -> Result<Tally, String> {
             }
             // On a border of light, where less than f32 can tell puts the light out in f64 as well.
             tally.count("pixels on a border of light", lost.len() as u64);
-            let dice = &mut hostile.dice;
+            let rng = &mut hostile.rng;
             for _ in 0..NUDGES {
                 if lost.is_empty() {
                     break;
                 }
-                let nudged = in_f64(&nudged(&scene, &view, dice));
+                let nudged = in_f64(&nudged(&scene, &view, rng));
                 lost.retain(|at| !is_dark(&nudged.pixels()[*at]));
             }
             if let Some(at) = lost.first() {
@@ -128,17 +130,17 @@ const NUDGES: usize = 32;
 /// The scene with its lamps moved by a millionth part of how far things are from them and from the
 /// observer, and its objects turned and stretched by as much: some last places of 32 bits. Where placing
 /// makes an object almost flat, that is what is left of the direction of its normals.
-fn nudged(scene: &Scene, view: &View, dice: &mut Dice) -> Scene {
+fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {
     const PART: f64 = 1.0 / (1 << 20) as f64;
     let eye = scene.observer_frame(view).w_axis.truncate();
-    let nudge = |place: DVec3, dice: &mut Dice| {
+    let nudge = |place: DVec3, rng: &mut Rng| {
         let distance = (place - eye).length() + eye.length() + place.length();
-        place + dice.vector(1.0) * (PART * distance)
+        place + rng.vector(1.0) * (PART * distance)
     };
     let mut scene = scene.clone();
     let objects: Vec<_> = scene.objects.iter().map(|(id, object)| (id, object.clone())).collect();
     for (id, mut object) in objects {
-        let mut axis = |v: DVec4| v * (DVec3::ONE + dice.vector(1.0) * PART).extend(1.0);
+        let mut axis = |v: DVec4| v * (DVec3::ONE + rng.vector(1.0) * PART).extend(1.0);
         let m = object.placement.now();
         let m = DMat4::from_cols(axis(m.x_axis), axis(m.y_axis), axis(m.z_axis), m.w_axis);
         object.placement = Placed::new(m);
@@ -148,22 +150,22 @@ fn nudged(scene: &Scene, view: &View, dice: &mut Dice) -> Scene {
     for (id, light) in lights {
         let kind = match &light.kind {
             LightKind::Bulb { position, orbit } => LightKind::Bulb {
-                position: Placed::new(nudge(orbit.at(*position.now(), view.time), dice)),
+                position: Placed::new(nudge(orbit.at(*position.now(), view.time), rng)),
                 orbit: Orbit { on: false, ..*orbit },
             },
             LightKind::Spot { owner, half_aperture, exponent } => {
                 let Some(aim) = scene.aim(view, owner) else { continue };
-                let direction = aim.direction + dice.vector(1.0) * PART;
-                let aim = Aim { position: nudge(aim.position, dice), direction };
+                let direction = aim.direction + rng.vector(1.0) * PART;
+                let aim = Aim { position: nudge(aim.position, rng), direction };
                 LightKind::Spot {
                     owner: SpotOwner::Fixed(Placed::new(aim)),
                     half_aperture: *half_aperture,
                     exponent: *exponent,
                 }
             }
-            LightKind::Sun { direction } => LightKind::Sun {
-                direction: Placed::new(*direction.now() + dice.vector(1.0) * PART),
-            },
+            LightKind::Sun { direction } => {
+                LightKind::Sun { direction: Placed::new(*direction.now() + rng.vector(1.0) * PART) }
+            }
             LightKind::Ambient => continue,
         };
         let item = Item::Light(id, Box::new(Light { kind, ..light }));

@@ -7,24 +7,26 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::dice::Dice;
 use super::double_double::Double;
 use super::{Proof, Tally};
-use crate::base::math::Axis;
-use crate::edit::Stroke;
-use crate::edit::transform::{self, Sign};
-use crate::io;
-use crate::scene::{Frame, Scene, Subject, Transformation, View};
+use marraztu::base::math::Axis;
+use marraztu::base::rng::Rng;
+use marraztu::edit::Stroke;
+use marraztu::edit::transform::{self, Sign};
+use marraztu::io;
+use marraztu::scene::{Frame, Scene, Subject, Transformation, View};
 
-pub(super) const PROOF: Proof = Proof {
+pub(crate) const PROOF: Proof = Proof {
     name: "presses",
     claim: "after a million presses of the turning keys objects and cameras stand within 1e-9 \
             radians of where numbers of twice the digits have them, and moved objects within 1e-9 \
             of the way that they went",
     unit: "presses",
-    lot: PRESSES,
-    tested: PRESSES,
+    batch: PRESSES,
+    quick: PRESSES,
     whole: PRESSES,
+    shows: &[],
+    regressions: &[],
     check,
 };
 
@@ -35,18 +37,18 @@ const BOUND: f64 = 1e-9;
 
 type Turn = [[Double; 3]; 3];
 
-fn check(lot: u64) -> Result<Tally, String> {
+fn check(batch: u64) -> Result<Tally, String> {
     let mut tally = Tally::default();
     let each = PRESSES / 4;
     for frame in [Frame::Local, Frame::Global] {
-        let off = object_turned(&mut Dice::new(lot), frame, each);
+        let off = object_turned(&mut Rng::new(batch), frame, each);
         tally.error("object's angle", off.0);
         tally.error("object's skew", off.1);
     }
-    let off = camera_turned(&mut Dice::new(lot), each);
+    let off = camera_turned(&mut Rng::new(batch), each);
     tally.error("camera's angle", off.0);
     tally.error("camera's skew", off.1);
-    tally.error("object's way", object_moved(&mut Dice::new(lot), each));
+    tally.error("object's way", object_moved(&mut Rng::new(batch), each));
     tally.count("presses", each * 4);
     let bounds = BTreeMap::from([("camera's skew", 1e-12)]);
     for (what, off) in &tally.worst {
@@ -68,17 +70,17 @@ fn press(scene: &mut Scene, view: &View, (axis, sign): (Axis, Sign)) {
     command.expect("nothing is in the way").apply(scene).expect("the item is there");
 }
 
-fn key(dice: &mut Dice) -> (Axis, Sign) {
-    (dice.one_of(&Axis::ALL), dice.one_of(&[Sign::Positive, Sign::Negative]))
+fn key(rng: &mut Rng) -> (Axis, Sign) {
+    (rng.one_of(&Axis::ALL), rng.one_of(&[Sign::Positive, Sign::Negative]))
 }
 
 /// The angle between an object and where it should be, and the largest entry of M'M - I.
-fn object_turned(dice: &mut Dice, frame: Frame, presses: u64) -> (f64, f64) {
+fn object_turned(rng: &mut Rng, frame: Frame, presses: u64) -> (f64, f64) {
     let (mut scene, view) = desk(Subject::Object, Transformation::Rotation, frame);
     let id = view.object.expect("the first scene has objects");
     let mut exact = identity();
     for _ in 0..presses {
-        let key = key(dice);
+        let key = key(rng);
         press(&mut scene, &view, key);
         exact = match frame {
             Frame::Local => product(&exact, &step(key)),
@@ -90,11 +92,11 @@ fn object_turned(dice: &mut Dice, frame: Frame, presses: u64) -> (f64, f64) {
 }
 
 /// The same of a camera in fly: x turns it about its own Y, y about its own X, z about its own Z.
-fn camera_turned(dice: &mut Dice, presses: u64) -> (f64, f64) {
+fn camera_turned(rng: &mut Rng, presses: u64) -> (f64, f64) {
     let (mut scene, view) = desk(Subject::Camera, Transformation::Rotation, Frame::Local);
     let mut exact = identity();
     for _ in 0..presses {
-        let (axis, sign) = key(dice);
+        let (axis, sign) = key(rng);
         press(&mut scene, &view, (axis, sign));
         let own = match axis {
             Axis::X => Axis::Y,
@@ -107,7 +109,7 @@ fn camera_turned(dice: &mut Dice, presses: u64) -> (f64, f64) {
 }
 
 /// How far an object is from where its steps lead, as a share of the way.
-fn object_moved(dice: &mut Dice, presses: u64) -> f64 {
+fn object_moved(rng: &mut Rng, presses: u64) -> f64 {
     let (mut scene, mut view) = desk(Subject::Object, Transformation::Translation, Frame::Global);
     view.steps.translation = 0.1;
     let id = view.object.expect("the first scene has objects");
@@ -118,7 +120,7 @@ fn object_moved(dice: &mut Dice, presses: u64) -> f64 {
     let start: DVec3 = place(&scene);
     let mut steps = [0_i32; 3];
     for _ in 0..presses {
-        let (axis, sign) = key(dice);
+        let (axis, sign) = key(rng);
         press(&mut scene, &view, (axis, sign));
         steps[axis.index()] += if sign == Sign::Positive { 1 } else { -1 };
     }

@@ -9,7 +9,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number of twice the digits of f64.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Double {
+pub(crate) struct Double {
     high: f64,
     low: f64,
 }
@@ -35,25 +35,26 @@ fn two_product(a: f64, b: f64) -> Double {
 
 impl Double {
     /// One.
-    pub const ONE: Self = Self { high: 1.0, low: 0.0 };
+    pub(crate) const ONE: Self = Self { high: 1.0, low: 0.0 };
     /// The circle's circumference by its diameter.
-    pub const PI: Self = Self { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
+    pub(crate) const PI: Self =
+        Self { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
 
     /// The nearest f64.
     #[must_use]
-    pub const fn nearest(self) -> f64 {
+    pub(crate) const fn nearest(self) -> f64 {
         self.high
     }
 
     /// Its distance from 0.
     #[must_use]
-    pub fn abs(self) -> Self {
+    pub(crate) fn abs(self) -> Self {
         if self.high < 0.0 { -self } else { self }
     }
 
     /// The square root of a number that is not negative, by Newton's step from that of f64.
     #[must_use]
-    pub fn sqrt(self) -> Self {
+    pub(crate) fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::default();
         }
@@ -63,7 +64,7 @@ impl Double {
 
     /// Sine and cosine of a small angle (below 1/2), by their series.
     #[must_use]
-    pub fn sin_cos(self) -> (Self, Self) {
+    pub(crate) fn sin_cos(self) -> (Self, Self) {
         let (mut sin, mut cos) = (Self::default(), Self::default());
         let mut term = Self::ONE;
         for n in 0..28 {
@@ -128,30 +129,5 @@ impl Div for Double {
         let second = Self::from(rest.high / other.high);
         let rest = rest - second * other;
         first + second + Self::from(rest.high / other.high)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_f64_forgets_is_kept() {
-        let small = Double::from(1e-25);
-        assert_eq!(((Double::ONE + small) - Double::ONE).nearest(), 1e-25);
-        let third = Double::ONE / Double::from(3.0);
-        assert!((third * Double::from(3.0) - Double::ONE).abs().nearest() < 1e-31);
-        let two = Double::from(2.0).sqrt();
-        assert!((two * two - Double::from(2.0)).abs().nearest() < 1e-31);
-    }
-
-    #[test]
-    fn the_sine_of_thirty_degrees_is_a_half() {
-        let angle = Double::PI / Double::from(180.0) * Double::from(10.0);
-        let (s, c) = angle.sin_cos();
-        assert!((s * s + c * c - Double::ONE).abs().nearest() < 1e-31);
-        // sin 3a = 3 sin a - 4 sin^3 a
-        let triple = Double::from(3.0) * s - Double::from(4.0) * s * s * s;
-        assert!((triple - Double::from(0.5)).abs().nearest() < 1e-31);
     }
 }

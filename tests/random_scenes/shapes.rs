@@ -1,13 +1,13 @@
-//! The shapes, materials and textures that scenes by chance are made of.
+//! The shapes, materials and textures of randomly generated scenes.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use crate::base::Shared;
-use crate::base::image::{Picture, Size};
-use crate::base::once::get_or_compute;
-use crate::lab::prove::dice::Dice;
-use crate::scene::{
+use marraztu::base::Shared;
+use marraztu::base::image::{Picture, Size};
+use marraztu::base::once::get_or_compute;
+use marraztu::base::rng::Rng;
+use marraztu::scene::{
     FileMaterial, LoadOptions, Material, Mesh, MeshSource, Model, NONE, Part, SourceCorner,
     Texture, Wrap,
 };
@@ -17,7 +17,7 @@ const COEFFICIENTS: [f64; 8] =
     [0.0, -0.0, 5e-324, 1e-45, f32::MIN_POSITIVE as f64, 1.0 / 255.0, 0.4, 1.0];
 
 /// The shapes.
-pub(super) fn shapes() -> &'static [Shared<Model>] {
+pub(crate) fn shapes() -> &'static [Shared<Model>] {
     static SHAPES: OnceLock<Vec<Shared<Model>>> = OnceLock::new();
     get_or_compute::<Vec<_>>(&SHAPES, || {
         vec![triangle(), square(), cube(), ball(4), two_parts(), colored(), ball(7)]
@@ -165,24 +165,24 @@ fn colored() -> Shared<Model> {
 }
 
 /// A material, often with nothing in some of its coefficients.
-pub(super) fn material(dice: &mut Dice) -> Material {
-    let mut row = || match dice.index(4) {
+pub(crate) fn material(rng: &mut Rng) -> Material {
+    let mut row = || match rng.index(4) {
         0 => [0.0; 3],
-        1 => [dice.part(), dice.part(), dice.part()],
-        _ => [0; 3].map(|_| dice.pick(&COEFFICIENTS)),
+        1 => [rng.unit(), rng.unit(), rng.unit()],
+        _ => [0; 3].map(|_| rng.one_of(&COEFFICIENTS)),
     };
     let (ambient, diffuse, specular) = (row(), row(), row());
-    let exponent = dice.pick(&[0.0, 1.0, 5.0, 32.0, 128.0, 1000.0]);
+    let exponent = rng.one_of(&[0.0, 1.0, 5.0, 32.0, 128.0, 1000.0]);
     Material { ambient, diffuse, specular, exponent }
 }
 
 /// A texture of a few texels, with holes or without.
-pub(super) fn texture(dice: &mut Dice) -> Shared<Texture> {
-    let side = dice.pick(&[1, 2, 5]);
-    let alphas: &[u8] = if dice.percent(50) { &[255] } else { &[0, 127, 128, 255] };
+pub(crate) fn texture(rng: &mut Rng) -> Shared<Texture> {
+    let side = rng.one_of(&[1, 2, 5]);
+    let alphas: &[u8] = if rng.percent(50) { &[255] } else { &[0, 127, 128, 255] };
     let mut texel = || {
-        let byte = |dice: &mut Dice| dice.pick(&[0_u8, 1, 100, 255]);
-        [byte(dice), byte(dice), byte(dice), dice.pick(alphas)]
+        let byte = |rng: &mut Rng| rng.one_of(&[0_u8, 1, 100, 255]);
+        [byte(rng), byte(rng), byte(rng), rng.one_of(alphas)]
     };
     let texels = (0..side * side).map(|_| texel()).collect();
     Shared::new(Texture {
@@ -190,7 +190,7 @@ pub(super) fn texture(dice: &mut Dice) -> Shared<Texture> {
         picture: Picture::from_pixels(Size::new(side, side), texels)
             .expect("as many as it has")
             .into(),
-        wrap: dice.pick(&[Wrap::Repeat, Wrap::Clamp]),
+        wrap: rng.one_of(&[Wrap::Repeat, Wrap::Clamp]),
         offset: [0.0; 2],
         scale: [1.0; 2],
     })

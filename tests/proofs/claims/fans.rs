@@ -5,21 +5,23 @@
 //! snapped outline winds about it, whatever snapping did to the slivers), and which triangle the
 //! renderer shows at each pixel of a picture of many fans.
 
-use super::dice::Dice;
 use super::exact::{span, wind};
-use super::stage::{self, Flat};
 use super::{Proof, Tally};
-use crate::render::Renderer;
-use crate::render::geometry::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
+use marraztu::base::rng::Rng;
+use marraztu::lab::pictures::flat::{self, Flat};
+use marraztu::render::Renderer;
+use marraztu::render::geometry::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
 
-pub(super) const PROOF: Proof = Proof {
+pub(crate) const PROOF: Proof = Proof {
     name: "fans",
     claim: "closed fans are covered as whole-number crossings say: no crack, no double, \
             and the picture shows the right triangle everywhere",
     unit: "fans",
-    lot: FANS,
-    tested: 100_000,
+    batch: FANS,
+    quick: 100_000,
     whole: 1_000_000,
+    shows: &[],
+    regressions: &[],
     check,
 };
 
@@ -30,13 +32,13 @@ const ROW: usize = 8;
 /// Sides of the square that a fan has, in pixels; small ones are the more frequent.
 const SIDES: [i32; 20] = [8, 8, 8, 8, 8, 8, 8, 8, 16, 16, 16, 16, 16, 16, 32, 32, 32, 32, 64, 128];
 
-fn check(lot: u64) -> Result<Tally, String> {
-    let mut dice = Dice::new(lot);
-    let side = dice.one_of(&SIDES);
+fn check(batch: u64) -> Result<Tally, String> {
+    let mut rng = Rng::new(batch);
+    let side = rng.one_of(&SIDES);
     let mut tally = Tally::default();
     let mut triangles = Vec::new();
     for i in 0..ROW * ROW {
-        let (hub, outline) = fan(&mut dice, side);
+        let (hub, outline) = fan(&mut rng, side);
         let fan = triangles_of(hub, &outline);
         count(&fan, &outline, side).map_err(|what| format!("{what}: {hub:?} {outline:?}"))?;
         let [x, y] = [i % ROW, i / ROW].map(|i| i32::try_from(i).expect("few") * side * SUBPIXELS);
@@ -55,19 +57,19 @@ fn check(lot: u64) -> Result<Tally, String> {
 
 /// A hub and an outline about it inside a square, with coordinates from the hard places: half of them
 /// on centres and borders of pixels, some corners twice, some beside another by one part of a pixel.
-fn fan(dice: &mut Dice, side: i32) -> (Snapped, Vec<Snapped>) {
+fn fan(rng: &mut Rng, side: i32) -> (Snapped, Vec<Snapped>) {
     let far = side * SUBPIXELS;
-    let coordinate = |dice: &mut Dice| {
-        let at = dice.between(0, far);
-        if dice.chance(2) { at / 128 * 128 } else { at }
+    let coordinate = |rng: &mut Rng| {
+        let at = rng.between(0, far);
+        if rng.one_in(2) { at / 128 * 128 } else { at }
     };
     let mut outline: Vec<Snapped> = Vec::new();
-    for _ in 0..dice.between(3, 8) {
-        let fresh = Snapped { x: coordinate(dice), y: coordinate(dice) };
-        let corner = match (dice.below(6), outline.last()) {
+    for _ in 0..rng.between(3, 8) {
+        let fresh = Snapped { x: coordinate(rng), y: coordinate(rng) };
+        let corner = match (rng.below(6), outline.last()) {
             (0, Some(last)) => {
-                let beside = |at: i32, dice: &mut Dice| (at + dice.between(-1, 1)).clamp(0, far);
-                Snapped { x: beside(last.x, dice), y: beside(last.y, dice) }
+                let beside = |at: i32, rng: &mut Rng| (at + rng.between(-1, 1)).clamp(0, far);
+                Snapped { x: beside(last.x, rng), y: beside(last.y, rng) }
             }
             (1, Some(last)) => Snapped { x: last.x, ..fresh },
             (2, Some(last)) => Snapped { y: last.y, ..fresh },
@@ -75,9 +77,9 @@ fn fan(dice: &mut Dice, side: i32) -> (Snapped, Vec<Snapped>) {
         };
         outline.push(corner);
     }
-    let hub = match dice.below(8) {
-        0 => dice.one_of(&outline),
-        _ => Snapped { x: coordinate(dice), y: coordinate(dice) },
+    let hub = match rng.below(8) {
+        0 => rng.one_of(&outline),
+        _ => Snapped { x: coordinate(rng), y: coordinate(rng) },
     };
     (hub, outline)
 }
@@ -129,11 +131,11 @@ fn count(fan: &[[Snapped; 3]], outline: &[Snapped], side: i32) -> Result<(), Str
 }
 
 /// Whether the renderer shows at every pixel the first of the triangles that cover it.
-pub(super) fn compare(triangles: &[Flat], side: usize) -> Result<(), String> {
-    let picture = stage::draw_flat(triangles, side, &mut Renderer::default());
+pub(crate) fn compare(triangles: &[Flat], side: usize) -> Result<(), String> {
+    let picture = flat::draw_triangles(triangles, side, &mut Renderer::default());
     let expected = seen(triangles, side);
     for (i, (pixel, expected)) in picture.pixels().iter().zip(expected).enumerate() {
-        let shown = stage::number_of(*pixel);
+        let shown = flat::number_of(*pixel);
         if shown != expected {
             let corners = |number: Option<usize>| number.map(|i| triangles[i].corners);
             return Err(format!(
@@ -149,7 +151,7 @@ pub(super) fn compare(triangles: &[Flat], side: usize) -> Result<(), String> {
 }
 
 /// The first triangle that covers each pixel of a square picture, by crossings.
-pub(super) fn seen(triangles: &[Flat], side: usize) -> Vec<Option<usize>> {
+pub(crate) fn seen(triangles: &[Flat], side: usize) -> Vec<Option<usize>> {
     let mut seen = vec![None; side * side];
     let width = i64::try_from(side).expect("small");
     for (number, triangle) in triangles.iter().enumerate().rev() {
