@@ -320,47 +320,6 @@ fn what_turns_by_itself_is_drawn_at_the_time_that_is_asked_for() {
 }
 
 #[test]
-fn a_job_is_drawn_with_the_instructions_that_are_asked_for_or_says_that_it_is_not() {
-    let folder = folder();
-    let job = |status: i32, of: &[&str]| {
-        // What is not supported is told in one sentence.
-        let sentences = usize::from(status == 3);
-        let mut all = vec!["job", "--mesh", "square.obj", "--size", "96x64", "--dist", "3"];
-        all.extend(["--frames", "1", "--out", "drawn.ppm"]);
-        all.extend(of);
-        let (line, err) = ends_with(status, folder.path(), &all);
-        assert_eq!(err.lines().count(), sentences, "{err}");
-        let covered = line.trim().rsplit(',').next().map(str::to_owned);
-        (covered, std::fs::read(folder.path().join("drawn.ppm")).unwrap_or_default())
-    };
-    let best = job(0, &["--mode", "phong"]);
-    assert!(best.0.as_deref().unwrap().parse::<u32>().unwrap() > 100, "{:?}", best.0);
-    assert!(job(0, &["--mode", "phong", "--instructions", "plain"]) == best);
-    assert!(job(0, &["--mode", "flat", "--threads", "3"]).1 != best.1);
-    for none in [["--mode", "phong", "--instructions", "abacus"], ["--mode", "oil", "--msaa", "4"]]
-    {
-        job(3, &none);
-    }
-    job(3, &["--mode", "phong", "--msaa", "5"]);
-}
-
-#[test]
-fn a_job_of_edges_has_one_colour_whichever_way_faces_look() {
-    let folder = folder();
-    // Two sides of a tent, one of which is turned away.
-    let tent = "v -1 0 -1\nv 1 0 -1\nv 0 1 0\nv 0 -1 1\nf 1 3 2\nf 1 4 2\nf 4 3 1\n";
-    std::fs::write(folder.path().join("tent.obj"), tent).unwrap();
-    let job = ["job", "--mesh", "tent.obj", "--mode", "wire", "--size", "96x64", "--frames", "1"];
-    let (line, _) = ends_with(0, folder.path(), &[&job[..], &["--out", "drawn.ppm"]].concat());
-    let picture = std::fs::read(folder.path().join("drawn.ppm")).unwrap();
-    let pixels = picture[picture.len() - 96 * 64 * 3..].as_chunks::<3>().0;
-    let edges = pixels.iter().filter(|pixel| **pixel == [230, 204, 153]).count();
-    let background = pixels.iter().filter(|pixel| **pixel == [26, 26, 31]).count();
-    assert_eq!(edges + background, pixels.len());
-    assert!(edges > 20 && line.trim().ends_with(&format!(",{edges}")), "{edges}: {line}");
-}
-
-#[test]
 fn normals_of_the_file_can_be_passed_over() {
     let folder = folder();
     let text = SQUARE.replace("f 1 2 3 4", "vn 1 0 1\nf 1//1 2//1 3//1 4//1");

@@ -18,12 +18,12 @@ use crate::edit::selection;
 use crate::io;
 use crate::lab::blame::{Blame, blame};
 use crate::lab::candidates::{Thoroughness, all_axes};
-use crate::lab::clock::WallClock;
 use crate::lab::easel::{Easel as _, Studio};
 use crate::lab::error::Measure;
 use crate::lab::pairs::{Touch, Unmeasured, Watch};
 use crate::lab::report::{Budgets, Report};
 use crate::lab::sweep::{Findings, Question, sweep};
+use crate::lab::timing::WallClock;
 use crate::scene::{AXES, Axis, Scene, Settings, View};
 
 /// What the panel of the laboratory shows.

@@ -7,7 +7,6 @@ use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
 use super::accuracy::Accuracy;
-use super::job::Job;
 use super::keys::Keys;
 use super::lab::Lab;
 use super::plan::Plan;
@@ -63,8 +62,6 @@ pub(crate) enum Headless {
     Keys(Keys),
     /// Measure what accuracy costs: time and error of each choice of each axis
     Lab(Box<Lab>),
-    /// Measure one drawing job, in a form that other renderers share
-    Job(Job),
     /// Check that this processor draws the same pictures as every other
     Verify(Verify),
 }

@@ -9,12 +9,12 @@ use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::blame::blame;
 use marraztu::lab::candidates::{Thoroughness, all_axes};
-use marraztu::lab::clock::WallClock;
 use marraztu::lab::easel::{Easel, Studio};
 use marraztu::lab::error::{Measure, amplified};
 use marraztu::lab::pairs::Watch;
 use marraztu::lab::report::{self, Budgets, Report};
 use marraztu::lab::sweep::{Question, sweep};
+use marraztu::lab::timing::WallClock;
 use marraztu::scene::{AXES, Axis, Settings};
 
 use super::accuracy::Accuracy;

@@ -8,7 +8,6 @@ mod arguments;
 mod bar;
 mod failure;
 mod info;
-mod job;
 mod keys;
 mod lab;
 mod open;
@@ -41,10 +40,6 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Plan(arguments)) => plan::plan(&arguments),
         Some(Headless::Lab(arguments)) => lab::lab(&arguments),
         Some(Headless::Verify(arguments)) => verify::verify(&arguments),
-        Some(Headless::Job(arguments)) => match job::job(&arguments) {
-            Ok(status) => return ExitCode::from(status),
-            Err(failure) => Err(failure),
-        },
         None => open::open(arguments.files),
     };
     match done {

@@ -3,7 +3,6 @@
 
 pub mod blame;
 pub mod candidates;
-pub mod clock;
 pub mod cost;
 pub mod easel;
 pub mod error;
@@ -11,10 +10,10 @@ pub mod flip;
 pub mod front;
 pub mod hash;
 pub mod instructions;
-pub mod job;
 pub mod kernels;
 pub mod pairs;
 pub mod pictures;
 pub mod report;
 pub mod statistics;
 pub mod sweep;
+pub mod timing;

@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::clock::{Clock, Work};
 use super::easel::{Easel, hash};
 use super::statistics::Quartiles;
+use super::timing::{Clock, Work};
 use crate::io::{Cancelled, Progress};
 use crate::scene::Settings;
 

@@ -8,13 +8,13 @@ use fearless_simd::Level;
 use serde::Serialize;
 
 use super::candidates::{Candidate, Candidates, Group, LeftOut, Thoroughness, candidates};
-use super::clock::Clock;
 use super::easel::{Easel, Studio, hash};
 use super::error::{Error, Shot};
 use super::instructions;
 use super::kernels::{self, Kernel};
 use super::pairs::{Ratio, Unmeasured, Watch, measure};
 use super::statistics::Quartiles;
+use super::timing::Clock;
 use crate::base::image::Size;
 use crate::scene::{Axis, Settings};
 

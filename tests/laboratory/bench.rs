@@ -5,10 +5,10 @@ use std::time::Duration;
 use marraztu::base::image::{Picture, Size};
 use marraztu::io;
 use marraztu::lab::candidates::{LeftOut, Thoroughness, all_axes, candidates};
-use marraztu::lab::clock::{Clock, Work};
 use marraztu::lab::easel::Easel;
 use marraztu::lab::pairs::{Limits, Watch};
 use marraztu::lab::sweep::{Bench, Findings, Question};
+use marraztu::lab::timing::{Clock, Work};
 use marraztu::scene::{AXES, Axis, Choice, Settings};
 
 /// A choice in which something is planted.

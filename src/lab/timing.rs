@@ -1,24 +1,31 @@
-//! What tells how long work takes.
+//! Measures how long work takes.
 //!
-//! A clock is handed the work and told what it is, and gives back the time: so a test can put a false
-//! one in its place that makes one choice slow, and see that choice named and no other.
+//! The laboratory hands its work to a [`Clock`], together with what it is: a test can replace the clock by
+//! one that makes one choice slow, and expects that choice to be named and no other.
 
 use std::time::{Duration, Instant};
 
 use crate::scene::Settings;
+
+/// Does the work, and measures how long it takes.
+pub fn time(work: impl FnOnce()) -> Duration {
+    let begun = Instant::now();
+    work();
+    begun.elapsed()
+}
 
 /// What is timed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Work<'a> {
     /// A picture, drawn with these settings.
     Picture(&'a Settings),
-    /// A small piece of arithmetic, by its name.
+    /// A small piece of arithmetic, by name.
     Kernel(&'static str),
 }
 
 /// Measures work.
 pub trait Clock {
-    /// Does the work, and says how long it took.
+    /// Does the work, and gives the time that it took.
     fn time(&mut self, work: Work<'_>, todo: &mut dyn FnMut()) -> Duration;
     /// The time since some fixed moment.
     fn now(&self) -> Duration;
@@ -38,9 +45,7 @@ impl Default for WallClock {
 
 impl Clock for WallClock {
     fn time(&mut self, _: Work<'_>, todo: &mut dyn FnMut()) -> Duration {
-        let begun = Instant::now();
-        todo();
-        begun.elapsed()
+        time(todo)
     }
 
     fn now(&self) -> Duration {
