@@ -1,10 +1,9 @@
 //! What drawing costs in time and what accuracy costs, measured, never guessed; and whether this processor
 //! draws the listed pictures.
 
-pub mod blame;
+pub mod attribution;
 pub mod candidates;
 pub mod cost;
-pub mod easel;
 pub mod error;
 pub mod flip;
 pub mod front;
@@ -12,6 +11,7 @@ pub mod hash;
 pub mod instructions;
 pub mod kernels;
 pub mod pairs;
+pub mod picture_source;
 pub mod pictures;
 pub mod report;
 pub mod statistics;

@@ -8,8 +8,8 @@
 
 use marraztu::base::image::{Picture, Size};
 use marraztu::io;
-use marraztu::lab::easel::{Easel as _, Studio};
 use marraztu::lab::error::Error;
+use marraztu::lab::picture_source::{PictureSource as _, Studio};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     AccuracyPreset, Command, Filter, Item, MaterialChoice, Scene, Settings, View,
@@ -47,8 +47,8 @@ fn studios() -> Vec<(String, Studio)> {
 fn apart(ours: &Settings, exact: &Settings) -> (Vec<(String, Error)>, f64) {
     let (mut errors, mut differing, mut bytes) = (Vec::new(), 0.0, 0.0);
     for (name, mut studio) in studios() {
-        let exact = studio.shot(exact);
-        let error = studio.shot(ours).error(&exact);
+        let exact = studio.rendering(exact);
+        let error = studio.rendering(ours).error(&exact);
         let alike = 3.0 * (studio.size().area() - error.coverage) as f64;
         differing += error.differing * alike;
         bytes += alike;

@@ -9,7 +9,7 @@ use marraztu::render::{FramePlan, Renderer, Unseen, unseen};
 use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
 
 use super::accuracy::Accuracy;
-use super::arguments::{Reading, Render, Seeing, Shot, Slots, Surfaces};
+use super::arguments::{PictureArguments, Reading, Render, Seeing, Slots, Surfaces};
 use super::bar::Bar;
 use super::draw_along;
 use super::failure::Failure;
@@ -20,21 +20,21 @@ use super::target::Target;
 /// Draws the picture that the arguments describe.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     let target = Target::of(arguments)?;
-    let stage = stage(&arguments.shot)?;
-    target.spare_inputs(&inputs(&arguments.shot), &stage)?;
+    let stage = stage(&arguments.picture)?;
+    target.spare_inputs(&inputs(&arguments.picture), &stage)?;
     let progress = Progress::new();
     let bar = Bar::of("drawing", &progress);
     for (_, object) in stage.scene.objects.iter() {
         object.model.mesh.draw_as_filed();
     }
-    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.shot.size);
+    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.picture.size);
     let mut renderer = Renderer::default();
     renderer.render_watched(&plan, &|done, all| {
         // Nothing cancels this.
         let _ = progress.reached(done, all);
     });
     drop(bar);
-    tell_unseen(&mut renderer, &stage, arguments.shot.size);
+    tell_unseen(&mut renderer, &stage, arguments.picture.size);
     target.write(renderer.picture())?;
     if let (None, Target::File(path)) = (&arguments.out, &target) {
         note(&format_args!("the picture is in {}", path.display()));
@@ -70,13 +70,14 @@ fn tell_unseen(renderer: &mut Renderer, stage: &Stage, size: Size) {
 }
 
 /// All files that are named as something to read.
-fn inputs(shot: &Shot) -> Vec<PathBuf> {
-    shot.files.iter().chain(&shot.surfaces.texture).cloned().collect()
+fn inputs(picture: &PictureArguments) -> Vec<PathBuf> {
+    picture.files.iter().chain(&picture.surfaces.texture).cloned().collect()
 }
 
 /// Reads the files and arranges everything as it is asked for. What was found in the files is told.
-pub(super) fn stage(shot: &Shot) -> Result<Stage, Failure> {
-    let Shot { files, reading, surfaces, seeing, accuracy, talk, threads, .. } = shot;
+pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
+    let PictureArguments { files, reading, surfaces, seeing, accuracy, talk, threads, .. } =
+        picture;
     talk.apply();
     if threads.is_some() {
         draw_along(*threads);

@@ -30,7 +30,7 @@ impl Target {
         let target = match &arguments.out {
             Some(out) if is_standard(out) => Self::Output,
             Some(out) => Self::File(out.clone()),
-            None => Self::File(default_name(&arguments.shot.files)),
+            None => Self::File(default_name(&arguments.picture.files)),
         };
         match &target {
             Self::Output if std::io::stdout().is_terminal() => Err(usage(

@@ -7,11 +7,11 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use marraztu::base::image::Size;
 use marraztu::io;
-use marraztu::lab::blame::blame;
+use marraztu::lab::attribution::attribute;
 use marraztu::lab::candidates::{Thoroughness, all_axes};
-use marraztu::lab::easel::{Easel, Studio};
 use marraztu::lab::error::{Measure, amplified};
 use marraztu::lab::pairs::Watch;
+use marraztu::lab::picture_source::{PictureSource, Studio};
 use marraztu::lab::report::{self, Budgets, Report};
 use marraztu::lab::sweep::{Question, sweep};
 use marraztu::lab::timing::WallClock;
@@ -95,7 +95,7 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     let settings = stage.settings;
     let mut studio = Studio::new(stage.scene, stage.view, *size);
     if let Some(Pixel(at)) = arguments.pixel {
-        return blame_pixel(&mut studio, &settings, at);
+        return explain_pixel(&mut studio, &settings, at);
     }
     let report = measured(arguments, &mut studio, settings)?;
     print(&report::text(&report))?;
@@ -150,8 +150,8 @@ fn command() -> String {
     std::iter::once("marraztu".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
-fn blame_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Result<(), Failure> {
-    let Some(blame) = blame(studio, settings, at) else {
+fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Result<(), Failure> {
+    let Some(attribution) = attribute(studio, settings, at) else {
         let Size { width, height } = studio.size();
         let [x, y] = at;
         let outside = format!("the picture has {width} x {height} pixels: there is no {x},{y}");
@@ -162,7 +162,7 @@ fn blame_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Resu
         Some((name, polygon)) => format!("  shows  polygon {polygon} of {name}"),
         None => "  shows  the background".to_owned(),
     };
-    let mut lines = blame.lines();
+    let mut lines = attribution.lines();
     lines.insert(1, seen);
     print(&(lines.join("\n") + "\n"))
 }

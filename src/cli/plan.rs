@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use marraztu::lab::cost::{self, Costs, Explained, Group};
 use marraztu::render::{Class, EffectUse, State};
 
-use super::arguments::Shot;
+use super::arguments::PictureArguments;
 use super::bar::Bar;
 use super::failure::Failure;
 use super::render;
@@ -25,7 +25,7 @@ Examples:
   marraztu plan room.marraztu --faint left-out --format csv")]
 pub(crate) struct Plan {
     #[command(flatten)]
-    shot: Shot,
+    picture: PictureArguments,
 
     /// Measure what each effect costs in time, by pairs of frames with it and without it
     #[arg(long)]
@@ -51,9 +51,9 @@ enum Format {
 
 /// Lists the effects of the picture that the arguments describe.
 pub(crate) fn plan(arguments: &Plan) -> Result<(), Failure> {
-    let stage = render::stage(&arguments.shot)?;
+    let stage = render::stage(&arguments.picture)?;
     let (scene, view, settings) = (&stage.scene, &stage.view, &stage.settings);
-    let size = arguments.shot.size;
+    let size = arguments.picture.size;
     let explained = cost::explain((scene, view, settings, size));
     let costs = arguments.measure.then(|| {
         let _bar = Bar::unmeasured("measuring");

@@ -1,13 +1,13 @@
 //! What pictures are drawn on, so that they can be timed and judged.
 
-use super::error::Shot;
+use super::error::Rendering;
 use super::hash::fnv1a;
 use crate::base::image::{Picture, Size};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{Samples, Scene, Settings, View};
 
 /// Draws one scene, seen one way, in one size, with any settings.
-pub trait Easel {
+pub trait PictureSource {
     /// Draws the picture, as wholly as if it were the first.
     fn draw(&mut self, settings: &Settings);
     /// The picture that was drawn last.
@@ -16,11 +16,11 @@ pub trait Easel {
     fn primitives(&mut self) -> Vec<u32>;
 
     /// The picture of these settings, with what is needed to judge it.
-    fn shot(&mut self, settings: &Settings) -> Shot {
+    fn rendering(&mut self, settings: &Settings) -> Rendering {
         self.draw(settings);
         let primitives = self.primitives();
-        let shot = Shot::new(self.picture().clone(), primitives);
-        if settings.samples == Samples::One { shot } else { shot.mixed() }
+        let rendering = Rendering::new(self.picture().clone(), primitives);
+        if settings.samples == Samples::One { rendering } else { rendering.mixed() }
     }
 }
 
@@ -72,7 +72,7 @@ impl Studio {
     }
 }
 
-impl Easel for Studio {
+impl PictureSource for Studio {
     fn draw(&mut self, settings: &Settings) {
         let plan = FramePlan::new(&self.scene, &self.view, settings, self.size);
         self.renderer.render(&plan);

@@ -90,12 +90,12 @@ pub(crate) struct Render {
     #[arg(short, long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) shot: Shot,
+    pub(crate) picture: PictureArguments,
 }
 
 /// A picture: what it shows and how it is drawn.
 #[derive(Debug, Args)]
-pub(crate) struct Shot {
+pub(crate) struct PictureArguments {
     /// Models (.obj, .obj.gz), and at most one scene (.marraztu) that they are put into; "-" is
     /// standard input
     pub(crate) files: Vec<PathBuf>,

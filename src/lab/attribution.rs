@@ -6,12 +6,12 @@
 
 use serde::Serialize;
 
-use super::easel::Easel;
+use super::picture_source::PictureSource;
 use crate::scene::{AXES, Axis, AxisKind, Settings};
 
 /// One pixel, and where its error comes from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Blame {
+pub struct Attribution {
     /// Column and row, from the upper left.
     pub at: [usize; 2],
     /// The reference's red, green and blue.
@@ -19,7 +19,7 @@ pub struct Blame {
     /// Those of the settings that are judged.
     pub ours: [u8; 3],
     /// Whether another primitive is seen there in the reference.
-    pub covered_otherwise: bool,
+    pub coverage_differs: bool,
     /// The axes that are not at their most exact, the largest share first.
     pub shares: Vec<Share>,
 }
@@ -42,15 +42,19 @@ pub struct Share {
 
 /// Judges a pixel of the picture that these settings draw; `None` where it is outside.
 #[must_use]
-pub fn blame(easel: &mut dyn Easel, settings: &Settings, at: [usize; 2]) -> Option<Blame> {
+pub fn attribute(
+    source: &mut dyn PictureSource,
+    settings: &Settings,
+    at: [usize; 2],
+) -> Option<Attribution> {
     let mut look = |settings: &Settings| -> Option<([u8; 3], u32)> {
-        easel.draw(settings);
-        let size = easel.picture().size();
+        source.draw(settings);
+        let size = source.picture().size();
         if at[0] >= size.width || at[1] >= size.height {
             return None;
         }
-        let [r, g, b, _] = easel.picture().pixel(at[0], at[1]);
-        Some(([r, g, b], easel.primitives()[at[1] * size.width + at[0]]))
+        let [r, g, b, _] = source.picture().pixel(at[0], at[1]);
+        Some(([r, g, b], source.primitives()[at[1] * size.width + at[0]]))
     };
     let (exact, exact_primitive) = look(&settings.reference())?;
     let (ours, primitive) = look(settings)?;
@@ -71,8 +75,8 @@ pub fn blame(easel: &mut dyn Easel, settings: &Settings, at: [usize; 2]) -> Opti
         shares.push(Share { axis: axis.key, chosen, exact, value, steps });
     }
     shares.sort_by_key(|share| std::cmp::Reverse(share.steps));
-    let covered_otherwise = primitive != exact_primitive;
-    Some(Blame { at, exact, ours, covered_otherwise, shares })
+    let coverage_differs = primitive != exact_primitive;
+    Some(Attribution { at, exact, ours, coverage_differs, shares })
 }
 
 /// Byte steps between two colours, all channels together.
@@ -80,7 +84,7 @@ fn distance(a: [u8; 3], b: [u8; 3]) -> i32 {
     (0..3).map(|i| i32::from(a[i].abs_diff(b[i]))).sum()
 }
 
-impl Blame {
+impl Attribution {
     /// Byte steps between exact and ours, all channels together.
     #[must_use]
     pub fn steps(&self) -> i32 {
@@ -97,7 +101,7 @@ impl Blame {
             format!("  exact  {}", color(self.exact)),
             format!("  ours   {}: {} byte steps off", color(self.ours), self.steps()),
         ];
-        if self.covered_otherwise {
+        if self.coverage_differs {
             lines.push("  another triangle is seen there in the exact picture".to_owned());
         }
         for Share { axis, chosen, exact, value, steps } in &self.shares {
