@@ -1,16 +1,14 @@
 #!/usr/bin/env bash
-# Makes docs/stability.md again, of what tests and proofs measure: docs/stability.sh [PROGRAM [FOLDER]]
+# Makes docs/stability.md from what tests and proofs measure: docs/stability.sh [FOLDER]
 #
-# The proofs run in the numbers that the page promises, which takes some minutes. What FOLDER has of an
-# earlier run is not measured again: `figures`, filled by the hard cases with MARRAZTU_FIGURES and by
-# `marraztu prove --figures`, and `proofs`, which that printed.
+# The proofs check the numbers of cases that the page promises, which takes some minutes. What FOLDER has
+# from an earlier run is not measured again: `figures`, written by the hard cases with MARRAZTU_FIGURES and
+# by the proofs with --figures, and `proofs`, the output of the proofs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 page=docs/stability.md
-[ $# -gt 0 ] || cargo build --release --locked
-program=${1:-target/release/marraztu}
-if [ $# -gt 1 ]; then
-  work=$2
+if [ $# -gt 0 ]; then
+  work=$1
 else
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
@@ -20,7 +18,8 @@ if [ ! -d "$work/figures" ]; then
   MARRAZTU_FIGURES="$work/figures" cargo test --locked --test hard_cases >"$work/tests" ||
     { cat "$work/tests" >&2; exit 1; }
 fi
-[ -f "$work/proofs" ] || "$program" prove --figures "$work/figures" >"$work/proofs"
+[ -f "$work/proofs" ] ||
+  cargo test --release --locked --test proofs -- --whole --figures "$work/figures" >"$work/proofs"
 cat "$work"/figures/[0-9]*.tsv >"$work/figures.tsv"
 
 # Our figure of a case, by what is measured, with its unit.
@@ -35,6 +34,14 @@ counted() { awk -F'\t' '{ print $3 }' "$work/figures/proof-$1.tsv"; }
 # The number of something that a proof has counted.
 number() {
   counted "$1" | awk -v RS=', ' -v what="$2" 'index($0, what) == 1 { print $NF; exit }' | tr -d '\n'
+}
+# The number of mutations of rules that docs/breakages.md says were caught.
+rules() {
+  local all caught
+  all=$(grep -c '^| plan |' docs/breakages.md)
+  caught=$(grep -c '^| plan |.*| caught |' docs/breakages.md)
+  [ "$all" -eq "$caught" ] || { echo "docs/breakages.md: $caught of $all rules caught" >&2; exit 1; }
+  echo "$all"
 }
 # Cells of a table of Markdown.
 group() {
@@ -63,10 +70,10 @@ that a test holds it to. Every number was measured by the run that made this pag
 - $(awk -F': ' '/^model name/ { print $2; exit }' /proc/cpuinfo), $(nproc) threads
 
 **What judges.** No case is judged by the code that it judges. Coverage is held against crossings of
-rows, fractions of whole numbers of 128 bits (\`src/lab/prove/exact.rs\`), where the renderer has edge
+rows, fractions of whole numbers of 128 bits (\`tests/proofs/claims/exact.rs\`), where the renderer has edge
 functions; light and texture against rays and the equation written down once more
 (\`tests/hard_cases/oracle.rs\`); placements against numbers of twice the digits of f64
-(\`src/lab/prove/double_double.rs\`). Pictures are looked at from outside, byte by byte; where that is
+(\`tests/proofs/claims/double_double.rs\`). Pictures are looked at from outside, byte by byte; where that is
 too coarse, a picture is made a vernier: strips that begin a ten-thousandth of a pixel apart, rulers
 whose texels are a last place wide, a series of pictures each 1/64 of a byte step brighter.
 
@@ -91,14 +98,14 @@ alone was done in the test, not a picture drawn by it.
 | a million key presses: 1e-9 radians | $(counted presses) | none states one |
 | 100,000 commands undone and redone, bit for bit | $(counted undo): **0 bits differ**, in the files saved on the way neither | none states one |
 | no panic, no NaN in hostile scenes | $(number scenes scenes) scenes, $(number scenes pictures) pictures, $(number scenes refusals) refusals: **0 panics, 0 pixels lost to a number that is none** ($(number scenes "pixels on a border of light") stood on a border of light, and went dark in 64 bits too when lamps and objects moved by 2^-20; $(number scenes "scenes too bright") scenes with light beyond ten thousand times white were not judged) | D3D discards NaN only |
-| what a plan leaves out changes no bit | $(number plan scenes) scenes drawn by a plan that leaves out nothing: **the same**; of what is too faint a byte is one step off at most in $(number faint scenes) scenes; $(number rules breakages) rules made wrong: **all caught** | none found |
+| what a plan leaves out changes no bit | $(number plan scenes) scenes drawn by a plan that leaves out nothing: **the same**; of what is too faint a byte is one step off at most in $(number faint scenes) scenes; $(rules) rules broken on purpose: **all caught** ([mutation tests](breakages.md)) | none found |
 | one picture on every processor | the list \`tests/pictures.sums\`, on every level of instructions of this processor, 1 to 16 threads: **the same** | FLIP's and egui's tests allow differences |
 
 What stands in the way of more: hostile **files** are the business of \`fuzz/\`; one processor has seen
 the list of pictures so far; tiles have one size, 64 x 64, so that other sizes cannot show.
 
-Again, in any numbers: \`marraztu prove --list\`, \`marraztu prove fans --count 1000000\`. A counterexample
-is named by its lot, and \`--from LOT --count 1\` looks at it again.
+To check any number of cases: \`cargo test --release --test proofs -- fans --count 1000000\`, or \`-- --list\` for
+the names. A counterexample is named by its batch, and \`--from BATCH --count 1\` checks it again.
 
 \`\`\`text
 $(cat "$work/proofs")

@@ -1,7 +1,7 @@
 //! Arguments: the editor, or a headless command.
 
-mod command_line;
+mod cli;
 
 fn main() -> std::process::ExitCode {
-    command_line::run()
+    cli::run()
 }

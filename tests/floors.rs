@@ -11,6 +11,8 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("render", &["base", "scene"]),
     ("lab", &["base", "scene", "io", "edit", "render"]),
     ("app", &["base", "scene", "io", "edit", "render", "lab"]),
+    // The command line opens the window, and lists its keys.
+    ("cli", &["base", "scene", "io", "edit", "render", "lab", "app"]),
 ];
 
 /// Crates that only one floor may use.
@@ -24,6 +26,8 @@ const GUESTS: &[(&str, &str)] = &[
     ("egui_plot", "app"),
     ("plotters", "lab"),
     ("serde_json", "lab"),
+    ("clap", "cli"),
+    ("indicatif", "cli"),
 ];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {

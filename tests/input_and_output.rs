@@ -244,22 +244,6 @@ fn a_file_that_is_not_there_is_told_of_before_a_display_or_another_file_is_looke
 }
 
 #[test]
-fn what_a_job_cannot_do_is_told_in_one_sentence() {
-    let folder = folder();
-    let job = ["job", "--mesh", "square.obj", "--frames", "1", "--size", "32"];
-    for (more, word) in [
-        (["--mode", "phong", "--msaa", "3"], "3 samples per pixel are not supported"),
-        (["--mode", "phong", "--instructions", "foo"], "instructions \"foo\" are unknown"),
-        (["--mode", "oil", "--msaa", "1"], "mode \"oil\" is not supported"),
-    ] {
-        let (out, err) = ends_with(3, folder.path(), &[&job[..], &more].concat(), b"");
-        assert!(out.is_empty());
-        assert!(err.starts_with("error: ") && err.contains(word), "{err}");
-        assert_eq!(err.lines().count(), 1, "{err}");
-    }
-}
-
-#[test]
 fn many_models_are_drawn_and_one_that_is_named_twice_is_read_once() {
     let folder = folder();
     // What is wrong with a file is told once for each time that it is read.

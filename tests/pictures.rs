@@ -11,6 +11,8 @@ use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
+use marraztu::base::rng::Rng;
+use marraztu::lab::instructions::levels;
 use marraztu::render::{EffectUse, FramePlan, Renderer};
 use marraztu::scene::{
     Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Model, Normals, ObjectId,
@@ -104,20 +106,6 @@ fn threads_and_instructions_do_not_show() {
             assert!(first == picture(level, threads), "{level:?} with {threads} threads");
         }
     }
-}
-
-/// The levels that this processor has, the oldest first.
-fn levels() -> Vec<Level> {
-    let best = Level::new();
-    let mut levels = vec![Level::baseline()];
-    #[cfg(target_arch = "x86_64")]
-    levels.extend(
-        [best.as_sse4_2().map(Level::Sse4_2), best.as_avx2().map(Level::Avx2)]
-            .into_iter()
-            .flatten(),
-    );
-    levels.push(best);
-    levels
 }
 
 #[test]
@@ -262,11 +250,8 @@ fn a_renderer_that_has_drawn_other_pictures_draws_the_same() {
 /// Triangles and squares between the points of a small grid: many cut through each other, many fall
 /// together.
 fn heap() -> Shared<Model> {
-    let mut bits = 1_u32;
-    let mut next = |bound: u32| {
-        bits = bits.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (bits >> 16) % bound
-    };
+    let mut rng = Rng::new(1);
+    let mut next = |bound: u64| rng.below(bound) as u32;
     let positions: Vec<[f32; 3]> =
         (0..90).map(|_| [0; 3].map(|_: i32| next(4) as f32 / 1.5 - 1.0)).collect();
     let polygons: Vec<Vec<u32>> =

@@ -20,6 +20,7 @@ use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math::Axis;
+use marraztu::base::rng::Rng;
 use marraztu::edit::lights::{self, Channel};
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{Gesture, History, Refusal, Stroke, items, look, motion, selection};
@@ -31,33 +32,8 @@ use marraztu::scene::{
     Surface, Texture, Transformation, View, Wrap,
 };
 
-/// Numbers that look random and are the same on every machine (Marsaglia's xorshift).
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        usize::try_from((self.0 >> 11) % u64::try_from(n).unwrap()).unwrap()
-    }
-
-    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
-        all[self.below(all.len())]
-    }
-
-    /// From -1 to 1.
-    fn number(&mut self) -> f64 {
-        f64::from(u32::try_from(self.below(2001)).unwrap()) / 1000.0 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.number(), self.number(), self.number())
-    }
-
-    fn color(&mut self) -> Color {
-        Color([0; 3].map(|_| self.one_of(&[0, 1, 90, 255])))
-    }
+fn random_color(rng: &mut Rng) -> Color {
+    Color([0; 3].map(|_| rng.one_of(&[0, 1, 90, 255])))
 }
 
 /// Two squares with a texture, each a part, whose own normals are not theirs.
@@ -89,13 +65,13 @@ fn plates() -> Shared<Model> {
 }
 
 /// Two by two texels, one of which may be a hole.
-fn texture(dice: &mut Dice) -> Shared<Texture> {
-    let hole = dice.one_of(&[255, 255, 20]);
-    let texel = |dice: &mut Dice, alpha| {
-        let [r, g, b] = dice.color().0;
+fn texture(rng: &mut Rng) -> Shared<Texture> {
+    let hole = rng.one_of(&[255, 255, 20]);
+    let texel = |rng: &mut Rng, alpha| {
+        let [r, g, b] = random_color(rng).0;
         [r, g, b, alpha]
     };
-    let pixels = vec![texel(dice, 255), texel(dice, hole), texel(dice, 255), texel(dice, 255)];
+    let pixels = vec![texel(rng, 255), texel(rng, hole), texel(rng, 255), texel(rng, 255)];
     Shared::new(Texture {
         source: PathBuf::from("none"),
         picture: Picture::from_pixels(Size::new(2, 2), pixels).unwrap().into(),
@@ -136,21 +112,21 @@ impl Desk {
     }
 
     /// Changes anything: mostly the scene, now and then how it is looked at.
-    fn change(&mut self, dice: &mut Dice) {
+    fn change(&mut self, rng: &mut Rng) {
         self.stays = self.stays.saturating_sub(1);
-        match dice.below(20) {
-            0 => self.look(dice),
-            1 if self.stays == 0 => self.stand_elsewhere(dice),
+        match rng.index(20) {
+            0 => self.look(rng),
+            1 if self.stays == 0 => self.stand_elsewhere(rng),
             2 | 3 => {
                 let before = self.scene.clone();
-                let _ = match dice.below(3) {
+                let _ = match rng.index(3) {
                     0 => self.history.redo(&mut self.scene),
                     _ => self.history.undo(&mut self.scene),
                 };
                 selection::follow(&before, &self.scene, &mut self.view);
             }
             _ => {
-                let command = self.command(dice);
+                let command = self.command(rng);
                 self.perform(command);
             }
         }
@@ -164,38 +140,38 @@ impl Desk {
     }
 
     /// Another camera, size or setting: then all is drawn. Afterwards it stays so for a while.
-    fn stand_elsewhere(&mut self, dice: &mut Dice) {
+    fn stand_elsewhere(&mut self, rng: &mut Rng) {
         self.stays = 12;
         let settings = &mut self.settings;
-        match dice.below(9) {
+        match rng.index(9) {
             0 => {
-                self.size = Size::new(130 + 40 * dice.below(6), 70 + 40 * dice.below(6));
+                self.size = Size::new(130 + 40 * rng.index(6), 70 + 40 * rng.index(6));
             }
             1 => {
                 let all = [LightAt::Face, LightAt::Vertex, LightAt::Pixel, LightAt::Sample];
-                settings.light = dice.one_of(&all);
+                settings.light = rng.one_of(&all);
             }
             2 => {
-                settings.filter = dice.one_of(&[Filter::Nearest, Filter::Bilinear]);
+                settings.filter = rng.one_of(&[Filter::Nearest, Filter::Bilinear]);
                 settings.samples =
-                    dice.one_of(&[Samples::One, Samples::Four, Samples::Four, Samples::Sixteen]);
+                    rng.one_of(&[Samples::One, Samples::Four, Samples::Four, Samples::Sixteen]);
             }
-            3 => settings.arithmetic = dice.one_of(&[Arithmetic::F32, Arithmetic::F64]),
+            3 => settings.arithmetic = rng.one_of(&[Arithmetic::F32, Arithmetic::F64]),
             4 => {
                 settings.specular =
-                    dice.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]);
+                    rng.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]);
             }
             5 => {
                 self.view.projection =
-                    dice.one_of(&[Projection::Perspective, Projection::Orthographic]);
+                    rng.one_of(&[Projection::Perspective, Projection::Orthographic]);
             }
-            6 => self.perform(Ok(Command::Background(dice.color()))),
+            6 => self.perform(Ok(Command::Background(random_color(rng)))),
             7 => {
-                let axis = &AXES[dice.below(AXES.len())];
-                *settings = axis.choices[dice.below(axis.choices.len())].of(settings);
+                let axis = &AXES[rng.index(AXES.len())];
+                *settings = axis.choices[rng.index(axis.choices.len())].of(settings);
             }
             _ => {
-                let turn = [0.2 * dice.number(), 0.2 * dice.number()];
+                let turn = [0.2 * rng.real(-1.0, 1.0), 0.2 * rng.real(-1.0, 1.0)];
                 let first = Stroke::First;
                 self.perform(look::look(&self.scene, &self.view, turn[0], turn[1], first));
             }
@@ -203,10 +179,10 @@ impl Desk {
     }
 
     /// Another view through the same camera.
-    fn look(&mut self, dice: &mut Dice) {
+    fn look(&mut self, rng: &mut Rng) {
         let view = &mut self.view;
-        match dice.below(12) {
-            0 => view.fill = dice.one_of(&[Fill::Filled, Fill::Filled, Fill::Edges]),
+        match rng.index(12) {
+            0 => view.fill = rng.one_of(&[Fill::Filled, Fill::Filled, Fill::Edges]),
             1 => view.edges_over_fill ^= true,
             2 => {
                 view.polygons = view.polygons.is_none().then(PolygonMode::begin);
@@ -215,38 +191,37 @@ impl Desk {
                 let _ = selection::next_polygon(&self.scene, view);
             }
             4 => view.only_selected ^= true,
-            5 => view.normals = dice.one_of(&[Normals::Vertex, Normals::Face]),
+            5 => view.normals = rng.one_of(&[Normals::Vertex, Normals::Face]),
             6 => view.back_faces ^= true,
             7 => view.face_normals ^= true,
             8 => view.vertex_normals ^= true,
             9 => view.marks ^= true,
             10 => view.wide_lines ^= true,
             _ => {
-                view.observer =
-                    dice.one_of(&[Observer::Camera, Observer::Camera, Observer::Object]);
+                view.observer = rng.one_of(&[Observer::Camera, Observer::Camera, Observer::Object]);
             }
         }
         if self.view.face_normals || self.view.vertex_normals || self.view.polygons.is_some() {
             // Those leave little to keep, or to see: not for long.
-            if dice.below(2) == 0 {
+            if rng.index(2) == 0 {
                 (self.view.face_normals, self.view.vertex_normals) = (false, false);
                 self.view.polygons = None;
             }
         }
     }
 
-    fn item(&self, dice: &mut Dice) -> ItemId {
+    fn item(&self, rng: &mut Rng) -> ItemId {
         let objects = self.scene.objects.ids().map(ItemId::Object);
         let cameras = self.scene.cameras.ids().map(ItemId::Camera);
         let lights = self.scene.lights.ids().map(ItemId::Light);
         let all: Vec<ItemId> = objects.chain(cameras).chain(lights).collect();
-        dice.one_of(&all)
+        rng.one_of(&all)
     }
 
-    fn command(&mut self, dice: &mut Dice) -> Result<Command, Refusal> {
-        let item = self.item(dice);
-        match dice.below(16) {
-            0..5 => self.step(dice),
+    fn command(&mut self, rng: &mut Rng) -> Result<Command, Refusal> {
+        let item = self.item(rng);
+        match rng.index(16) {
+            0..5 => self.step(rng),
             5 => {
                 let few = self.scene.objects.len() + self.scene.cameras.len() < 8;
                 items::duplicate(&self.scene, item)
@@ -254,20 +229,20 @@ impl Desk {
             }
             6 if self.scene.objects.len() > 2 => items::remove(&self.scene, item),
             7 => items::toggle_shown(&self.scene, item),
-            8 => items::reorder(&self.scene, item, dice.below(5)),
+            8 => items::reorder(&self.scene, item, rng.index(5)),
             9 => {
-                let channel = dice.one_of(&[Channel::Red, Channel::Green, Channel::Blue]);
-                lights::step_color(&self.scene, &self.view, channel, dice.one_of(&[-80, 80]))
+                let channel = rng.one_of(&[Channel::Red, Channel::Green, Channel::Blue]);
+                lights::step_color(&self.scene, &self.view, channel, rng.one_of(&[-80, 80]))
             }
-            10 => lights::step_aperture(&self.scene, &self.view, dice.one_of(&[-5.0, 5.0])),
+            10 => lights::step_aperture(&self.scene, &self.view, rng.one_of(&[-5.0, 5.0])),
             11 => {
                 self.view.time += 0.4;
                 let object = self.view.object.ok_or(Refusal::NoObject)?;
-                motion::toggle_spin(&self.scene, object, dice.one_of(&Axis::ALL), self.view.time)
+                motion::toggle_spin(&self.scene, object, rng.one_of(&Axis::ALL), self.view.time)
             }
             12 if self.scene.lights.len() < 8 => {
                 let spot: LightKind = lights::spot(match self.view.object {
-                    Some(object) if dice.below(2) == 0 => SpotOwner::Object(object),
+                    Some(object) if rng.index(2) == 0 => SpotOwner::Object(object),
                     _ => lights::fixed(),
                 });
                 items::insert_light(&self.scene, spot)
@@ -279,54 +254,54 @@ impl Desk {
             }
             _ => {
                 let objects: Vec<ObjectId> = self.scene.objects.ids().collect();
-                let id = dice.one_of(&objects);
-                items::change_object(&self.scene, id, |object| dress(object, dice))
+                let id = rng.one_of(&objects);
+                items::change_object(&self.scene, id, |object| dress(object, rng))
             }
         }
     }
 
     /// A step of x, y or z.
-    fn step(&mut self, dice: &mut Dice) -> Result<Command, Refusal> {
+    fn step(&mut self, rng: &mut Rng) -> Result<Command, Refusal> {
         use Transformation::{Rotation, Scaling, Translation};
         let subjects = [Subject::Object, Subject::Object, Subject::Object, Subject::Light];
-        selection::set_subject(&mut self.view, dice.one_of(&subjects));
+        selection::set_subject(&mut self.view, rng.one_of(&subjects));
         let _ = selection::set_transformation(
             &mut self.view,
-            dice.one_of(&[Translation, Rotation, Scaling]),
+            rng.one_of(&[Translation, Rotation, Scaling]),
         );
-        self.view.frame = dice.one_of(&[Frame::Local, Frame::Global]);
-        let sign = dice.one_of(&[Sign::Positive, Sign::Negative]);
+        self.view.frame = rng.one_of(&[Frame::Local, Frame::Global]);
+        let sign = rng.one_of(&[Sign::Positive, Sign::Negative]);
         let first = Stroke::First;
-        transform::step(&self.scene, &self.view, dice.one_of(&Axis::ALL), sign, first)
+        transform::step(&self.scene, &self.view, rng.one_of(&Axis::ALL), sign, first)
     }
 }
 
 /// Makes an object look otherwise, or puts it elsewhere.
-fn dress(object: &mut Object, dice: &mut Dice) {
-    match dice.below(10) {
+fn dress(object: &mut Object, rng: &mut Rng) {
+    match rng.index(10) {
         0 => {
-            let name = dice.one_of(&["ruby", "jade", "black plastic", "brass"]);
+            let name = rng.one_of(&["ruby", "jade", "black plastic", "brass"]);
             object.material = MaterialChoice::Preset(PresetId::named(name).unwrap());
         }
         1 => {
             object.surface =
-                dice.one_of(&[Surface::Material, Surface::Texture, Surface::TextureAndLight]);
+                rng.one_of(&[Surface::Material, Surface::Texture, Surface::TextureAndLight]);
         }
-        2 => object.texture = (dice.below(3) > 0).then(|| texture(dice)),
-        3 => object.tint = dice.color(),
+        2 => object.texture = (rng.index(3) > 0).then(|| texture(rng)),
+        3 => object.tint = random_color(rng),
         4 => object.sides = if object.sides == Sides::Two { Sides::One } else { Sides::Two },
         5 => object.file_normals ^= true,
-        6 => object.edge_color = dice.color(),
+        6 => object.edge_color = random_color(rng),
         7 if !object.hidden_parts.remove(&0) => {
             object.hidden_parts.insert(0);
         }
         _ => {
             // Anywhere, at times near the camera or right behind it.
-            let near = dice.one_of(&[0.0, 0.0, 0.0, 330.0, 395.0]);
+            let near = rng.one_of(&[0.0, 0.0, 0.0, 330.0, 395.0]);
             let across = if near > 0.0 { 20.0 } else { 150.0 };
-            let place = dice.vector() * DVec3::new(across, across, 80.0) + DVec3::Z * near;
-            let turn = DMat4::from_rotation_y(dice.number());
-            let size = DMat4::from_scale(DVec3::splat(25.0 + 20.0 * dice.number()));
+            let place = rng.vector(1.0) * DVec3::new(across, across, 80.0) + DVec3::Z * near;
+            let turn = DMat4::from_rotation_y(rng.real(-1.0, 1.0));
+            let size = DMat4::from_scale(DVec3::splat(25.0 + 20.0 * rng.real(-1.0, 1.0)));
             let placement = DMat4::from_translation(place) * turn * size;
             object.placement = object.placement.replaced(placement);
         }
@@ -352,7 +327,7 @@ fn impatient(
 
 #[test]
 fn what_changed_is_drawn_again_to_the_same_bytes_after_any_sequence_of_commands() {
-    let mut dice = Dice(0x9e37_79b9_7f4a_7c15);
+    let mut rng = Rng::new(1);
     let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
     let (mut given_up, mut partial, mut frames) = (0, 0, 0);
     for _ in 0..24 {
@@ -361,19 +336,19 @@ fn what_changed_is_drawn_again_to_the_same_bytes_after_any_sequence_of_commands(
         let mut last = desk.plan();
         renderer.render(&last);
         for step in 0..60 {
-            desk.change(&mut dice);
+            desk.change(&mut rng);
             let plan = desk.plan();
-            if dice.below(4) == 0 && impatient(&mut renderer, &plan, dice.below(30)).is_err() {
+            if rng.index(4) == 0 && impatient(&mut renderer, &plan, rng.index(30)).is_err() {
                 given_up += 1;
                 // The picture that was finished last is the one that is seen, and asked.
                 let mut other = Renderer::default();
                 other.render(&last);
                 let size = last.size();
                 assert_eq!(seen(&mut renderer, size), seen(&mut other, size), "step {step}");
-                match dice.below(3) {
+                match rng.index(3) {
                     // It is wanted again as it was, or something else, or what was given up.
                     0 => agrees(&mut renderer, &last),
-                    1 => desk.change(&mut dice),
+                    1 => desk.change(&mut rng),
                     _ => {}
                 }
             }

@@ -11,7 +11,8 @@ use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
-use marraztu::lab::prove::stage::{self, Flat};
+use marraztu::base::rng::Rng;
+use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::screen::coverage::Snapped;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
@@ -54,17 +55,10 @@ fn places(samples: Samples) -> Vec<[f64; 2]> {
     }
 }
 
-/// Numbers that look random.
-fn numbers(mut state: u64) -> impl FnMut(i32) -> i32 {
-    move |below| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        ((state >> 33) % u64::from(below.unsigned_abs())) as i32
-    }
-}
-
 /// Triangles of all sizes, half of their coordinates on sixteenths of a pixel.
 fn scattered(count: usize, seed: u64) -> Vec<Flat> {
-    let mut random = numbers(seed);
+    let mut rng = Rng::new(seed);
+    let mut random = |below: i32| rng.between(0, below - 1);
     let far = SIDE as i32 * 256;
     let extents = [300, 700, 1500, 4000, 20_000, 2 * far];
     let mut triangles = Vec::new();
@@ -93,7 +87,7 @@ fn seen_from(triangles: &[Flat], [x, y]: [f64; 2]) -> Vec<Flat> {
 }
 
 fn drawn(triangles: &[Flat], view: impl Fn(View) -> View, settings: &Settings) -> Picture {
-    let (mut scene, own) = stage::scene(&[triangles.to_vec()], SIDE);
+    let (mut scene, own) = flat::scene(&[triangles.to_vec()], SIDE);
     scene.background = Color([9, 99, 199]);
     let plan = FramePlan::new(&scene, &view(own), settings, Size::new(SIDE, SIDE));
     Renderer::default().render(&plan).clone()
@@ -138,8 +132,9 @@ fn a_pixel_is_the_mean_of_what_is_seen_from_its_places() {
 /// Triangles with a normal and a place on a texture at each corner, lit by a sun alone: what is seen of
 /// them depends on where in them it is looked, and on nothing else.
 fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
-    let (mut scene, view) = stage::scene(&[triangles.to_vec()], side);
-    let mut random = numbers(5);
+    let (mut scene, view) = flat::scene(&[triangles.to_vec()], side);
+    let mut rng = Rng::new(5);
+    let mut random = |below: i32| rng.between(0, below - 1);
     let mut source = MeshSource {
         parts: vec![Part { name: "shiny".to_owned(), material: None }],
         uvs: vec![[0.0, 0.0], [2.0, 0.0], [0.0, 3.0]],
@@ -149,7 +144,7 @@ fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
         for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
             let i = source.positions.len() as u32;
             source.corners.push(SourceCorner { position: i, uv: i % 3, normal: i });
-            source.positions.push(stage::place(corner, distance, side).as_vec3().to_array());
+            source.positions.push(flat::place(corner, distance, side).as_vec3().to_array());
             let [x, y] = [random(200), random(200)].map(|x| x as f32 / 100.0 - 1.0);
             source.normals.push([x, y, 0.8]);
         }
@@ -438,7 +433,7 @@ fn lit_samples_are_the_same_on_all_instructions_and_by_any_number_of_threads() {
     for (scene, view) in [(scene, view), lit] {
         let plan = FramePlan::new(&scene, &view, &settings, Size::new(SIDE, SIDE));
         let mut wanted = None;
-        for level in marraztu::lab::prove::pictures::levels() {
+        for level in marraztu::lab::instructions::levels() {
             for threads in [1, 3] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let picture = pool.install(|| Renderer::new(level).render(&plan).clone());
@@ -556,7 +551,7 @@ fn what_is_picked_is_what_most_samples_show() {
         let below = Snapped { y: 128 * 256, ..border };
         let corners = [Snapped { x: 0, y: 0 }, Snapped { x: 0, y: 128 * 256 }];
         let halves = [[corners[0], border, below], [corners[0], below, corners[1]]];
-        let (scene, view) = stage::scene(&[halves.map(Flat::new).to_vec()], SIDE);
+        let (scene, view) = flat::scene(&[halves.map(Flat::new).to_vec()], SIDE);
         for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
             let settings = Settings { samples, ..Settings::default() };
             let mut renderer = Renderer::default();

@@ -176,21 +176,3 @@ fn a_thousand_runs_of_the_program_come_to_their_end() {
         );
     }
 }
-
-/// Its scenes share shapes that are computed when the first of many threads asks for one.
-#[test]
-fn checks_that_begin_on_many_threads_come_to_their_end() {
-    let _watchdog = Watchdog::new("checks that begin on many threads");
-    for run in 0..RUNS / 10 {
-        let checked = Process::new(env!("CARGO_BIN_EXE_marraztu"))
-            .args(["prove", "plan", "--count", "40"])
-            .env("RAYON_NUM_THREADS", "8")
-            .output()
-            .unwrap();
-        assert!(
-            checked.status.success(),
-            "run {run}: {}",
-            String::from_utf8_lossy(&checked.stdout)
-        );
-    }
-}

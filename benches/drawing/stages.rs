@@ -1,8 +1,9 @@
 //! Each stage of a frame, for each shape: `stages/SHAPE/STAGE`.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use criterion::Criterion;
+use marraztu::lab::timing::time;
 use marraztu::render::Stages;
 use marraztu::scene::{LightAt, Settings};
 
@@ -24,19 +25,19 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         let mut stage = Stage::new(&shape.model, FULL);
         group.bench_function("plan", |bencher| {
             bencher.iter_custom(|frames| {
-                let begun = Instant::now();
-                for i in 0..frames {
-                    std::hint::black_box(stage.plan(i));
-                }
-                begun.elapsed()
+                time(|| {
+                    for i in 0..frames {
+                        std::hint::black_box(stage.plan(i));
+                    }
+                })
             });
         });
-        for (name, time) in STAGES {
+        for (name, part) in STAGES {
             let at_vertices = name == "tiles-lit-at-vertices";
             let light = if at_vertices { LightAt::Vertex } else { LightAt::Pixel };
             stage.settings = Settings { light, ..Settings::default() };
             group.bench_function(name, |bencher| {
-                bencher.iter_custom(|frames| stage.drawn(frames, |r| time(&r.stages())));
+                bencher.iter_custom(|frames| stage.drawn(frames, |r| part(&r.stages())));
             });
         }
         stage.view.fill = marraztu::scene::Fill::Edges;

@@ -1,19 +1,21 @@
-//! Times of other renderers beside ours, from the table that a comparison in interleaved rounds has
-//! left: a row a run.
+//! Times of other renderers beside ours, from the table of a comparison in interleaved rounds: a row for
+//! each run.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use marraztu::lab::statistics::median;
+
 use super::tables::{brief, head};
 
-/// How the renderer is called that all are measured against, and how ours is.
+/// The label of the renderer that all are measured against, and ours.
 const ANCHOR: &str = "llvmpipe-host";
 const OURS: &str = "marraztu";
 
 type Times = BTreeMap<(String, String), Vec<f64>>;
 
-/// The table: a row a job, with the median of each renderer's runs.
+/// The table: a row for each job, with the median of each renderer's runs.
 pub(crate) fn table(file: &Path) -> Result<String, String> {
     let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
     let mut lines = text.lines();
@@ -26,7 +28,7 @@ pub(crate) fn table(file: &Path) -> Result<String, String> {
             let missing = || format!("{}: no column {name:?} in {line:?}", file.display());
             row.get(name).copied().ok_or_else(missing)
         };
-        // As many threads as there are; the others show how much threads bring.
+        // All threads; the other rows show what threads gain.
         if cell("threads")? == "1" {
             continue;
         }
@@ -46,12 +48,8 @@ pub(crate) fn table(file: &Path) -> Result<String, String> {
     }
     let mut text = head("mesh (triangles), mode, size", &["llvmpipe", "Marraztu", "times as fast"]);
     for job in jobs {
-        let mut median = |of: &str| {
-            let all = times.get_mut(&(job.clone(), of.to_owned()))?;
-            all.sort_by(f64::total_cmp);
-            Some(all[all.len() / 2])
-        };
-        let (anchor, ours) = (median(ANCHOR), median(OURS));
+        let median_of = |of: &str| median(times.get(&(job.clone(), of.to_owned()))?);
+        let (anchor, ours) = (median_of(ANCHOR), median_of(OURS));
         if let (Some(anchor), Some(ours)) = (anchor, ours) {
             let _ = writeln!(
                 text,

@@ -17,8 +17,8 @@ use super::tasks::{Outcome, Task};
 use super::theme;
 use crate::base::image::{Picture, Size};
 use crate::io;
-use crate::lab::easel::{Easel as _, Studio};
 use crate::lab::error::{Error, amplified};
+use crate::lab::picture_source::{PictureSource as _, Studio};
 use crate::lab::report::brief;
 use crate::scene::{Scene, Settings, View};
 
@@ -117,8 +117,8 @@ impl App {
 
 fn draw(of: Wanted) -> Drawn {
     let mut studio = Studio::new(of.scene.clone(), of.view.clone(), of.size);
-    let exact = studio.shot(&of.settings.reference());
-    let ours = studio.shot(&of.settings);
+    let exact = studio.rendering(&of.settings.reference());
+    let ours = studio.rendering(&of.settings);
     let error = ours.error(&exact);
     Drawn { of, exact: exact.picture().clone(), ours: ours.picture().clone(), error }
 }

@@ -16,14 +16,14 @@ use super::tasks::{Outcome, Task};
 use crate::base::image::Size;
 use crate::edit::selection;
 use crate::io;
-use crate::lab::blame::{Blame, blame};
+use crate::lab::attribution::{Attribution, attribute};
 use crate::lab::candidates::{Thoroughness, all_axes};
-use crate::lab::clock::WallClock;
-use crate::lab::easel::{Easel as _, Studio};
 use crate::lab::error::Measure;
 use crate::lab::pairs::{Touch, Unmeasured, Watch};
+use crate::lab::picture_source::{PictureSource as _, Studio};
 use crate::lab::report::{Budgets, Report};
 use crate::lab::sweep::{Findings, Question, sweep};
+use crate::lab::timing::WallClock;
 use crate::scene::{AXES, Axis, Scene, Settings, View};
 
 /// What the panel of the laboratory shows.
@@ -124,7 +124,7 @@ pub(super) struct Work {
 }
 
 /// A pixel, and what is seen there; `None` for the background.
-type Explained = (Blame, Option<String>);
+type Explained = (Attribution, Option<String>);
 
 /// While it is measured, the window is drawn no sooner than so long after the last time, and so seldom
 /// that one pair of pictures at least is measured in between.
@@ -273,7 +273,7 @@ impl App {
         let State { scene, view, settings, .. } = &self.state;
         let (mut studio, settings) = (Studio::new(scene.clone(), view.clone(), size), *settings);
         let work = move |_: &io::Progress| {
-            let blame = blame(&mut studio, &settings, at)?;
+            let blame = attribute(&mut studio, &settings, at)?;
             studio.draw(&settings);
             let seen =
                 studio.seen(at).map(|(name, polygon)| format!("polygon {polygon} of {name}"));

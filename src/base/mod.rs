@@ -6,6 +6,7 @@ pub mod image;
 pub mod lists;
 pub mod math;
 pub mod once;
+pub mod rng;
 mod shared;
 pub(crate) mod work_stealing;
 

@@ -8,6 +8,8 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use super::statistics::Quartiles;
+use super::timing::time;
 use crate::base::image::Size;
 use crate::render::{Effect, EffectUse, FramePlan, Renderer};
 use crate::scene::{Scene, Settings, View};
@@ -155,14 +157,14 @@ pub fn measure(
         bench.time(&plan);
     }
     let control = bench.pairs(&plan, &plan, share, &stopped);
-    let noise = noise(&control.differences);
-    let mut costs = Costs { frame: median(&control.frames), noise, effects: Vec::new() };
+    let mut costs =
+        Costs { frame: control.frame, noise: noise(&control.difference), effects: Vec::new() };
     for (effect, without) in &without {
         if stopped() {
             break;
         }
-        let pairs = bench.pairs(&plan, without, share, &stopped);
-        let (milliseconds, spread) = (median(&pairs.differences), spread(&pairs.differences));
+        let difference = bench.pairs(&plan, without, share, &stopped).difference;
+        let (milliseconds, spread) = (difference.median, difference.spread());
         costs.effects.push(Cost { effect: *effect, milliseconds, spread });
     }
     costs
@@ -173,18 +175,18 @@ struct Bench {
     renderer: Renderer,
 }
 
-/// Milliseconds of frames, and by how much the first of each pair was longer.
-#[derive(Default)]
+/// The median frame in milliseconds, and how much longer the first frame of a pair took.
 struct Pairs {
-    frames: Vec<f64>,
-    differences: Vec<f64>,
+    frame: f64,
+    difference: Quartiles,
 }
 
 impl Bench {
     fn time(&mut self, plan: &FramePlan) -> f64 {
-        let begun = Instant::now();
-        black_box(self.renderer.render(plan));
-        begun.elapsed().as_secs_f64() * 1e3
+        let render = || {
+            black_box(self.renderer.render(plan));
+        };
+        time(render).as_secs_f64() * 1e3
     }
 
     /// In turn: with, without, without, with.
@@ -196,51 +198,34 @@ impl Bench {
         stopped: &impl Fn() -> bool,
     ) -> Pairs {
         let begun = Instant::now();
-        let mut pairs = Pairs::default();
-        // One that is not counted: memory has to be found for it.
+        let (mut frames, mut differences) = (Vec::new(), Vec::new());
+        // The first frame allocates memory and is not counted.
         self.time(without);
-        while pairs.differences.len() < MOST_PAIRS
-            && (pairs.differences.len() < PAIRS || begun.elapsed() < share)
+        while differences.len() < MOST_PAIRS
+            && (differences.len() < PAIRS || begun.elapsed() < share)
             && !stopped()
         {
-            let (a, b) = if pairs.differences.len().is_multiple_of(2) {
+            let (a, b) = if differences.len().is_multiple_of(2) {
                 let a = self.time(with);
                 (a, self.time(without))
             } else {
                 let b = self.time(without);
                 (self.time(with), b)
             };
-            pairs.frames.push(a);
-            pairs.differences.push(a - b);
+            frames.push(a);
+            differences.push(a - b);
         }
-        pairs
+        // Stopped before the first pair: nothing was measured.
+        let none = Quartiles { lower: 0.0, median: 0.0, upper: 0.0 };
+        let [frame, difference] =
+            [frames, differences].map(|all| Quartiles::of(&all).unwrap_or(none));
+        Pairs { frame: frame.median, difference }
     }
 }
 
-fn quantile(some: &[f64], part: f64) -> f64 {
-    let mut sorted = some.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_precision_loss,
-        clippy::cast_sign_loss,
-        reason = "a place in a short list"
-    )]
-    let at = (part * sorted.len().saturating_sub(1) as f64).round() as usize;
-    sorted.get(at).copied().unwrap_or(0.0)
-}
-
-fn median(some: &[f64]) -> f64 {
-    quantile(some, 0.5)
-}
-
-fn spread(some: &[f64]) -> f64 {
-    (quantile(some, 0.75) - quantile(some, 0.25)) / 2.0
-}
-
-/// What pairs of equal frames seem to differ by: |median| and half of the interquartile range.
-fn noise(differences: &[f64]) -> f64 {
-    median(differences).abs() + spread(differences)
+/// The apparent difference of equal frames: |median| and half of the interquartile range.
+fn noise(differences: &Quartiles) -> f64 {
+    differences.median.abs() + differences.spread()
 }
 
 #[cfg(test)]
@@ -252,9 +237,9 @@ mod tests {
 
     #[test]
     fn the_noise_is_the_median_and_half_of_the_interquartile_range() {
-        assert_eq!(spread(&DIFFERENCES), 3.0);
-        assert_eq!(noise(&DIFFERENCES), 4.0);
-        assert_eq!(noise(&[]), 0.0);
+        let differences = Quartiles::of(&DIFFERENCES).unwrap();
+        assert_eq!(differences.spread(), 3.0);
+        assert_eq!(noise(&differences), 4.0);
     }
 
     #[test]

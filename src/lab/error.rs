@@ -7,18 +7,18 @@
 
 use serde::Serialize;
 
-use super::flip::Seen;
+use super::flip::Perceived;
 use crate::base::image::Picture;
 
 /// A picture with what is needed to judge it.
 #[derive(Debug)]
-pub struct Shot {
+pub struct Rendering {
     picture: Picture,
     /// Which primitive each pixel shows.
     primitives: Vec<u32>,
     /// Whether a pixel may show several.
     mixed: bool,
-    seen: Seen,
+    seen: Perceived,
 }
 
 /// How far a picture is from the reference.
@@ -91,12 +91,12 @@ impl Measure {
     }
 }
 
-impl Shot {
+impl Rendering {
     /// A picture, and which primitive each of its pixels shows.
     #[must_use]
     pub fn new(picture: Picture, primitives: Vec<u32>) -> Self {
         assert_eq!(picture.pixels().len(), primitives.len(), "every pixel shows something");
-        let seen = Seen::new(&picture);
+        let seen = Perceived::new(&picture);
         Self { picture, primitives, mixed: false, seen }
     }
 
@@ -157,9 +157,9 @@ mod tests {
     use super::*;
     use crate::base::image::Size;
 
-    fn shot(pixels: [[u8; 4]; 4], primitives: [u32; 4]) -> Shot {
+    fn rendering(pixels: [[u8; 4]; 4], primitives: [u32; 4]) -> Rendering {
         let picture = Picture::from_pixels(Size::new(2, 2), pixels.to_vec()).unwrap();
-        Shot::new(picture, primitives.to_vec())
+        Rendering::new(picture, primitives.to_vec())
     }
 
     const PIXELS: [[u8; 4]; 4] =
@@ -169,12 +169,12 @@ mod tests {
     /// 4, so the mean square is 25/9.
     #[test]
     fn an_error_is_counted_by_hand_and_coverage_apart_from_it() {
-        let reference = shot(PIXELS, [1, 0, 2, 2]);
+        let reference = rendering(PIXELS, [1, 0, 2, 2]);
         let mut pixels = PIXELS;
         pixels[0][1] = 23;
         pixels[2][2] = 251;
         pixels[3] = [200, 0, 0, 255];
-        let error = shot(pixels, [1, 0, 2, 1]).error(&reference);
+        let error = rendering(pixels, [1, 0, 2, 1]).error(&reference);
         assert_eq!((error.largest, error.coverage), (4, 1));
         assert!((error.rmse - 5.0 / 3.0).abs() < 1e-12);
         assert!((error.differing - 2.0 / 9.0).abs() < 1e-12);
@@ -185,17 +185,17 @@ mod tests {
 
     #[test]
     fn against_several_samples_every_pixel_is_judged() {
-        let reference = shot(PIXELS, [1, 0, 2, 2]).mixed();
+        let reference = rendering(PIXELS, [1, 0, 2, 2]).mixed();
         let mut pixels = PIXELS;
         pixels[3] = [7, 7, 8, 255];
-        let error = shot(pixels, [1, 0, 2, 1]).error(&reference);
+        let error = rendering(pixels, [1, 0, 2, 1]).error(&reference);
         assert_eq!((error.largest, error.coverage), (1, 0));
         assert!((error.differing - 1.0 / 12.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_picture_has_no_error_against_itself() {
-        let reference = shot(PIXELS, [1, 0, 2, 2]);
+        let reference = rendering(PIXELS, [1, 0, 2, 2]);
         let error = reference.error(&reference);
         let none =
             Error { largest: 0, rmse: 0.0, psnr: None, differing: 0.0, coverage: 0, flip: 0.0 };

@@ -35,7 +35,7 @@ const RGB_FROM_XYZ: [[f64; 3]; 3] = [
 
 /// What of a picture does not depend on the picture it is compared with.
 #[derive(Debug)]
-pub struct Seen {
+pub struct Perceived {
     size: Size,
     /// As the eye's contrast sensitivity leaves it, in CIELAB with Hunt's adjustment.
     color: Vec<[f64; 3]>,
@@ -43,7 +43,7 @@ pub struct Seen {
     features: Vec<[f64; 2]>,
 }
 
-impl Seen {
+impl Perceived {
     /// What an eye makes of a picture.
     #[must_use]
     pub fn new(picture: &Picture) -> Self {
@@ -246,13 +246,13 @@ fn filter(plane: &[f64], size: Size, along: &[f64], down: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn picture(side: usize, of: impl Fn(usize, usize) -> [usize; 3]) -> Seen {
+    fn picture(side: usize, of: impl Fn(usize, usize) -> [usize; 3]) -> Perceived {
         let pixels = (0..side * side).map(|i| {
             let [r, g, b] = of(i % side, i / side).map(|c| u8::try_from(c % 256).unwrap());
             [r, g, b, 255]
         });
         let size = Size::new(side, side);
-        Seen::new(&Picture::from_pixels(size, pixels.collect()).unwrap())
+        Perceived::new(&Picture::from_pixels(size, pixels.collect()).unwrap())
     }
 
     fn pattern(x: usize, y: usize) -> [usize; 3] {

@@ -8,8 +8,8 @@
 use fearless_simd::{Level, Simd, SimdBase as _, dispatch, f32x4, f32x16};
 use serde::Serialize;
 
-use super::clock::{Clock, Work};
 use super::pairs::{Limits, Ratio, Unmeasured, Watch, abba};
+use super::timing::{Clock, Work};
 
 /// Vectors that a kernel works through: what 800 x 800 pixels hold, for the depth buffer.
 const VECTORS: usize = 160_000;

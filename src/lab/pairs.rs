@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::clock::{Clock, Work};
-use super::easel::{Easel, hash};
+use super::picture_source::{PictureSource, hash};
 use super::statistics::Quartiles;
+use super::timing::{Clock, Work};
 use crate::io::{Cancelled, Progress};
 use crate::scene::Settings;
 
@@ -134,7 +134,7 @@ impl From<Cancelled> for Unmeasured {
 /// Where it was cancelled, or disturbed all the time, or a picture came out otherwise than before.
 pub fn measure(
     clock: &mut dyn Clock,
-    easel: &mut dyn Easel,
+    source: &mut dyn PictureSource,
     [a, b]: [&Settings; 2],
     limits: &Limits,
     watch: &Watch,
@@ -142,8 +142,8 @@ pub fn measure(
     let mut expected = [None; 2];
     let mut draw = |which: usize| {
         let settings = [a, b][which];
-        let time = clock.time(Work::Picture(settings), &mut || easel.draw(settings));
-        let hash = hash(easel.picture());
+        let time = clock.time(Work::Picture(settings), &mut || source.draw(settings));
+        let hash = hash(source.picture());
         match expected[which].replace(hash) {
             Some(before) if before != hash => Err(Unmeasured::Unsteady(settings.in_words())),
             _ => Ok(time.as_secs_f64() * 1e3),

@@ -1,11 +1,11 @@
 //! Medians and quartiles of a few measurements.
 //!
-//! Quantiles are those of Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996, type 7:
-//! between the two neighbours of (n - 1) p, linearly.
+//! A quantile is that of type 7 in Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996:
+//! interpolated linearly between the two neighbours of (n - 1) p.
 
 use serde::Serialize;
 
-/// Where the middle half of some numbers lies.
+/// The quartiles of some numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Quartiles {
     /// A quarter of them is less.
@@ -17,7 +17,7 @@ pub struct Quartiles {
 }
 
 impl Quartiles {
-    /// The quartiles of these numbers, none of which is NaN; `None` where there are none.
+    /// The quartiles of these numbers, none of which is NaN; `None` if there are none.
     #[must_use]
     pub fn of(numbers: &[f64]) -> Option<Self> {
         let mut sorted = numbers.to_vec();
@@ -25,6 +25,18 @@ impl Quartiles {
         let quantile = |p: f64| quantile(&sorted, p);
         Some(Self { lower: quantile(0.25)?, median: quantile(0.5)?, upper: quantile(0.75)? })
     }
+
+    /// Half of the interquartile range (IQR).
+    #[must_use]
+    pub fn spread(&self) -> f64 {
+        (self.upper - self.lower) / 2.0
+    }
+}
+
+/// The median of these numbers, none of which is NaN; `None` if there are none.
+#[must_use]
+pub fn median(numbers: &[f64]) -> Option<f64> {
+    Quartiles::of(numbers).map(|quartiles| quartiles.median)
 }
 
 /// The quantile of sorted numbers.
@@ -53,5 +65,6 @@ mod tests {
         let one = Quartiles::of(&[7.0]).unwrap();
         assert_eq!(one, Quartiles { lower: 7.0, median: 7.0, upper: 7.0 });
         assert_eq!(Quartiles::of(&[]), None);
+        assert_eq!((median(&[9.0, 1.0, 4.0, 2.0]), quartiles.spread()), (Some(3.0), 1.75));
     }
 }

@@ -4,15 +4,17 @@
 //! against itself; the spread of that control is the floor under which no difference means anything.
 //! Then every candidate is measured against the default, in the same process, in turn with it.
 
+use fearless_simd::Level;
 use serde::Serialize;
 
 use super::candidates::{Candidate, Candidates, Group, LeftOut, Thoroughness, candidates};
-use super::clock::Clock;
-use super::easel::{Easel, Studio, hash, instructions};
-use super::error::{Error, Shot};
+use super::error::{Error, Rendering};
+use super::instructions;
 use super::kernels::{self, Kernel};
 use super::pairs::{Ratio, Unmeasured, Watch, measure};
+use super::picture_source::{PictureSource, Studio, hash};
 use super::statistics::Quartiles;
+use super::timing::Clock;
 use crate::base::image::Size;
 use crate::scene::{Axis, Settings};
 
@@ -176,7 +178,7 @@ pub fn sweep(
     let combinations = question.thoroughness.combinations;
     let (scene, view, size) = (studio.scene(), studio.view(), studio.size());
     let candidates = candidates(scene, view, &question.current, &question.axes, combinations);
-    let mut bench = Bench { clock, easel: studio, watch, question, size };
+    let mut bench = Bench { clock, source: studio, watch, question, size };
     bench.run(candidates, tell)
 }
 
@@ -185,7 +187,7 @@ pub struct Bench<'a> {
     /// What tells the time.
     pub clock: &'a mut dyn Clock,
     /// What draws.
-    pub easel: &'a mut dyn Easel,
+    pub source: &'a mut dyn PictureSource,
     /// Who waits for it.
     pub watch: &'a Watch,
     /// What is to be found out.
@@ -214,7 +216,7 @@ impl Bench<'_> {
         let thoroughness = self.question.thoroughness;
         let Candidates { all, left_out } = candidates;
         let base = all.first().expect("the default is always measured").settings;
-        let mut references = vec![(base.reference(), self.easel.shot(&base.reference()))];
+        let mut references = vec![(base.reference(), self.source.rendering(&base.reference()))];
         let control = self.measured(&base, &base)?;
         let mut findings = self.begin(control, left_out);
         // Each piece of arithmetic counts as a choice.
@@ -251,7 +253,7 @@ impl Bench<'_> {
         Findings {
             size: [self.size.width, self.size.height],
             threads: rayon::current_num_threads(),
-            instructions: instructions(),
+            instructions: instructions::name_of(Level::new()),
             thoroughness: self.question.thoroughness.word,
             control,
             floor,
@@ -264,7 +266,7 @@ impl Bench<'_> {
     }
 
     fn measured(&mut self, a: &Settings, b: &Settings) -> Result<Ratio, Unmeasured> {
-        measure(self.clock, self.easel, [a, b], &self.question.thoroughness.limits, self.watch)
+        measure(self.clock, self.source, [a, b], &self.question.thoroughness.limits, self.watch)
     }
 
     /// Measures a candidate, unless its settings were measured under another name.
@@ -273,7 +275,7 @@ impl Bench<'_> {
         findings: &mut Findings,
         base: &Settings,
         candidate: Candidate,
-        references: &mut Vec<(Settings, Shot)>,
+        references: &mut Vec<(Settings, Rendering)>,
     ) -> Result<(), Unmeasured> {
         let Candidate { group, name, settings } = candidate;
         let reference = match group {
@@ -310,7 +312,7 @@ impl Bench<'_> {
         findings: &Findings,
         base: &Settings,
         (settings, reference): (Settings, Settings),
-        references: &mut Vec<(Settings, Shot)>,
+        references: &mut Vec<(Settings, Rendering)>,
     ) -> Result<Measured, Unmeasured> {
         let a_ms = findings.control.a_ms;
         // The default is what all times are told in, and its ratio is the control's.
@@ -322,12 +324,12 @@ impl Bench<'_> {
             (ratio, ms)
         };
         if references.iter().all(|(settings, _)| *settings != reference) {
-            references.push((reference, self.easel.shot(&reference)));
+            references.push((reference, self.source.rendering(&reference)));
         }
         let exact = references.iter().find(|(settings, _)| *settings == reference);
         let (_, exact) = exact.expect("it was drawn if it was not there");
-        let shot = self.easel.shot(&settings);
-        let error = shot.error(exact);
+        let rendering = self.source.rendering(&settings);
+        let error = rendering.error(exact);
         Ok(Measured {
             name: settings.in_words(),
             settings,
@@ -338,7 +340,7 @@ impl Bench<'_> {
             against: Against::of(&reference, &references[0].0),
             error,
             reference,
-            hash: format!("{:016x}", hash(shot.picture())),
+            hash: format!("{:016x}", hash(rendering.picture())),
         })
     }
 }

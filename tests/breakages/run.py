@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Breaks the program on purpose, one thing at a time, and sees which hard case notices.
+"""Mutation tests: breaks the program on purpose, one thing at a time, and sees which test notices.
 
     tests/breakages/run.py [SHARD/SHARDS]     tries its part of table.toml, all without an argument
-    tests/breakages/run.py case NUMBER...     tries those that these cases claim
+    tests/breakages/run.py case NAME...       tries those that these cases claim: 57, plan
     tests/breakages/run.py page               makes docs/breakages.md of what was tried
 
 Each breakage is made in a copy of the sources under target/breakages, never in the sources. The copy
@@ -10,6 +10,8 @@ has no window and no command line, one level of instructions, and few optimisati
 breakage takes a minute. What came of it is kept there, one line a breakage, so that shards may run one
 after the other or on several machines. A breakage that no longer fits the sources, or that is not
 compiled, is an error, and so is a case that fails in the sound copy.
+
+A case is the number of a hard case, or the name of a proof.
 """
 import datetime
 import pathlib
@@ -28,9 +30,8 @@ def output(*command, **options):
 
 
 # What the window and the command line are made of, and what only their tests and benchmarks use.
-UPPER_FLOORS = ("src/app/", "src/command_line/", "src/main.rs", "benches/", "fuzz/", "docs/")
-THEIR_CRATES = ("clap", "criterion", "eframe", "egui", "egui_kittest", "egui_plot",
-                "indicatif", "rfd")
+UPPER_FLOORS = ("src/app/", "src/cli/", "src/main.rs", "benches/", "examples/", "fuzz/", "docs/")
+THEIR_CRATES = ("criterion", "eframe", "egui", "egui_kittest", "egui_plot", "rfd")
 
 
 def lower_floors(name, text):
@@ -39,7 +40,7 @@ def lower_floors(name, text):
         return text.replace("pub mod app;\n", "")
     if name == "Cargo.toml":
         text = re.sub(rf"^({'|'.join(THEIR_CRATES)}) = .*\n", "", text, flags=re.MULTILINE)
-        text = re.sub(r"\[\[bench\]\]\n(?:.+\n)+\n", "", text)
+        text = re.sub(r"\[\[(?:bench|example)\]\]\n(?:.+\n)+\n", "", text)
         text = text.replace('default-run = "marraztu"\n', "")
         return text.replace("[profile.dev]\nopt-level = 2", "[profile.dev]\nopt-level = 1")
     return text
@@ -69,19 +70,32 @@ def put(target, data):
         target.write_bytes(data)
 
 
-def tests(where, *names):
-    """The hard cases that fail, by name; None where nothing is compiled."""
+def run(where, target, *names):
+    """Compiles and runs a test target."""
     run = output(
-        "cargo", "test", "--offline", "--target-dir", WORK / "build", "--test", "hard_cases", "--", *names,
+        "cargo", "test", "--offline", "--target-dir", WORK / "build", "--test", target, "--", *names,
         cwd=where,
     )
-    if "Running tests/hard_cases" not in run.stderr:
+    if f"Running tests/{target}" not in run.stderr:
         sys.exit(f"run.py: not compiled:\n{run.stderr}")
-    failed = re.findall(r"^test (?:\w+::)*(\w+) \.\.\. FAILED", run.stdout, re.MULTILINE)
-    if run.returncode and not failed:
+    return run
+
+
+def hard_cases(where, *names):
+    """The hard cases that fail, by name."""
+    tried = run(where, "hard_cases", *names)
+    failed = re.findall(r"^test (?:\w+::)*(\w+) \.\.\. FAILED", tried.stdout, re.MULTILINE)
+    if tried.returncode and not failed:
         # The whole process ended: a crash is noticed, too.
         failed = ["the process ended"]
     return failed
+
+
+def claimed(where, case):
+    """What fails of the tests that claim a case."""
+    if isinstance(case, int):
+        return hard_cases(where, f"case_{case}_")
+    return [f"the proof {case}"] if run(where, "proofs", case).returncode else []
 
 
 def broken(text, breakage):
@@ -95,17 +109,18 @@ def attempt(mine, where):
     copy(where)
     for breakage in TABLE:
         broken((ROOT / breakage["file"]).read_text(), breakage)
-    if failed := tests(where, *(f"case_{TABLE[i]['case']}_" for i in mine)):
-        sys.exit(f"run.py: fails unbroken: {', '.join(failed)}")
+    for case in sorted({TABLE[i]["case"] for i in mine}, key=str):
+        if failed := claimed(where, case):
+            sys.exit(f"run.py: fails unbroken: {', '.join(failed)}")
     for i in mine:
         breakage = TABLE[i]
         file = where / breakage["file"]
         sound = file.read_text()
         file.write_text(broken(sound, breakage))
         try:
-            caught = tests(where, f"case_{breakage['case']}_")
+            caught = claimed(where, breakage["case"])
             # Not by the case that claims it: by any?
-            others = [] if caught else tests(where)
+            others = [] if caught else hard_cases(where)
         finally:
             file.write_text(sound)
         today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
@@ -118,7 +133,7 @@ def attempt(mine, where):
 
 def key(breakage):
     words = re.sub(r"[^a-z0-9]+", "-", breakage["what"].lower()).strip("-")
-    return f"{breakage['case']:02}-{words}"
+    return f"{breakage['case']:0>2}-{words}"
 
 
 def page():
@@ -131,17 +146,17 @@ def page():
         more = by.count(",")
         rows.append(f"| {breakage['case']} | {breakage['what']} | `{breakage['file'].removeprefix('src/')}` "
                     f"| {came} | {named}{f' and {more} more' if more else ''} | {day} {commit} |")
-    text = f"""# Broken on purpose
+    text = f"""# Mutation tests
 
 <!-- Made by tests/breakages/run.py page: change tests/breakages, and run it again. -->
 
-Tests are worth what they notice. Each row is a mistake that was made on purpose in a copy of the sources,
-alone, and the hard case that failed for it. The number is that of the case that has to notice.
-{len(TABLE)} breakages, {len(TABLE) - missing} caught by the case that claims them.
+Each row is a mistake that was made on purpose in a copy of the sources, alone, and the test that failed
+for it. The first column names the hard case, or the proof, that has to notice.
+{len(TABLE)} mistakes, {len(TABLE) - missing} caught by the case that claims them.
 
 `tests/breakages/run.py 1/4` tries a quarter of them, `tests/breakages/run.py page` makes this page.
 
-| case | broken | in | came of it | by | tried |
+| case | mistake | in | result | by | tried |
 |--:|---|---|---|---|---|
 """ + "\n".join(rows) + "\n"
     (ROOT / "docs/breakages.md").write_text(text)

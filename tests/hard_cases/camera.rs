@@ -8,7 +8,7 @@ use marraztu::scene::{
     Command, Frame, Light, LightKind, Pose, Scene, Subject, Transformation, View,
 };
 
-use super::cases::look;
+use super::cases::quick_round;
 use super::figures::Figure;
 use super::plates::three_objects;
 
@@ -155,7 +155,7 @@ fn single_turns() -> (f64, f64) {
 
 #[test]
 fn case_57_a_million_presses_of_any_turning_key_end_where_twice_the_digits_do() {
-    let tally = look("presses");
+    let tally = quick_round("presses");
     for (what, name, bound) in [
         ("object's angle", "angle of objects after 250,000 turns by any key", 1e-9),
         ("camera's angle", "angle of a camera after as many turns by any key", 1e-9),

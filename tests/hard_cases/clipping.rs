@@ -1,11 +1,11 @@
 //! What reaches beyond the view, or behind the observer.
 
+use crate::claims::exact::span;
 use glam::{DMat4, DVec3};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
-use marraztu::lab::prove::dice::Dice;
-use marraztu::lab::prove::exact::span;
-use marraztu::lab::prove::stage::{self, Flat};
+use marraztu::base::rng::Rng;
+use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
@@ -13,7 +13,7 @@ use marraztu::scene::{
     SourceCorner, Surface, View,
 };
 
-use super::cases::look;
+use super::cases::quick_round;
 use super::common::{covered, draw, edit, model, model_of, scene};
 use super::figures::Figure;
 use super::oracle::{Eye, inside_by, meet};
@@ -89,7 +89,7 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
 
 #[test]
 fn case_11_scenes_of_numbers_that_nobody_means_are_refused_or_drawn() {
-    let tally = look("scenes");
+    let tally = quick_round("scenes");
     assert!(tally.counts["refusals"] > 1000 && tally.counts["pictures"] > 10_000, "{tally}");
 }
 
@@ -152,15 +152,15 @@ fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
 
 #[test]
 fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
-    let mut dice = Dice::new(13);
+    let mut rng = Rng::new(13);
     let (mut wrong, mut parted) = (0, 0);
     let pairs = 400;
     for _ in 0..pairs {
         // Two triangles over a shared edge through the near plane, 1 before the eye.
-        let depth = |dice: &mut Dice| dice.real(-30.0, 30.0) + 399.0;
+        let depth = |rng: &mut Rng| rng.real(-30.0, 30.0) + 399.0;
         let mut corner = |side: f64| {
-            let z = depth(&mut dice);
-            DVec3::new(dice.real(-9.0, 9.0) + side, dice.real(-9.0, 9.0), z)
+            let z = depth(&mut rng);
+            DVec3::new(rng.real(-9.0, 9.0) + side, rng.real(-9.0, 9.0), z)
         };
         let quad = [corner(-30.0), corner(0.0), corner(30.0), corner(0.0)];
         let positions = quad.map(|corner| corner.as_vec3().to_array());
@@ -200,14 +200,14 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
 fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
     // The near plane cuts edges off within the view that come from up to 10^13 behind it, where the
     // last place of their length is a pixel: the same face, as it is and the other way round.
-    let mut dice = Dice::new(131);
+    let mut rng = Rng::new(131);
     let (mut wrong, mut parted, mut pixels) = (0, 0, 0);
     for _ in 0..400 {
-        let long = dice.one_of(&[1.0, 1e4, 1e9, 1e13]);
+        let long = rng.one_of(&[1.0, 1e4, 1e9, 1e13]);
         let mut beside =
-            |wide: f64| DVec3::new(dice.real(-wide, wide), dice.real(-wide, wide), 399.0);
+            |wide: f64| DVec3::new(rng.real(-wide, wide), rng.real(-wide, wide), 399.0);
         let corners = [beside(0.8), beside(9.0 * long), beside(0.8)];
-        let [near, far] = [dice.real(0.05, 0.9), long * dice.real(1.0, 30.0)];
+        let [near, far] = [rng.real(0.05, 0.9), long * rng.real(1.0, 30.0)];
         let corners = [
             corners[0] - DVec3::Z * near,
             corners[1] + DVec3::Z * far,
@@ -300,10 +300,10 @@ fn case_14_a_corner_on_a_plane_belongs_to_the_view() {
 
 #[test]
 fn case_15_a_triangle_through_all_six_planes_is_seen_where_it_is() {
-    let mut dice = Dice::new(15);
+    let mut rng = Rng::new(15);
     let (mut wrong, mut naive) = (0, 0);
     for _ in 0..60 {
-        let mut corner = || DVec3::new(0.0, 0.0, 300.0) + dice.vector(4000.0);
+        let mut corner = || DVec3::new(0.0, 0.0, 300.0) + rng.vector(4000.0);
         let corners = [corner(), corner(), corner()].map(|c| c.as_vec3().as_dvec3());
         let (scene, view) = alone(corners);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
@@ -338,12 +338,12 @@ fn folded(corners: [DVec3; 3], covered: &[bool]) -> usize {
 
 #[test]
 fn case_16_what_is_farther_off_than_whole_numbers_reach_is_cut() {
-    let mut dice = Dice::new(116);
+    let mut rng = Rng::new(116);
     let (mut wrong, mut seen, mut naive) = (0, 0, 0);
     for _ in 0..60 {
         // One corner in view, the others some ten million pixels off.
-        let off = |dice: &mut Dice| dice.vector(1.0) * DVec3::new(7e6, 7e6, 50.0);
-        let corners = [dice.vector(30.0), off(&mut dice), off(&mut dice)];
+        let off = |rng: &mut Rng| rng.vector(1.0) * DVec3::new(7e6, 7e6, 50.0);
+        let corners = [rng.vector(30.0), off(&mut rng), off(&mut rng)];
         let corners = corners.map(|c| (c + DVec3::Z * 300.0).as_vec3().as_dvec3());
         let (scene, view) = alone(corners);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
@@ -369,28 +369,28 @@ fn case_16_what_is_farther_off_than_whole_numbers_reach_is_cut() {
 #[test]
 fn case_16_corners_a_million_pixels_off_leave_no_hole_and_no_double() {
     const SIDE: usize = 512;
-    let mut dice = Dice::new(16);
+    let mut rng = Rng::new(16);
     let (mut wrong, mut naive) = (0, 0);
     for _ in 0..40 {
         // A fan about a hub in the picture whose outline is a million pixels away.
         let far = 1_000_000 * SUBPIXELS;
-        let coordinate = |dice: &mut Dice, reach: i32| dice.between(-reach, reach) / 16 * 16;
+        let coordinate = |rng: &mut Rng, reach: i32| rng.between(-reach, reach) / 16 * 16;
         let hub =
-            Snapped { x: dice.between(0, 511) * 256 + 128, y: dice.between(0, 511) * 256 + 128 };
+            Snapped { x: rng.between(0, 511) * 256 + 128, y: rng.between(0, 511) * 256 + 128 };
         let (a, b, c, d) = (
-            coordinate(&mut dice, far),
-            coordinate(&mut dice, far),
-            coordinate(&mut dice, far),
-            coordinate(&mut dice, far),
+            coordinate(&mut rng, far),
+            coordinate(&mut rng, far),
+            coordinate(&mut rng, far),
+            coordinate(&mut rng, far),
         );
         let outline = [(a, -far), (far, b), (c, far), (-far, d)].map(|(x, y)| Snapped { x, y });
         let fan: Vec<Flat> =
             (0..4).map(|i| Flat::new([hub, outline[i], outline[(i + 1) % 4]])).collect();
         let back: Vec<Flat> = fan.iter().rev().copied().collect();
-        let draw = |fan: &[Flat]| stage::draw_flat(fan, SIDE, &mut Renderer::default());
+        let draw = |fan: &[Flat]| flat::draw_triangles(fan, SIDE, &mut Renderer::default());
         let (forth, back) = (draw(&fan), draw(&back));
         for (i, (a, b)) in forth.pixels().iter().zip(back.pixels()).enumerate() {
-            let [a, b] = [a, b].map(|pixel| stage::number_of(*pixel));
+            let [a, b] = [a, b].map(|pixel| flat::number_of(*pixel));
             // The first of those that cover it is the last too, and the one that crossings say.
             let exact = (0..4)
                 .find(|n| span(fan[*n].corners, (i / SIDE) as i32).contains(&((i % SIDE) as i64)));
@@ -427,16 +427,16 @@ fn single_counts(fan: &[Flat], x: usize, y: usize) -> usize {
 #[test]
 fn case_17_triangles_larger_than_32_bits_of_edge_are_filled_rightly() {
     const SIDE: usize = 1024;
-    let mut dice = Dice::new(17);
+    let mut rng = Rng::new(17);
     let (mut wrong, mut naive) = (0, 0);
     for _ in 0..30 {
         let mut corner =
-            || Snapped { x: dice.between(-200_000, 400_000), y: dice.between(-200_000, 400_000) };
+            || Snapped { x: rng.between(-200_000, 400_000), y: rng.between(-200_000, 400_000) };
         let corners = [corner(), corner(), corner()];
-        let picture = stage::draw_flat(&[Flat::new(corners)], SIDE, &mut Renderer::default());
+        let picture = flat::draw_triangles(&[Flat::new(corners)], SIDE, &mut Renderer::default());
         for (i, pixel) in picture.pixels().iter().enumerate() {
             let exact = span(corners, (i / SIDE) as i32).contains(&((i % SIDE) as i64));
-            wrong += usize::from(stage::number_of(*pixel).is_some() != exact);
+            wrong += usize::from(flat::number_of(*pixel).is_some() != exact);
             naive += usize::from(wrapping_covers(corners, i % SIDE, i / SIDE) != exact);
         }
     }
@@ -464,10 +464,10 @@ fn wrapping_covers([p, q, r]: [Snapped; 3], x: usize, y: usize) -> bool {
 
 #[test]
 fn case_18_what_is_behind_the_observer_is_not_there() {
-    let mut dice = Dice::new(18);
+    let mut rng = Rng::new(18);
     let (mut drawn, mut naive) = (0, 0);
     for _ in 0..50 {
-        let mut corner = || DVec3::new(0.0, 0.0, 600.0) + dice.vector(190.0);
+        let mut corner = || DVec3::new(0.0, 0.0, 600.0) + rng.vector(190.0);
         let corners = [corner(), corner(), corner()];
         let (scene, view) = alone(corners);
         let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
@@ -528,7 +528,7 @@ pub(super) fn textured(
 
 #[test]
 fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
-    let mut dice = Dice::new(19);
+    let mut rng = Rng::new(19);
     // One texel is 2^-22, about four units in the last place of f32 at 1.
     let scale = f64::from(1 << 14);
     let ulp = f64::from(f32::EPSILON);
@@ -536,7 +536,7 @@ fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
     let (mut ours, mut naive, mut pixels) = (0.0_f64, 0.0_f64, 0);
     for _ in 0..60 {
         let mut corner = |z: f64| {
-            DVec3::new(dice.real(-90.0, 90.0), dice.real(-90.0, 90.0), z + dice.real(-9.0, 9.0))
+            DVec3::new(rng.real(-90.0, 90.0), rng.real(-90.0, 90.0), z + rng.real(-9.0, 9.0))
                 .as_vec3()
                 .as_dvec3()
         };

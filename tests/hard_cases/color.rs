@@ -1,7 +1,7 @@
 //! From light to bytes.
 
 use marraztu::base::color::{Color, byte};
-use marraztu::lab::prove::dice::Dice;
+use marraztu::base::rng::Rng;
 use marraztu::scene::{
     Arithmetic, Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, Settings,
     View,
@@ -74,13 +74,13 @@ fn case_52_light_is_rounded_to_the_nearest_byte() {
 
 #[test]
 fn case_53_eight_lights_are_summed_before_they_are_rounded() {
-    let mut dice = Dice::new(53);
+    let mut rng = Rng::new(53);
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
     for _ in 0..200 {
         let colors: Vec<Color> =
-            (0..8).map(|_| Color([0, 1, 2].map(|_| dice.between(0, 60) as u8))).collect();
+            (0..8).map(|_| Color([0, 1, 2].map(|_| rng.between(0, 60) as u8))).collect();
         // Thousandths, so that the sum is a whole number of 255000ths.
-        let thousandths = [0, 1, 2].map(|_| dice.between(0, 500));
+        let thousandths = [0, 1, 2].map(|_| rng.between(0, 500));
         let ambient = thousandths.map(|n| f64::from(n) / 1000.0);
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
             let got = shown(ambient, &colors, arithmetic);

@@ -1,18 +1,19 @@
 //! Which pixels are covered: by whole-number crossings, never by an edge function.
 
+use crate::claims::exact::{span, wind};
 use glam::{DMat4, DVec3};
 use marraztu::base::image::{Picture, Size};
-use marraztu::lab::prove::dice::Dice;
-use marraztu::lab::prove::exact::{span, wind};
-use marraztu::lab::prove::pictures::{levels, samples};
-use marraztu::lab::prove::stage::{self, Flat};
+use marraztu::base::rng::Rng;
+use marraztu::lab::instructions::levels;
+use marraztu::lab::pictures;
+use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     LoadOptions, MeshSource, Object, ObjectId, Projection, Settings, View, Winding,
 };
 
-use super::cases::look;
+use super::cases::quick_round;
 use super::common::{at, ball, covered, draw, edit, model_of, scene};
 use super::figures::Figure;
 use super::oracle::Eye;
@@ -34,11 +35,11 @@ fn greedy(fan: &[[Snapped; 3]], x: i32, y: i32) -> usize {
 #[test]
 fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
     const SIDE: i32 = 16;
-    let mut dice = Dice::new(20);
+    let mut rng = Rng::new(20);
     let square = PixelBox { left: 0, top: 0, right: SIDE, bottom: SIDE };
     let (mut wrong, mut naive) = (0, 0);
     for _ in 0..2000 {
-        let mut middle = || dice.between(0, SIDE - 1) * SUBPIXELS + 128;
+        let mut middle = || rng.between(0, SIDE - 1) * SUBPIXELS + 128;
         let hub = Snapped { x: middle(), y: middle() };
         let far = (SIDE - 1) * SUBPIXELS + 128;
         let (a, b, c, d) = (middle(), middle(), middle(), middle());
@@ -82,16 +83,14 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
 
 #[test]
 fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
-    let tally = look("fans");
+    let tally = quick_round("fans");
     assert!(tally.counts["samples"] > 10_000_000, "{tally}");
     // What the same fans would have with edges that both sides take.
-    let mut dice = Dice::new(21);
+    let mut rng = Rng::new(21);
     let mut naive = 0;
     for _ in 0..500 {
-        let mut corner = || Snapped {
-            x: dice.between(0, 4096) / 128 * 128,
-            y: dice.between(0, 4096) / 128 * 128,
-        };
+        let mut corner =
+            || Snapped { x: rng.between(0, 4096) / 128 * 128, y: rng.between(0, 4096) / 128 * 128 };
         let (hub, outline) = (corner(), [corner(), corner(), corner(), corner()]);
         let fan: Vec<[Snapped; 3]> =
             (0..4).map(|i| [hub, outline[i], outline[(i + 1) % 4]]).collect();
@@ -118,25 +117,25 @@ fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
 
 #[test]
 fn case_21_triangles_of_every_size_cover_what_crossings_say() {
-    let tally = look("samples");
+    let tally = quick_round("samples");
     assert!(tally.counts["triangles"] > 1000, "{tally}");
 }
 
 #[test]
 fn case_22_slivers_that_snapping_turns_round_are_counted_by_their_sign() {
     const SIDE: i32 = 8;
-    let mut dice = Dice::new(22);
+    let mut rng = Rng::new(22);
     let square = PixelBox { left: 0, top: 0, right: SIDE, bottom: SIDE };
     let (mut turned, mut wrong, mut naive) = (0, 0, 0);
     for _ in 0..20_000 {
         // A hub that is closer to a side of its outline than a part of a pixel, always inside.
-        let places = |dice: &mut Dice| [dice.real(0.5, 7.5), dice.real(0.5, 7.5)];
-        let [p, q, r] = [places(&mut dice), places(&mut dice), places(&mut dice)];
+        let places = |rng: &mut Rng| [rng.real(0.5, 7.5), rng.real(0.5, 7.5)];
+        let [p, q, r] = [places(&mut rng), places(&mut rng), places(&mut rng)];
         let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
         if area.abs() < 4.0 {
             continue;
         }
-        let (s, t) = (dice.real(0.1, 0.9), dice.real(0.0, 1e-3));
+        let (s, t) = (rng.real(0.1, 0.9), rng.real(0.0, 1e-3));
         let hub = [0, 1].map(|i| {
             let side = p[i] + (q[i] - p[i]) * s;
             side + (r[i] - side) * t
@@ -190,12 +189,12 @@ fn case_23_a_closed_body_has_as_many_fronts_as_backs_at_every_sample() {
     let body = ball(24);
     let eye = Eye::first(SIDE as usize);
     let square = PixelBox { left: 0, top: 0, right: SIDE, bottom: SIDE };
-    let mut dice = Dice::new(23);
+    let mut rng = Rng::new(23);
     let (mut open, mut naive) = (0, 0);
     for i in 0..20 {
-        let axis = super::oracle::unit(dice.vector(1.0));
-        let turn = DMat4::from_translation(dice.vector(30.0))
-            * DMat4::from_axis_angle(axis, dice.real(0.0, 6.0))
+        let axis = super::oracle::unit(rng.vector(1.0));
+        let turn = DMat4::from_translation(rng.vector(30.0))
+            * DMat4::from_axis_angle(axis, rng.real(0.0, 6.0))
             * DMat4::from_scale(DVec3::new(110.0, 60.0, 90.0));
         // Every other time with all corners on the middles of pixels.
         let on_middles = i % 2 == 1;
@@ -355,9 +354,9 @@ fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
 
 /// Some triangles of all sizes in a picture of 256 pixels.
 fn scattered(seed: u64, step: i32, first: i32) -> Vec<Flat> {
-    let mut dice = Dice::new(seed);
+    let mut rng = Rng::new(seed);
     let mut corner = || {
-        let mut coordinate = || dice.between(-10_000, 75_000) / step * step + first;
+        let mut coordinate = || rng.between(-10_000, 75_000) / step * step + first;
         Snapped { x: coordinate(), y: coordinate() }
     };
     (0..80).map(|_| Flat::new([corner(), corner(), corner()])).collect()
@@ -366,17 +365,17 @@ fn scattered(seed: u64, step: i32, first: i32) -> Vec<Flat> {
 #[test]
 fn case_25_moved_by_whole_pixels_a_picture_is_the_same_but_moved() {
     const SIDE: usize = 256;
-    let (scene, view) = stage::scene(&[scattered(25, 1, 0)], SIDE);
+    let (scene, view) = flat::scene(&[scattered(25, 1, 0)], SIDE);
     let mut renderer = Renderer::default();
-    let still = stage::draw(&(scene.clone(), view.clone()), SIDE, &mut renderer);
+    let still = flat::draw(&(scene.clone(), view.clone()), SIDE, &mut renderer);
     let (mut differ, mut naive) = (0, 0);
     for (right, down) in [(1_i32, 0_i32), (0, 1), (-3, 7), (37, -65), (64, 64)] {
         let mut scene = scene.clone();
         edit(&mut scene, ObjectId(1), |object: &mut Object| {
-            let place = stage::moved(right.into(), down.into());
+            let place = flat::moved(right.into(), down.into());
             object.placement = object.placement.replaced(place);
         });
-        let moved = stage::draw(&(scene, view.clone()), SIDE, &mut renderer);
+        let moved = flat::draw(&(scene, view.clone()), SIDE, &mut renderer);
         let whole = i32::try_from(SIDE).unwrap();
         for (x, y) in (0..whole).flat_map(|y| (0..whole).map(move |x| (x, y))) {
             let (tx, ty) = (x + right, y + down);
@@ -419,7 +418,7 @@ fn case_26_mirrored_and_turned_by_a_quarter_a_picture_is_the_same() {
     let draw = |change: &dyn Fn(Snapped) -> Snapped| {
         let changed: Vec<Flat> =
             triangles.iter().map(|flat| Flat::new(flat.corners.map(change))).collect();
-        stage::draw_flat(&changed, SIDE, &mut Renderer::default())
+        flat::draw_triangles(&changed, SIDE, &mut Renderer::default())
     };
     let plain = draw(&|c| c);
     let mirrored = draw(&|c| Snapped { x: side - c.x, ..c });
@@ -459,30 +458,22 @@ fn case_26_mirrored_and_turned_by_a_quarter_a_picture_is_the_same() {
 
 #[test]
 fn case_27_threads_and_instructions_do_not_show_in_a_dozen_pictures() {
-    let listed: Vec<(&str, u64)> = include_str!("../pictures.sums")
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .map(|line| {
-            let (sum, name) = line.split_once("  ").unwrap();
-            (name, u64::from_str_radix(sum, 16).unwrap())
-        })
-        .collect();
-    let samples = samples();
+    let (drawn, listed) = (pictures::all(), pictures::listed());
     assert_eq!(
-        samples.iter().map(|sample| &sample.name[..]).collect::<Vec<_>>(),
+        drawn.iter().map(|picture| &picture.name[..]).collect::<Vec<_>>(),
         listed.iter().map(|(name, _)| *name).collect::<Vec<_>>()
     );
-    let mut pictures = 0;
-    for (sample, (name, sum)) in samples.iter().zip(listed) {
+    let mut count = 0;
+    for (picture, (name, sum)) in drawn.iter().zip(listed) {
         for level in levels() {
             for threads in 1..=16 {
-                let got = sample.sum(level, threads);
+                let got = picture.sum(level, threads);
                 assert!(
                     got == sum,
-                    "\"{name}\" has the sum {got:016x} and not {sum:016x}: {level:?}, {threads} threads \
-                     (where pictures were changed on purpose: marraztu prove pictures)"
+                    "\"{name}\" has the sum {got:016x} instead of {sum:016x}: {level:?}, \
+                     {threads} threads (`marraztu verify --print` prints the list anew)"
                 );
-                pictures += 1;
+                count += 1;
             }
         }
     }
@@ -495,7 +486,7 @@ fn case_27_threads_and_instructions_do_not_show_in_a_dozen_pictures() {
         unit: "pictures",
     }
     .hold();
-    assert!(pictures >= 12 * 16);
+    assert!(count >= 12 * 16);
 }
 
 #[test]

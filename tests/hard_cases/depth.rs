@@ -1,10 +1,10 @@
 //! What is in front.
 
+use crate::claims::double_double::Double;
 use glam::{DMat4, DVec3};
 use marraztu::base::image::Size;
-use marraztu::lab::prove::dice::Dice;
-use marraztu::lab::prove::double_double::Double;
-use marraztu::lab::prove::stage::{self, FAR, Flat};
+use marraztu::base::rng::Rng;
+use marraztu::lab::pictures::flat::{self, FAR, Flat};
 use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
@@ -107,12 +107,12 @@ fn case_31_surfaces_a_thousandth_apart_are_told_apart_as_far_as_one_sees() {
 fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
     // By the stage: corners and depths without any rounding, so that both are the same plane.
     const SIDE: usize = 256;
-    let mut dice = Dice::new(32);
+    let mut rng = Rng::new(32);
     let (mut level, mut leaning, mut pixels) = (0, 0, 0);
     for i in 0..40 {
         let far = SIDE as i32 * SUBPIXELS;
-        let (x0, y0) = (dice.between(0, far / 2), dice.between(0, far / 2));
-        let (x1, y1) = (x0 + dice.between(256, far / 2), y0 + dice.between(256, far / 2));
+        let (x0, y0) = (rng.between(0, far / 2), rng.between(0, far / 2));
+        let (x1, y1) = (x0 + rng.between(256, far / 2), y0 + rng.between(256, far / 2));
         let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| Snapped { x, y });
         let lean = if i % 2 == 0 { 0.0 } else { 64.0 };
         let distances = [300.0, 300.0 + lean, 300.0 + 3.0 * lean, 300.0 + 2.0 * lean];
@@ -122,9 +122,9 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
         };
         let old = vec![triangle([0, 1, 2]), triangle([0, 2, 3])];
         let new = vec![triangle([1, 2, 3]), triangle([1, 3, 0])];
-        let picture = stage::draw(&stage::scene(&[old, new], SIDE), SIDE, &mut Renderer::default());
+        let picture = flat::draw(&flat::scene(&[old, new], SIDE), SIDE, &mut Renderer::default());
         for pixel in picture.pixels() {
-            let Some(number) = stage::number_of(*pixel) else { continue };
+            let Some(number) = flat::number_of(*pixel) else { continue };
             pixels += 1;
             let count = if lean == 0.0 { &mut level } else { &mut leaning };
             *count += usize::from(number >= 2);
@@ -188,26 +188,26 @@ pub(super) fn planar(corners: [Snapped; 3], values: [f32; 3], x: i32, y: i32) ->
 #[test]
 fn case_33_on_slivers_depth_is_right_to_two_last_places_and_within_the_corners() {
     const SIDE: usize = 512;
-    let mut dice = Dice::new(33);
+    let mut rng = Rng::new(33);
     let (mut ours, mut naive, mut pixels, mut outside) = (0.0_f64, 0.0_f64, 0, 0);
     for _ in 0..300 {
         // As long as the picture and a few parts of a pixel wide.
-        let along = |dice: &mut Dice| dice.between(0, SIDE as i32 * SUBPIXELS);
-        let (x, y) = (along(&mut dice), along(&mut dice));
-        let (tx, ty) = (along(&mut dice), along(&mut dice));
-        let width = dice.one_of(&[1, 3, 20, 300, 3000]);
+        let along = |rng: &mut Rng| rng.between(0, SIDE as i32 * SUBPIXELS);
+        let (x, y) = (along(&mut rng), along(&mut rng));
+        let (tx, ty) = (along(&mut rng), along(&mut rng));
+        let width = rng.one_of(&[1, 3, 20, 300, 3000]);
         let beside = Snapped {
-            x: (x + tx) / 2 + dice.between(-width, width),
-            y: (y + ty) / 2 + dice.between(-width, width),
+            x: (x + tx) / 2 + rng.between(-width, width),
+            y: (y + ty) / 2 + rng.between(-width, width),
         };
-        let distances = [0, 1, 2].map(|_| f64::from(dice.between(0, 1 << 12)) / 4.0);
+        let distances = [0, 1, 2].map(|_| f64::from(rng.between(0, 1 << 12)) / 4.0);
         let flat =
             Flat { corners: [Snapped { x, y }, Snapped { x: tx, y: ty }, beside], distances };
-        let (scene, view) = stage::scene(&[vec![flat]], SIDE);
+        let (scene, view) = flat::scene(&[vec![flat]], SIDE);
         let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
         let mut renderer = Renderer::default();
         let picture = renderer.render(&plan).clone();
-        let seen = (0..SIDE * SIDE).filter(|i| stage::number_of(picture.pixels()[*i]).is_some());
+        let seen = (0..SIDE * SIDE).filter(|i| flat::number_of(picture.pixels()[*i]).is_some());
         let seen: Vec<usize> = seen.collect();
         let step = seen.len() / 30 + 1;
         let depths = distances.map(|d| 1.0 - d / FAR);
@@ -248,16 +248,16 @@ fn case_33_no_depth_of_a_small_triangle_is_beyond_those_of_its_corners() {
     // In each field of eight pixels a triangle with its corners on the middles of pixels, where two
     // edge functions are 0 and the third is the whole area.
     const SIDE: usize = 512;
-    let mut dice = Dice::new(330);
+    let mut rng = Rng::new(330);
     let mut flats = Vec::new();
     for field in 0..64 * 64 {
         let (x, y) = (field % 64 * 8, field / 64 * 8);
-        let mut middle = |from: i32| (from + dice.between(0, 7)) * SUBPIXELS + SUBPIXELS / 2;
+        let mut middle = |from: i32| (from + rng.between(0, 7)) * SUBPIXELS + SUBPIXELS / 2;
         let corners = [0; 3].map(|_| Snapped { x: middle(x), y: middle(y) });
-        let distances = [0; 3].map(|_| f64::from(dice.between(0, 1 << 12)) / 4.0);
+        let distances = [0; 3].map(|_| f64::from(rng.between(0, 1 << 12)) / 4.0);
         flats.push(Flat { corners, distances });
     }
-    let (mut scene, view) = stage::scene(&[flats.clone()], SIDE);
+    let (mut scene, view) = flat::scene(&[flats.clone()], SIDE);
     edit(&mut scene, ObjectId(1), |object| object.sides = Sides::Two);
     let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
     let mut renderer = Renderer::default();
@@ -388,11 +388,11 @@ fn case_36_the_order_of_drawing_does_not_show() {
     let view = View { marks: false, ..view };
     let picture = |scene: &Scene| draw(scene, &view, &Settings::default(), SIDE);
     let first = picture(&scene);
-    let mut dice = Dice::new(36);
+    let mut rng = Rng::new(36);
     let mut differ = 0;
     for _ in 0..40 {
-        let id = ItemId::Object(ObjectId(10 + dice.below(12) as u32));
-        Command::Reorder { id, to: dice.index(12) }.apply(&mut scene).unwrap();
+        let id = ItemId::Object(ObjectId(10 + rng.below(12) as u32));
+        Command::Reorder { id, to: rng.index(12) }.apply(&mut scene).unwrap();
         let now = picture(&scene);
         differ += first.pixels().iter().zip(now.pixels()).filter(|(a, b)| a != b).count();
     }

@@ -9,7 +9,7 @@ use marraztu::scene::{
     ObjectId, Orbit, Placed, Pose, Projection, Scene, Settings, View, newell,
 };
 
-use super::cases::look;
+use super::cases::quick_round;
 use super::common::{ball, covered, cube, draw, edit, model_of, scene};
 use super::figures::Figure;
 
@@ -239,8 +239,8 @@ fn case_67_nothing_and_very_much_are_drawn() {
         let plan = FramePlan::new(&scene, &view, &Settings::default(), size);
         assert_eq!(Renderer::default().render(&plan).size(), size);
     }
-    // The sizes up to a picture of 2048 pixels a side and 50,000 faces; the rest by `marraztu prove`.
-    assert_eq!(look("sizes").counts["sizes"], 6);
+    // The sizes up to a picture of 2048 pixels a side and 50,000 faces; the rest by `cargo test --test proofs -- sizes --whole`.
+    assert_eq!(quick_round("sizes").counts["sizes"], 6);
     Figure {
         case: 67,
         what: "pixels of a mesh without faces, and wrong ones of 0 to 50,000 faces",

@@ -1,11 +1,11 @@
 //! Normals, placements, mirrors, and shapes without a size.
 
+use crate::claims::double_double::Double;
 use glam::{DMat3, DMat4, DVec3};
 use marraztu::base::math;
+use marraztu::base::rng::Rng;
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{Refusal, Stroke, place};
-use marraztu::lab::prove::dice::Dice;
-use marraztu::lab::prove::double_double::Double;
 use marraztu::render::screen::coverage::{Snapped, Triangle, doubled_area};
 use marraztu::scene::{
     Frame, Light, LightId, LightKind, List, ObjectId, Placed, Scene, Settings, Sides, Subject,
@@ -46,11 +46,11 @@ fn naive_normal(corners: [[f32; 3]; 3]) -> DVec3 {
 
 #[test]
 fn case_1_a_triangle_of_two_millimetres_half_a_kilometre_away_keeps_its_normal() {
-    let mut dice = Dice::new(1);
+    let mut rng = Rng::new(1);
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
     for _ in 0..500 {
-        let middle = DVec3::splat(500.0) + dice.vector(1.0);
-        let corners = [0, 1, 2].map(|_| (middle + dice.vector(0.001)).as_vec3().to_array());
+        let middle = DVec3::splat(500.0) + rng.vector(1.0);
+        let corners = [0, 1, 2].map(|_| (middle + rng.vector(0.001)).as_vec3().to_array());
         let exact = exact_normal(corners);
         // Twice the area: slivers are another case.
         if exact.length() < 5e-7 {
@@ -74,12 +74,12 @@ fn case_1_a_triangle_of_two_millimetres_half_a_kilometre_away_keeps_its_normal()
 
 #[test]
 fn case_2_a_difference_of_products_keeps_its_digits() {
-    let mut dice = Dice::new(2);
+    let mut rng = Rng::new(2);
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
     for _ in 0..10_000 {
         // Whole numbers of 23 bits, so that i64 has the answer.
-        let [a, b] = [0, 1].map(|_| dice.between(1 << 22, 1 << 23));
-        let (c, d) = (a + dice.between(-2, 2), b + dice.between(-2, 2));
+        let [a, b] = [0, 1].map(|_| rng.between(1 << 22, 1 << 23));
+        let (c, d) = (a + rng.between(-2, 2), b + rng.between(-2, 2));
         let exact = (i64::from(a) * i64::from(d) - i64::from(b) * i64::from(c)) as f64;
         if exact == 0.0 {
             continue;
@@ -196,15 +196,15 @@ fn naive_shift(vernier: &Vernier, away: DVec3, tangent: f64) -> f64 {
 
 #[test]
 fn case_4_normals_of_stretched_objects_stay_across_their_surfaces() {
-    let mut dice = Dice::new(4);
+    let mut rng = Rng::new(4);
     for (stretch, what) in
         [(2.0, "normals under a stretch of 1:2"), (10.0, "normals under a stretch of 1:10")]
     {
         let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
         for _ in 0..1000 {
-            let m = math::rotation(super::oracle::unit(dice.vector(1.0)), dice.real(0.0, 6.0))
+            let m = math::rotation(super::oracle::unit(rng.vector(1.0)), rng.real(0.0, 6.0))
                 * DMat3::from_diagonal(DVec3::new(1.0, stretch, 1.0));
-            let (p, q) = (dice.vector(1.0), dice.vector(1.0));
+            let (p, q) = (rng.vector(1.0), rng.vector(1.0));
             // What is across is across two ways along the surface, and they go where it goes.
             let (n, exact) = (p.cross(q), (m * p).cross(m * q));
             if n.length() < 0.1 {
@@ -359,12 +359,12 @@ fn case_7_a_placement_without_room_draws_nothing() {
 fn case_8_vectors_of_any_length_are_brought_to_length_one() {
     let mut ours = 0.0_f64;
     let mut naive = 0.0_f64;
-    let mut dice = Dice::new(8);
+    let mut rng = Rng::new(8);
     for exponent in [-1030, -700, -150, -76, 0, 67, 700, 1020] {
         // In two steps: the smallest powers of two are no normal numbers.
         let size = 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2);
         for _ in 0..500 {
-            let v = dice.vector(1.0);
+            let v = rng.vector(1.0);
             let got = math::unit(v * size).unwrap();
             // With twice the digits, of the vector before it was scaled: it has the same direction,
             // but for subnormal numbers, which have few digits.
@@ -437,10 +437,10 @@ fn case_10_normals_that_cancel_out_give_way_to_the_faces() {
         let (scene, view) = scene(&[(model, at(60.0, 20.0, -10.0, 0.0))]);
         draw(&scene, &View { marks: false, ..view }, &Settings::default(), 64)
     };
-    let mut dice = Dice::new(10);
+    let mut rng = Rng::new(10);
     let mut differ = 0;
     for _ in 0..30 {
-        let corners = [0, 1, 2].map(|_| dice.vector(1.0).as_vec3().to_array());
+        let corners = [0, 1, 2].map(|_| rng.vector(1.0).as_vec3().to_array());
         let one = picture(model("side", &corners, &[&[0, 1, 2]]));
         let two = picture(model("leaf", &corners, &[&[0, 1, 2], &[2, 1, 0]]));
         // Where the one side is seen from behind, the leaf shows its other one.

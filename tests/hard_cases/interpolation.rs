@@ -3,8 +3,8 @@
 use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
-use marraztu::lab::prove::dice::Dice;
-use marraztu::lab::prove::stage::{self, Flat};
+use marraztu::base::rng::Rng;
+use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::Renderer;
 use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::scene::{
@@ -79,15 +79,15 @@ fn case_37_a_texture_lies_still_on_a_wall_that_runs_away() {
 
 #[test]
 fn case_38_no_colour_is_beyond_those_of_the_corners() {
-    let mut dice = Dice::new(38);
+    let mut rng = Rng::new(38);
     let (mut beyond, mut naive, mut pixels) = (0, 0.0_f64, 0);
     for _ in 0..400 {
         let side = SIDE as i32 * SUBPIXELS;
-        let mut corner = || Snapped { x: dice.between(-999, side), y: dice.between(-999, side) };
+        let mut corner = || Snapped { x: rng.between(-999, side), y: rng.between(-999, side) };
         let (p, q) = (corner(), corner());
-        let beside = Snapped { x: p.x + dice.between(-2, 2), y: p.y + dice.between(-2, 2) };
+        let beside = Snapped { x: p.x + rng.between(-2, 2), y: p.y + rng.between(-2, 2) };
         let corners = [p, q, beside];
-        let bytes = [0, 1, 2].map(|_| dice.between(100, 101));
+        let bytes = [0, 1, 2].map(|_| rng.between(100, 101));
         let within = bytes[0].min(bytes[1]).min(bytes[2])..=bytes[0].max(bytes[1]).max(bytes[2]);
         let colors = bytes.map(|byte| [byte as f32 / 255.0; 3]);
         let picture = painted(corners, colors, SIDE);
@@ -118,9 +118,9 @@ fn case_38_no_colour_is_beyond_those_of_the_corners() {
 
 /// A triangle of the stage with a colour at each corner.
 fn painted(corners: [Snapped; 3], colors: [[f32; 3]; 3], side: usize) -> Picture {
-    let (mut scene, view) = stage::scene(&[vec![Flat::new(corners)]], side);
+    let (mut scene, view) = flat::scene(&[vec![Flat::new(corners)]], side);
     let source = MeshSource {
-        positions: corners.map(|c| stage::place(c, 512.0, side).as_vec3().to_array()).to_vec(),
+        positions: corners.map(|c| flat::place(c, 512.0, side).as_vec3().to_array()).to_vec(),
         colors: colors.to_vec(),
         corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: NONE, normal: NONE }).to_vec(),
         arities: vec![3],
@@ -129,7 +129,7 @@ fn painted(corners: [Snapped; 3], colors: [[f32; 3]; 3], side: usize) -> Picture
         ..MeshSource::default()
     };
     edit(&mut scene, ObjectId(1), |object| object.model = model_of("painted", source));
-    stage::draw(&(scene, view), side, &mut Renderer::default())
+    flat::draw(&(scene, view), side, &mut Renderer::default())
 }
 
 #[test]
@@ -198,20 +198,20 @@ fn case_39_places_beyond_the_texture_are_brought_back_into_it() {
 
 #[test]
 fn case_40_one_colour_at_all_corners_stays_that_colour() {
-    let mut dice = Dice::new(40);
+    let mut rng = Rng::new(40);
     let (mut wrong, mut naive) = (0, 0);
     for byte in 0..=255_u8 {
         let factor = f32::from(byte) / 255.0;
         let side = 64 * SUBPIXELS;
         let mut corner =
-            || Snapped { x: dice.between(-side, 2 * side), y: dice.between(-side, 2 * side) };
+            || Snapped { x: rng.between(-side, 2 * side), y: rng.between(-side, 2 * side) };
         let corners = [corner(), corner(), corner()];
         let picture = painted(corners, [[factor, 1.0, 1.0]; 3], 64);
         let shown = picture.pixels().iter().filter(|pixel| pixel[1] == 255);
         wrong += shown.filter(|pixel| pixel[0] != byte).count();
         // Weights of f32 that were each divided by their sum, cut off to a byte.
         for _ in 0..200 {
-            let [a, b, c] = [0, 1, 2].map(|_| dice.part() as f32);
+            let [a, b, c] = [0, 1, 2].map(|_| rng.unit() as f32);
             let sum = a + b + c;
             let mixed = factor * (a / sum) + factor * (b / sum) + factor * (c / sum);
             naive += usize::from((mixed * 255.0) as u8 != byte);
@@ -230,16 +230,16 @@ fn case_40_one_colour_at_all_corners_stays_that_colour() {
 
 #[test]
 fn case_40_a_constant_stays_that_constant_in_perspective_too() {
-    let mut dice = Dice::new(41);
+    let mut rng = Rng::new(41);
     let scale = f64::from(1 << 14);
     let mut off = 0.0_f64;
     for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
         for _ in 0..30 {
             let mut corner = || {
-                DVec3::new(dice.real(-90.0, 90.0), dice.real(-90.0, 90.0), dice.real(-900.0, 390.0))
+                DVec3::new(rng.real(-90.0, 90.0), rng.real(-90.0, 90.0), rng.real(-900.0, 390.0))
             };
             let corners = [corner(), corner(), corner()];
-            let u = dice.part() as f32;
+            let u = rng.unit() as f32;
             let (scene, view) = textured(corners, [u; 3], &ruler(scale));
             let settings = Settings { filter: Filter::Nearest, arithmetic, ..Settings::default() };
             let picture = draw(&scene, &view, &settings, 64);
@@ -253,13 +253,13 @@ fn case_40_a_constant_stays_that_constant_in_perspective_too() {
 
 #[test]
 fn case_40_the_same_light_at_all_corners_stays_that_light() {
-    let mut dice = Dice::new(42);
+    let mut rng = Rng::new(42);
     let (mut uneven, mut naive) = (0, 0);
     for byte in 0..255_u8 {
         // On the border between two bytes, where the last place decides.
         let factor = (f64::from(byte) + 0.5) / 255.0;
         let corners =
-            [0, 1, 2].map(|_| (dice.vector(1.0) * DVec3::new(90.0, 90.0, 300.0)).as_vec3());
+            [0, 1, 2].map(|_| (rng.vector(1.0) * DVec3::new(90.0, 90.0, 300.0)).as_vec3());
         let face = model("face", &corners.map(|c| c.to_array()), &[&[0, 1, 2], &[2, 1, 0]]);
         let (mut scene, view) = scene(&[(face, DMat4::IDENTITY)]);
         edit(&mut scene, ObjectId(10), |object| {
@@ -275,7 +275,7 @@ fn case_40_the_same_light_at_all_corners_stays_that_light() {
         uneven += bytes.iter().filter(|byte| **byte != bytes[0]).count();
         let single = factor as f32;
         for _ in 0..200 {
-            let [b, c] = [0, 1].map(|_| dice.part() as f32 / 2.0);
+            let [b, c] = [0, 1].map(|_| rng.unit() as f32 / 2.0);
             let mixed = single * (1.0 - b - c) + single * b + single * c;
             naive += usize::from((mixed * 255.0 + 0.5) as u8 != (single * 255.0 + 0.5) as u8);
         }
@@ -334,30 +334,30 @@ fn case_33_what_is_painted_on_slivers_is_right_to_two_last_places() {
     // Seen in parallel and by the lens; the place on the texture is read off a ruler whose texels are
     // a last place of 1 wide.
     const SIDE: usize = 512;
-    let mut dice = Dice::new(330);
+    let mut rng = Rng::new(330);
     let scale = f64::from(1 << 15);
     let (mut worst, mut naive, mut pixels) = ([0.0_f64; 2], 0.0_f64, 0);
     for _ in 0..200 {
         let side = SIDE as i32 * SUBPIXELS;
-        let mut along = || dice.between(0, side);
+        let mut along = || rng.between(0, side);
         let (p, q) = (Snapped { x: along(), y: along() }, Snapped { x: along(), y: along() });
-        let width = dice.one_of(&[3, 20, 300, 3000]);
+        let width = rng.one_of(&[3, 20, 300, 3000]);
         let beside = Snapped {
-            x: (p.x + q.x) / 2 + dice.between(-width, width),
-            y: (p.y + q.y) / 2 + dice.between(-width, width),
+            x: (p.x + q.x) / 2 + rng.between(-width, width),
+            y: (p.y + q.y) / 2 + rng.between(-width, width),
         };
         let corners = [p, q, beside];
-        let u = [0.0_f32, 1.0, dice.part() as f32];
+        let u = [0.0_f32, 1.0, rng.unit() as f32];
         for (arithmetic, worst) in [Arithmetic::F32, Arithmetic::F64].into_iter().zip(&mut worst) {
-            let (mut scene, view) = stage::scene(&[vec![Flat::new(corners)]], SIDE);
+            let (mut scene, view) = flat::scene(&[vec![Flat::new(corners)]], SIDE);
             let (painted, _) =
-                textured(corners.map(|c| stage::place(c, 512.0, SIDE)), u, &ruler(scale));
+                textured(corners.map(|c| flat::place(c, 512.0, SIDE)), u, &ruler(scale));
             let painted = painted.objects.get(ObjectId(10)).unwrap().clone();
             edit(&mut scene, ObjectId(1), |object| *object = painted);
             let settings = Settings { filter: Filter::Nearest, arithmetic, ..Settings::default() };
             let picture = draw(&scene, &view, &settings, SIDE);
             for y in 0..SIDE {
-                let span = marraztu::lab::prove::exact::span(corners, y as i32);
+                let span = crate::claims::exact::span(corners, y as i32);
                 for x in span.filter(|x| (0..SIDE as i64).contains(x)) {
                     let exact = between(corners, u, x as i32, y as i32);
                     let shown = picture.pixel(x as usize, y)[0];

@@ -2,9 +2,9 @@
 
 use glam::{DMat4, DQuat, DVec3};
 use marraztu::base::image::{Picture, Size};
+use marraztu::base::rng::Rng;
 use marraztu::edit::{Stroke, place};
-use marraztu::lab::prove::dice::Dice;
-use marraztu::lab::prove::pictures::levels;
+use marraztu::lab::instructions::levels;
 use marraztu::render::simd::{Power, Real as _};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
@@ -53,9 +53,9 @@ struct Bent {
 }
 
 impl Bent {
-    fn random(dice: &mut Dice) -> Self {
+    fn random(rng: &mut Rng) -> Self {
         // In front of the eye at (0, 0, 400); the numbers are those of f32.
-        let mut leaning = || dice.real(-60.0, 60.0);
+        let mut leaning = || rng.real(-60.0, 60.0);
         let corners = [
             DVec3::new(-600.0, -500.0, leaning()),
             DVec3::new(700.0, -400.0, leaning()),
@@ -63,9 +63,9 @@ impl Bent {
         ]
         .map(|c| c.as_vec3().as_dvec3());
         let normals = [0, 1, 2]
-            .map(|_| unit(DVec3::Z + dice.vector(0.7)).as_vec3().as_dvec3())
+            .map(|_| unit(DVec3::Z + rng.vector(0.7)).as_vec3().as_dvec3())
             .map(|n| unit(n).as_vec3().as_dvec3());
-        let mut about = |size: f64| DVec3::Z * 150.0 + dice.vector(size);
+        let mut about = |size: f64| DVec3::Z * 150.0 + rng.vector(size);
         let spot = about(140.0);
         let lamps = vec![
             Lamp::Ambient,
@@ -73,7 +73,7 @@ impl Bent {
             Lamp::Bulb(about(140.0)),
             Lamp::Spot(spot, unit(DVec3::new(10.0, 5.0, 0.0) - spot), 60.0, 5.0),
         ];
-        let exponent = dice.one_of(&[1.0, 9.846_15, 27.8974, 76.8, 89.6, 128.0]);
+        let exponent = rng.one_of(&[1.0, 9.846_15, 27.8974, 76.8, 89.6, 128.0]);
         let matter = Matter { ambient: 0.05, diffuse: 0.25, specular: 0.2, exponent };
         Self { corners, normals, matter, lamps }
     }
@@ -141,7 +141,7 @@ impl Bent {
 fn case_42_a_reciprocal_root_of_twelve_bits_is_what_highlights_are_spared() {
     // The editor's own light, before it is rounded, and that of a table of 256 powers and of normals
     // brought to length 1 by a root of 12 bits.
-    let mut dice = Dice::new(42);
+    let mut rng = Rng::new(42);
     let table = |x: f64, n: f64| ((x * 255.0).floor() / 255.0).powf(n);
     // A relative error of 1.5 2^-12, as rsqrtps may have, squares in N.L and N.V of R.V.
     let rough = |x: f64, n: f64| (x * (1.0 - 2.0 * 1.5 / 4096.0)).powf(n);
@@ -149,7 +149,7 @@ fn case_42_a_reciprocal_root_of_twelve_bits_is_what_highlights_are_spared() {
     let (mut ours, mut reference, mut by_table, mut by_root) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     let (mut bytes, mut differing, mut fast_differing, mut steps) = (0_u32, 0_u32, 0_u32, 0_u8);
     for i in 0..6 {
-        let bent = Bent::random(&mut dice);
+        let bent = Bent::random(&mut rng);
         let light = bent.before_rounding(Arithmetic::F32);
         let fast = bent.draw(&bent.matter, Arithmetic::F32);
         let slow = bent.draw(&bent.matter, Arithmetic::F64);
@@ -192,9 +192,9 @@ fn case_42_a_reciprocal_root_of_twelve_bits_is_what_highlights_are_spared() {
 
 #[test]
 fn case_43_a_cosine_above_one_does_no_harm() {
-    let mut dice = Dice::new(43);
+    let mut rng = Rng::new(43);
     let above = (0..10_000).filter(|_| {
-        let v = dice.vector(1.0).as_vec3();
+        let v = rng.vector(1.0).as_vec3();
         let v = v / v.dot(v).sqrt();
         v.dot(v).acos().is_nan()
     });
@@ -207,7 +207,7 @@ fn case_43_a_cosine_above_one_does_no_harm() {
     let mut pixels = 0;
     let mut bright = 0;
     for _ in 0..40 {
-        let (x, y) = (dice.index(PICTURE), dice.index(PICTURE));
+        let (x, y) = (rng.index(PICTURE), rng.index(PICTURE));
         let ray = unit(eye.ray(x, y));
         let turn = DMat4::from_quat(DQuat::from_rotation_arc(DVec3::Z, -ray));
         let place = DMat4::from_translation(eye.at + ray * 300.0) * turn * at(90.0, 0.0, 0.0, 0.0);
@@ -412,11 +412,11 @@ fn case_48_a_highlight_ends_where_a_round_surface_turns_away() {
         let half = RADIUS * RADIUS - (eye.at + ray * along).length_squared();
         (half > 0.0).then(|| (eye.at + ray * (along - half.sqrt())) / RADIUS)
     };
-    let mut dice = Dice::new(148);
+    let mut rng = Rng::new(148);
     let (mut differ, mut naive) = (0, 0);
     for _ in 0..20 {
         let to_light =
-            unit(DVec3::new(dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-0.9, 0.3)));
+            unit(DVec3::new(rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-0.9, 0.3)));
         let lit = picture(&[Lamp::Ambient, Lamp::Sun(-to_light)]);
         for i in 0..SIDE * SIDE {
             // A polygon of the ball leans from its surface by 0.03 at most.
@@ -445,13 +445,13 @@ fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
         soften(&mut scene);
         draw(&scene, &view, &Settings::default(), SIDE)
     };
-    let mut dice = Dice::new(48);
+    let mut rng = Rng::new(48);
     let (mut differ, mut naive) = (0, 0);
     for _ in 0..60 {
         let behind =
-            DVec3::new(dice.real(-90.0, 90.0), dice.real(-90.0, 90.0), dice.real(-200.0, -1.0));
+            DVec3::new(rng.real(-90.0, 90.0), rng.real(-90.0, 90.0), rng.real(-200.0, -1.0));
         let direction =
-            unit(DVec3::new(dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(0.01, 1.0)));
+            unit(DVec3::new(rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(0.01, 1.0)));
         let lamps = [
             Lamp::Ambient,
             Lamp::Bulb(behind),
@@ -530,10 +530,10 @@ fn case_49_a_wider_cone_lights_no_pixel_less() {
 
 #[test]
 fn case_50_the_order_of_lights_does_not_show() {
-    let mut dice = Dice::new(50);
+    let mut rng = Rng::new(50);
     let mut lamps = vec![Lamp::Ambient];
     for _ in 0..9 {
-        lamps.push(Lamp::Bulb(DVec3::Z * 150.0 + dice.vector(120.0)));
+        lamps.push(Lamp::Bulb(DVec3::Z * 150.0 + rng.vector(120.0)));
     }
     let (mut scene, view) = scene(&[(ball(16), at(120.0, 0.0, 0.0, 0.0))]);
     // Three channels with their own digits: one in a hundred thousand bytes stands so near to the
@@ -550,14 +550,14 @@ fn case_50_the_order_of_lights_does_not_show() {
     let first = draw(&scene, &view, &Settings::default(), 512);
     let mut differ = 0;
     for _ in 0..30 {
-        let id = ItemId::Light(LightId(1 + dice.below(10) as u32));
-        Command::Reorder { id, to: dice.index(10) }.apply(&mut scene).unwrap();
+        let id = ItemId::Light(LightId(1 + rng.below(10) as u32));
+        Command::Reorder { id, to: rng.index(10) }.apply(&mut scene).unwrap();
         let now = draw(&scene, &view, &Settings::default(), 512);
         differ += first.pixels().iter().zip(now.pixels()).filter(|(a, b)| a != b).count();
     }
     // Sums of ten numbers of f32, in two orders.
     let sums = (0..10_000).filter(|_| {
-        let parts: Vec<f32> = (0..10).map(|_| dice.part() as f32).collect();
+        let parts: Vec<f32> = (0..10).map(|_| rng.unit() as f32).collect();
         parts.iter().sum::<f32>() != parts.iter().rev().sum::<f32>()
     });
     Figure {

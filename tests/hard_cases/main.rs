@@ -7,6 +7,8 @@
 #![allow(clippy::cast_precision_loss, reason = "small numbers, and roundings that are meant")]
 #![allow(clippy::cast_sign_loss, reason = "small numbers")]
 
+#[path = "../proofs/claims/mod.rs"]
+mod claims;
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../common/plates.rs"]
@@ -14,6 +16,7 @@ mod plates;
 
 mod cases;
 mod figures;
+mod judges;
 mod oracle;
 
 mod camera;

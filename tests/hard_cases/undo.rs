@@ -9,12 +9,12 @@ use marraztu::scene::{ItemId, ObjectId, Scene, Settings, Subject, Transformation
 use glam::{DMat3, DVec3};
 
 use super::camera::desk;
-use super::cases::look;
+use super::cases::quick_round;
 use super::figures::Figure;
 
 #[test]
 fn case_62_a_hundred_thousand_commands_are_undone_and_redone_bit_for_bit() {
-    let tally = look("undo");
+    let tally = quick_round("undo");
     assert!(tally.counts["steps"] > 80_000 && tally.counts["files"] >= 40, "{tally}");
     // The naive way: as many turns, and the inverse of each.
     let turn = math::rotation(DVec3::new(0.6, 0.0, 0.8), 0.1);

@@ -1,14 +1,14 @@
-//! A false clock and a false easel, in which slowdowns and errors are planted.
+//! A false clock and a false source, in which slowdowns and errors are planted.
 
 use std::time::Duration;
 
 use marraztu::base::image::{Picture, Size};
 use marraztu::io;
 use marraztu::lab::candidates::{LeftOut, Thoroughness, all_axes, candidates};
-use marraztu::lab::clock::{Clock, Work};
-use marraztu::lab::easel::Easel;
 use marraztu::lab::pairs::{Limits, Watch};
+use marraztu::lab::picture_source::PictureSource;
 use marraztu::lab::sweep::{Bench, Findings, Question};
+use marraztu::lab::timing::{Clock, Work};
 use marraztu::scene::{AXES, Axis, Choice, Settings};
 
 /// A choice in which something is planted.
@@ -52,9 +52,9 @@ impl Clock for FalseClock {
     }
 }
 
-/// An easel whose picture is grey, but for a pixel that is 9 steps lighter where the planted choice is
+/// An source whose picture is grey, but for a pixel that is 9 steps lighter where the planted choice is
 /// made, and covered by another triangle where `coverage` is.
-pub(crate) struct FalseEasel {
+pub(crate) struct FalseSource {
     pub(crate) wrong: Planted,
     pub(crate) coverage: Planted,
     picture: Picture,
@@ -63,14 +63,14 @@ pub(crate) struct FalseEasel {
 
 pub(crate) const SIZE: Size = Size::new(8, 8);
 
-impl FalseEasel {
+impl FalseSource {
     pub(crate) fn new(wrong: Planted, coverage: Planted) -> Self {
         let picture = Picture::filled(SIZE, [100, 100, 100, 255]);
         Self { wrong, coverage, picture, primitives: vec![1; SIZE.area()] }
     }
 }
 
-impl Easel for FalseEasel {
+impl PictureSource for FalseSource {
     fn draw(&mut self, settings: &Settings) {
         let made = |planted: Planted| planted.is_some_and(|(_, choice)| choice.is(settings));
         let light = if made(self.wrong) { 109 } else { 100 };
@@ -88,7 +88,7 @@ impl Easel for FalseEasel {
 }
 
 /// What a sweep over all axes finds; all of them make sense.
-pub(crate) fn found(clock: &mut FalseClock, easel: &mut FalseEasel) -> Findings {
+pub(crate) fn found(clock: &mut FalseClock, source: &mut FalseSource) -> Findings {
     let limits = Limits { pairs: 3, least: 3, time: Duration::from_secs(1) };
     let thoroughness =
         Thoroughness { word: "test", limits, combinations: 20, time: Duration::from_secs(9) };
@@ -100,7 +100,7 @@ pub(crate) fn found(clock: &mut FalseClock, easel: &mut FalseEasel) -> Findings 
         |left_out: &&LeftOut| !left_out.what.contains(" of ") && left_out.what != "shading sample";
     assert_eq!(candidates.left_out.iter().find(others), None);
     let watch = Watch::default();
-    let mut bench = Bench { clock, easel, watch: &watch, question: &question, size: SIZE };
+    let mut bench = Bench { clock, source, watch: &watch, question: &question, size: SIZE };
     bench.run(candidates, &mut |_| {}).unwrap()
 }
 

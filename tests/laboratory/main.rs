@@ -1,6 +1,6 @@
 //! The laboratory: is what it says of time and error true?
 //!
-//! Catches: a slowdown or an error that is blamed on the wrong axis, or on none; an axis that the scene
+//! Catches: a slowdown or an error that is attributed to the wrong axis, or on none; an axis that the scene
 //! file or the command line does not know; a table, a plot or a file of results that lacks a choice.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
@@ -9,5 +9,7 @@ mod bench;
 mod planted;
 mod program;
 mod promise;
+#[path = "../random_scenes/mod.rs"]
+mod random_scenes;
 mod told;
 mod words;

@@ -79,7 +79,7 @@ fn axes_are_chosen_by_their_keys() {
 }
 
 #[test]
-fn a_pixel_is_blamed_and_one_outside_is_refused() {
+fn a_pixel_is_explained_and_one_outside_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["lab", "--size", "64x64", "--preset", "draft", "--shading", "face"];
     let (out, _) = lab(0, folder.path(), &[&arguments[..], &["--pixel", "0,0"]].concat());

@@ -8,13 +8,14 @@
 
 use marraztu::base::image::{Picture, Size};
 use marraztu::io;
-use marraztu::lab::easel::{Easel as _, Studio};
 use marraztu::lab::error::Error;
-use marraztu::lab::prove::plan::samples::sample;
+use marraztu::lab::picture_source::{PictureSource as _, Studio};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     AccuracyPreset, Command, Filter, Item, MaterialChoice, Scene, Settings, View,
 };
+
+use crate::random_scenes::random_scene;
 
 /// Scenes of the plan's proof: of the first 140 those that show most colours. Left out are scenes in which a
 /// lamp stands in the very surface that it lights, or a cone ends without fading (scene 6): on which side of
@@ -35,7 +36,7 @@ fn studios() -> Vec<(String, Studio)> {
     let (scene, view) = io::default_scene();
     let first = Studio::new(scene, view, SIZE);
     let by_chance = SEEDS.map(|seed| {
-        let it = sample(seed);
+        let it = random_scene(seed);
         (format!("scene {seed}"), Studio::new(it.scene, it.view, SIZE))
     });
     std::iter::once(("the first scene".to_owned(), first)).chain(by_chance).collect()
@@ -46,8 +47,8 @@ fn studios() -> Vec<(String, Studio)> {
 fn apart(ours: &Settings, exact: &Settings) -> (Vec<(String, Error)>, f64) {
     let (mut errors, mut differing, mut bytes) = (Vec::new(), 0.0, 0.0);
     for (name, mut studio) in studios() {
-        let exact = studio.shot(exact);
-        let error = studio.shot(ours).error(&exact);
+        let exact = studio.rendering(exact);
+        let error = studio.rendering(ours).error(&exact);
         let alike = 3.0 * (studio.size().area() - error.coverage) as f64;
         differing += error.differing * alike;
         bytes += alike;

@@ -1,4 +1,4 @@
-//! `marraztu plan` and `marraztu prove`, from outside.
+//! `marraztu plan`, from outside.
 
 use std::process::{Command, Output};
 
@@ -52,20 +52,4 @@ fn every_line_for_machines_has_every_cell() {
     let json = plan(&["--format", "json"]);
     assert_eq!(json.matches('{').count(), csv.lines().count());
     assert_eq!(json.matches('{').count(), json.matches('}').count());
-}
-
-#[test]
-fn proofs_are_listed_tried_and_refused_where_there_is_none() {
-    let (status, out, _) = run(&["prove", "--list"]);
-    assert_eq!(status, Some(0));
-    for name in ["plan", "faint", "absent", "rules", "instructions"] {
-        assert!(out.lines().any(|line| line.split_whitespace().next() == Some(name)), "{out}");
-    }
-    for name in ["plan", "absent"] {
-        let (status, out, err) = run(&["prove", name, "--count", "64"]);
-        assert_eq!(status, Some(0), "{out} {err}");
-    }
-    let (status, _, err) = run(&["prove", "everything"]);
-    assert_eq!(status, Some(1));
-    assert!(err.contains("there is no claim"), "{err}");
 }

@@ -3,9 +3,10 @@
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::cost;
-use marraztu::lab::prove::plan::samples;
 use marraztu::render::{Class, Effect, FramePlan, Renderer, State};
 use marraztu::scene::{Fill, ItemId, LeaveOut, LightKind, Scene, Settings, View};
+
+use crate::random_scenes::random_scene;
 
 const SIZE: Size = Size::new(160, 120);
 
@@ -17,7 +18,7 @@ fn first() -> (Scene, View) {
 #[test]
 fn every_pixel_that_shows_something_is_counted_once_under_surfaces() {
     for seed in 0..300 {
-        let it = samples::sample(seed);
+        let it = random_scene(seed);
         // Lines are counted elsewhere, and on black ground nothing black would be seen.
         let view = View { marks: true, fill: Fill::Filled, ..it.view.clone() };
         let explained = cost::explain((&it.scene, &view, &it.settings, it.size));

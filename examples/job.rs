@@ -1,0 +1,444 @@
+//! One drawing job that other renderers do too, so that they can be compared: a mesh orbited by a
+//! camera, lit by five lights, in one of several modes.
+//!
+//! A frame is measured from the setting of its camera to bytes in memory, planning included, and no two
+//! frames have the same camera. Reading the mesh is not measured.
+//!
+//! ```text
+//! cargo run --release --example job -- --mesh bunny.obj --mode phong
+//! ```
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Parser;
+use cpu_time::ProcessTime;
+use fearless_simd::Level;
+use glam::{DMat4, DVec3};
+use marraztu::base::image::{Picture, Size};
+use marraztu::base::{Shared, color::Color, math};
+use marraztu::io::{self, LoadError, Progress, SaveError};
+use marraztu::lab::instructions;
+use marraztu::lab::statistics::median;
+use marraztu::lab::timing::time;
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{
+    Aim, Attenuation, Camera, CameraId, Command, CommandError, Crease, Fill, Item, Lens, Light,
+    LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model,
+    NONE, Normals, Object, ObjectId, Orbit, Part, Placed, Pose, Samples, Scene, Settings, Sides,
+    SourceCorner, SpotOwner, View, dvec3,
+};
+
+/// Measures one drawing job, in a form that other renderers share.
+#[derive(Debug, Parser)]
+#[command(
+    name = "job",
+    after_help = "\
+Draws a mesh from an orbit, lit by five lights, and prints one line of comma-separated figures:
+R, label, mesh, triangles, mode, size, samples, frames, median and shortest milliseconds a frame,
+processor milliseconds a frame, the same three again, and how many pixels are covered.
+
+Exit status 3: this mode, number of samples or set of instructions is not supported."
+)]
+struct Job {
+    /// The model (.obj)
+    #[arg(long)]
+    mesh: PathBuf,
+    /// How to draw it: flat, gouraud, phong, depth, wire
+    #[arg(long)]
+    mode: String,
+    /// Width and height in pixels; one number for a square
+    #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
+    size: Size,
+    /// Samples per pixel: 1, 4, 16, 64
+    #[arg(long, default_value_t = 1)]
+    msaa: u32,
+    /// The most frames to measure
+    #[arg(long, default_value_t = 200)]
+    frames: usize,
+    /// Frames to draw first, without measuring them
+    #[arg(long, default_value_t = 3)]
+    warm: usize,
+    /// Milliseconds after which measuring stops
+    #[arg(long, default_value_t = 1000.0)]
+    budget: f64,
+    /// Distance of the camera from the origin, at which it looks
+    #[arg(long, default_value_t = 290.0)]
+    dist: f64,
+    /// Look straight at the mesh and hardly turn
+    #[arg(long)]
+    face: bool,
+    /// Leave the mesh where its file has it
+    #[arg(long)]
+    raw: bool,
+    /// Save the first frame's picture: .ppm, .png, .jpg or .webp
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// The label of the line
+    #[arg(long, default_value = "marraztu")]
+    label: String,
+    /// Instructions to draw with: best, avx512, avx2, sse4.2, plain. The picture is the same
+    #[arg(long, value_name = "SET", default_value = "best")]
+    instructions: String,
+    /// Threads that draw [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+/// A picture's size: "800x600", or "800" for a square.
+fn size(text: &str) -> Result<Size, String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=16_384).contains(side));
+    let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
+    let sides = side(width).zip(side(height)).map(|(width, height)| Size::new(width, height));
+    sides.ok_or_else(|| "write width x height, each from 1 to 16384, as 800x600".to_owned())
+}
+
+/// How the mesh is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    /// Lit once a face, with its normal.
+    Flat,
+    /// Lit at vertices.
+    Gouraud,
+    /// Lit at pixels.
+    Phong,
+    /// One colour.
+    Depth,
+    /// Every edge once.
+    Wire,
+}
+
+impl Mode {
+    const ALL: [(&str, Self); 5] = [
+        ("flat", Self::Flat),
+        ("gouraud", Self::Gouraud),
+        ("phong", Self::Phong),
+        ("depth", Self::Depth),
+        ("wire", Self::Wire),
+    ];
+}
+
+/// Why a job is not done.
+#[derive(Debug, thiserror::Error)]
+enum Failure {
+    #[error("{0}")]
+    Unsupported(String),
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    #[error(transparent)]
+    Scene(#[from] CommandError),
+    #[error("standard output: {0}")]
+    Output(#[from] std::io::Error),
+}
+
+fn main() -> ExitCode {
+    let job = Job::parse();
+    // This thread draws with the others: it has nothing else to do.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(job.threads.map_or(0, usize::from));
+    // Fails only if the threads exist already, and nothing has started them.
+    let _ = pool.use_current_thread().build_global();
+    let done = run(&job).and_then(|line| Ok(writeln!(std::io::stdout().lock(), "{line}")?));
+    let Err(failure) = done else { return ExitCode::SUCCESS };
+    let _ = writeln!(std::io::stderr().lock(), "error: {failure}");
+    match failure {
+        Failure::Unsupported(_) => ExitCode::from(3),
+        Failure::Load(_) | Failure::Save(_) | Failure::Scene(_) | Failure::Output(_) => {
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Draws the job's frames, and gives the line that describes them.
+fn run(job: &Job) -> Result<String, Failure> {
+    let (mode, samples, level) = supported(job).map_err(Failure::Unsupported)?;
+    // The job computes its own normals.
+    let options = LoadOptions { crease: Crease::SMOOTH, ..LoadOptions::default() };
+    let model = prepared(&io::load(&job.mesh, &options, &Progress::new())?.model, job.raw);
+    let triangles = model.mesh.triangle_count();
+    let measured = measure(job, level, &stage(job, mode, samples, Shared::new(model))?)?;
+    if let Some(out) = &job.out {
+        io::save_picture(out, &measured.picture)?;
+    }
+    let pixels = measured.picture.pixels().iter();
+    let covered = pixels.filter(|pixel| **pixel != BACKGROUND.opaque()).count();
+    let shortest = measured.frames.iter().copied().reduce(f64::min);
+    let [median, shortest] = [median(&measured.frames), shortest].map(|ms| ms.unwrap_or(f64::NAN));
+    let times = format!("{median:.4},{shortest:.4},{:.4}", measured.processor);
+    let (Size { width, height }, frames) = (job.size, measured.frames.len());
+    let Job { label, msaa, .. } = job;
+    let (mesh, mode) = (job.mesh.display(), &job.mode);
+    Ok(format!(
+        "R,{label},{mesh},{triangles},{mode},{width}x{height},{msaa},{frames},{times},{times},{covered}"
+    ))
+}
+
+/// How a job is drawn; an error says what is not supported.
+fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
+    let Job { mode, msaa, instructions, .. } = job;
+    let found = Mode::ALL.into_iter().find(|(name, _)| name == mode);
+    let (_, mode) = found.ok_or_else(|| {
+        format!("the mode \"{mode}\" is not supported; there are flat, gouraud, phong, depth, wire")
+    })?;
+    let samples = Samples::ALL.into_iter().find(|samples| samples.count() == *msaa);
+    let samples = samples.ok_or_else(|| {
+        format!("{msaa} samples per pixel are not supported; there are 1, 4, 16 and 64")
+    })?;
+    let level = instructions::named(instructions).ok_or_else(|| {
+        format!(
+            "the instructions \"{instructions}\" are unknown, or this processor does not have \
+             them; there are best, avx512, avx2, sse4.2, plain"
+        )
+    })?;
+    Ok((mode, samples, level))
+}
+
+/// What was measured.
+struct Measured {
+    /// The time of each frame in milliseconds.
+    frames: Vec<f64>,
+    /// Milliseconds of all processors together that a frame took on average.
+    processor: f64,
+    /// The first picture.
+    picture: Picture,
+}
+
+/// The colour of pixels that the mesh does not cover.
+const BACKGROUND: Color = Color([26, 26, 31]);
+
+/// A scene, how it is seen and how it is drawn.
+type Stage = (Scene, View, Settings);
+
+fn measure(
+    job: &Job,
+    level: Level,
+    (scene, view, settings): &Stage,
+) -> Result<Measured, CommandError> {
+    let mut renderer = Renderer::new(level);
+    let mut frame = |i: usize| -> Result<f64, CommandError> {
+        let mut scene = scene.clone();
+        let mut changed = Ok(());
+        let elapsed = time(|| {
+            let camera = Item::Camera(CameraId(0), Box::new(camera(job, i, &scene)));
+            changed = Command::Replace(camera).apply(&mut scene).map(drop);
+            renderer.render(&FramePlan::new(&scene, view, settings, job.size));
+        });
+        changed.map(|()| elapsed.as_secs_f64() * 1e3)
+    };
+    for i in 0..job.warm {
+        frame(i + 1)?;
+    }
+    let (begun, processor) = (Instant::now(), ProcessTime::now());
+    let mut frames = Vec::new();
+    while frames.len() < job.frames.max(1) && begun.elapsed().as_secs_f64() * 1e3 < job.budget {
+        frames.push(frame(job.warm + 1 + frames.len())?);
+    }
+    #[expect(clippy::cast_precision_loss, reason = "few frames")]
+    let processor = processor.elapsed().as_secs_f64() * 1e3 / frames.len() as f64;
+    frame(0)?;
+    Ok(Measured { frames, processor, picture: renderer.picture().clone() })
+}
+
+/// The job's mesh: its bounding box centred at the origin, its farthest vertex 100 away, with normals
+/// that are the sums of the face normals around a vertex, weighted by area.
+fn prepared(model: &Model, raw: bool) -> Model {
+    let mesh = &model.mesh;
+    let positions: Vec<DVec3> = mesh.positions().iter().map(|p| dvec3(*p)).collect();
+    let centre = mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
+    let farthest = positions.iter().map(|p| p.distance(centre)).fold(0.0, f64::max);
+    let scale = 100.0 / farthest.max(f64::MIN_POSITIVE);
+    let moved = |p: &DVec3| if raw { *p } else { (*p - centre) * scale };
+    let positions: Vec<DVec3> = positions.iter().map(moved).collect();
+    let mut normals = vec![DVec3::ZERO; positions.len()];
+    let position = |corner: u32| mesh.corners()[corner as usize].position;
+    let corners: Vec<[u32; 3]> =
+        mesh.triangles().iter().map(|triangle| triangle.corners.map(position)).collect();
+    for [a, b, c] in corners.iter().map(|ids| ids.map(|id| id as usize)) {
+        let normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+        for vertex in [a, b, c] {
+            normals[vertex] += normal;
+        }
+    }
+    let narrow = |v: &DVec3| v.as_vec3().to_array();
+    let unit = |v: &DVec3| narrow(&math::unit(*v).unwrap_or(DVec3::Z));
+    let corner = |&position: &u32| SourceCorner { position, uv: NONE, normal: position };
+    let source = MeshSource {
+        positions: positions.iter().map(narrow).collect(),
+        normals: normals.iter().map(unit).collect(),
+        corners: corners.as_flattened().iter().map(corner).collect(),
+        arities: vec![3; corners.len()],
+        polygon_parts: vec![0; corners.len()],
+        parts: vec![Part { name: model.name.clone(), material: None }],
+        ..MeshSource::default()
+    };
+    Model {
+        name: model.name.clone(),
+        source: None,
+        options: model.options,
+        mesh: Mesh::new(source).expect("a mesh's own triangles are a mesh"),
+        materials: Vec::new(),
+        edge_color: None,
+    }
+}
+
+fn stage(
+    job: &Job,
+    mode: Mode,
+    samples: Samples,
+    model: Shared<Model>,
+) -> Result<Stage, CommandError> {
+    let [ambient, diffuse, specular] = match mode {
+        Mode::Depth => [[0.9, 0.8, 0.6], [0.0; 3], [0.0; 3]],
+        Mode::Flat | Mode::Gouraud | Mode::Phong | Mode::Wire => {
+            [[0.8, 0.75, 0.7], [0.8, 0.75, 0.7], [0.5; 3]]
+        }
+    };
+    let material = MaterialChoice::Own(Material { ambient, diffuse, specular, exponent: 32.0 });
+    let mut scene = Scene::with_camera(Camera {
+        name: "camera".to_owned(),
+        visible: true,
+        model: model.clone(),
+        material: material.clone(),
+        pose: Placed::new(Pose::facing_minus_z(DVec3::Z * job.dist)),
+        lens: Lens::default(),
+    });
+    scene.background = BACKGROUND;
+    let mut object = Object::new(model, material);
+    object.edge_color = Color::from_factors([0.9, 0.8, 0.6]);
+    // Edges are drawn whichever way their faces are turned.
+    object.sides = if mode == Mode::Wire { Sides::Two } else { Sides::One };
+    let item = Item::Object(ObjectId(1), Box::new(object));
+    Command::Insert { at: 0, item }.apply(&mut scene)?;
+    for (i, light) in (0..).zip(lights(mode)) {
+        let item = Item::Light(LightId(2 + i), Box::new(light));
+        Command::Insert { at: usize::MAX, item }.apply(&mut scene)?;
+    }
+    let view = View {
+        marks: false,
+        fill: if mode == Mode::Wire { Fill::Edges } else { Fill::Filled },
+        normals: if mode == Mode::Flat { Normals::Face } else { Normals::Vertex },
+        ..scene.first_view()
+    };
+    let light = match mode {
+        Mode::Flat => LightAt::Face,
+        Mode::Gouraud => LightAt::Vertex,
+        Mode::Phong | Mode::Depth | Mode::Wire => LightAt::Pixel,
+    };
+    Ok((scene, view, Settings { light, samples, ..Settings::default() }))
+}
+
+fn lights(mode: Mode) -> Vec<Light> {
+    let ambient = if mode == Mode::Depth { [1.0; 3] } else { [0.15; 3] };
+    let light = |slot, color, kind| Light {
+        color: Color::from_factors(color),
+        attenuation: Attenuation::default(),
+        ..Light::new("light", slot, kind)
+    };
+    // The job's spots do not fade with distance.
+    let steady = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 };
+    let unfading = |slot, color, kind| Light { attenuation: steady, ..light(slot, color, kind) };
+    let spot = |position: DVec3| LightKind::Spot {
+        owner: SpotOwner::Fixed(Placed::new(Aim {
+            position,
+            direction: math::unit(-position).unwrap_or(DVec3::NEG_Z),
+        })),
+        half_aperture: 22.5,
+        exponent: 5.0,
+    };
+    let sun = math::unit(-DVec3::new(0.5, 0.8, 0.6)).unwrap_or(DVec3::NEG_Y);
+    let bulb = Placed::new(DVec3::new(150.0, 120.0, 180.0));
+    vec![
+        light(0, ambient, LightKind::Ambient),
+        light(1, [0.45, 0.43, 0.40], LightKind::Sun { direction: Placed::new(sun) }),
+        light(2, [0.50, 0.45, 0.40], LightKind::Bulb { position: bulb, orbit: Orbit::default() }),
+        unfading(3, [0.50, 0.20, 0.20], spot(DVec3::new(-200.0, 150.0, 150.0))),
+        unfading(4, [0.20, 0.30, 0.60], spot(DVec3::new(100.0, -180.0, 200.0))),
+    ]
+}
+
+/// Camera number `i` of the orbit.
+#[expect(clippy::cast_precision_loss, reason = "few frames")]
+fn camera(job: &Job, i: usize, scene: &Scene) -> Camera {
+    let (yaw, pitch) =
+        if job.face { (0.002 * i as f64, 0.0) } else { (0.6 + 0.02 * i as f64, 0.349_066) };
+    let turn = DMat4::from_mat3(math::rotation(DVec3::Y, yaw) * math::rotation(DVec3::X, -pitch));
+    let eye = turn.transform_point3(DVec3::Z * job.dist);
+    let mut camera = scene.cameras.get(CameraId(0)).expect("a scene always has a camera").clone();
+    let last = camera.pose.now().axes;
+    let axes = math::look_at(eye, DVec3::ZERO, DVec3::Y, last);
+    camera.pose = Placed::new(Pose { axes, ..Pose::facing_minus_z(eye) });
+    camera
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &str = "v 5 5 5\nv 6 5 5\nv 6 6 5\nv 5 6 5\nf 1 2 3 4\n";
+
+    /// Two sides of a tent, one of which is turned away.
+    const TENT: &str = "v -1 0 -1\nv 1 0 -1\nv 0 1 0\nv 0 -1 1\nf 1 3 2\nf 1 4 2\nf 4 3 1\n";
+
+    /// The cells of the line, and the pixels of the picture.
+    fn drawn(
+        threads: usize,
+        model: &str,
+        options: &[&str],
+    ) -> Result<(Vec<String>, Vec<u8>), Failure> {
+        let folder = tempfile::tempdir().unwrap();
+        let [mesh, out] = ["mesh.obj", "drawn.ppm"].map(|name| folder.path().join(name));
+        std::fs::write(&mesh, model).unwrap();
+        let fixed = ["--size", "96x64", "--frames", "1"].map(Into::into);
+        let files = ["--mesh".into(), mesh.into_os_string(), "--out".into(), out.clone().into()];
+        let options = options.iter().map(Into::into);
+        let name = std::iter::once("job".into());
+        let job = Job::try_parse_from(name.chain(fixed).chain(files).chain(options)).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let line = pool.install(|| run(&job))?;
+        let picture = std::fs::read(out).unwrap();
+        let pixels = picture[picture.len() - 96 * 64 * 3..].to_vec();
+        Ok((line.split(',').map(str::to_owned).collect(), pixels))
+    }
+
+    #[test]
+    fn the_line_has_every_cell_and_the_picture_does_not_depend_on_instructions_or_threads() {
+        let square = |threads, options: &[&str]| {
+            let options = [&["--dist", "300"], options].concat();
+            drawn(threads, SQUARE, &options).unwrap()
+        };
+        let (cells, best) = square(2, &["--mode", "phong"]);
+        assert_eq!(cells.len(), 15);
+        assert_eq!(cells[3..8], ["2", "phong", "96x64", "1", "1"]);
+        assert!(cells[14].parse::<u32>().unwrap() > 100, "{cells:?}");
+        assert!(square(3, &["--mode", "phong", "--instructions", "plain"]).1 == best);
+        assert!(square(2, &["--mode", "flat"]).1 != best);
+    }
+
+    #[test]
+    fn edges_have_one_colour_whichever_way_their_faces_are_turned() {
+        let (cells, pixels) = drawn(2, TENT, &["--mode", "wire"]).unwrap();
+        let pixels = pixels.as_chunks::<3>().0;
+        let count = |color| pixels.iter().filter(|pixel| **pixel == color).count();
+        let (edges, background) = (count([230, 204, 153]), count([26, 26, 31]));
+        assert_eq!(edges + background, pixels.len());
+        assert!(edges > 20, "{edges}");
+        assert_eq!(cells[14], edges.to_string());
+    }
+
+    #[test]
+    fn what_is_not_supported_is_told_in_one_sentence() {
+        for (options, sentence) in [
+            (["--mode", "phong", "--msaa", "3"], "3 samples per pixel are not supported"),
+            (["--mode", "phong", "--instructions", "foo"], "instructions \"foo\" are unknown"),
+            (["--mode", "oil", "--msaa", "1"], "mode \"oil\" is not supported"),
+        ] {
+            let Err(Failure::Unsupported(said)) = drawn(1, SQUARE, &options) else {
+                panic!("{options:?} is drawn");
+            };
+            assert!(said.contains(sentence) && said.lines().count() == 1, "{said}");
+        }
+    }
+}

@@ -1,0 +1,357 @@
+//! The arguments of the program, and their help.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+
+use super::accuracy::Accuracy;
+use super::keys::Keys;
+use super::lab::Lab;
+use super::plan::Plan;
+use super::stage::is_standard;
+use super::talk::Talk;
+use super::values::{color, size, threads};
+use super::verify::Verify;
+use marraztu::base::color::Color;
+use marraztu::base::image::Size;
+use marraztu::io::PictureFormat;
+use marraztu::scene::{
+    Crease, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides, Surface,
+    UpAxis, Winding,
+};
+
+/// Edits and draws 3D scenes of .obj models, on the CPU alone.
+///
+/// Without a command the editor opens, with the models and the scene that are named, or with the
+/// first scene.
+#[derive(Debug, Parser)]
+#[command(
+    name = "marraztu",
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "\
+Examples:
+  marraztu                                  open the editor with the first scene
+  marraztu teapot.obj                       open the editor with a model
+  marraztu render teapot.obj                draw a model into teapot.png
+  marraztu render --out first.png           draw the first scene
+  marraztu info teapot.obj                  describe a file, and what is wrong with it
+
+Exit status: 0 on success, 1 if something failed, 2 for invalid arguments."
+)]
+pub(crate) struct Arguments {
+    /// What to do without a window
+    #[command(subcommand)]
+    pub(crate) command: Option<Headless>,
+    /// Models (.obj) and a scene (.marraztu) to open in the editor
+    pub(crate) files: Vec<PathBuf>,
+}
+
+/// What can be done without a window.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Headless {
+    /// Draw a picture into a file: the same pixels that the editor shows
+    Render(Box<Render>),
+    /// Explain which effects a picture uses, which are left out and why, and what they cost
+    Plan(Box<Plan>),
+    /// Describe files: shape, parts, materials, and what is wrong with them
+    Info(Info),
+    /// List every key of the editor
+    Keys(Keys),
+    /// Measure what accuracy costs: time and error of each choice of each axis
+    Lab(Box<Lab>),
+    /// Check that this processor draws the same pictures as every other
+    Verify(Verify),
+}
+
+/// A picture, and the file that it goes to.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Without files the first scene is drawn. A scene is drawn through its own camera; models alone get the
+lights of the first scene and a camera that sees them whole. Options that are not given stay as the
+scene has them; a star marks the choice of the first scene.
+
+\"-\" as a file reads a model or a scene from standard input. Models may be packed (.obj.gz). The
+picture never replaces a file that it is made of, or a file that is no picture.
+
+Examples:
+  marraztu render teapot.obj
+  xz -dc pot.obj.xz | marraztu render - --out - > pot.png
+  marraztu render bunny.obj --out bunny.png --size 1920x1080 --material gold
+  marraztu render room.obj --out room.png --up z --surface texture --filter nearest
+  marraztu render spot.obj --out spot.png --from 145,20
+  marraztu render shelf.marraztu --out shelf.ppm --camera 2 --time 1.5
+  marraztu render ship.obj --out lines.png --edges --projection orthographic --background 0,0,0")]
+pub(crate) struct Render {
+    /// The picture to write: .png, .jpg, .webp or .ppm; "-" writes a PNG to standard output
+    /// [default: the name of the scene or first model with .png, in the current folder]
+    #[arg(short, long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(picture))]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArguments,
+}
+
+/// A picture: what it shows and how it is drawn.
+#[derive(Debug, Args)]
+pub(crate) struct PictureArguments {
+    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) that they are put into; "-" is
+    /// standard input
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Width and height in pixels; one number for a square
+    #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
+    pub(crate) size: Size,
+    /// Threads that read and draw [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<usize>,
+    #[command(flatten)]
+    pub(crate) talk: Talk,
+
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    #[command(flatten)]
+    pub(crate) surfaces: Surfaces,
+    #[command(flatten)]
+    pub(crate) seeing: Seeing,
+    #[command(flatten)]
+    pub(crate) accuracy: Accuracy,
+}
+
+/// How model files are read.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Reading models")]
+pub(crate) struct Reading {
+    /// The axis of the file that points up: x, y*, z, -x, -y, -z. The model is turned, not mirrored
+    #[arg(long, hide_possible_values = true, allow_hyphen_values = true, value_name = "AXIS", value_parser = choice(&UP_AXES))]
+    up: Option<UpAxis>,
+    /// The factor that the file's coordinates are multiplied by
+    #[arg(long, value_name = "FACTOR", value_parser = scale)]
+    scale: Option<Scale>,
+    /// Reverse all polygons, for files whose polygons run clockwise seen from outside
+    #[arg(long)]
+    flip_winding: bool,
+    /// Degrees between faces up to which their edge is smooth, if the file has neither normals nor
+    /// smoothing groups: 60*, 0 for flat faces, 180 to smooth all
+    #[arg(long, value_name = "DEGREES", value_parser = crease)]
+    crease: Option<Crease>,
+}
+
+/// How the surfaces of objects look.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Surfaces, of all objects")]
+pub(crate) struct Surfaces {
+    /// One of the 19 materials (brass, polished-gold, ruby ...), or "file" for the file's own
+    #[arg(long, value_name = "NAME", value_parser = material)]
+    pub(crate) material: Option<MaterialChoice>,
+    /// A picture laid over the objects: PNG, JPEG, WebP, TIFF, BMP, TGA or GIF
+    #[arg(long, value_name = "FILE")]
+    pub(crate) texture: Option<PathBuf>,
+    /// What to show: material, texture (unlit), or both, lit (lit*)
+    #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
+        ("material", Surface::Material),
+        ("texture", Surface::Texture),
+        ("lit", Surface::TextureAndLight),
+    ]))]
+    pub(crate) surface: Option<Surface>,
+    /// Which sides of faces are drawn and lit: one, two, auto* (two of an open surface, one of a closed)
+    #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[
+        ("one", Sides::One),
+        ("two", Sides::Two),
+        ("auto", Sides::Auto),
+    ]))]
+    pub(crate) sides: Option<Sides>,
+    /// Compute normals even if the file has some
+    #[arg(long)]
+    pub(crate) no_file_normals: bool,
+}
+
+/// How the scene is looked at.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Looking at the scene")]
+pub(crate) struct Seeing {
+    /// The camera to look through, by its place in the scene's list, from 1
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) camera: Option<u32>,
+    /// The side that models alone are seen from: degrees to the right, and up (30,20*); "0,0" is the front
+    #[arg(long, value_name = "RIGHT,UP", allow_hyphen_values = true, conflicts_with = "camera", value_parser = side)]
+    pub(crate) from: Option<[f64; 2]>,
+    /// The projection: perspective*, orthographic
+    #[arg(long, hide_possible_values = true, value_name = "HOW", value_parser = choice(&[
+        ("perspective", Projection::Perspective),
+        ("orthographic", Projection::Orthographic),
+    ]))]
+    pub(crate) projection: Option<Projection>,
+    /// The time of the scene in seconds, for objects that turn and lights that circle
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = finite)]
+    pub(crate) time: Option<f64>,
+    /// The slots of the lights that are on, as "0,2"; all others are off. "none" for darkness
+    #[arg(long, value_name = "SLOTS", value_parser = slots)]
+    pub(crate) lights: Option<Slots>,
+    /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name as "white"
+    #[arg(long, value_name = "COLOUR", value_parser = color)]
+    pub(crate) background: Option<Color>,
+    /// The normals that light uses: face, vertex*
+    #[arg(long, hide_possible_values = true, value_name = "WHOSE", value_parser = choice(&[
+        ("face", Normals::Face),
+        ("vertex", Normals::Vertex),
+    ]))]
+    pub(crate) normals: Option<Normals>,
+    /// Draw edges only
+    #[arg(long)]
+    pub(crate) edges: bool,
+    /// Draw edges over filled polygons
+    #[arg(long, conflicts_with = "edges")]
+    pub(crate) edges_over: bool,
+    /// Draw back faces in red
+    #[arg(long)]
+    pub(crate) back_faces: bool,
+    /// Draw the normals of faces
+    #[arg(long)]
+    pub(crate) face_normals: bool,
+    /// Draw the normals of vertices
+    #[arg(long)]
+    pub(crate) vertex_normals: bool,
+    /// The marks of cameras and bulbs: none (the default for models alone), all*
+    #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[("none", false), ("all", true)]))]
+    pub(crate) helpers: Option<bool>,
+}
+
+/// Files to describe.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  marraztu info teapot.obj
+  marraztu info --up z parts/*.obj shelf.marraztu")]
+pub(crate) struct Info {
+    /// Models (.obj, .obj.gz) and scenes (.marraztu); "-" is standard input
+    #[arg(required = true)]
+    pub(crate) files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+}
+
+/// The axes that may point up, by their words.
+const UP_AXES: [(&str, UpAxis); 6] = {
+    let mut axes = [("", UpAxis::Y); 6];
+    let mut i = 0;
+    while i < axes.len() {
+        axes[i] = (UpAxis::ALL[i].word(), UpAxis::ALL[i]);
+        i += 1;
+    }
+    axes
+};
+
+/// The slots of the lights that are on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Slots(pub(crate) BTreeSet<u32>);
+
+impl Reading {
+    /// The options as the reader takes them.
+    pub(crate) fn options(&self) -> LoadOptions {
+        LoadOptions {
+            up: self.up.unwrap_or_default(),
+            scale: self.scale.unwrap_or_default(),
+            winding: if self.flip_winding { Winding::Turned } else { Winding::Kept },
+            crease: self.crease.unwrap_or_default(),
+        }
+    }
+
+    /// Whether anything of it was said.
+    pub(crate) const fn is_said(&self) -> bool {
+        self.up.is_some() || self.scale.is_some() || self.flip_winding || self.crease.is_some()
+    }
+}
+
+/// A parser that lets these words through, and gives what they stand for.
+fn choice<T: Copy + Send + Sync>(
+    table: &'static [(&'static str, T)],
+) -> impl TypedValueParser<Value = T> {
+    // The help names them in the sentence, with a star at the one that the first scene has.
+    PossibleValuesParser::new(table.iter().map(|(word, _)| *word)).map(move |word| {
+        let row = table.iter().find(|(other, _)| *other == word);
+        row.expect("clap lets only words of the table through").1
+    })
+}
+
+/// Refused before anything is drawn, which may take long.
+fn picture(path: PathBuf) -> Result<PathBuf, &'static str> {
+    if is_standard(&path) { Ok(path) } else { PictureFormat::of(&path).map(|_| path) }
+}
+
+fn scale(text: &str) -> Result<Scale, String> {
+    let factor = text.parse().ok().and_then(Scale::new);
+    factor.ok_or_else(|| "a scale is a finite number above 0".to_owned())
+}
+
+fn crease(text: &str) -> Result<Crease, String> {
+    let crease = text.parse().ok().and_then(Crease::new);
+    crease.ok_or_else(|| "a crease angle is a number of degrees from 0 to 180".to_owned())
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| "this is not a finite number".to_owned())
+}
+
+fn side(text: &str) -> Result<[f64; 2], String> {
+    let sides = text.split_once(',').unwrap_or((text, "0"));
+    match (finite(sides.0.trim()), finite(sides.1.trim())) {
+        (Ok(right), Ok(up)) if up.abs() <= 90.0 => Ok([right, up]),
+        _ => Err("write degrees to the right and degrees up, -90 to 90, as 30,15".to_owned()),
+    }
+}
+
+fn slots(text: &str) -> Result<Slots, String> {
+    if text == "none" {
+        return Ok(Slots(BTreeSet::new()));
+    }
+    let slots: Option<BTreeSet<u32>> =
+        text.split(',').map(|part| part.trim().parse().ok()).collect();
+    slots.map(Slots).ok_or_else(|| "write numbers with commas between, or none".to_owned())
+}
+
+fn material(text: &str) -> Result<MaterialChoice, String> {
+    if text.eq_ignore_ascii_case("file") {
+        return Ok(MaterialChoice::File);
+    }
+    PresetId::named(text).map(MaterialChoice::Preset).ok_or_else(|| {
+        let names: Vec<&str> = PresetId::all().map(|id| id.get().name).collect();
+        format!("there are {}, and file", names.join(", "))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_fit_together() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sides_slots_and_factors_are_read_or_refused() {
+        assert_eq!(side("145, -20"), Ok([145.0, -20.0]));
+        assert_eq!(side("-30"), Ok([-30.0, 0.0]));
+        for wrong in ["", "a,b", "1,2,3", "0,91", "0,NaN", "inf,0"] {
+            assert!(side(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(slots("0,2,12"), Ok(Slots([0, 2, 12].into())));
+        assert_eq!(slots("none"), Ok(Slots([].into())));
+        assert!(slots("").is_err() && slots("1;2").is_err());
+        assert!(scale("0").is_err() && scale("inf").is_err() && finite("NaN").is_err());
+    }
+
+    #[test]
+    fn each_of_the_nineteen_materials_can_be_named_as_one_word() {
+        for id in PresetId::all() {
+            let word = id.get().name.replace(' ', "-");
+            assert_eq!(material(&word), Ok(MaterialChoice::Preset(id)));
+        }
+        assert_eq!(material("file"), Ok(MaterialChoice::File));
+        assert!(material("unobtainium").is_err());
+    }
+}

@@ -1,0 +1,229 @@
+//! `marraztu lab`: what accuracy costs in time, without a window.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use marraztu::base::image::Size;
+use marraztu::io;
+use marraztu::lab::attribution::attribute;
+use marraztu::lab::candidates::{Thoroughness, all_axes};
+use marraztu::lab::error::{Measure, amplified};
+use marraztu::lab::pairs::Watch;
+use marraztu::lab::picture_source::{PictureSource, Studio};
+use marraztu::lab::report::{self, Budgets, Report};
+use marraztu::lab::sweep::{Question, sweep};
+use marraztu::lab::timing::WallClock;
+use marraztu::scene::{AXES, Axis, Settings};
+
+use super::accuracy::Accuracy;
+use super::arguments::{Reading, Seeing, Surfaces};
+use super::bar::Bar;
+use super::draw_along;
+use super::failure::Failure;
+use super::render::staged;
+use super::talk::Talk;
+use super::values::{size, threads};
+
+/// What is measured, and what is told.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Times each choice of each axis in turn with the default, and compares its picture with the most exact
+one. --out gets table.txt, table.csv, report.json, scatter.svg, scatter.png, the exact picture, and
+pictures of the error of the chosen settings, amplified 1, 16 and 256 times.
+
+Examples:
+  marraztu lab --quick
+  marraztu lab bunny.obj --out bunny-lab --size 1920x1080
+  marraztu lab shelf.marraztu --axes shading,filter --max-error 1
+  marraztu lab --shading vertex --pixel 215,430")]
+pub(crate) struct Lab {
+    /// Models (.obj), and at most one scene (.marraztu) that they are put into
+    pub(crate) files: Vec<PathBuf>,
+
+    /// The folder for tables, plots and pictures; created if it does not exist
+    #[arg(short, long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Width and height in pixels; one number for a square
+    #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
+    size: Size,
+    /// The axes to measure [default: all]
+    #[arg(long, value_name = "AXIS,...", value_delimiter = ',', value_parser = axis_words())]
+    axes: Vec<String>,
+    /// Measure less often and for less time: some 20 seconds for the first scene
+    #[arg(long)]
+    quick: bool,
+    /// The error metric of budgets and plot: rmse*, largest, differing, flip
+    #[arg(long, value_name = "MEASURE", default_value = "rmse", hide_default_value = true, hide_possible_values = true, value_parser = measure_words())]
+    measure: String,
+    /// Name the fastest choice whose error is at most this
+    #[arg(long, value_name = "ERROR", value_parser = above_zero)]
+    max_error: Option<f64>,
+    /// Name the most exact choice that takes at most this
+    #[arg(long, value_name = "MILLISECONDS", value_parser = above_zero)]
+    budget_ms: Option<f64>,
+    /// Only explain one pixel: which axis its error comes from
+    #[arg(long, value_name = "X,Y", conflicts_with_all = ["quick", "axes", "max_error", "budget_ms", "out"], value_parser = pixel)]
+    pixel: Option<Pixel>,
+    /// Threads that draw [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+    #[command(flatten)]
+    talk: Talk,
+
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    surfaces: Surfaces,
+    #[command(flatten)]
+    seeing: Seeing,
+    #[command(flatten)]
+    accuracy: Accuracy,
+}
+
+/// A column and a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Pixel([usize; 2]);
+
+/// Measures, and tells what was found.
+pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
+    arguments.talk.apply();
+    draw_along(arguments.threads);
+    let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
+    let stage = staged(files, reading, surfaces, seeing, accuracy)?;
+    let settings = stage.settings;
+    let mut studio = Studio::new(stage.scene, stage.view, *size);
+    if let Some(Pixel(at)) = arguments.pixel {
+        return explain_pixel(&mut studio, &settings, at);
+    }
+    let report = measured(arguments, &mut studio, settings)?;
+    print(&report::text(&report))?;
+    match &arguments.out {
+        Some(folder) => save(folder, &report, &mut studio, &settings),
+        None => Ok(()),
+    }
+}
+
+fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<Report, Failure> {
+    let named: Vec<&Axis> = arguments.axes.iter().filter_map(|key| Axis::named(key)).collect();
+    let axes = if named.is_empty() { all_axes() } else { named };
+    let thoroughness = match arguments.quick {
+        true => Thoroughness::QUICK,
+        false => Thoroughness::WHOLE,
+    };
+    let question = Question { current, axes, thoroughness };
+    let watch = Watch::default();
+    let bar = Bar::of("measuring", &watch.progress);
+    let findings = sweep(studio, &question, &mut WallClock::default(), &watch, &mut |_| {})?;
+    drop(bar);
+    let measure = Measure::ALL.into_iter().find(|measure| measure.word() == arguments.measure);
+    Ok(Report {
+        scene: scene_name(&arguments.files),
+        command: command(),
+        measure: measure.unwrap_or_default(),
+        budgets: Budgets { error: arguments.max_error, ms: arguments.budget_ms },
+        findings,
+    })
+}
+
+/// What the files are called: "bunny.obj, pot.obj".
+fn scene_name(files: &[PathBuf]) -> String {
+    let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    match files {
+        [] => "the first scene".to_owned(),
+        files => files.iter().map(name).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// The arguments of this process, as they are typed.
+fn command() -> String {
+    let quoted = |word: String| {
+        let plain = |c: char| c.is_alphanumeric() || "-_./,=:+".contains(c);
+        if !word.is_empty() && word.chars().all(plain) {
+            word
+        } else {
+            format!("'{}'", word.replace('\'', r"'\''"))
+        }
+    };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("marraztu".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Result<(), Failure> {
+    let Some(attribution) = attribute(studio, settings, at) else {
+        let Size { width, height } = studio.size();
+        let [x, y] = at;
+        let outside = format!("the picture has {width} x {height} pixels: there is no {x},{y}");
+        return Err(Failure::Absent(outside));
+    };
+    studio.draw(settings);
+    let seen = match studio.seen(at) {
+        Some((name, polygon)) => format!("  shows  polygon {polygon} of {name}"),
+        None => "  shows  the background".to_owned(),
+    };
+    let mut lines = attribution.lines();
+    lines.insert(1, seen);
+    print(&(lines.join("\n") + "\n"))
+}
+
+fn print(text: &str) -> Result<(), Failure> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        // Whoever read it has had enough, as `head` does.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(Failure::Output),
+    }
+}
+
+/// Writes everything into the folder.
+fn save(
+    folder: &Path,
+    report: &Report,
+    studio: &mut Studio,
+    settings: &Settings,
+) -> Result<(), Failure> {
+    let fail = |path: &Path| {
+        let path = path.to_owned();
+        |error| Failure::Write(path, error)
+    };
+    std::fs::create_dir_all(folder).map_err(fail(folder))?;
+    let write = |name: &str, text: String| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(fail(&path))
+    };
+    write("table.txt", report::text(report))?;
+    write("table.csv", report::csv(report))?;
+    write("report.json", report.json())?;
+    write("scatter.svg", report::svg(report)?)?;
+    io::save_picture(&folder.join("scatter.png"), &report::png(report)?)?;
+    studio.draw(&settings.reference());
+    let exact = studio.picture().clone();
+    io::save_picture(&folder.join("exact.png"), &exact)?;
+    studio.draw(settings);
+    for factor in [1, 16, 256] {
+        let error = amplified(studio.picture(), &exact, factor);
+        io::save_picture(&folder.join(format!("error-x{factor}.png")), &error)?;
+    }
+    Ok(())
+}
+
+fn axis_words() -> PossibleValuesParser {
+    PossibleValuesParser::new(AXES.iter().map(|axis| axis.key))
+}
+
+fn measure_words() -> PossibleValuesParser {
+    PossibleValuesParser::new(Measure::ALL.map(Measure::word))
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
+    number.ok_or_else(|| "write a number, 0 or more".to_owned())
+}
+
+fn pixel(text: &str) -> Result<Pixel, String> {
+    let parts = text.split_once(',').map(|(x, y)| (x.trim().parse(), y.trim().parse()));
+    match parts {
+        Some((Ok(x), Ok(y))) => Ok(Pixel([x, y])),
+        _ => Err("write column,row, counted from the upper left from 0, as 120,80".to_owned()),
+    }
+}

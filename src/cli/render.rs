@@ -1,0 +1,185 @@
+//! `marraztu render`: a picture into a file.
+
+use std::path::PathBuf;
+
+use marraztu::base::image::Size;
+use marraztu::edit::{frame, items};
+use marraztu::io::{self, Progress};
+use marraztu::render::{FramePlan, Renderer, Unseen, unseen};
+use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
+
+use super::accuracy::Accuracy;
+use super::arguments::{PictureArguments, Reading, Render, Seeing, Slots, Surfaces};
+use super::bar::Bar;
+use super::draw_along;
+use super::failure::Failure;
+use super::stage::{Stage, usage};
+use super::talk::note;
+use super::target::Target;
+
+/// Draws the picture that the arguments describe.
+pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
+    let target = Target::of(arguments)?;
+    let stage = stage(&arguments.picture)?;
+    target.spare_inputs(&inputs(&arguments.picture), &stage)?;
+    let progress = Progress::new();
+    let bar = Bar::of("drawing", &progress);
+    for (_, object) in stage.scene.objects.iter() {
+        object.model.mesh.draw_as_filed();
+    }
+    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.picture.size);
+    let mut renderer = Renderer::default();
+    renderer.render_watched(&plan, &|done, all| {
+        // Nothing cancels this.
+        let _ = progress.reached(done, all);
+    });
+    drop(bar);
+    tell_unseen(&mut renderer, &stage, arguments.picture.size);
+    target.write(renderer.picture())?;
+    if let (None, Target::File(path)) = (&arguments.out, &target) {
+        note(&format_args!("the picture is in {}", path.display()));
+    }
+    // With this the process ends: to take a million vertices out of memory before only takes time.
+    std::mem::forget((stage, plan, renderer));
+    Ok(())
+}
+
+/// Notes why nothing of some objects is seen: a line for each reason.
+fn tell_unseen(renderer: &mut Renderer, stage: &Stage, size: Size) {
+    let Stage { scene, view, settings, .. } = stage;
+    let mut reasons: Vec<(Unseen, Vec<&str>)> = Vec::new();
+    for (id, reason) in unseen(renderer, scene, view, settings, size) {
+        let name = scene.objects.get(id).map_or("", |object| &*object.name);
+        match reasons.iter_mut().find(|(other, _)| *other == reason) {
+            Some((_, names)) => names.push(name),
+            None => reasons.push((reason, vec![name])),
+        }
+    }
+    for (reason, names) in &reasons {
+        let remedy = match reason {
+            Unseen::TurnedAway { .. } => ": --sides two draws both sides",
+            _ => "",
+        };
+        let others = match names.len() {
+            1 => String::new(),
+            2 => " and of 1 other object".to_owned(),
+            n => format!(" and of {} other objects", n - 1),
+        };
+        note(&format_args!("nothing is seen of {}{others}: {reason}{remedy}", names[0]));
+    }
+}
+
+/// All files that are named as something to read.
+fn inputs(picture: &PictureArguments) -> Vec<PathBuf> {
+    picture.files.iter().chain(&picture.surfaces.texture).cloned().collect()
+}
+
+/// Reads the files and arranges everything as it is asked for. What was found in the files is told.
+pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
+    let PictureArguments { files, reading, surfaces, seeing, accuracy, talk, threads, .. } =
+        picture;
+    talk.apply();
+    if threads.is_some() {
+        draw_along(*threads);
+    }
+    staged(files, reading, surfaces, seeing, accuracy)
+}
+
+/// The scene of these files, as it is to be seen and drawn.
+pub(crate) fn staged(
+    files: &[PathBuf],
+    reading: &Reading,
+    surfaces: &Surfaces,
+    seeing: &Seeing,
+    accuracy: &Accuracy,
+) -> Result<Stage, Failure> {
+    let mut stage = Stage::of(files, reading)?;
+    cover(&mut stage, surfaces)?;
+    for finding in &stage.findings {
+        note(finding);
+    }
+    look(&mut stage, seeing)?;
+    stage.settings = accuracy.of(&stage.settings);
+    Ok(stage)
+}
+
+/// Gives all objects the surface that is asked for.
+fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
+    let mut load = |path| io::load_texture_with(path, &mut stage.findings);
+    let texture = surfaces.texture.as_deref().map(&mut load).transpose()?;
+    let change = |object: &mut Object| {
+        if let Some(material) = &surfaces.material {
+            object.material = material.clone();
+        }
+        if texture.is_some() {
+            object.texture.clone_from(&texture);
+        }
+        object.surface = surfaces.surface.unwrap_or(object.surface);
+        object.sides = surfaces.sides.unwrap_or(object.sides);
+        object.file_normals &= !surfaces.no_file_normals;
+    };
+    stage.change(items::change_all_objects(&stage.scene, change))
+}
+
+/// Looks at the scene as it is asked for.
+fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
+    if let Some(Slots(slots)) = &seeing.lights {
+        light(stage, slots)?;
+    }
+    if let Some(background) = seeing.background {
+        stage.change(Command::Background(background))?;
+    }
+    let view = &mut stage.view;
+    view.projection = seeing.projection.unwrap_or(view.projection);
+    view.normals = seeing.normals.unwrap_or(view.normals);
+    view.time = seeing.time.unwrap_or(view.time);
+    if seeing.edges {
+        view.fill = Fill::Edges;
+    }
+    view.edges_over_fill |= seeing.edges_over;
+    view.back_faces |= seeing.back_faces;
+    view.face_normals |= seeing.face_normals;
+    view.vertex_normals |= seeing.vertex_normals;
+    view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
+    if seeing.from.is_some() && !stage.models_alone {
+        return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
+    }
+    match seeing.camera {
+        Some(number) => stage.view.camera = camera(stage, number)?,
+        None if stage.models_alone => {
+            let from = seeing.from.unwrap_or(frame::MODELS_FROM);
+            match frame::models(&stage.scene, &stage.view, from) {
+                Ok(command) => stage.change(command)?,
+                Err(refusal) => note(&refusal),
+            }
+        }
+        None => {}
+    }
+    Ok(())
+}
+
+/// Puts the lights in these slots on, and all others out.
+fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(), Failure> {
+    let lights: Vec<_> =
+        stage.scene.lights.iter().map(|(id, light)| (id, light.slot, light.on)).collect();
+    let has = |slot: &u32| lights.iter().any(|(_, other, _)| other == slot);
+    if let Some(empty) = slots.iter().find(|slot| !has(slot)) {
+        return Err(Failure::Absent(format!("the scene has no light in slot {empty}")));
+    }
+    for (id, slot, on) in lights {
+        if on != slots.contains(&slot) {
+            stage.change(items::toggle_shown(&stage.scene, ItemId::Light(id))?)?;
+        }
+    }
+    Ok(())
+}
+
+/// The camera at this place of the list, counted from 1.
+fn camera(stage: &Stage, number: u32) -> Result<CameraId, Failure> {
+    let index = usize::try_from(number).unwrap_or(usize::MAX) - 1;
+    stage.scene.cameras.ids().nth(index).ok_or_else(|| {
+        let count = stage.scene.cameras.len();
+        let cameras = if count == 1 { "camera" } else { "cameras" };
+        Failure::Absent(format!("the scene has {count} {cameras}: there is no camera {number}"))
+    })
+}

@@ -1,0 +1,124 @@
+//! Where a picture goes: a file, whose name may follow from the files that are drawn, or standard
+//! output.
+
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use marraztu::base::image::Picture;
+use marraztu::io::{self, PictureFormat};
+use marraztu::scene::Scene;
+
+use super::arguments::Render;
+use super::failure::Failure;
+use super::stage::{Stage, is_scene, is_standard, usage};
+
+/// What the picture is called if no file gives it a name.
+const UNNAMED: &str = "scene";
+
+/// Where a picture goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    /// Into a file.
+    File(PathBuf),
+    /// To standard output, as PNG.
+    Output,
+}
+
+impl Target {
+    /// What the arguments ask for, checked before anything is read or drawn.
+    pub(super) fn of(arguments: &Render) -> Result<Self, Failure> {
+        let target = match &arguments.out {
+            Some(out) if is_standard(out) => Self::Output,
+            Some(out) => Self::File(out.clone()),
+            None => Self::File(default_name(&arguments.picture.files)),
+        };
+        match &target {
+            Self::Output if std::io::stdout().is_terminal() => Err(usage(
+                "standard output is a terminal: send it to a file or another program, as in \
+                 `marraztu render --out - > picture.png`",
+            )),
+            Self::Output => Ok(target),
+            Self::File(path) => {
+                io::check_picture_target(path)?;
+                Ok(target)
+            }
+        }
+    }
+
+    /// Refuses to replace a file that the picture is made of.
+    pub(super) fn spare_inputs(&self, files: &[PathBuf], stage: &Stage) -> Result<(), Failure> {
+        let Self::File(target) = self else { return Ok(()) };
+        // A file that is not there yet was not read.
+        let Ok(place) = target.canonicalize() else { return Ok(()) };
+        let is_target = |input: &Path| input.canonicalize().is_ok_and(|input| input == place);
+        let textures = textures(&stage.scene);
+        match files.iter().map(PathBuf::as_path).chain(textures).find(|input| is_target(input)) {
+            None => Ok(()),
+            Some(input) => Err(Failure::Absent(format!(
+                "{} is read for this picture and would be replaced by it; choose another name \
+                 with --out",
+                input.display()
+            ))),
+        }
+    }
+
+    /// Writes the picture.
+    pub(super) fn write(&self, picture: &Picture) -> Result<(), Failure> {
+        match self {
+            Self::File(path) => Ok(io::save_picture(path, picture)?),
+            Self::Output => {
+                let bytes = PictureFormat::Png.encode(picture).map_err(Failure::Absent)?;
+                match std::io::stdout().lock().write_all(&bytes) {
+                    // Whoever read it has had enough, as `head` does.
+                    Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+                    written => written.map_err(Failure::Output),
+                }
+            }
+        }
+    }
+}
+
+/// Of the scene, or of the first model, the name with .png, in the current folder.
+fn default_name(files: &[PathBuf]) -> PathBuf {
+    let named = || files.iter().filter(|file| !is_standard(file));
+    let file = named().find(|file| is_scene(file)).or_else(|| named().next());
+    let name = file.and_then(|file| file.file_name()).map(Path::new);
+    let stem = name.and_then(|name| match name.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("gz") => {
+            Path::new(name.file_stem()?).file_stem()
+        }
+        _ => name.file_stem(),
+    });
+    let mut name = stem.unwrap_or(UNNAMED.as_ref()).to_owned();
+    name.push(".png");
+    PathBuf::from(name)
+}
+
+/// The files of all textures of a scene, each once for each object that shows it.
+fn textures(scene: &Scene) -> impl Iterator<Item = &Path> {
+    scene.objects.iter().flat_map(|(_, object)| {
+        let own = object.model.materials.iter().filter_map(|material| material.texture.as_ref());
+        own.chain(&object.texture).map(|texture| texture.source.as_path())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_is_named_after_the_scene_or_the_first_model() {
+        for (files, name) in [
+            (&["models/teapot.obj"][..], "teapot.png"),
+            (&["models/teapot.obj.gz", "b.obj"], "teapot.png"),
+            (&["a.obj", "../shelf.marraztu"], "shelf.png"),
+            (&["-", "b.obj"], "b.png"),
+            (&["-"], "scene.png"),
+            (&[], "scene.png"),
+            (&["no.ending.here"], "no.ending.png"),
+        ] {
+            let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
+            assert_eq!(default_name(&files), Path::new(name), "{files:?}");
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! `marraztu verify`: whether this processor draws the listed pictures.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use clap::Args;
+use fearless_simd::Level;
+use marraztu::io::Progress;
+use marraztu::lab::instructions::{levels, name_of, named};
+use marraztu::lab::pictures::{self, TestPicture};
+
+use super::bar::Bar;
+use super::failure::Failure;
+use super::values::threads;
+
+/// With which instructions and threads the pictures are drawn.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Draws small pictures of every kind and compares them with the list that all processors have to draw.
+Prints a line for each picture that differs.
+
+Examples:
+  marraztu verify                               every set of instructions of this processor
+  marraztu verify --instructions plain --threads 1
+  marraztu verify --print                       the list, as tests/pictures.sums holds it
+
+Exit status 1: a picture differs.")]
+pub(crate) struct Verify {
+    /// The set of instructions: best, avx512, avx2, sse4.2, plain [default: all of this processor]
+    #[arg(long, value_name = "SET", value_parser = level)]
+    instructions: Option<Level>,
+    /// Threads that draw [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+    /// Print the sums instead of comparing them
+    #[arg(long)]
+    print: bool,
+}
+
+fn level(name: &str) -> Result<Level, &'static str> {
+    named(name).ok_or(
+        "unknown, or not a set of this processor; there are best, avx512, avx2, sse4.2, plain",
+    )
+}
+
+/// Draws the pictures, and compares or prints their sums.
+pub(crate) fn verify(arguments: &Verify) -> Result<(), Failure> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = arguments.threads.unwrap_or(all);
+    let levels = arguments.instructions.map_or_else(levels, |level| vec![level]);
+    let (text, differing) = if arguments.print {
+        list(&levels, threads)
+    } else {
+        comparison(&levels, threads, &pictures::listed())
+    };
+    std::io::stdout().lock().write_all(text.as_bytes()).map_err(Failure::Output)?;
+    if differing > 0 { Err(Failure::Told) } else { Ok(()) }
+}
+
+/// Goes through the pictures, with a bar.
+fn each(mut visit: impl FnMut(&TestPicture)) {
+    let (pictures, progress) = (pictures::all(), Progress::new());
+    let _bar = Bar::of("drawing", &progress);
+    for (i, picture) in pictures.iter().enumerate() {
+        // Nothing cancels this.
+        let _ = progress.reached(i, pictures.len());
+        visit(picture);
+    }
+}
+
+/// The sums as the list holds them, and the number of those that depend on the instructions.
+fn list(levels: &[Level], threads: usize) -> (String, usize) {
+    let mut text = "# What `marraztu verify --print` prints, on every processor.\n".to_owned();
+    let mut differing = 0;
+    each(|picture| {
+        let mut first = None;
+        for level in levels {
+            let sum = picture.sum(*level, threads);
+            let expected = *first.get_or_insert(sum);
+            // Writing to a text cannot fail.
+            if sum != expected {
+                differing += 1;
+                let _ = writeln!(text, "# with {}: {sum:016x}", name_of(*level));
+            }
+        }
+        let _ = writeln!(text, "{:016x}  {}", first.unwrap_or_default(), picture.name);
+    });
+    (text, differing)
+}
+
+/// A line for each picture that differs and a summary, with the number of differences.
+fn comparison(levels: &[Level], threads: usize, listed: &[(&str, u64)]) -> (String, usize) {
+    let (mut text, mut alike, mut differing) = (String::new(), 0, 0);
+    let mut missing: BTreeMap<&str, u64> = listed.iter().copied().collect();
+    each(|picture| {
+        let expected = missing.remove(&*picture.name);
+        for level in levels {
+            let sum = picture.sum(*level, threads);
+            let wrong = match expected {
+                Some(expected) if expected == sum => {
+                    alike += 1;
+                    continue;
+                }
+                Some(expected) => format!("{sum:016x} instead of {expected:016x}"),
+                None => format!("{sum:016x}, but it is not listed"),
+            };
+            differing += 1;
+            let _ = writeln!(text, "{}: {wrong}, with {}", picture.name, name_of(*level));
+        }
+    });
+    for name in missing.keys() {
+        let _ = writeln!(text, "{name}: it is listed, but there is no such picture");
+    }
+    differing += missing.len();
+    let names: Vec<String> = levels.iter().map(|level| name_of(*level)).collect();
+    let all = alike + differing;
+    let names = names.join(", ");
+    let _ = writeln!(text, "{alike} of {all} pictures are as listed ({names}; {threads} threads)");
+    (text, differing)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_with_another_sum_or_without_one_is_told_and_counted() {
+        let best = [Level::new()];
+        let listed = pictures::listed();
+        let (text, differing) = comparison(&best, 2, &listed);
+        assert_eq!((text.lines().count(), differing), (1, 0), "{text}");
+        let mut wrong = listed.clone();
+        wrong[3].1 ^= 1;
+        let dropped = wrong.remove(0).0;
+        let (text, differing) = comparison(&best, 2, &wrong);
+        assert_eq!((text.lines().count(), differing), (3, 2), "{text}");
+        assert!(
+            text.contains(&format!("{}: ", wrong[2].0)) && text.contains("instead of"),
+            "{text}"
+        );
+        assert!(text.contains(&format!("{dropped}: ")) && text.contains("not listed"), "{text}");
+        let more = [listed.as_slice(), &[("a picture that is gone", 1)]].concat();
+        assert_eq!(comparison(&best, 2, &more).1, 1);
+    }
+
+    #[test]
+    fn the_printed_list_is_the_list() {
+        let rows: Vec<String> =
+            pictures::listed().iter().map(|(name, sum)| format!("{sum:016x}  {name}")).collect();
+        let (printed, differing) = list(&levels(), 2);
+        assert_eq!(differing, 0);
+        assert_eq!(printed.lines().skip(1).collect::<Vec<_>>(), rows);
+    }
+}

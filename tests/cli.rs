@@ -1,0 +1,511 @@
+//! The program from outside: arguments, files, exit status.
+
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use marraztu::base::image::{Picture, Size};
+use marraztu::base::math::Axis;
+use marraztu::edit::{lights, motion};
+use marraztu::io;
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{Projection, Scene, Settings};
+use tempfile::TempDir;
+
+/// A square of one unit on a side, its corners counter-clockwise seen from +Z, far from the origin.
+const SQUARE: &str = "v 5 5 5\nv 6 5 5\nv 6 6 5\nv 5 6 5\nf 1 2 3 4\n";
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_marraztu"));
+    command.current_dir(folder).args(arguments).stdin(Stdio::null());
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(display);
+    }
+    command.output().unwrap()
+}
+
+/// Standard output and standard error of a run that ends with `status`.
+#[track_caller]
+fn ends_with(status: i32, folder: &Path, arguments: &[&str]) -> (String, String) {
+    let output = run(folder, arguments);
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let (out, err) = (text(output.stdout), text(output.stderr));
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}\n{out}\n{err}");
+    assert!(!err.contains("panicked"), "{err}");
+    (out, err)
+}
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("square.obj"), SQUARE).unwrap();
+    folder
+}
+
+/// The picture that `render` draws with these arguments and a small size.
+#[track_caller]
+fn drawn(folder: &Path, arguments: &[&str]) -> Picture {
+    let mut all = vec!["render", "--out", "drawn.png", "--size", "160x120"];
+    all.extend(arguments);
+    let (out, _) = ends_with(0, folder, &all);
+    assert_eq!(out, "");
+    io::load_picture(&folder.join("drawn.png")).unwrap()
+}
+
+fn in_the_house(settings: &Settings, size: Size) -> Picture {
+    let (scene, view) = io::default_scene();
+    Renderer::default().render(&FramePlan::new(&scene, &view, settings, size)).clone()
+}
+
+#[test]
+fn help_says_what_there_is_and_version_which() {
+    let folder = folder();
+    let (out, _) = ends_with(0, folder.path(), &["--help"]);
+    for word in ["render", "info", "Examples:", "Exit status:", ".marraztu"] {
+        assert!(out.contains(word), "{word}");
+    }
+    let (out, _) = ends_with(0, folder.path(), &["render", "--help"]);
+    let options = [
+        "out",
+        "size",
+        "material",
+        "sides",
+        "projection",
+        "shading",
+        "normals",
+        "edges",
+        "edges-over",
+        "lights",
+        "up",
+        "scale",
+        "flip-winding",
+        "crease",
+        "texture",
+        "camera",
+        "from",
+        "time",
+        "helpers",
+        "arithmetic",
+        "filter",
+        "specular",
+        "background",
+        "surface",
+        "back-faces",
+        "face-normals",
+        "vertex-normals",
+        "no-file-normals",
+    ];
+    for option in options {
+        assert!(out.contains(&format!("--{option} ")) || out.contains(&format!("--{option}\n")));
+    }
+    let (out, _) = ends_with(0, folder.path(), &["--version"]);
+    assert_eq!(out, format!("marraztu {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn the_first_scene_is_drawn_as_the_renderer_draws_it_in_both_formats() {
+    let folder = folder();
+    let expected = in_the_house(&Settings::default(), Size::new(160, 120));
+    assert!(drawn(folder.path(), &[]) == expected);
+
+    ends_with(0, folder.path(), &["render", "--out", "a.ppm", "--size", "160x120"]);
+    let ppm = std::fs::read(folder.path().join("a.ppm")).unwrap();
+    let pixels = expected.pixels().iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
+    assert!(ppm == b"P6\n160 120\n255\n".iter().copied().chain(pixels).collect::<Vec<u8>>());
+
+    ends_with(0, folder.path(), &["render", "-o", "b.png"]);
+    let size = io::load_picture(&folder.path().join("b.png")).unwrap().size();
+    assert_eq!(size, Size::new(800, 800));
+}
+
+#[test]
+fn every_option_of_looking_changes_the_picture() {
+    let folder = folder();
+    let plain = drawn(folder.path(), &[]);
+    let changes: &[&[&str]] = &[
+        &["--material", "polished-gold"],
+        &["--projection", "orthographic"],
+        &["--shading", "face"],
+        &["--shading", "vertex"],
+        &["--normals", "face"],
+        &["--edges"],
+        &["--edges-over"],
+        &["--lights", "0,2"],
+        &["--lights", "none"],
+        &["--helpers", "none"],
+        &["--specular", "half-vector"],
+        &["--background", "10,20,30"],
+        &["--face-normals"],
+        &["--vertex-normals"],
+    ];
+    for change in changes {
+        // Not `assert_ne`: nobody wants to read two pictures in numbers.
+        assert!(drawn(folder.path(), change) != plain, "{change:?} changes nothing");
+    }
+    let settings = Settings { arithmetic: marraztu::scene::Arithmetic::F64, ..Settings::default() };
+    let exact = drawn(folder.path(), &["--arithmetic", "f64"]);
+    assert!(exact == in_the_house(&settings, Size::new(160, 120)));
+}
+
+#[test]
+fn models_alone_are_seen_whole_and_in_the_middle() {
+    let folder = folder();
+    let blue = [0, 0, 179, 255];
+    for how in
+        [&["square.obj"][..], &["square.obj", "--scale", "1000"], &["square.obj", "square.obj"]]
+    {
+        let picture = drawn(folder.path(), how);
+        assert_ne!(picture.pixel(80, 60), blue, "{how:?}");
+        for x in 0..160 {
+            assert_eq!([picture.pixel(x, 0), picture.pixel(x, 119)], [blue, blue], "{how:?}");
+        }
+    }
+    let through_the_camera = drawn(folder.path(), &["square.obj", "--camera", "1"]);
+    assert_eq!(through_the_camera.pixel(80, 60), blue, "the square is at (5, 5), and small");
+    let marks = ["square.obj", "--camera", "1", "--helpers", "all"];
+    assert_eq!(drawn(folder.path(), &marks).pixel(80, 60), [255, 255, 0, 255], "the bulb");
+    let one = ["square.obj", "--flip-winding", "--sides", "one"];
+    assert_eq!(drawn(folder.path(), &one).pixel(80, 60), blue, "its back is not drawn");
+    let red = drawn(folder.path(), &[&one[..], &["--back-faces"]].concat());
+    assert_eq!(red.pixel(80, 60), [255, 0, 0, 255]);
+    let upright = drawn(folder.path(), &["square.obj", "--up", "z", "--from", "0,0"]);
+    assert_eq!(upright.pixel(80, 60), blue, "it lies, and is seen from its edge");
+    let upright = drawn(folder.path(), &["square.obj", "--up", "z"]);
+    assert_ne!(upright.pixel(80, 60), blue, "from above it is seen");
+}
+
+#[test]
+fn models_alone_are_seen_from_the_right_and_above() {
+    let folder = folder();
+    let picture = drawn(folder.path(), &["square.obj"]);
+    assert!(picture == drawn(folder.path(), &["square.obj", "--from", "30,20"]));
+    assert!(picture != drawn(folder.path(), &["square.obj", "--from", "0,0"]));
+}
+
+#[test]
+fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
+    let folder = folder();
+    let back = |sides| {
+        let all = ["square.obj", "--from", "180,0", "--lights", "0", "--sides", sides];
+        drawn(folder.path(), &all)
+    };
+    let blue = [0, 0, 179, 255];
+    assert_eq!(back("one").pixel(80, 60), blue);
+    assert_ne!(back("two").pixel(80, 60), blue);
+    assert!(back("auto") == back("two"));
+    assert!(
+        drawn(folder.path(), &["square.obj", "--from", "180,0", "--lights", "0"]) == back("two")
+    );
+    // A closed surface inside out shows its far inner side from one side, its outside from two.
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
+    std::fs::write(folder.path().join("inside_out.obj"), text).unwrap();
+    let closed = |sides| drawn(folder.path(), &["inside_out.obj", "--sides", sides]);
+    assert!(closed("auto") == closed("one"));
+    assert!(closed("two") != closed("one"));
+}
+
+/// What `render` notes on standard error.
+fn notes(folder: &Path, arguments: &[&str]) -> String {
+    let all = [&["render", "--out", "x.png", "--size", "160x120"], arguments].concat();
+    ends_with(0, folder, &all).1
+}
+
+#[test]
+fn a_picture_that_shows_nothing_of_an_object_says_why() {
+    let folder = folder();
+    let path = folder.path();
+    assert_eq!(notes(path, &["square.obj"]), "");
+    assert_eq!(notes(path, &[]), "", "all of the first scene is seen");
+    let err = notes(path, &["square.obj", "--from", "180,0", "--sides", "one"]);
+    assert!(
+        err.contains("nothing is seen of square: its only face is turned away: --sides two"),
+        "{err}"
+    );
+    let err = notes(path, &["square.obj", "--from", "90,0"]);
+    assert!(
+        err.contains("nothing is seen of square: it is smaller than a pixel, or seen edge-on"),
+        "{err}"
+    );
+    let err = notes(path, &["square.obj", "--camera", "1", "--scale", "1e9"]);
+    assert!(err.contains("nothing is seen of square: outside the view"), "{err}");
+
+    std::fs::write(path.join("two.obj"), format!("{SQUARE}f 2 3 4\n").replace(" 5\n", " 4\n"))
+        .unwrap();
+    let err = notes(path, &["square.obj", "two.obj", "--from", "180,0", "--sides", "one"]);
+    assert!(
+        err.contains("of square: its only face") && err.contains("of two: all 2 faces"),
+        "{err}"
+    );
+    let err = notes(path, &["square.obj", "two.obj", "--from", "180,0"]);
+    assert!(err.contains("nothing is seen of square: it is behind other objects"), "{err}");
+    let err = notes(path, &["square.obj", "square.obj", "--from", "180,0", "--sides", "one"]);
+    assert!(err.contains("and of 1 other object:"), "{err}");
+
+    std::fs::write(
+        path.join("clear.mtl"),
+        "newmtl clear\nKd 1 1 1\nd 0.2\nnewmtl solid\nKd 1 1 1\n",
+    )
+    .unwrap();
+    let clear = format!("mtllib clear.mtl\n{}", SQUARE.replace("f 1", "usemtl clear\nf 1"));
+    std::fs::write(path.join("clear.obj"), clear).unwrap();
+    let err = notes(path, &["clear.obj"]);
+    assert!(err.contains("nothing is seen of clear: it is transparent"), "{err}");
+}
+
+#[test]
+fn a_texture_given_by_hand_covers_the_model_and_is_filtered_as_asked() {
+    let folder = folder();
+    let text = SQUARE.replace("f 1 2 3 4", "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4");
+    std::fs::write(folder.path().join("square.obj"), text).unwrap();
+    let texels = vec![[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 0, 255]];
+    let texture = Picture::from_pixels(Size::new(2, 2), texels).unwrap();
+    io::save_picture(&folder.path().join("t.png"), &texture).unwrap();
+    let base = ["square.obj", "--texture", "t.png", "--surface", "texture", "--filter"];
+    let nearest = drawn(folder.path(), &[&base[..], &["nearest"]].concat());
+    let corners = [[70, 50], [90, 50], [70, 70], [90, 70]].map(|[x, y]| nearest.pixel(x, y));
+    assert_eq!(corners.as_slice(), texture.pixels());
+    assert!(drawn(folder.path(), &[&base[..], &["bilinear"]].concat()) != nearest);
+}
+
+#[test]
+fn a_scene_is_drawn_as_it_was_saved_and_models_go_into_it() {
+    let folder = folder();
+    let (scene, mut view) = io::default_scene();
+    view.projection = Projection::Orthographic;
+    let settings = Settings { light: marraztu::scene::LightAt::Face, ..Settings::default() };
+    io::save(&folder.path().join("s.marraztu"), &scene, &view, &settings).unwrap();
+    let plan = FramePlan::new(&scene, &view, &settings, Size::new(160, 120));
+    let expected = Renderer::default().render(&plan).clone();
+    assert!(drawn(folder.path(), &["s.marraztu"]) == expected);
+    let with_more = drawn(folder.path(), &["s.marraztu", "square.obj", "--scale", "20"]);
+    assert!(with_more != expected);
+
+    let (out, _) = ends_with(0, folder.path(), &["info", "s.marraztu"]);
+    for line in ["* r_falke: ", "  x_wing: ", "* 1 sun: on, (255, 255, 255)", "lights"] {
+        assert!(out.lines().any(|l| l.starts_with(line)), "{line}\n{out}");
+    }
+    let (_, err) = ends_with(2, folder.path(), &["render", "-oa.png", "s.marraztu", "s.marraztu"]);
+    assert!(err.contains("only one scene"), "{err}");
+}
+
+#[test]
+fn the_named_lights_shine_and_no_others_whatever_the_scene_says() {
+    let folder = folder();
+    let (mut scene, view) = io::default_scene();
+    let toggle = |scene: &mut Scene, slot| {
+        lights::toggle_slot(scene, slot).unwrap().apply(scene).unwrap();
+    };
+    toggle(&mut scene, 1);
+    io::save(&folder.path().join("s.marraztu"), &scene, &view, &Settings::default()).unwrap();
+    for slot in [0, 1, 2, 4] {
+        toggle(&mut scene, slot);
+    }
+    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(160, 120));
+    let expected = Renderer::default().render(&plan).clone();
+    assert!(drawn(folder.path(), &["s.marraztu", "--lights", "1, 3"]) == expected);
+}
+
+#[test]
+fn what_turns_by_itself_is_drawn_at_the_time_that_is_asked_for() {
+    let folder = folder();
+    let (mut scene, view) = io::default_scene();
+    let id = view.object.unwrap();
+    let spin = motion::toggle_spin(&scene, id, Axis::Y, 0.0).unwrap();
+    spin.apply(&mut scene).unwrap();
+    io::save(&folder.path().join("s.marraztu"), &scene, &view, &Settings::default()).unwrap();
+    let at = |time| drawn(folder.path(), &["s.marraztu", "--time", time]);
+    assert!(at("3") != at("0"), "a quarter turn at 30 degrees a second");
+    assert!(at("12") == at("0"), "a whole turn");
+    assert!(at("-9") == at("3"), "the clock runs backwards too");
+}
+
+#[test]
+fn normals_of_the_file_can_be_passed_over() {
+    let folder = folder();
+    let text = SQUARE.replace("f 1 2 3 4", "vn 1 0 1\nf 1//1 2//1 3//1 4//1");
+    std::fs::write(folder.path().join("square.obj"), text).unwrap();
+    let plain = drawn(folder.path(), &["square.obj"]);
+    assert!(drawn(folder.path(), &["square.obj", "--no-file-normals"]) != plain);
+}
+
+/// Two squares that meet at an angle of 45 degrees.
+const ROOF: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 4 0 -2\nv 4 2 -2\nf 1 2 3 4\nf 2 5 6 3\n";
+
+#[test]
+fn edges_sharper_than_the_crease_angle_that_is_asked_for_are_sharp() {
+    let folder = folder();
+    std::fs::write(folder.path().join("roof.obj"), ROOF).unwrap();
+    let drawn = |crease: &[&str]| drawn(folder.path(), &[&["roof.obj"], crease].concat());
+    let smooth = drawn(&["--crease", "180"]);
+    let flat = drawn(&["--crease", "0"]);
+    assert!(flat != smooth);
+    assert!(drawn(&[]) == smooth, "60 degrees are more than 45");
+    assert!(drawn(&["--crease", "45"]) == smooth && drawn(&["--crease", "44.9"]) == flat);
+    assert!(drawn(&["--normals", "face"]) == flat);
+    for command in
+        [&["info", "--crease", "44.5"][..], &["plan", "--size", "8x8", "--crease", "44.5"]]
+    {
+        let (out, _) = ends_with(0, folder.path(), &[command, &["roof.obj"]].concat());
+        assert_eq!(
+            command[0] == "info",
+            out.contains("smoothing       crease 44.5 degrees"),
+            "{out}"
+        );
+    }
+}
+
+#[test]
+fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
+    let folder = folder();
+    std::fs::write(folder.path().join("bad.obj"), "v 1 2\nv 1 x 3\nf 1 2 3\n").unwrap();
+    let (out, err) = ends_with(0, folder.path(), &["info", "square.obj"]);
+    assert_eq!(err, "");
+    assert!(out.contains("square") && out.contains("vertices"), "{out}");
+    let (all, err) = ends_with(1, folder.path(), &["info", "bad.obj", "square.obj"]);
+    assert!(all.contains("vertices"), "{all}");
+    assert!(err.starts_with("error: bad.obj:1: "), "{err}");
+    assert_eq!(err.lines().count(), 1, "one clear message");
+}
+
+#[test]
+fn nobody_listening_is_no_error() {
+    let folder = folder();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_marraztu"))
+        .args(["info", "square.obj"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(output.stderr, b"");
+}
+
+#[test]
+fn arguments_that_cannot_be_meant_end_with_2_and_draw_nothing() {
+    let folder = folder();
+    let wrong: &[(&[&str], &str)] = &[
+        (&["render", "-o", "a.gif"], "its name has to end in .png, .jpg, .webp or .ppm"),
+        (&["render", "-o", "a.png", "--size", "0x5"], "800x600"),
+        (&["render", "-o", "a.png", "--material", "cheese"], "brass, bronze"),
+        (&["render", "-o", "a.png", "--shading", "gouraud"], "vertex"),
+        (&["render", "-o", "a.png", "--background", "1,2,300"], "0 to 255"),
+        (&["render", "-o", "a.png", "--time", "soon"], "finite number"),
+        (&["render", "-o", "a.png", "--camera", "0"], "0 is not in"),
+        (&["render", "-o", "a.png", "--lights", "x"], "numbers"),
+        (&["render", "-o", "a.png", "--edges", "--edges-over"], "cannot be used with"),
+        (&["render", "-o", "a.png", "--up", "z"], "name one"),
+        (&["render", "-o", "a.png", "--crease", "60"], "name one"),
+        (&["render", "-o", "a.png", "square.obj", "--crease", "181"], "from 0 to 180"),
+        (&["render", "-o", "a.png", "square.obj", "--crease", "NaN"], "from 0 to 180"),
+        (&["render", "-o", "a.png", "--nonsense"], "--nonsense"),
+        (&["info"], "<FILES>"),
+        (&["--nonsense"], "--nonsense"),
+    ];
+    for (arguments, word) in wrong {
+        let (out, err) = ends_with(2, folder.path(), arguments);
+        assert!(err.starts_with("error: ") && err.contains(word), "{arguments:?}\n{err}");
+        assert_eq!(out, "");
+    }
+    assert!(!folder.path().join("a.png").exists());
+}
+
+#[test]
+fn what_fails_ends_with_1_and_says_why_in_one_sentence() {
+    let folder = folder();
+    std::fs::write(folder.path().join("bad.obj"), "v 1 2 3\nv 1 two 3\n").unwrap();
+    std::fs::write(folder.path().join("bad.marraztu"), "what is this").unwrap();
+    let wrong: &[(&[&str], &str)] = &[
+        (&["absent.obj"], "absent.obj: there is no such file"),
+        (&["bad.obj"], "bad.obj:2: "),
+        (&["absent.marraztu"], "absent.marraztu: there is no such file"),
+        (&["bad.marraztu"], "bad.marraztu"),
+        (&["--texture", "absent.png"], "absent.png: there is no such file"),
+        (&["--camera", "2"], "the scene has 1 camera: there is no camera 2"),
+        (&["--lights", "0,7"], "the scene has no light in slot 7"),
+    ];
+    for (arguments, word) in wrong {
+        let all = [&["render", "-o", "a.png"], *arguments].concat();
+        let (out, err) = ends_with(1, folder.path(), &all);
+        assert!(err.starts_with("error: ") && err.contains(word), "{arguments:?}\n{err}");
+        assert_eq!((err.lines().count(), out.as_str()), (1, ""), "{err}");
+    }
+    assert!(!folder.path().join("a.png").exists());
+    let (_, err) = ends_with(1, folder.path(), &["render", "-o", "absent/a.png"]);
+    let reason = "error: absent/a.png could not be saved: the folder absent/ does not exist\n";
+    assert_eq!(err, reason);
+}
+
+#[test]
+fn what_was_mended_is_said_and_the_picture_is_drawn() {
+    let folder = folder();
+    let text = format!("{SQUARE}f 1 2 99\nmtllib absent.mtl\n");
+    std::fs::write(folder.path().join("square.obj"), text).unwrap();
+    let (_, err) = ends_with(0, folder.path(), &["render", "square.obj", "-o", "a.png"]);
+    assert_eq!(err.lines().count(), 2, "{err}");
+    assert!(err.lines().all(|line| line.starts_with("note: square.obj: ")), "{err}");
+}
+
+#[test]
+fn without_a_display_the_editor_says_so_and_what_to_do_instead() {
+    let folder = folder();
+    for arguments in [&[][..], &["square.obj"]] {
+        let (_, err) = ends_with(1, folder.path(), arguments);
+        assert!(err.starts_with("error: "), "{err}");
+        assert!(err.contains("marraztu render"), "{err}");
+        assert!(err.lines().count() <= 2, "{err}");
+    }
+}
+
+#[test]
+fn models_alone_are_seen_from_the_side_that_is_asked_for() {
+    let folder = folder();
+    // A square that faces +Z, in a box so long that the camera is far from its plane.
+    let seen = |from: &str| {
+        let picture = drawn(
+            folder.path(),
+            &["square.obj", "--lights", "0", "--sides", "one", "--from", from],
+        );
+        let ground = picture.pixel(0, 0);
+        picture.pixels().iter().filter(|pixel| **pixel != ground).count()
+    };
+    let front = seen("0,0");
+    assert!(front > 1000, "{front}");
+    for side in ["60,0", "-60,0", "0,60", "0,-60"] {
+        let part = seen(side);
+        assert!(part > front / 3 && part < front * 2 / 3, "{side}: {part} of {front}");
+    }
+    for behind in ["120,0", "180,0", "180,45"] {
+        assert_eq!(seen(behind), 0, "{behind}: the square faces away");
+    }
+    let above = ["render", "--out", "x.png", "--from", "0,91", "square.obj"];
+    ends_with(2, folder.path(), &above);
+    let (_, err) = ends_with(2, folder.path(), &["render", "--out", "x.png", "--from", "0,9"]);
+    assert!(err.contains("models alone"), "{err}");
+}
+
+#[test]
+fn the_readme_has_the_table_of_keys_that_the_program_prints() {
+    let folder = folder();
+    let (table, _) = ends_with(0, folder.path(), &["keys", "--markdown"]);
+    let table = table.replace("Cmd+", "Ctrl+");
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let readme = std::fs::read_to_string(readme).unwrap().replace("\r\n", "\n");
+    let found = readme.contains(&table);
+    assert!(found, "README.md lacks the output of `marraztu keys --markdown`:\n{table}");
+}
+
+#[test]
+fn the_scene_that_the_readme_shows_can_be_drawn() {
+    let folder = folder();
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let readme = std::fs::read_to_string(readme).unwrap();
+    let scene = readme.split("```ron").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    std::fs::write(folder.path().join("pot.marraztu"), scene).unwrap();
+    let square = "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 0\nf 1 2 3 4\n";
+    std::fs::write(folder.path().join("teapot.obj"), square).unwrap();
+    let picture = drawn(folder.path(), &["pot.marraztu"]);
+    assert!(picture.pixels().iter().any(|pixel| *pixel != picture.pixel(0, 0)));
+}

@@ -1,0 +1,56 @@
+//! Which pixels a triangle covers, without any edge function: the oracle of coverage.
+//!
+//! The rule for pixels on an edge says nothing else than that every centre is moved to the right by
+//! less than anything, and down by less than that: then none lies on an edge. So the centres of a row
+//! that a triangle covers are those between the two places where its outline crosses the row, and
+//! these are fractions, compared as whole numbers of 128 bits. What a closed outline winds about is
+//! counted by the same crossings.
+
+use std::ops::Range;
+
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
+
+/// The first column of row `y` whose centre lies to the right of where the side from `p` to `q`
+/// crosses the row; `None` where it does not.
+fn crossing(p: Snapped, q: Snapped, y: i32) -> Option<i64> {
+    let part = i128::from(SUBPIXELS);
+    let centre = i128::from(y) * part + part / 2;
+    let (py, qy) = (i128::from(p.y), i128::from(q.y));
+    // The centre is moved down, so a corner at its height is above it.
+    if (py <= centre) == (qy <= centre) {
+        return None;
+    }
+    let (px, qx) = (i128::from(p.x), i128::from(q.x));
+    // x = px + (centre - py) (qx - px) / (qy - py), from the middle of the first column, in columns.
+    let (above, below) =
+        ((px - part / 2) * (qy - py) + (centre - py) * (qx - px), (qy - py) * part);
+    let (above, below) = (above * below.signum(), below.abs());
+    // Rounded up: the centre is moved right, so a crossing at it is to its left.
+    i64::try_from(-(-above).div_euclid(below)).ok()
+}
+
+/// The columns of row `y` whose centres a triangle of either winding covers.
+#[must_use]
+pub(crate) fn span([p, q, r]: [Snapped; 3], y: i32) -> Range<i64> {
+    let mut ends = [(p, q), (q, r), (r, p)].into_iter().filter_map(|(p, q)| crossing(p, q, y));
+    match (ends.next(), ends.next()) {
+        (Some(a), Some(b)) => a.min(b)..a.max(b),
+        _ => 0..0,
+    }
+}
+
+/// How often a closed outline winds about the centre of every pixel of a row, clockwise on the screen
+/// being positive: `windings[x]` for column x.
+pub(crate) fn wind(outline: &[Snapped], y: i32, windings: &mut [i32]) {
+    windings.fill(0);
+    let columns = i64::try_from(windings.len()).expect("rows are short");
+    for (i, p) in outline.iter().enumerate() {
+        let q = outline[(i + 1) % outline.len()];
+        let Some(column) = crossing(*p, q, y) else { continue };
+        let up = if q.y < p.y { 1 } else { -1 };
+        let begin = usize::try_from(column.clamp(0, columns)).expect("clamped");
+        for winding in &mut windings[begin..] {
+            *winding += up;
+        }
+    }
+}

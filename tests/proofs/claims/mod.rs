@@ -1,0 +1,158 @@
+//! The program's guarantees, each checked on randomly generated cases.
+//!
+//! A proof generates cases and checks each against an oracle that shares no code with what it judges.
+//! Cases come in batches, and the number of a batch alone decides what is in it: a counterexample is
+//! named by its batch, and found again by that number.
+
+#![allow(dead_code, reason = "the hard cases use a part of it")]
+
+mod absent;
+pub(crate) mod double_double;
+pub(crate) mod exact;
+mod fans;
+mod far;
+mod hostile;
+pub(crate) mod instructions;
+mod plan;
+mod presses;
+#[path = "../../random_scenes/mod.rs"]
+mod random_scenes;
+mod scenes;
+mod sizes;
+mod undo;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use rayon::prelude::*;
+
+/// A claim, with what generates cases of it and checks them.
+#[derive(Debug)]
+pub(crate) struct Proof {
+    /// What the command line calls it.
+    pub(crate) name: &'static str,
+    /// What is claimed of every case.
+    pub(crate) claim: &'static str,
+    /// What a case is.
+    pub(crate) unit: &'static str,
+    /// The number of cases in a batch.
+    pub(crate) batch: u64,
+    /// The number of cases that every run of the tests checks.
+    pub(crate) quick: u64,
+    /// The number of cases that `docs/stability.md` reports.
+    pub(crate) whole: u64,
+    /// What a thousand cases have to show at least, so that the check is not idle.
+    pub(crate) shows: &'static [(&'static str, u64)],
+    /// Batches in which the claim once failed.
+    pub(crate) regressions: &'static [u64],
+    /// Checks the cases of a batch.
+    pub(crate) check: fn(u64) -> Result<Tally, String>,
+}
+
+/// Every proof.
+pub(crate) static PROOFS: &[Proof] = &[
+    fans::PROOF,
+    far::PROOF,
+    scenes::PROOF,
+    presses::PROOF,
+    undo::PROOF,
+    sizes::PROOF,
+    plan::PLAN,
+    plan::FAINT,
+    absent::PROOF,
+];
+
+/// What was counted in the cases of a proof.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Tally {
+    /// How often each thing occurred.
+    pub(crate) counts: BTreeMap<&'static str, u64>,
+    /// The largest error of each kind.
+    pub(crate) worst: BTreeMap<&'static str, f64>,
+}
+
+impl Tally {
+    /// Counts `more` of something.
+    pub(crate) fn count(&mut self, what: &'static str, more: u64) {
+        *self.counts.entry(what).or_default() += more;
+    }
+
+    /// Keeps an error if it is the largest of its kind; NaN is larger than any number.
+    pub(crate) fn error(&mut self, what: &'static str, size: f64) {
+        let worst = self.worst.entry(what).or_default();
+        *worst = if size.is_nan() { size } else { worst.max(size) };
+    }
+
+    /// Both tallies together.
+    #[must_use]
+    pub(crate) fn and(mut self, other: &Self) -> Self {
+        for (what, more) in &other.counts {
+            self.count(what, *more);
+        }
+        for (what, size) in &other.worst {
+            self.error(what, *size);
+        }
+        self
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let counts = self.counts.iter().map(|(what, count)| format!("{what} {count}"));
+        let worst = self.worst.iter().map(|(what, size)| format!("{what} at most {size:.3e}"));
+        write!(f, "{}", counts.chain(worst).collect::<Vec<_>>().join(", "))
+    }
+}
+
+/// A batch in which a claim does not hold.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("batch {batch}: {what}")]
+pub(crate) struct Counterexample {
+    /// Its number.
+    pub(crate) batch: u64,
+    /// What went wrong in it.
+    pub(crate) what: String,
+}
+
+impl Proof {
+    /// The proof of this name.
+    #[must_use]
+    pub(crate) fn named(name: &str) -> Option<&'static Self> {
+        PROOFS.iter().find(|proof| proof.name == name)
+    }
+
+    /// Checks some batches, on all threads. `checked` is called after each.
+    ///
+    /// # Errors
+    /// With a batch in which the claim does not hold, or in which something panics.
+    pub(crate) fn run(
+        &self,
+        batches: Range<u64>,
+        checked: &(dyn Fn(u64) + Sync),
+    ) -> Result<Tally, Counterexample> {
+        let one = |batch: u64| {
+            let result = catch_unwind(AssertUnwindSafe(|| (self.check)(batch)));
+            checked(batch);
+            let result = result.unwrap_or_else(|_panic| Err("it panics".to_owned()));
+            result.map_err(|what| Counterexample { batch, what })
+        };
+        let join = |a: Tally, b: Tally| Ok(a.and(&b));
+        batches.into_par_iter().map(one).try_reduce(Tally::default, join)
+    }
+
+    /// The number of batches that hold this many cases.
+    #[must_use]
+    pub(crate) const fn batches(&self, cases: u64) -> u64 {
+        cases.div_ceil(self.batch)
+    }
+
+    /// What the cases should have shown and did not, if there were a thousand of them.
+    pub(crate) fn missing(&self, tally: &Tally, cases: u64) -> Option<String> {
+        let missing = self.shows.iter().find(|(what, per_thousand)| {
+            tally.counts.get(what).copied().unwrap_or_default() < per_thousand * (cases / 1000)
+        });
+        missing
+            .map(|(what, least)| format!("fewer than {least} {what} in a thousand {}", self.unit))
+    }
+}

@@ -1,0 +1,105 @@
+//! What a plan leaves out changes nothing: pictures of randomly generated scenes against pictures by
+//! plans that leave out nothing. `tests/breakages` breaks the rules one by one and sees this fail.
+
+use marraztu::base::image::Picture;
+
+use marraztu::render::{FramePlan, Renderer};
+use marraztu::scene::{LeaveOut, Settings};
+
+use super::random_scenes::{RandomScene, random_scene};
+use super::{Proof, Tally};
+
+/// Scenes in a batch, drawn one after the other by one renderer, as the editor does.
+pub(super) const SCENES: u64 = 16;
+
+pub(crate) const PLAN: Proof = Proof {
+    name: "plan",
+    claim: "what a plan leaves out, and what is not drawn again, changes no bit of a picture",
+    unit: "scenes",
+    batch: SCENES,
+    quick: 10_000,
+    whole: 100_000,
+    shows: &[("pixels that show something", 200_000)],
+    regressions: &[4569],
+    check: is_complete,
+};
+
+pub(crate) const FAINT: Proof = Proof {
+    name: "faint",
+    claim: "light that is left out as too faint changes a byte by one step at most",
+    unit: "scenes",
+    batch: SCENES,
+    quick: 5000,
+    whole: 100_000,
+    shows: &[("bytes a step off", 1)],
+    regressions: &[],
+    check: is_within_a_step,
+};
+
+/// The seeds of a batch.
+pub(super) const fn seeds(batch: u64) -> std::ops::Range<u64> {
+    batch * SCENES..(batch + 1) * SCENES
+}
+
+/// A plan that leaves out nothing: everything that the scene names is computed.
+fn complete(it: &RandomScene) -> FramePlan {
+    FramePlan::of_everything(&it.scene, &it.view, &it.settings, it.size)
+}
+
+/// Draws the scenes of a batch by their plans and by complete ones, and expects the same bytes.
+fn is_complete(batch: u64) -> Result<Tally, String> {
+    let (mut renderer, mut reference) = (Renderer::default(), Renderer::default());
+    let mut tally = Tally::default();
+    for seed in seeds(batch) {
+        // One scene of four is the one before once more: then nothing has changed.
+        let it = random_scene(if seed % 4 == 3 { seed - 1 } else { seed });
+        let expected = reference.render(&complete(&it));
+        let drawn = renderer.redraw(&it.plan(), &|| true);
+        drawn.map_err(|_cancelled| "the frame was cancelled".to_owned())?;
+        same(seed, renderer.picture(), expected)?;
+        count(&mut tally, &it, expected);
+    }
+    Ok(tally)
+}
+
+/// Draws the scenes of a batch without what is too faint, and expects bytes within a step of those with
+/// nothing visible left out.
+fn is_within_a_step(batch: u64) -> Result<Tally, String> {
+    let (mut thinned, mut exact) = (Renderer::default(), Renderer::default());
+    let mut tally = Tally::default();
+    for it in seeds(batch).map(random_scene) {
+        let expected = exact.render(&it.plan());
+        let settings = Settings { leave_out: LeaveOut::HalfStep, ..it.settings };
+        let got = thinned.render(&RandomScene { settings, ..it.clone() }.plan());
+        let pairs = got.pixels().as_flattened().iter().zip(expected.pixels().as_flattened());
+        let apart = pairs.map(|(a, b)| a.abs_diff(*b));
+        let (worst, steps) =
+            apart.fold((0, 0), |(worst, steps), by| (by.max(worst), steps + u64::from(by > 0)));
+        if worst > 1 {
+            return Err(format!("scene {}: a byte is {worst} steps off", it.seed));
+        }
+        count(&mut tally, &it, expected);
+        tally.count("bytes a step off", steps);
+    }
+    Ok(tally)
+}
+
+/// Whether two pictures are the same, and if not, the first pixel that differs.
+pub(super) fn same(seed: u64, got: &Picture, wanted: &Picture) -> Result<(), String> {
+    if got == wanted {
+        return Ok(());
+    }
+    let size = wanted.size();
+    let at = |picture: &Picture, i: usize| picture.pixels().get(i).copied().unwrap_or_default();
+    let differs = |i: &usize| at(got, *i) != at(wanted, *i);
+    let i = (0..size.area()).find(differs).unwrap_or(0);
+    let (x, y, got, wanted) = (i % size.width, i / size.width, at(got, i), at(wanted, i));
+    Err(format!("scene {seed}: pixel ({x}, {y}) is {got:?} and should be {wanted:?}"))
+}
+
+fn count(tally: &mut Tally, it: &RandomScene, picture: &Picture) {
+    let background = it.scene.background.opaque();
+    let shown = picture.pixels().iter().filter(|pixel| **pixel != background).count();
+    tally.count("scenes", 1);
+    tally.count("pixels that show something", shown as u64);
+}

@@ -1,0 +1,297 @@
+//! Small randomly generated scenes that prefer borders: a lamp on a surface, a cone that touches a box,
+//! a face that ends at the border of a tile, coefficients of 0, -0 and the smallest number, apertures of
+//! 0 and 90 degrees.
+
+#![allow(dead_code, reason = "each test uses its own part of it")]
+
+pub(crate) mod shapes;
+
+use glam::{DMat3, DMat4, DVec3};
+
+use marraztu::base::image::Size;
+use marraztu::base::rng::Rng;
+use marraztu::base::{color::Color, math};
+use marraztu::render::FramePlan;
+use marraztu::scene::{
+    Aim, Arithmetic, Attenuation, Camera, CameraId, Fill, Filter, LeaveOut, Lens, Light, LightAt,
+    LightId, LightKind, List, MaterialChoice, Normals, Object, ObjectId, Observer, Orbit, Placed,
+    PolygonMode, Pose, PresetId, Projection, Samples, Scene, Settings, Sides, SpecularForm,
+    SpotOwner, Surface, View,
+};
+
+use self::shapes::shapes;
+
+/// A scene with everything that its picture depends on.
+#[derive(Clone, Debug)]
+pub(crate) struct RandomScene {
+    pub(crate) seed: u64,
+    pub(crate) scene: Scene,
+    pub(crate) view: View,
+    pub(crate) settings: Settings,
+    pub(crate) size: Size,
+}
+
+impl RandomScene {
+    /// The plan of its picture.
+    pub(crate) fn plan(&self) -> FramePlan {
+        FramePlan::new(&self.scene, &self.view, &self.settings, self.size)
+    }
+}
+
+/// Objects have ids from here on, so that lower ones are free.
+const FIRST_OBJECT: u32 = 100;
+
+/// An id that nothing has.
+const UNUSED: u32 = 99;
+
+/// The scene of a seed.
+pub(crate) fn random_scene(seed: u64) -> RandomScene {
+    let rng = &mut Rng::new(seed);
+    // One tile, or four whose borders are in the middle of things.
+    let size = if rng.percent(75) { Size::new(32, 32) } else { Size::new(96, 72) };
+    let cameras = cameras(rng, size);
+    let count = 1 + rng.index(3);
+    let objects: Vec<(ObjectId, Object)> =
+        (FIRST_OBJECT..).map(ObjectId).zip((0..count).map(|_| object(rng))).collect();
+    let lights = lights(rng, &objects);
+    let mut scene = Scene {
+        objects: objects.into_iter().collect(),
+        cameras,
+        lights,
+        background: Color(rng.one_of(&[[0, 0, 179], [0; 3], [255; 3]])),
+        next_id: 1000,
+    };
+    if rng.percent(30) {
+        let reversed: Vec<_> = scene.objects.iter().map(|(id, o)| (id, o.clone())).rev().collect();
+        scene.objects = List::from_iter(reversed);
+    }
+    let view = view(rng, &scene);
+    RandomScene { seed, view, settings: settings(rng), scene, size }
+}
+
+/// In pixels of a picture 32 high, where one unit is one pixel in parallel projection.
+fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
+    #[expect(clippy::cast_precision_loss, reason = "a small picture")]
+    let half_size = size.width.min(size.height) as f64 / 2.0;
+    let camera = |rng: &mut Rng, name: &str| {
+        let distance = rng.one_of(&[20.0, 60.0, 60.0, 60.0, 300.0]);
+        let mut pose = Pose::facing_minus_z(DVec3::Z * distance);
+        if rng.percent(40) {
+            let yaw = rng.real(-0.4, 0.4);
+            pose.axes =
+                math::rotation(DVec3::Y, yaw) * math::rotation(DVec3::X, rng.real(-0.3, 0.3));
+            pose.eye = pose.axes * pose.eye;
+        }
+        let near = rng.one_of(&[1.0, 0.01, 55.0]);
+        Camera {
+            name: name.to_owned(),
+            visible: rng.percent(90),
+            model: shapes()[rng.index(2)].clone(),
+            material: MaterialChoice::Preset(PresetId::OBSIDIAN),
+            pose: Placed::new(pose),
+            lens: Lens { near, half_size, ..Lens::default() },
+        }
+    };
+    let first = camera(rng, "camera 1");
+    let second = camera(rng, "camera 2");
+    let all = [(CameraId(0), first), (CameraId(1), second)];
+    let count = if rng.percent(20) { 2 } else { 1 };
+    all.into_iter().take(count).collect()
+}
+
+/// Units of the world; on whole ones faces end at pixels, and at tiles.
+fn place(rng: &mut Rng) -> DVec3 {
+    if rng.percent(40) {
+        let whole = |rng: &mut Rng| rng.real(-40.0, 40.0).round();
+        return DVec3::new(whole(rng), whole(rng), rng.one_of(&[0.0, -8.0, 10.0]));
+    }
+    let reach = rng.one_of(&[5.0, 20.0, 60.0]);
+    let part = |rng: &mut Rng| rng.real(-1.0, 1.0);
+    DVec3::new(part(rng), part(rng), part(rng)) * reach
+}
+
+fn turn(rng: &mut Rng) -> DMat3 {
+    if rng.percent(40) {
+        return DMat3::IDENTITY;
+    }
+    math::rotation(direction(rng), rng.real(-3.2, 3.2))
+}
+
+fn direction(rng: &mut Rng) -> DVec3 {
+    if rng.percent(30) {
+        return rng.one_of(&[
+            DVec3::X,
+            DVec3::Y,
+            DVec3::Z,
+            DVec3::NEG_X,
+            DVec3::NEG_Y,
+            DVec3::NEG_Z,
+        ]);
+    }
+    let part = |rng: &mut Rng| rng.real(-1.0, 1.0);
+    let v = DVec3::new(part(rng), part(rng), part(rng));
+    math::unit(v).unwrap_or(DVec3::NEG_Z)
+}
+
+fn object(rng: &mut Rng) -> Object {
+    let material = match rng.index(4) {
+        0 => MaterialChoice::File,
+        1 => MaterialChoice::Preset(rng.one_of(&PresetId::all().collect::<Vec<_>>())),
+        _ => MaterialChoice::Own(shapes::material(rng)),
+    };
+    let model = rng.one_of(shapes());
+    let scale = match rng.index(10) {
+        // Around the camera: its faces are cut.
+        0 => DVec3::splat(400.0),
+        1 => DVec3::new(-6.0, 9.0, 3.0),
+        2..5 => DVec3::splat(rng.one_of(&[1.0, 4.0, 16.0, 32.0])),
+        _ => DVec3::splat(rng.real(1.0, 30.0)),
+    };
+    let axes = turn(rng) * DMat3::from_diagonal(scale);
+    let mut object = Object::new(model, material);
+    object.placement = Placed::new(math::placed(axes, place(rng)));
+    object.visible = rng.percent(92);
+    object.surface = rng.one_of(&[
+        Surface::Material,
+        Surface::Texture,
+        Surface::TextureAndLight,
+        Surface::TextureAndLight,
+    ]);
+    object.texture = rng.percent(35).then(|| shapes::texture(rng));
+    object.tint = rng.one_of(&[Color::WHITE, Color::WHITE, Color([0; 3]), Color([200, 100, 0])]);
+    object.sides = if rng.percent(20) { Sides::Two } else { Sides::One };
+    object.file_normals = rng.percent(50);
+    if rng.percent(5) {
+        object.hidden_parts.insert(0);
+    }
+    object
+}
+
+fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light> {
+    let count = rng.index(8);
+    let light = |rng: &mut Rng, slot: u32| {
+        let kind = match rng.index(6) {
+            0 => LightKind::Ambient,
+            1 => LightKind::Sun { direction: Placed::new(direction(rng)) },
+            2 | 3 => LightKind::Bulb {
+                position: Placed::new(lamp_place(rng, objects)),
+                orbit: Orbit::default(),
+            },
+            _ => spot(rng, objects),
+        };
+        let levels = [0, 1, 128, 255];
+        let color = if rng.percent(15) { [0; 3] } else { [0; 3].map(|_| rng.one_of(&levels)) };
+        let attenuation = |constant, linear, quadratic| Attenuation { constant, linear, quadratic };
+        Light {
+            on: rng.percent(75),
+            color: Color(color),
+            attenuation: rng.one_of(&[
+                Attenuation::default(),
+                attenuation(1.0, 0.0, 0.0),
+                attenuation(0.0, 0.02, 0.0),
+                attenuation(0.0, 0.0, 0.001),
+                attenuation(1.0, 0.5, 0.5),
+            ]),
+            ..Light::new("light", slot, kind)
+        }
+    };
+    (10..).zip((0..count).map(|_| ())).map(|(id, ())| (LightId(id), light(rng, id))).collect()
+}
+
+/// Where a lamp stands: anywhere, or in the very surface of an object.
+fn lamp_place(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> DVec3 {
+    match rng.index(3) {
+        0 => {
+            let (_, object) = &objects[rng.index(objects.len())];
+            let mesh = &object.model.mesh;
+            let triangle = mesh.triangles()[rng.index(mesh.triangles().len())];
+            let corners = triangle.corners.map(|c| mesh.corners()[c as usize].position as usize);
+            let [a, b, c] = corners.map(|at| marraztu::scene::dvec3(mesh.positions()[at]));
+            let place = rng.one_of(&[a, (a + b) / 2.0, (a + b + c) / 3.0]);
+            object.placement.now().transform_point3(place)
+        }
+        _ => place(rng) * rng.one_of(&[1.0, 1.0, 4.0]),
+    }
+}
+
+fn spot(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> LightKind {
+    let exponent = rng.one_of(&[0.0, 0.0, 0.5, 5.0, 30.0]);
+    let owner = match rng.index(8) {
+        0 => Some(SpotOwner::SelectedObject),
+        1 => Some(SpotOwner::SelectedCamera),
+        2 => Some(SpotOwner::Object(ObjectId(rng.one_of(&[FIRST_OBJECT, UNUSED])))),
+        _ => None,
+    };
+    let aperture = |rng: &mut Rng| match rng.index(3) {
+        0 => rng.one_of(&[0.0, 1e-6, 0.5, 45.0, 89.9999, 90.0]),
+        _ => rng.real(0.5, 40.0),
+    };
+    if let Some(owner) = owner {
+        return LightKind::Spot { owner, half_aperture: aperture(rng), exponent };
+    }
+    let (position, direction) = (lamp_place(rng, objects), direction(rng));
+    let mut half_aperture = aperture(rng);
+    if rng.percent(40) {
+        // It touches a corner of an object's box, or all but.
+        let (_, object) = &objects[rng.index(objects.len())];
+        let corners = object.model.mesh.bounds().map(|bounds| bounds.corners());
+        let corner = corners.map_or(DVec3::ZERO, |corners| rng.one_of(&corners));
+        let way: DMat4 = *object.placement.now();
+        let way = way.transform_point3(corner) - position;
+        let angle = libm::atan2(direction.cross(way).length(), direction.dot(way)).to_degrees();
+        let beside = rng.one_of(&[0.0, 0.0, 1e-9, -1e-9, 1e-4, -1e-4, 0.1, -0.1]);
+        half_aperture = (angle + beside).clamp(0.0, 90.0);
+    }
+    let owner = SpotOwner::Fixed(Placed::new(Aim { position, direction }));
+    LightKind::Spot { owner, half_aperture, exponent }
+}
+
+fn view(rng: &mut Rng, scene: &Scene) -> View {
+    let polygons = rng.percent(6).then(PolygonMode::begin);
+    View {
+        object: scene.objects.ids().nth(rng.index(4)).or_else(|| scene.objects.first()),
+        observer: if rng.percent(4) { Observer::Object } else { Observer::Camera },
+        projection: rng.one_of(&[
+            Projection::Perspective,
+            Projection::Perspective,
+            Projection::Orthographic,
+        ]),
+        fill: if rng.percent(8) { Fill::Edges } else { Fill::Filled },
+        edges_over_fill: rng.percent(8),
+        polygons,
+        only_selected: rng.percent(8),
+        normals: rng.one_of(&[Normals::Vertex, Normals::Face]),
+        back_faces: rng.percent(20),
+        face_normals: rng.percent(4),
+        vertex_normals: rng.percent(4),
+        marks: rng.percent(50),
+        wide_lines: rng.percent(10),
+        ..scene.first_view()
+    }
+}
+
+/// Mostly one, for many take longer.
+fn samples(rng: &mut Rng) -> Samples {
+    match rng.percent(25) {
+        true if rng.percent(10) => rng.one_of(&[Samples::Sixteen, Samples::SixtyFour]),
+        true => Samples::Four,
+        false => Samples::One,
+    }
+}
+
+fn settings(rng: &mut Rng) -> Settings {
+    let at = [LightAt::Face, LightAt::Vertex, LightAt::Pixel, LightAt::Pixel, LightAt::Pixel];
+    let settings = Settings {
+        arithmetic: if rng.percent(8) { Arithmetic::F64 } else { Arithmetic::F32 },
+        light: rng.one_of(&at),
+        samples: samples(rng),
+        filter: rng.one_of(&[Filter::Nearest, Filter::Bilinear]),
+        specular: rng.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
+        leave_out: LeaveOut::Unseen,
+        ..Settings::default()
+    };
+    // As many pictures as samples: now and then.
+    let several = [Samples::Four, Samples::Sixteen].contains(&settings.samples);
+    let each = several && settings.light == LightAt::Pixel && rng.percent(30);
+    if each { Settings { light: LightAt::Sample, ..settings } } else { settings }
+}

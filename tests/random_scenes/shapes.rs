@@ -1,0 +1,197 @@
+//! The shapes, materials and textures of randomly generated scenes.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use marraztu::base::Shared;
+use marraztu::base::image::{Picture, Size};
+use marraztu::base::once::get_or_compute;
+use marraztu::base::rng::Rng;
+use marraztu::scene::{
+    FileMaterial, LoadOptions, Material, Mesh, MeshSource, Model, NONE, Part, SourceCorner,
+    Texture, Wrap,
+};
+
+/// Coefficients on both sides of what can be left out.
+const COEFFICIENTS: [f64; 8] =
+    [0.0, -0.0, 5e-324, 1e-45, f32::MIN_POSITIVE as f64, 1.0 / 255.0, 0.4, 1.0];
+
+/// The shapes.
+pub(crate) fn shapes() -> &'static [Shared<Model>] {
+    static SHAPES: OnceLock<Vec<Shared<Model>>> = OnceLock::new();
+    get_or_compute::<Vec<_>>(&SHAPES, || {
+        vec![triangle(), square(), cube(), ball(4), two_parts(), colored(), ball(7)]
+    })
+}
+
+fn corner(position: u32) -> SourceCorner {
+    SourceCorner { position, uv: NONE, normal: NONE }
+}
+
+fn model(name: &str, source: MeshSource, materials: Vec<FileMaterial>) -> Shared<Model> {
+    let source = MeshSource {
+        parts: if source.parts.is_empty() {
+            vec![Part { name: name.to_owned(), material: None }]
+        } else {
+            source.parts
+        },
+        ..source
+    };
+    Shared::new(Model {
+        name: name.to_owned(),
+        source: None,
+        options: LoadOptions::default(),
+        mesh: Mesh::new(source).expect("these shapes are meshes"),
+        materials,
+        edge_color: None,
+    })
+}
+
+fn triangle() -> Shared<Model> {
+    let source = MeshSource {
+        positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
+        corners: [0, 1, 2].map(corner).to_vec(),
+        arities: vec![3],
+        polygon_parts: vec![0],
+        ..MeshSource::default()
+    };
+    model("triangle", source, Vec::new())
+}
+
+/// A square that faces +Z, with places on a texture.
+fn square_source() -> MeshSource {
+    let textured = |i| SourceCorner { position: i, uv: i, normal: NONE };
+    MeshSource {
+        positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
+        uvs: vec![[0.0, 0.0], [1.5, 0.0], [1.5, 1.0], [0.0, 1.0]],
+        corners: [0, 1, 2, 3].map(textured).to_vec(),
+        arities: vec![4],
+        polygon_parts: vec![0],
+        ..MeshSource::default()
+    }
+}
+
+fn square() -> Shared<Model> {
+    model("square", square_source(), Vec::new())
+}
+
+fn cube() -> Shared<Model> {
+    let side = |i: u32, bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+    let source = MeshSource {
+        positions: (0..8).map(|i| [1, 2, 4].map(|bit| side(i, bit))).collect(),
+        corners: [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]
+            .map(corner)
+            .to_vec(),
+        arities: vec![4; 6],
+        polygon_parts: vec![0; 6],
+        ..MeshSource::default()
+    };
+    model("cube", source, Vec::new())
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+fn ball(rings: u32) -> Shared<Model> {
+    let segments = 2 * rings;
+    let mut positions = vec![[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]];
+    for ring in 1..rings {
+        let polar = std::f64::consts::PI * f64::from(ring) / f64::from(rings);
+        for segment in 0..segments {
+            let angle = std::f64::consts::TAU * f64::from(segment) / f64::from(segments);
+            let (s, c) = (libm::sin(polar), libm::cos(polar));
+            positions.push([s * libm::sin(angle), c, s * libm::cos(angle)].map(|x| x as f32));
+        }
+    }
+    let at = |ring: u32, segment: u32| 2 + (ring - 1) * segments + segment % segments;
+    let mut corners = Vec::new();
+    for segment in 0..segments {
+        corners.extend([0, at(1, segment), at(1, segment + 1)].map(corner));
+        corners.extend([1, at(rings - 1, segment + 1), at(rings - 1, segment)].map(corner));
+        for ring in 1..rings - 1 {
+            let (a, b, c) = (at(ring, segment), at(ring + 1, segment), at(ring + 1, segment + 1));
+            corners.extend([a, b, c, a, c, at(ring, segment + 1)].map(corner));
+        }
+    }
+    let triangles = corners.len() / 3;
+    let source = MeshSource {
+        positions,
+        corners,
+        arities: vec![3; triangles],
+        polygon_parts: vec![0; triangles],
+        ..MeshSource::default()
+    };
+    model("ball", source, Vec::new())
+}
+
+/// Two squares, one before the other, of two materials: one dull, one that half lets light through.
+fn two_parts() -> Shared<Model> {
+    let one = square_source();
+    let behind = one.positions.iter().map(|[x, y, z]| [x + 0.5, y + 0.25, z - 0.5]);
+    let source = MeshSource {
+        positions: one.positions.iter().copied().chain(behind).collect(),
+        corners: (0..8).map(|i| SourceCorner { position: i, uv: i % 4, normal: NONE }).collect(),
+        arities: vec![4, 4],
+        polygon_parts: vec![0, 1],
+        parts: ["front", "back"]
+            .into_iter()
+            .zip(0..)
+            .map(|(name, i)| Part { name: name.to_owned(), material: Some(i) })
+            .collect(),
+        ..one
+    };
+    let dull =
+        Material { ambient: [0.1; 3], diffuse: [0.7, 0.4, 0.2], specular: [0.0; 3], exponent: 1.0 };
+    let shiny =
+        Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [0.9; 3], exponent: 20.0 };
+    let file = |name: &str, material, opacity| FileMaterial {
+        name: name.to_owned(),
+        material,
+        opacity,
+        texture: None,
+    };
+    model("two parts", source, vec![file("dull", dull, 1.0), file("shiny", shiny, 0.6)])
+}
+
+/// A tetrahedron with a colour at each vertex.
+fn colored() -> Shared<Model> {
+    let source = MeshSource {
+        positions: vec![[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0]],
+        colors: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]],
+        corners: [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3].map(corner).to_vec(),
+        arities: vec![3; 4],
+        polygon_parts: vec![0; 4],
+        ..MeshSource::default()
+    };
+    model("tetrahedron", source, Vec::new())
+}
+
+/// A material, often with nothing in some of its coefficients.
+pub(crate) fn material(rng: &mut Rng) -> Material {
+    let mut row = || match rng.index(4) {
+        0 => [0.0; 3],
+        1 => [rng.unit(), rng.unit(), rng.unit()],
+        _ => [0; 3].map(|_| rng.one_of(&COEFFICIENTS)),
+    };
+    let (ambient, diffuse, specular) = (row(), row(), row());
+    let exponent = rng.one_of(&[0.0, 1.0, 5.0, 32.0, 128.0, 1000.0]);
+    Material { ambient, diffuse, specular, exponent }
+}
+
+/// A texture of a few texels, with holes or without.
+pub(crate) fn texture(rng: &mut Rng) -> Shared<Texture> {
+    let side = rng.one_of(&[1, 2, 5]);
+    let alphas: &[u8] = if rng.percent(50) { &[255] } else { &[0, 127, 128, 255] };
+    let mut texel = || {
+        let byte = |rng: &mut Rng| rng.one_of(&[0_u8, 1, 100, 255]);
+        [byte(rng), byte(rng), byte(rng), rng.one_of(alphas)]
+    };
+    let texels = (0..side * side).map(|_| texel()).collect();
+    Shared::new(Texture {
+        source: PathBuf::new(),
+        picture: Picture::from_pixels(Size::new(side, side), texels)
+            .expect("as many as it has")
+            .into(),
+        wrap: rng.one_of(&[Wrap::Repeat, Wrap::Clamp]),
+        offset: [0.0; 2],
+        scale: [1.0; 2],
+    })
+}
