@@ -10,9 +10,9 @@ use std::sync::Mutex;
 
 use fearless_simd::Level;
 
+use super::shading::context::ShadingContext;
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Painter, TileSums, bounds_of};
-use super::shading::surface::Scenery;
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
@@ -27,7 +27,7 @@ use crate::render::raster::visibility_buffer;
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::render::screen::tiles::{TILE, TILE_SIDE, tiles_of};
-use crate::render::shading::barycentrics::ShadingNumber;
+use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
 use crate::render::timings::{Laps, Stages};
 use crate::scene::{Arithmetic, ItemId};
@@ -385,7 +385,7 @@ impl Renderer {
         shines.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let scenery = Scenery { level, plan, frame, lit, shines };
+        let context = ShadingContext { level, plan, frame, lit, shines };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self
@@ -407,11 +407,11 @@ impl Renderer {
                 let row = tile / columns;
                 if changes.tiles.contains(tile) {
                     match pass.sums.get(tile) {
-                        None => painter.paint(&scenery, tile, &bands[row]),
-                        Some(sums) => painter.add(&scenery, tile, sums),
+                        None => painter.paint(&context, tile, &bands[row]),
+                        Some(sums) => painter.add(&context, tile, sums),
                     }
                     if let (true, Some(sums)) = (pass.is_last, pass.sums.get(tile)) {
-                        painter.put_means(&scenery, tile, sums, &bands[row]);
+                        painter.put_means(&context, tile, sums, &bands[row]);
                     }
                     watch.tile_is_painted();
                 }

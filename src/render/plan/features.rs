@@ -4,10 +4,9 @@
 
 use std::borrow::Cow;
 
-use super::planner::Planner;
+use super::planning::{Planner, Planning};
 use super::uses::{Effect, EffectUse, State, Thing};
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
-use crate::render::plan::Planning;
 use crate::scene::{Filter, ItemId, LightAt, Normals, Object, Settings, Sides, Surface};
 
 /// What a row reads.

@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
+use super::planning::{Planning, Shining};
 use super::rules::LightFacts;
 use super::uses::{Effect, EffectUse, State};
 use crate::base::math;
 use crate::render::lights;
 use crate::render::lights::{LightRow, ViewLight};
-use crate::render::plan::Planning;
 use crate::render::plan::observer::ObserverSpace;
-use crate::scene::{Aim, Attenuation, LightId, LightKind, Scene, View};
+use crate::scene::{Aim, Attenuation, LightKind, Scene, View};
 
 /// The lights that a frame evaluates, in the observer's space.
 pub(super) fn lamps(
@@ -76,18 +76,6 @@ fn within_reach(place: DVec3, fades: &Attenuation, unit: f64) -> (DVec3, [f64; 3
     let coefficients =
         [fades.constant, held(fades.linear * step), held(fades.quadratic * step * step)];
     (place / nearer, coefficients)
-}
-
-/// A light that is evaluated in this frame.
-#[derive(Clone, Debug)]
-pub(super) struct Shining {
-    pub(super) id: LightId,
-    pub(super) name: String,
-    pub(super) effect: &'static LightRow,
-    /// The place of its light among the lamps of the plan.
-    pub(super) lamp: u32,
-    /// Whether it is on, and somewhere.
-    pub(super) shines: bool,
 }
 
 /// Where light comes from, in world space.

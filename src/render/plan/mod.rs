@@ -11,6 +11,7 @@ mod helpers;
 mod lamps;
 mod observer;
 mod planner;
+mod planning;
 mod range;
 mod rules;
 mod surfaces;
@@ -19,27 +20,15 @@ mod turning;
 pub(crate) mod uses;
 mod without;
 
-use std::collections::HashMap;
-
 use self::lamps::lamps;
 use self::observer::ObserverSpace;
-use self::planner::Planner;
+use self::planning::{Planner, Planning};
 use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectUse, State, Thing};
 use crate::base::image::Size;
-use crate::render::frame::draw::Pipeline;
 use crate::render::frame::variants::Variants;
 use crate::render::frame::{Eye, FramePlan, Rules};
 use crate::scene::{Arithmetic, LightAt, Projection, Samples, Scene, Settings, View};
-
-/// A plan while it is made.
-#[derive(Debug)]
-struct Planning {
-    plan: FramePlan,
-    notes: Notes,
-    /// The places of the plan's pipelines by their fingerprints.
-    places: HashMap<u64, Vec<u32>>,
-}
 
 impl FramePlan {
     /// Plans the picture of a scene: `size` in pixels, at least 1 x 1.
@@ -121,7 +110,7 @@ impl FramePlan {
             leave_out: settings.leave_out,
             rules,
         };
-        let mut into = Planning { plan, notes, places: HashMap::new() };
+        let mut into = Planning::new(plan, notes);
         let shining = lamps(&mut into, scene, view, &observer);
         let planner = Planner { scene, view, settings, observer, shining };
         planner.add_objects(&mut into);
@@ -137,20 +126,5 @@ impl FramePlan {
             });
         }
         into
-    }
-}
-
-impl Planning {
-    /// The place of a pipeline among those of the frame.
-    fn pipeline(&mut self, pipeline: Pipeline) -> u32 {
-        let pipelines = &mut self.plan.pipelines;
-        let alike = self.places.entry(pipeline.fingerprint()).or_default();
-        let same = alike.iter().find(|at| pipelines[**at as usize] == pipeline);
-        same.copied().unwrap_or_else(|| {
-            let at = u32::try_from(pipelines.len()).expect("fewer than 2^32 pipelines");
-            pipelines.push(pipeline);
-            alike.push(at);
-            at
-        })
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DMat3, DMat4, DVec3};
 
 use super::features::presence;
-use super::lamps::Shining;
+use super::planning::{Planner, Planning};
 use super::rules::Thing;
 use super::surfaces::Ground;
 use super::turning::turning_of;
@@ -14,22 +14,12 @@ use crate::base::{Shared, color::Color, math};
 use crate::render::frame::draw::{Back, Draw, Lines, Pipeline};
 use crate::render::frame::variants::Variants;
 use crate::render::lights::region::Region;
-use crate::render::plan::Planning;
 use crate::render::plan::helpers;
 use crate::render::plan::observer::ObserverSpace;
 use crate::scene::{
     Fill, ItemId, LightAt, LightId, LightKind, Model, NormalLength, NormalMatrix, NormalSource,
-    Object, ObjectId, Observer, Scene, Settings, VertexArithmetic, View,
+    Object, ObjectId, Observer, VertexArithmetic,
 };
-
-/// What planning reads.
-pub(super) struct Planner<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) view: &'a View,
-    pub(super) settings: &'a Settings,
-    pub(super) observer: ObserverSpace,
-    pub(super) shining: Vec<Shining>,
-}
 
 /// Where an object is, for the observer.
 struct Placement {

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use super::lamps::Shining;
-use super::planner::Planner;
+use super::bounded;
+use super::planning::{Planner, Planning, Shining};
 use super::rules::{Covering, Meeting, Reading};
 use super::uses::{self, Class, Effect, EffectUse, State};
 use crate::base::image::{Picture, Size};
@@ -15,7 +15,6 @@ use crate::render::frame::draw::{Pipeline, Shaded, Stage};
 use crate::render::lights::PhongMaterial;
 use crate::render::lights::region::Region;
 use crate::render::lights::turning::Turning;
-use crate::render::plan::{Planning, bounded};
 use crate::scene::{
     Arithmetic, ItemId, LeaveOut, LightAt, Object, PartLook, SpecularForm, Surface, Texture, Wrap,
 };

@@ -5,9 +5,9 @@
 
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
-use super::small::{Queue, SMALL};
+use super::queue::{Queue, SMALL};
 use crate::base::image::Size;
-use crate::render::raster::setup_variants::Plain;
+use crate::render::raster::unsnapped::UnsnappedTriangle;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::SamplePositions;
@@ -43,7 +43,7 @@ pub(crate) struct Bins {
     pub(crate) hits: Hits,
     pub(crate) large: Vec<LargeTriangle>,
     /// Triangles that are drawn one by one, with their boxes: then there are no others.
-    plain: Vec<(Plain, PixelBox)>,
+    plain: Vec<(UnsnappedTriangle, PixelBox)>,
     pub(crate) lines: Vec<ScreenLine>,
     /// Small triangles that wait to be drawn together, by the size of their boxes.
     pub(crate) queues: Box<[Queue; SMALL.len()]>,
@@ -90,7 +90,7 @@ impl Bins {
     }
 
     /// Adds a triangle that is drawn pixel by pixel, somewhere in a box.
-    pub(crate) fn add_plain(&mut self, triangle: Plain, bounds: PixelBox) {
+    pub(crate) fn add_plain(&mut self, triangle: UnsnappedTriangle, bounds: PixelBox) {
         let number = u32::try_from(self.plain.len()).expect("fewer than 2^32 triangles");
         self.drawn += 1;
         self.plain.push((triangle, bounds));
@@ -98,7 +98,7 @@ impl Bins {
     }
 
     /// A triangle that is drawn pixel by pixel, and its box.
-    pub(crate) fn plain(&self, number: u32) -> (&Plain, PixelBox) {
+    pub(crate) fn plain(&self, number: u32) -> (&UnsnappedTriangle, PixelBox) {
         let (plain, bounds) = &self.plain[number as usize];
         (plain, *bounds)
     }

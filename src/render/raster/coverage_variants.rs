@@ -8,7 +8,7 @@
 //!   the pixels that they share twice, and pixels are covered whose centres lie outside.
 
 use crate::base::math::each;
-use crate::render::raster::setup_variants::Plain;
+use crate::render::raster::unsnapped::UnsnappedTriangle;
 use crate::render::screen::coverage::{PixelBox, Snapped, doubled_area};
 
 /// A pixel, by column and row, and its depth.
@@ -20,7 +20,7 @@ type Take<'a> = &'a mut dyn FnMut(i32, i32, f32);
     clippy::cast_possible_truncation,
     reason = "the nearest number is meant"
 )]
-pub(crate) fn exactly(plain: &Plain, parts: i32, clip: PixelBox, take: Take<'_>) {
+pub(crate) fn exactly(plain: &UnsnappedTriangle, parts: i32, clip: PixelBox, take: Take<'_>) {
     let area = doubled_area(plain.corners);
     let [p, q, r] = plain.corners;
     let edges = [Edge::new(q, r, area), Edge::new(r, p, area), Edge::new(p, q, area)];
@@ -66,7 +66,7 @@ impl Edge {
 /// Covers pixels by edge functions in 32 bits.
 #[expect(clippy::cast_possible_truncation, reason = "32 bits are meant")]
 #[expect(clippy::cast_precision_loss, reason = "columns and rows are small")]
-pub(crate) fn in_32_bits(plain: &Plain, clip: PixelBox, take: Take<'_>) {
+pub(crate) fn in_32_bits(plain: &UnsnappedTriangle, clip: PixelBox, take: Take<'_>) {
     let [p, q, r] = plain.pixels.map(|at| at.map(|x| x as f32));
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let edge = |p: [f32; 2], q: [f32; 2], x: f32, y: f32| {
@@ -89,7 +89,7 @@ pub(crate) fn in_32_bits(plain: &Plain, clip: PixelBox, take: Take<'_>) {
 /// Covers pixels row by row.
 #[expect(clippy::cast_possible_truncation, reason = "whole pixels are meant")]
 #[expect(clippy::cast_precision_loss, reason = "columns and rows are small")]
-pub(crate) fn by_scan_lines(plain: &Plain, clip: PixelBox, take: Take<'_>) {
+pub(crate) fn by_scan_lines(plain: &UnsnappedTriangle, clip: PixelBox, take: Take<'_>) {
     let corners = plain.pixels.map(|at| at.map(|x| x.round() as i32));
     let rows = corners.map(|[_, y]| y);
     let (low, high) = (rows[0].min(rows[1]).min(rows[2]), rows[0].max(rows[1]).max(rows[2]));
@@ -126,7 +126,7 @@ pub(crate) fn by_scan_lines(plain: &Plain, clip: PixelBox, take: Take<'_>) {
 }
 
 /// Holds a depth to those of the corners.
-fn held(plain: &Plain) -> impl Fn(f32) -> f32 {
+fn held(plain: &UnsnappedTriangle) -> impl Fn(f32) -> f32 {
     let [a, b, c] = plain.depths;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     move |depth| {
@@ -143,18 +143,18 @@ mod tests {
 
     const CLIP: PixelBox = PixelBox { left: 0, top: 0, right: 40, bottom: 40 };
 
-    fn plain(pixels: [[f64; 2]; 3], parts: i32) -> Plain {
+    fn plain(pixels: [[f64; 2]; 3], parts: i32) -> UnsnappedTriangle {
         let corners = pixels.map(|at| {
             let [x, y] = at.map(|x| (x * f64::from(parts)).round() as i32);
             Snapped { x, y }
         });
-        Plain { corners, pixels, depths: [0.5; 3], number: 0, cutout: false }
+        UnsnappedTriangle { corners, pixels, depths: [0.5; 3], number: 0, cutout: false }
     }
 
     /// How often each pixel of a square is covered by two halves of it.
     fn counts(
         [x, y]: [f64; 2],
-        cover: impl Fn(&Plain, Take<'_>),
+        cover: impl Fn(&UnsnappedTriangle, Take<'_>),
     ) -> std::collections::BTreeMap<(i32, i32), u32> {
         let at = |u: f64, v: f64| [x + 20.0 * u, y + 20.0 * v];
         let mut counts = std::collections::BTreeMap::new();

@@ -8,7 +8,8 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16,
 
 use super::bins::{Bins, LargeTriangle};
 use super::hits::PACK;
-use super::small::{self, Pack, SMALL};
+use super::queue::{Pack, SMALL};
+use super::small;
 use super::vertices::{fetch, fetch_vertices};
 use crate::base::image::Size;
 use crate::base::math::each;
@@ -38,7 +39,7 @@ pub(crate) struct Setup<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Not,
-    Plain,
+    UnsnappedTriangle,
     Cutout,
 }
 
@@ -230,7 +231,7 @@ impl<'a> Setup<'a> {
             left &= left - 1;
             match self.kind(triangles[lane].number, pipelines) {
                 Kind::Not => {}
-                Kind::Plain => kinds[0] |= 1 << lane,
+                Kind::UnsnappedTriangle => kinds[0] |= 1 << lane,
                 Kind::Cutout => kinds[1] |= 1 << lane,
             }
         }
@@ -283,7 +284,7 @@ impl<'a> Setup<'a> {
         match self.draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize] {
             None => Kind::Not,
             Some(pipeline) if pipelines[pipeline as usize].is_cutout() => Kind::Cutout,
-            Some(_) => Kind::Plain,
+            Some(_) => Kind::UnsnappedTriangle,
         }
     }
 }

@@ -6,39 +6,12 @@ use crate::render::frame::draw::{Back, Pipeline};
 use crate::render::frame::variants::Variants;
 use crate::render::raster::bins::Bins;
 use crate::render::raster::setup::{Kind, Setup};
+use crate::render::raster::unsnapped::UnsnappedTriangle;
 use crate::render::raster::vertex_variants::{FINE_GUARD, Projected, coarse, project};
 use crate::render::screen::clip::{Clip, Screen};
-use crate::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, doubled_area};
+use crate::render::screen::coverage::{PixelBox, doubled_area};
 use crate::render::screen::interpolation::subpixels;
 use crate::scene::DrawTriangle;
-
-/// A triangle that is drawn pixel by pixel.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Plain {
-    /// Its corners in parts of a pixel.
-    pub(crate) corners: [Snapped; 3],
-    /// The same in pixels, before they were snapped.
-    pub(crate) pixels: [[f64; 2]; 3],
-    pub(crate) depths: [f32; 3],
-    /// Its number in the frame.
-    pub(crate) number: u32,
-    /// Whether its texture decides where it is drawn.
-    pub(crate) cutout: bool,
-}
-
-impl Plain {
-    /// The same as a place sees it that lies so many 256th parts of a pixel from a pixel's middle, where
-    /// pixels have `parts`.
-    pub(crate) fn seen_from(&self, shift: [i32; 2], parts: i32) -> Self {
-        let [x, y] = shift.map(|shift| shift * (parts / SUBPIXELS));
-        let [dx, dy] = shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
-        Self {
-            corners: self.corners.map(|at| Snapped { x: at.x - x, y: at.y - y }),
-            pixels: self.pixels.map(|[x, y]| [x - dx, y - dy]),
-            ..*self
-        }
-    }
-}
 
 /// Puts some of a draw's triangles into bins.
 pub(crate) fn set_up(
@@ -104,7 +77,7 @@ fn add_triangle(
     }
     let pixels = corners.map(|corner| corner.at);
     let depths = corners.map(|corner| corner.depth);
-    let plain = Plain { corners: snapped, pixels, depths, number, cutout };
+    let plain = UnsnappedTriangle { corners: snapped, pixels, depths, number, cutout };
     let plain = plain.seen_from(setup.screen.shift(), subpixels(variants));
     bins.add_plain(plain, around(&plain.pixels));
 }

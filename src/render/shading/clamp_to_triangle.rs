@@ -12,14 +12,14 @@ use fearless_simd::Level;
 use crate::render::screen::coverage::SUBPIXELS;
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::BLOCK;
-use crate::render::shading::barycentrics::{Barycentrics, Interpolated};
+use crate::render::shading::barycentrics::Barycentrics;
 use crate::render::shading::fragments::Fragments;
-use crate::render::shading::triangle_attributes::TriangleAttributes;
+use crate::render::shading::triangle_attributes::{Faced, TriangleAttributes};
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Kernel, Lanes, Number, Real};
 
-impl<T: Interpolated> Barycentrics<T> {
+impl<T: Faced> Barycentrics<T> {
     /// Moves to the nearest points of their triangles what the linear coordinates have outside, and
     /// says where all are looked at.
     pub(crate) fn hold(&mut self, level: Level, items: &Fragments, faces: &TriangleAttributes<T>) {

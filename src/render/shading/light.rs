@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 use fearless_simd::Level;
 use glam::{DMat3, DVec3};
 
-use super::barycentrics::ShadingNumber;
+use super::interpolated::ShadingNumber;
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};

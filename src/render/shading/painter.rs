@@ -7,10 +7,11 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::barycentrics::ShadingNumber;
 use super::colors::Sums;
+use super::context::ShadingContext;
+use super::interpolated::ShadingNumber;
 use super::resolve::Samples;
-use super::surface::{Out, Scenery, Shader};
+use super::surface::{Out, Shader};
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::render::frame::FramePlan;
@@ -86,8 +87,13 @@ impl<T: ShadingNumber> Painter<T> {
     }
 
     /// Paints a tile of the picture, whose band is given.
-    pub(crate) fn paint(&mut self, scenery: &Scenery<'_, T>, tile: usize, band: &Mutex<Band<'_>>) {
-        let Scenery { level, plan, frame, .. } = *scenery;
+    pub(crate) fn paint(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        tile: usize,
+        band: &Mutex<Band<'_>>,
+    ) {
+        let ShadingContext { level, plan, frame, .. } = *context;
         let (size, background) = (plan.size, plan.background);
         let bounds = bounds_of(tile, size);
         if !frame.is_empty(tile) {
@@ -103,13 +109,13 @@ impl<T: ShadingNumber> Painter<T> {
             // Straight into the picture, where nobody else is at work in these rows.
             let Band { pixels, filled } = &mut *band;
             let mut canvas = Canvas { pixels: &mut pixels[place.start..], stride: size.width };
-            let shows = self.blocks(scenery, bounds, &mut canvas);
+            let shows = self.blocks(context, bounds, &mut canvas);
             filled[column] = Some(background).filter(|_| !shows);
             return;
         }
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        let shows = self.blocks(scenery, bounds, &mut canvas);
+        let shows = self.blocks(context, bounds, &mut canvas);
         self.pixels = pixels;
         let mut band = locked(band);
         if shows {
@@ -122,14 +128,14 @@ impl<T: ShadingNumber> Painter<T> {
     /// Colours the blocks of a tile; says whether it shows anything but the background.
     fn blocks(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         bounds: PixelBox,
         canvas: &mut Canvas<'_>,
     ) -> bool {
         let mut whole = self.visibility.whole_blocks();
         if whole != u64::MAX {
             for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
-                row[..TILE_SIDE].fill(scenery.plan.background.opaque());
+                row[..TILE_SIDE].fill(context.plan.background.opaque());
             }
         }
         let mut shows = whole != 0;
@@ -141,16 +147,16 @@ impl<T: ShadingNumber> Painter<T> {
                         .fold(0, |which, other| which | 1 << other);
                     whole &= !which;
                     let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
-                    self.shader.whole_blocks(scenery, number, blocks, canvas);
+                    self.shader.whole_blocks(context, number, blocks, canvas);
                 }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
                 let at = canvas.place(corner_in_tile(block));
-                shows |= if scenery.frame.places().are_many() {
-                    self.block_of_samples(scenery, (block, corner), canvas, at)
+                shows |= if context.frame.places().are_many() {
+                    self.block_of_samples(context, (block, corner), canvas, at)
                 } else {
                     let words = self.visibility.block(block);
-                    self.shader.block(scenery, words, corner, (canvas, at))
+                    self.shader.block(context, words, corner, (canvas, at))
                 };
             }
         }
@@ -160,25 +166,25 @@ impl<T: ShadingNumber> Painter<T> {
     /// Colours a block whose pixels have four samples.
     fn block_of_samples(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         (block, corner): (usize, [i32; 2]),
         canvas: &mut Canvas<'_>,
         at: usize,
     ) -> bool {
         let Self { shader, visibility, samples, .. } = self;
         let planes = visibility.planes(block);
-        if samples.compare(scenery.level, planes) {
-            return shader.block(scenery, &planes[0], corner, (canvas, at));
+        if samples.compare(context.level, planes) {
+            return shader.block(context, &planes[0], corner, (canvas, at));
         }
         let mut sums = Sums::default();
-        let shows = shader.add_samples(scenery, (samples, planes), corner, &mut sums);
+        let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
         canvas.put(at, &sums.means(FOUR.ilog2()));
         shows
     }
 
     /// Adds the colours of a tile of a picture that one sample of its pixels sees to those of others.
-    fn add_picture(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &mut [Sums]) {
-        let Scenery { level, plan, frame, .. } = *scenery;
+    fn add_picture(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &mut [Sums]) {
+        let ShadingContext { level, plan, frame, .. } = *context;
         let bounds = bounds_of(tile, plan.size);
         if !frame.is_empty(tile) {
             self.visibility.draw(level, plan, frame, (tile, bounds));
@@ -190,7 +196,7 @@ impl<T: ShadingNumber> Painter<T> {
         self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        self.blocks(scenery, bounds, &mut canvas);
+        self.blocks(context, bounds, &mut canvas);
         for (block, to) in to.iter_mut().enumerate() {
             let rows = canvas.pixels[canvas.place(corner_in_tile(block))..].chunks(TILE_SIDE);
             let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
@@ -200,12 +206,12 @@ impl<T: ShadingNumber> Painter<T> {
     }
 
     /// Adds the colours of four samples of a tile, or of the one that is looked at, to those of others.
-    pub(crate) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &TileSums) {
-        let Scenery { level, plan, frame, .. } = *scenery;
+    pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
+        let ShadingContext { level, plan, frame, .. } = *context;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
         to.resize(BLOCK_PIXELS, Sums::default());
         if !frame.places().are_many() {
-            return self.add_picture(scenery, tile, &mut to);
+            return self.add_picture(context, tile, &mut to);
         }
         let empty = frame.is_empty(tile);
         let bounds = bounds_of(tile, plan.size);
@@ -221,11 +227,11 @@ impl<T: ShadingNumber> Painter<T> {
             }
             let corner = visibility.corner(block);
             if let Some(number) = visibility.whole(block) {
-                shader.whole_block(scenery, number, corner, &mut Out::Sums(to));
+                shader.whole_block(context, number, corner, &mut Out::Sums(to));
             } else {
                 let planes = visibility.planes(block);
                 samples.compare(level, planes);
-                shader.add_samples(scenery, (samples, planes), corner, to);
+                shader.add_samples(context, (samples, planes), corner, to);
             }
         }
     }
@@ -233,13 +239,13 @@ impl<T: ShadingNumber> Painter<T> {
     /// Puts the means of all samples of a tile into its band of the picture.
     pub(crate) fn put_means(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         tile: usize,
         of: &TileSums,
         band: &Mutex<Band<'_>>,
     ) {
         let of = of.lock().unwrap_or_else(PoisonError::into_inner);
-        let FramePlan { size, samples, .. } = *scenery.plan;
+        let FramePlan { size, samples, .. } = *context.plan;
         let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
         for (block, sums) in of.iter().enumerate() {
             let at = canvas.place(corner_in_tile(block));

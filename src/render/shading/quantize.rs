@@ -1,6 +1,5 @@
 //! From light and the colour of the surface itself to bytes.
 
-use super::barycentrics::ShadingNumber;
 use super::colors::Colors;
 use crate::render::lights::{Batch, Rows, load, set};
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
@@ -30,7 +29,7 @@ pub(crate) struct Finish<'a, T> {
     pub(crate) colors: &'a mut Colors,
 }
 
-impl<T: ShadingNumber> Kernel<T> for Finish<'_, T> {
+impl<T: Number> Kernel<T> for Finish<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { batch, lit, own, colors } = self;

@@ -6,9 +6,10 @@
 
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
 
-use super::barycentrics::ShadingNumber;
 use super::colors::Sums;
-use super::surface::{Out, Scenery, Shader};
+use super::context::ShadingContext;
+use super::interpolated::ShadingNumber;
+use super::surface::{Out, Shader};
 use crate::render::raster::visibility_buffer::{Planes, Visible, seen_number};
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::BLOCK_PIXELS;
@@ -82,22 +83,22 @@ impl<T: ShadingNumber> Shader<T> {
     /// compared. Says whether any of them shows more than the background.
     pub(crate) fn add_samples(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         (samples, planes): (&Samples, &Planes),
         corner: [i32; 2],
         sums: &mut Sums,
     ) -> bool {
-        let mut shown = self.items.list(scenery.level, &planes[0], corner);
+        let mut shown = self.items.list(context.level, &planes[0], corner);
         if shown.triangles != 0 {
             self.items.share(&samples.shares[0]);
-            self.color_items(scenery, corner, &mut Out::Sums(sums));
+            self.color_items(context, corner, &mut Out::Sums(sums));
         }
         let mut others = !shown.triangles;
         while others != 0 {
             let place = others.trailing_zeros() as usize;
             others &= others - 1;
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
-            add_other(scenery, number, place, share, sums);
+            add_other(context, number, place, share, sums);
         }
         self.items.begin_shared();
         for sample in 1..FOUR {
@@ -109,29 +110,35 @@ impl<T: ShadingNumber> Shader<T> {
                 let share = samples.shares[sample][place];
                 if !matches!(seen_number(number), Visible::Triangle(_)) {
                     shown.lines |= u64::from(number != BACKGROUND) << place;
-                    add_other(scenery, number, place, share, sums);
+                    add_other(context, number, place, share, sums);
                     continue;
                 }
                 shown.triangles |= 1 << place;
                 self.items.add(number, corner, place, share);
                 if self.items.is_full() {
-                    self.color_items(scenery, corner, &mut Out::Sums(sums));
+                    self.color_items(context, corner, &mut Out::Sums(sums));
                     self.items.begin_shared();
                 }
             }
         }
         if self.items.len > 0 {
-            self.color_items(scenery, corner, &mut Out::Sums(sums));
+            self.color_items(context, corner, &mut Out::Sums(sums));
         }
         (shown.triangles | shown.lines) != 0
     }
 }
 
 /// Adds what is no triangle: a line, or the background.
-fn add_other<T>(scenery: &Scenery<'_, T>, number: u32, place: usize, share: i32, sums: &mut Sums) {
+fn add_other<T>(
+    context: &ShadingContext<'_, T>,
+    number: u32,
+    place: usize,
+    share: i32,
+    sums: &mut Sums,
+) {
     let color = match seen_number(number) {
-        Visible::Line(line) => scenery.frame.line_color(scenery.plan, line),
-        _ => scenery.plan.background.opaque(),
+        Visible::Line(line) => context.frame.line_color(context.plan, line),
+        _ => context.plan.background.opaque(),
     };
     sums.add(place, color, share);
 }

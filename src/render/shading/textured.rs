@@ -2,9 +2,10 @@
 
 use fearless_simd::dispatch;
 
-use super::barycentrics::ShadingNumber;
+use super::context::ShadingContext;
 use super::groups::Group;
-use super::surface::{Scenery, Shader};
+use super::interpolated::ShadingNumber;
+use super::surface::Shader;
 use super::texels::{color, uv_ways};
 use crate::render::frame::draw::Shaded;
 use crate::render::simd::gather::SLOTS;
@@ -13,9 +14,14 @@ use crate::render::texture::uv::{uv, uvs};
 
 impl<T: ShadingNumber> Shader<T> {
     /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
-    pub(crate) fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
-        let (plan, draw) = (scenery.plan, group.draw);
-        let mips = shaded.texture.as_ref().and_then(|texture| scenery.shines.mips_of(texture));
+    pub(crate) fn texels(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+    ) {
+        let (plan, draw) = (context.plan, group.draw);
+        let mips = shaded.texture.as_ref().and_then(|texture| context.shines.mips_of(texture));
         let Self { items, faces, located, texels, .. } = self;
         for (row, tint) in texels.iter_mut().zip(shaded.tint) {
             row.fill(T::from_f64(tint));
@@ -27,7 +33,7 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
         // Where a processor rounds down by an instruction, it is that.
-        dispatch!(scenery.level, _ => for i in 0..items.len {
+        dispatch!(context.level, _ => for i in 0..items.len {
             let slot = items.slots[i].cast_unsigned() as usize % SLOTS;
             let number = faces.numbers[slot];
             let weights = located.weights(i);
@@ -40,7 +46,7 @@ impl<T: ShadingNumber> Shader<T> {
                     Some(mips) => mips.sample(
                         uv,
                         uv_ways(
-                            (plan, scenery.frame),
+                            (plan, context.frame),
                             group.draw_index,
                             number,
                             [items.x[i], items.y[i]],

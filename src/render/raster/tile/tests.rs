@@ -2,8 +2,8 @@ use fearless_simd::{SimdBase as _, i32x16};
 
 use super::*;
 use crate::base::image::Size;
+use crate::render::raster::queue::{ROWS, SMALL};
 use crate::render::raster::small;
-use crate::render::raster::small::{ROWS, SMALL};
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::Snapped;
