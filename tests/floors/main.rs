@@ -1,6 +1,11 @@
-//! The floors of the crate: who may use whom.
+//! The floors of the crate and the rooms of a floor: who may use whom.
 
+mod arrows;
+
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+
+use arrows::{Sources, cycles};
 
 /// Each floor with the floors under it that it may use. Standing on oneself is always allowed.
 const FLOORS: &[(&str, &[&str])] = &[
@@ -12,6 +17,11 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("lab", &["base", "scene", "io", "edit", "render"]),
     ("app", &["base", "scene", "io", "edit", "render", "lab"]),
 ];
+
+/// The rooms of a folder, files or folders, lowest first: a room may use those named before it. The
+/// folder's own `mod.rs` stands above them all.
+const ROOMS: &[(&str, &[&str])] =
+    &[("base", &["once", "lists", "shared", "color", "image", "math"])];
 
 /// Crates that only one floor may use.
 const GUESTS: &[(&str, &str)] = &[
@@ -171,4 +181,98 @@ fn a_use_of_a_wrong_floor_is_seen_however_it_is_written() {
     for (floor, text) in right {
         assert_eq!(faults(floor, text), Vec::<String>::new(), "{floor}: {text}");
     }
+}
+
+/// What is wrong with the rooms of a folder.
+fn room_faults(sources: &Sources, folder: &str, rooms: &[&str]) -> Vec<String> {
+    let names: Vec<&str> = folder.split('/').collect();
+    let arrows = sources.arrows(&names);
+    let room = |module: &[String]| module.get(names.len()).cloned();
+    let floor = |room: &Option<String>| match room {
+        Some(room) => rooms.iter().position(|name| name == room),
+        None => Some(rooms.len()),
+    };
+    let mut faults = BTreeSet::new();
+    for (module, used) in &arrows {
+        let own = room(module);
+        let Some(here) = floor(&own) else {
+            faults.insert(format!("{folder}: {} is no room of the table", own.unwrap_or_default()));
+            continue;
+        };
+        for other in used.iter().filter(|other| floor(&room(other)).is_some_and(|at| at > here)) {
+            faults.insert(format!("{} uses {} above it", module.join("/"), other.join("/")));
+        }
+    }
+    for name in rooms {
+        if !arrows.keys().any(|module| room(module).as_deref() == Some(*name)) {
+            faults.insert(format!("{folder}: there is no room {name}"));
+        }
+    }
+    let cycles = cycles(&arrows).into_iter().map(|cycle| {
+        let files: Vec<String> = cycle.iter().map(|module| module.join("/")).collect();
+        format!("a cycle of {} files: {}", files.len(), files.join(", "))
+    });
+    faults.into_iter().chain(cycles).collect()
+}
+
+#[test]
+fn no_room_uses_one_above_it_and_no_cycle_of_files_is_longer_than_a_file_and_its_parts() {
+    let sources = Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let wrong: Vec<String> =
+        ROOMS.iter().flat_map(|(folder, rooms)| room_faults(&sources, folder, rooms)).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn an_arrow_between_rooms_is_seen_however_it_is_written() {
+    let shop = |low: &str, high: &str, door: &str| {
+        let files = [("a/mod.rs", door), ("a/low.rs", low), ("a/high.rs", high)];
+        let files = files.map(|(name, text)| (name.to_owned(), text.to_owned()));
+        room_faults(&Sources::of(files), "a", &["low", "high"])
+    };
+    let door =
+        "mod low; mod high; pub use high::Tall; pub use high::*; use high::Renamed as Other;";
+    let high = "pub struct Tall; pub fn build() {}";
+    for low in [
+        "use super::high;",
+        "use super::high::Tall;",
+        "use crate::a::high::{Tall, build};",
+        "use crate::{a::{high::{self as up}}};",
+        "use super::Tall;",
+        "use super::build;",
+        "use super::Other;",
+        "use super::*; fn f(tall: Tall) {}",
+        "fn f() { super::high::build::<u8>() }",
+        "mod inner { use super::super::high; }",
+        "mod inner { fn f() { crate::a::Tall; } }",
+    ] {
+        assert!(!shop(low, high, door).is_empty(), "{low}");
+    }
+    for low in [
+        "// use super::high;",
+        "mod inner { use super::high; }",
+        "#[cfg(test)] mod tests { use super::super::high; }",
+        "use std::high::Tall;",
+    ] {
+        assert_eq!(shop(low, high, door), Vec::<String>::new(), "{low}");
+    }
+    let up_and_down = shop("use super::high;", "use super::low;", door);
+    assert_eq!(up_and_down.len(), 2, "{up_and_down:#?}");
+}
+
+#[test]
+fn a_file_and_its_own_parts_are_no_cycle_but_its_parts_among_each_other_are() {
+    let whole = |first: &str, second: &str| {
+        let files = [
+            ("a/mod.rs", "mod whole;"),
+            ("a/whole/mod.rs", "mod first; mod second; pub fn f() { first::g(); second::h(); }"),
+            ("a/whole/first.rs", first),
+            ("a/whole/second.rs", second),
+        ];
+        let files = files.map(|(name, text)| (name.to_owned(), text.to_owned()));
+        room_faults(&Sources::of(files), "a", &["whole"])
+    };
+    assert_eq!(whole("use super::f;", "use super::f;"), Vec::<String>::new());
+    assert_eq!(whole("use super::second;", "use super::f;"), Vec::<String>::new());
+    assert_eq!(whole("use super::second;", "use super::first;").len(), 1);
 }
