@@ -7,7 +7,7 @@ mod common;
 
 use glam::DVec3;
 use marraztu::base::color::Color;
-use marraztu::edit::{Gesture, History, Stroke, transform};
+use marraztu::edit::{Gesture, GesturePhase, History, transform};
 use marraztu::scene::{Command, ItemId, ObjectId, Scene, Subject};
 use proptest::prelude::*;
 
@@ -164,8 +164,8 @@ fn one_undo_takes_back_a_whole_drag_and_says_what_it_was() {
     let start = scene.clone();
     let mut history = History::new();
     for i in 0..500 {
-        let stroke = if i == 0 { Stroke::First } else { Stroke::Continued };
-        let command = transform::translate(&scene, &view, DVec3::X, stroke).unwrap();
+        let phase = if i == 0 { GesturePhase::First } else { GesturePhase::Continued };
+        let command = transform::translate(&scene, &view, DVec3::X, phase).unwrap();
         history.perform(&mut scene, command, Gesture::Part(7), "Move").unwrap();
     }
     let end = scene.clone();

@@ -22,7 +22,9 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::base::math::Axis;
 use marraztu::edit::lights::{self, Channel};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Gesture, History, Refusal, Stroke, items, look, motion, selection};
+use marraztu::edit::{
+    Gesture, GesturePhase, History, Refusal, items, motion, navigation, selection,
+};
 use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer};
 use marraztu::scene::{
     AXES, Arithmetic, Command, Fill, Filter, Frame, ItemId, LightAt, LightKind, MaterialChoice,
@@ -196,8 +198,8 @@ impl Desk {
             }
             _ => {
                 let turn = [0.2 * dice.number(), 0.2 * dice.number()];
-                let first = Stroke::First;
-                self.perform(look::look(&self.scene, &self.view, turn[0], turn[1], first));
+                let first = GesturePhase::First;
+                self.perform(navigation::look(&self.scene, &self.view, turn[0], turn[1], first));
             }
         }
     }
@@ -296,7 +298,7 @@ impl Desk {
         );
         self.view.frame = dice.one_of(&[Frame::Local, Frame::Global]);
         let sign = dice.one_of(&[Sign::Positive, Sign::Negative]);
-        let first = Stroke::First;
+        let first = GesturePhase::First;
         transform::step(&self.scene, &self.view, dice.one_of(&Axis::ALL), sign, first)
     }
 }

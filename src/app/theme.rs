@@ -98,27 +98,27 @@ pub fn install(ctx: &Context) {
 }
 
 /// What marks the selected and the focused.
-pub(super) fn accent(visuals: &Visuals) -> Color32 {
+pub(crate) fn accent(visuals: &Visuals) -> Color32 {
     palette(visuals).accent
 }
 
 /// What says that something was not done.
-pub(super) fn error(visuals: &Visuals) -> Color32 {
+pub(crate) fn error(visuals: &Visuals) -> Color32 {
     palette(visuals).error
 }
 
 /// The colour of an axis' letter.
-pub(super) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
+pub(crate) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
     palette(visuals).axes[axis.index()]
 }
 
 /// The line between panels and about fields.
-pub(super) fn line(visuals: &Visuals) -> Color32 {
+pub(crate) fn line(visuals: &Visuals) -> Color32 {
     palette(visuals).line
 }
 
 /// The ring about what has the keyboard.
-pub(super) fn ring(visuals: &Visuals) -> Stroke {
+pub(crate) fn ring(visuals: &Visuals) -> Stroke {
     Stroke::new(2.0, palette(visuals).accent)
 }
 

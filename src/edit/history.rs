@@ -3,17 +3,8 @@
 //! A step is what one undo takes back. It holds the command that leads away from where the scene is:
 //! steps before the present position lead back, those after it lead forward.
 
+use super::Gesture;
 use crate::scene::{Command, CommandError, Scene};
-
-/// Whether a change stands alone, or is one of many that a single drag or held key makes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Gesture {
-    /// A key, a click, a typed number: undone by itself.
-    #[default]
-    Whole,
-    /// Part of the gesture with this number: the gesture is undone as a whole.
-    Part(u64),
-}
 
 #[derive(Debug)]
 struct Step {

@@ -20,8 +20,44 @@ const FLOORS: &[(&str, &[&str])] = &[
 
 /// The rooms of a folder, files or folders, lowest first: a room may use those named before it. The
 /// folder's own `mod.rs` stands above them all.
-const ROOMS: &[(&str, &[&str])] =
-    &[("base", &["once", "lists", "shared", "color", "image", "math"])];
+const ROOMS: &[(&str, &[&str])] = &[
+    ("base", &["once", "lists", "shared", "color", "image", "math"]),
+    (
+        "edit",
+        &[
+            "refusal",
+            "gesture",
+            "names",
+            "set_transform",
+            "items",
+            "lights",
+            "motion",
+            "frame",
+            "transform",
+            "navigation",
+            "placement",
+            "selection",
+            "history",
+        ],
+    ),
+    (
+        "app",
+        &[
+            "theme",
+            "tasks",
+            "widgets",
+            "drawing",
+            "state",
+            "actions",
+            "input",
+            "documents",
+            "panels",
+            "viewport",
+            "editor",
+            "start",
+        ],
+    ),
+];
 
 /// Crates that only one floor may use.
 const GUESTS: &[(&str, &str)] = &[

@@ -8,10 +8,10 @@ use std::time::Duration;
 use egui::PointerButton;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{By, Queryable as _};
-use marraztu::app::action::Action;
-use marraztu::app::ask::Ask;
-use marraztu::app::comparison::Compare;
-use marraztu::app::laboratory::Laboratory;
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Request;
+use marraztu::app::state::laboratory::Compare;
+use marraztu::app::state::laboratory::Laboratory;
 use marraztu::base::image::Picture;
 use marraztu::lab::report::tabs;
 use marraztu::render::{FramePlan, Renderer};
@@ -134,7 +134,7 @@ fn the_picture_is_compared_with_the_exact_one_of_the_same_moment() {
     assert!(part < 0.47, "{part}");
     assert_eq!(editor.steps(), 0, "the slider is no drag of the view");
     let face = Settings { light: LightAt::Face, ..Settings::default() };
-    editor.ask(Ask::Settings(face));
+    editor.ask(Request::Settings(face));
     until(&mut editor, "another comparison", |e| {
         lab(e).judged.is_some_and(|judged| judged.settings.light == LightAt::Face)
     });
@@ -148,13 +148,13 @@ fn the_picture_is_compared_with_the_exact_one_of_the_same_moment() {
 #[test]
 fn a_pixel_is_explained_by_a_click_that_selects_nothing() {
     let mut editor = editor();
-    editor.ask(Ask::Settings(Settings { light: LightAt::Face, ..Settings::default() }));
+    editor.ask(Request::Settings(Settings { light: LightAt::Face, ..Settings::default() }));
     let selected = editor.view().object;
     click(&mut editor, Role::CheckBox, "Explain a pixel: click on it");
     let middle = editor.at(0.3, 0.5);
     editor.click(middle, PointerButton::Primary);
-    until(&mut editor, "the explanation", |e| lab(e).blame.is_some());
-    let lines = lab(&editor).blame.clone().unwrap();
+    until(&mut editor, "the explanation", |e| lab(e).attribution.is_some());
+    let lines = lab(&editor).attribution.clone().unwrap();
     assert!(lines.iter().any(|line| line.contains("shading pixel instead of face")), "{lines:?}");
     assert_eq!((lab(&editor).picking, editor.view().object), (false, selected));
 }
@@ -188,7 +188,7 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
 #[test]
 fn the_help_menu_leads_to_every_lesson() {
     let mut editor = Editor::of_size(1300.0, 760.0);
-    assert!(!editor.state().shown.laboratory);
+    assert!(!editor.state().panels.laboratory);
     for axis in [&AXES[0], &AXES[AXES.len() - 1]] {
         click(&mut editor, Role::Button, "Help");
         click(&mut editor, Role::MenuItem, "Lessons");
@@ -199,7 +199,7 @@ fn the_help_menu_leads_to_every_lesson() {
         }
         click(&mut editor, Role::MenuItem, axis.lesson.title);
         editor.harness.run_steps(30);
-        assert!(editor.state().shown.laboratory);
+        assert!(editor.state().panels.laboratory);
         assert_eq!(lab(&editor).lesson.key, axis.key);
         for sentence in [axis.lesson.what, axis.lesson.coarse, axis.lesson.shows] {
             assert!(editor.shows(sentence), "{sentence}");
@@ -267,7 +267,7 @@ fn every_axis_and_every_preset_is_a_choice_among_the_switches_of_the_view() {
             assert_eq!(Axis::chosen(axis, &editor.state().settings).word, choice.word, "{label}");
         }
     }
-    editor.ask(Ask::Settings(Settings::default()));
+    editor.ask(Request::Settings(Settings::default()));
     control(&editor, Role::RadioButton, "Accuracy: Exact").click_accesskit();
     editor.settle();
     assert_eq!(editor.state().settings.arithmetic, Arithmetic::F64);

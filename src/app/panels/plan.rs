@@ -12,18 +12,17 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-use super::controls;
-use super::icons::Icon;
-use crate::app::action::Action;
-use crate::app::ask::Ask;
-use crate::app::material_dialog::grouped;
+use crate::app::actions::{Action, Request};
 use crate::app::state::{Measured, State as Editing};
 use crate::app::theme;
+use crate::app::widgets::controls;
+use crate::app::widgets::icons::Icon;
+use crate::app::widgets::text::grouped;
 use crate::lab::cost::{Explained, Group};
 use crate::render::{Effect, EffectUse};
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>) {
+pub(crate) fn show(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>) {
     let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
     let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
     let height = ui.available_height();
@@ -37,13 +36,13 @@ pub(super) fn show(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>) {
                 ui.weak("The next picture says what it is made of.");
                 return;
             };
-            header_ui(ui, state, asks, &explained);
+            header_ui(ui, state, requests, &explained);
             table_ui(ui, state, &explained);
         });
 }
 
 /// What is said of all together, and the button that measures.
-fn header_ui(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>, explained: &Explained) {
+fn header_ui(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.label(RichText::new("Plan").strong());
@@ -58,7 +57,7 @@ fn header_ui(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>, explained: &Expl
             let label = if state.plan.measuring { "Stop" } else { "Measure" };
             let button = ui.add(egui::Button::new(label).min_size(vec2(70.0, theme::ROW)));
             if Action::MeasurePlan.explain(button, state).clicked() {
-                asks.push(Action::MeasurePlan.into());
+                requests.push(Action::MeasurePlan.into());
             }
             if state.plan.measuring {
                 ui.add(egui::Spinner::new().size(14.0));

@@ -4,12 +4,12 @@
 
 use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use super::controls;
-use super::icons::Icon;
-use super::number::short;
-use crate::app::ask::Ask;
-use crate::app::state::{Economy, Message, State, Tone};
+use crate::app::actions::Request;
+use crate::app::state::{Message, Reduction, State, Tone};
 use crate::app::theme;
+use crate::app::widgets::controls;
+use crate::app::widgets::icons::Icon;
+use crate::app::widgets::number::short;
 use crate::scene::{
     CameraMode, Frame, ItemId, LightKind, Observer, Projection, Subject, Transformation,
 };
@@ -21,7 +21,7 @@ const BETWEEN: &str = "  |  ";
 const LONGEST_NAME: usize = 28;
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Ask>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -88,8 +88,8 @@ fn parts(state: &State) -> Vec<String> {
         _ => format!("{on} lights"),
     });
     let statistics = &state.statistics;
-    if statistics.economy != Economy::NONE {
-        parts.push(format!("while moving: {}", statistics.economy.words()));
+    if statistics.reduction != Reduction::NONE {
+        parts.push(format!("while moving: {}", statistics.reduction.words()));
     }
     if statistics.pictures > 0 {
         parts.push(format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0));
@@ -210,7 +210,7 @@ fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
 }
 
 /// `name`, with dots in its middle where it has more than `longest` letters.
-pub(super) fn middle_elided(name: &str, longest: usize) -> String {
+pub(crate) fn middle_elided(name: &str, longest: usize) -> String {
     let letters: Vec<char> = name.chars().collect();
     if letters.len() <= longest {
         return name.to_owned();
@@ -238,8 +238,8 @@ mod tests {
         let mut state = State::new(scene, view);
         state.statistics.pictures = 1;
         assert!(!parts(&state).join(BETWEEN).contains("moving"));
-        state.statistics.economy.vertex_light = true;
-        state.statistics.economy.half_size = true;
+        state.statistics.reduction.vertex_light = true;
+        state.statistics.reduction.half_size = true;
         let said = "  |  while moving: light per vertex, half size  |  0.0 ms";
         assert!(parts(&state).join(BETWEEN).ends_with(said));
     }

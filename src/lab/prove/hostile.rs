@@ -12,7 +12,7 @@ use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::base::{Shared, math};
 use crate::edit::transform::{self, Sign};
-use crate::edit::{Stroke, place};
+use crate::edit::{GesturePhase, placement};
 use crate::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
     Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
@@ -141,17 +141,17 @@ impl Hostile {
 
     fn command(&mut self, scene: &Scene, view: &View) -> Option<Command> {
         let object = view.object?;
-        let (v, stroke) =
-            (self.vector(10.0), self.dice.one_of(&[Stroke::First, Stroke::Continued]));
+        let (v, phase) =
+            (self.vector(10.0), self.dice.one_of(&[GesturePhase::First, GesturePhase::Continued]));
         let axis = self.dice.one_of(&math::Axis::ALL);
         match self.dice.below(7) {
-            0 => transform::translate(scene, view, v, stroke),
-            1 => transform::rotate(scene, view, v, self.number(7.0), stroke),
-            2 => transform::stretch(scene, view, v, stroke),
-            3 => place::object_scale(scene, view, object, v, stroke),
-            4 => place::object_turn(scene, view, object, v, stroke),
-            5 => place::object_translation(scene, view, object, v, stroke),
-            _ => transform::step(scene, view, axis, Sign::Positive, stroke),
+            0 => transform::translate(scene, view, v, phase),
+            1 => transform::rotate(scene, view, v, self.number(7.0), phase),
+            2 => transform::stretch(scene, view, v, phase),
+            3 => placement::object_scale(scene, view, object, v, phase),
+            4 => placement::object_turn(scene, view, object, v, phase),
+            5 => placement::object_translation(scene, view, object, v, phase),
+            _ => transform::step(scene, view, axis, Sign::Positive, phase),
         }
         .ok()
     }

@@ -11,7 +11,7 @@ use super::dice::Dice;
 use super::double_double::Double;
 use super::{Proof, Tally};
 use crate::base::math::Axis;
-use crate::edit::Stroke;
+use crate::edit::GesturePhase;
 use crate::edit::transform::{self, Sign};
 use crate::io;
 use crate::scene::{Frame, Scene, Subject, Transformation, View};
@@ -64,7 +64,7 @@ fn desk(subject: Subject, transformation: Transformation, frame: Frame) -> (Scen
 }
 
 fn press(scene: &mut Scene, view: &View, (axis, sign): (Axis, Sign)) {
-    let command = transform::step(scene, view, axis, sign, Stroke::Continued);
+    let command = transform::step(scene, view, axis, sign, GesturePhase::Continued);
     command.expect("nothing is in the way").apply(scene).expect("the item is there");
 }
 

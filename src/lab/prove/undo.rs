@@ -8,9 +8,11 @@ use crate::base::Shared;
 use crate::base::image::Size;
 use crate::base::math::Axis;
 use crate::edit::lights::{self, Channel};
-use crate::edit::look::{self, Pointer};
+use crate::edit::navigation::{self, Pointer};
 use crate::edit::transform::{self, Sign};
-use crate::edit::{Gesture, History, Refusal, Stroke, frame, items, motion, place, selection};
+use crate::edit::{
+    Gesture, GesturePhase, History, Refusal, frame, items, motion, placement, selection,
+};
 use crate::io;
 use crate::scene::{
     Command, Frame, ItemId, LightKind, MaterialChoice, Model, Scene, Settings, SpotOwner, Subject,
@@ -152,14 +154,14 @@ fn every_bit(scene: &Scene) -> String {
 
 /// Anything that a person can do.
 fn anything(scene: &Scene, view: &mut View, dice: &mut Dice) -> Result<Command, Refusal> {
-    let stroke = dice.one_of(&[Stroke::First, Stroke::First, Stroke::Continued]);
+    let phase = dice.one_of(&[GesturePhase::First, GesturePhase::First, GesturePhase::Continued]);
     view.time += 0.1;
     let item = any_item(scene, dice).ok_or(Refusal::Gone)?;
     let object = || view.object.ok_or(Refusal::NoObject);
     match dice.below(15) {
-        0..6 => placing(scene, view, dice, stroke),
+        0..6 => placing(scene, view, dice, phase),
         6 => transform::toggle_analysis(scene, view),
-        7 => looking(scene, view, dice, stroke),
+        7 => looking(scene, view, dice, phase),
         8 => items::duplicate(scene, item).and_then(|command| few(scene, command)),
         9 => items::remove(scene, item),
         10 => items::toggle_shown(scene, item),
@@ -179,7 +181,7 @@ fn placing(
     scene: &Scene,
     view: &mut View,
     dice: &mut Dice,
-    stroke: Stroke,
+    phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     use Transformation::{Rotation, Scaling, Translation};
     match dice.below(8) {
@@ -191,12 +193,12 @@ fn placing(
             let _ = selection::set_transformation(view, kind);
             view.frame = dice.one_of(&[Frame::Local, Frame::Global]);
             let sign = dice.one_of(&[Sign::Positive, Sign::Negative]);
-            transform::step(scene, view, dice.one_of(&Axis::ALL), sign, stroke)
+            transform::step(scene, view, dice.one_of(&Axis::ALL), sign, phase)
         }
-        5 => transform::rotate(scene, view, dice.vector(10.0), dice.real(-10.0, 10.0), stroke),
+        5 => transform::rotate(scene, view, dice.vector(10.0), dice.real(-10.0, 10.0), phase),
         6 => {
             let object = view.object.ok_or(Refusal::NoObject)?;
-            place::object_turn(scene, view, object, dice.vector(200.0), stroke)
+            placement::object_turn(scene, view, object, dice.vector(200.0), phase)
         }
         _ => transform::take_back(scene, view),
     }
@@ -207,15 +209,15 @@ fn looking(
     scene: &Scene,
     view: &View,
     dice: &mut Dice,
-    stroke: Stroke,
+    phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     let size = Size::new(640, 480);
     let at = DVec2::new(dice.real(120.0, 520.0), dice.real(40.0, 440.0));
     let amount: DVec3 = dice.vector(10.0);
     match dice.below(4) {
-        0 => look::orbit(scene, view, amount.x, amount.y, stroke),
-        1 => look::pan(scene, view, at, size, stroke),
-        2 => look::zoom(scene, view, amount.z, Pointer { at, depth: None }, size, stroke),
+        0 => navigation::orbit(scene, view, amount.x, amount.y, phase),
+        1 => navigation::pan(scene, view, at, size, phase),
+        2 => navigation::zoom(scene, view, amount.z, Pointer { at, depth: None }, size, phase),
         _ => frame::selection(scene, view),
     }
 }

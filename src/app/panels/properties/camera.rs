@@ -3,38 +3,38 @@
 use egui::Ui;
 use glam::{DMat3, DVec3};
 
-use super::super::controls::{Switch, change, row, section};
-use super::super::number::{Number, keep_angles, kept_angles, vector};
-use super::super::view_switches::frame_ui;
 use super::object::same_turn;
 use super::{material, number_row, steps_ui};
-use crate::app::ask::Ask;
+use crate::app::actions::{Request, change};
+use crate::app::panels::view_switches::frame_ui;
 use crate::app::state::State;
+use crate::app::widgets::controls::{Switch, row, section};
+use crate::app::widgets::number::{Number, keep_angles, kept_angles, vector};
 use crate::base::math::{self, Axis};
-use crate::edit::{Gesture, items, place};
+use crate::edit::{Gesture, items, placement};
 use crate::scene::{Camera, CameraId, Lens};
 
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId) {
     let Some(camera) = state.scene.cameras.get(id) else { return };
     section(ui, "Place and direction", true, |ui| {
-        pose_ui(ui, state, asks, id, camera);
-        row(ui, "Moves", |ui| frame_ui(ui, state, asks));
+        pose_ui(ui, state, requests, id, camera);
+        row(ui, "Moves", |ui| frame_ui(ui, state, requests));
     });
-    section(ui, "Lens", true, |ui| lens_ui(ui, state, asks, id, camera));
-    steps_ui(ui, state, asks, false);
-    section(ui, "Mark", true, |ui| mark_ui(ui, state, asks, id, camera));
+    section(ui, "Lens", true, |ui| lens_ui(ui, state, requests, id, camera));
+    steps_ui(ui, state, requests, false);
+    section(ui, "Mark", true, |ui| mark_ui(ui, state, requests, id, camera));
 }
 
-fn pose_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera: &Camera) {
+fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let (scene, view) = (&state.scene, &state.view);
     let pose = camera.pose.now();
     let hint = "Where the camera's eye is";
     let eye = row(ui, "Position", |ui| vector(ui, &Number::new("Position", hint), pose.eye));
     if let Some((to, gesture)) = eye {
-        let command = place::camera_eye(scene, view, id, to, state.stroke(gesture));
-        change(asks, format!("Move {}", camera.name), gesture, command);
+        let command = placement::camera_eye(scene, view, id, to, state.phase(gesture));
+        change(requests, format!("Move {}", camera.name), gesture, command);
     }
-    let canonical = place::camera_degrees(pose);
+    let canonical = placement::camera_degrees(pose);
     let same = |given| same_turn(camera_turn(given), camera_turn(canonical));
     let given = kept_angles(ui, "angles", canonical, same);
     let rows = [
@@ -48,8 +48,8 @@ fn pose_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera
             let mut to = given;
             to[i] = degrees;
             keep_angles(ui, "angles", to);
-            let command = place::camera_turn(scene, view, id, to, state.stroke(gesture));
-            change(asks, format!("Turn {}", camera.name), gesture, command);
+            let command = placement::camera_turn(scene, view, id, to, state.phase(gesture));
+            change(requests, format!("Turn {}", camera.name), gesture, command);
         }
     }
 }
@@ -60,12 +60,12 @@ fn camera_turn(degrees: DVec3) -> DMat3 {
     turn(Axis::Y, degrees.x) * turn(Axis::X, degrees.y) * turn(Axis::Z, degrees.z)
 }
 
-fn lens_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera: &Camera) {
+fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let lens = camera.lens;
     let mut set = |changed: Option<(f64, Gesture)>, to: &dyn Fn(f64) -> Lens| {
         if let Some((value, gesture)) = changed {
             let command = items::set_lens(&state.scene, id, to(value));
-            change(asks, format!("Lens of {}", camera.name), gesture, command);
+            change(requests, format!("Lens of {}", camera.name), gesture, command);
         }
     };
     ui.weak("Perspective");
@@ -93,15 +93,15 @@ fn lens_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera
 }
 
 /// What other observers see of the camera.
-fn mark_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera: &Camera) {
+fn mark_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let scene = &state.scene;
     let hint = "Other cameras see it as a small pyramid";
     if Switch::new("Seen by others", camera.visible).ui(ui).on_hover_text(hint).clicked() {
         let command = items::change_camera(scene, id, |camera| camera.visible ^= true);
-        change(asks, format!("Show or hide {}", camera.name), Gesture::Whole, command);
+        change(requests, format!("Show or hide {}", camera.name), Gesture::Whole, command);
     }
     if let Some((to, gesture)) = material::choice_ui(ui, &camera.material, None) {
         let command = items::change_camera(scene, id, |camera| camera.material = to);
-        change(asks, format!("Material of {}", camera.name), gesture, command);
+        change(requests, format!("Material of {}", camera.name), gesture, command);
     }
 }
