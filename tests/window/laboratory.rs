@@ -91,7 +91,7 @@ fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
         editor.settle();
         assert_eq!(editor.state().settings, point.settings, "{mark}");
     }
-    click(&mut editor, Role::RadioButton, "light evaluated, --shading: Face");
+    click(&mut editor, Role::RadioButton, "shading, --shading: Flat");
     assert_eq!(editor.state().settings.light, LightAt::Face);
     click(&mut editor, Role::RadioButton, "presets: Default");
     assert_eq!(editor.state().settings, Settings::default());
@@ -216,7 +216,7 @@ fn the_help_menu_leads_to_every_lesson() {
 fn the_bright_spot_of_the_first_lesson_lies_on_the_compare_line() {
     let mut editor = editor();
     click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
-    click(&mut editor, Role::Button, "light evaluated");
+    click(&mut editor, Role::Button, "shading");
     click(&mut editor, Role::Button, "Take me there");
     assert_eq!(editor.state().settings.light, LightAt::Vertex);
     assert_eq!(lab(&editor).compare, Compare::Split(0.5));

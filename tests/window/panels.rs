@@ -84,7 +84,7 @@ fn every_choice_of_the_view_does_what_its_action_does() {
         ("Subject: Camera", Action::SubjectCamera),
         ("Observer: From object", Action::ToggleObserver),
         ("Observer: From camera", Action::ToggleObserver),
-        ("Projection: Parallel", Action::ToggleProjection),
+        ("Projection: Orthographic", Action::ToggleProjection),
         ("Projection: Perspective", Action::ToggleProjection),
         ("Normals: Face", Action::ToggleLightNormals),
         ("Normals: Vertex", Action::ToggleLightNormals),
@@ -108,9 +108,9 @@ fn every_axis_of_accuracy_is_chosen_by_its_name() {
     let mut editor = Editor::tall();
     let first = Settings::default();
     for (label, expected) in [
-        ("Shading: Face", Settings { light: LightAt::Face, ..first }),
-        ("Shading: Vertex", Settings { light: LightAt::Vertex, ..first }),
-        ("Shading: Pixel", first),
+        ("Shading: Flat", Settings { light: LightAt::Face, ..first }),
+        ("Shading: Gouraud", Settings { light: LightAt::Vertex, ..first }),
+        ("Shading: Phong", first),
         ("Highlight: N.H", Settings { specular: SpecularForm::HalfVector, ..first }),
         ("Highlight: R.V", first),
         ("Textures: Nearest", Settings { filter: Filter::Nearest, ..first }),

@@ -50,7 +50,7 @@ fn with_light(wanted: impl Fn(&LightKind) -> bool) -> Editor {
 fn with_object() -> Editor {
     let mut editor = Editor::tall();
     editor.perform(Action::SubjectObject);
-    for section in ["Steps of x, y, z", "Spin", "Drawing", "Model"] {
+    for section in ["Step sizes", "Spin", "Drawing", "Model"] {
         click(&mut editor, Role::DisclosureTriangle, section);
     }
     editor
@@ -58,7 +58,7 @@ fn with_object() -> Editor {
 
 fn with_camera() -> Editor {
     let mut editor = Editor::tall();
-    click(&mut editor, Role::DisclosureTriangle, "Steps of x, y, z");
+    click(&mut editor, Role::DisclosureTriangle, "Step sizes");
     editor
 }
 
@@ -100,12 +100,12 @@ const OF_CAMERA: &[(&str, Read)] = &[
     ("Yaw", |e| placement::camera_degrees(camera(e).pose.now()).x),
     ("Pitch", |e| placement::camera_degrees(camera(e).pose.now()).y),
     ("Roll", |e| placement::camera_degrees(camera(e).pose.now()).z),
-    ("Half-angle", |e| camera(e).lens.half_angle),
+    ("Field of view", |e| 2.0 * camera(e).lens.half_angle),
     ("Near", |e| camera(e).lens.near),
     ("Far", |e| camera(e).lens.far),
     ("Half-size", |e| camera(e).lens.half_size),
-    ("Parallel near", |e| camera(e).lens.parallel_near),
-    ("Parallel far", |e| camera(e).lens.parallel_far),
+    ("Orthographic near", |e| camera(e).lens.parallel_near),
+    ("Orthographic far", |e| camera(e).lens.parallel_far),
 ];
 
 /// What is typed, and dragged, into each field becomes its value in one step, and one step of undo
@@ -427,7 +427,7 @@ fn a_camera_goes_to_analysis_by_its_properties_as_by_the_key() {
     pressed.press(Either(Key::G));
     assert!(matches!(mode(&clicked), CameraMode::Analysis { .. }));
     assert!(clicked.scene() == pressed.scene());
-    click(&mut clicked, Role::CheckBox, "Seen by others");
+    click(&mut clicked, Role::CheckBox, "Visible");
     assert!(!camera(&clicked).visible);
 }
 

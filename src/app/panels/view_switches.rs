@@ -22,12 +22,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             transformation_ui(ui, state, requests);
             frame_ui(ui, state, requests);
         });
-        section(ui, "Seen", true, |ui| {
+        section(ui, "View", true, |ui| {
             observer_ui(ui, state, requests);
             projection_ui(ui, state, requests);
             background_ui(ui, state, requests);
         });
-        section(ui, "Drawn", true, |ui| {
+        section(ui, "Display", true, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             for action in [
                 Action::ToggleEdges,
@@ -132,10 +132,10 @@ fn observer_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let parallel = state.view.projection == Projection::Orthographic;
+    let orthographic = state.view.projection == Projection::Orthographic;
     let all = [
-        ("Perspective", !parallel, Action::ToggleProjection),
-        ("Parallel", parallel, Action::ToggleProjection),
+        ("Perspective", !orthographic, Action::ToggleProjection),
+        ("Orthographic", orthographic, Action::ToggleProjection),
     ];
     actions_ui(ui, state, requests, "Projection", &all);
 }

@@ -70,13 +70,13 @@ fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         .iter()
         .zip([
             ("RMSE", "The root of the mean square of the differences, in byte steps of 255"),
-            ("Max", "The largest difference of a byte, in steps of 255"),
-            ("Bytes", "The part of the bytes that differ at all, however little"),
-            ("FLIP", "How different the pictures look when one flips between them, from 0 to 1"),
+            ("Maximum", "The largest difference of a byte, in steps of 255"),
+            ("Differing bytes", "The fraction of bytes that differ at all"),
+            ("FLIP", "How different the pictures look when flipping between them, from 0 to 1"),
         ])
-        .map(|(measure, (label, hint))| Choice::new("Error as", label, *measure == now, hint))
+        .map(|(measure, (label, hint))| Choice::new("Error metric", label, *measure == now, hint))
         .collect();
-    if let Some(clicked) = row(ui, "Error as", |ui| choices(ui, &all)) {
+    if let Some(clicked) = row(ui, "Error metric", |ui| choices_in_rows(ui, &all)) {
         requests.push(Request::Lab(LabRequest::Judge(Measure::ALL[clicked])));
     }
 }

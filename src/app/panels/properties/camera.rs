@@ -16,13 +16,13 @@ use crate::scene::{Camera, CameraId, Lens};
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId) {
     let Some(camera) = state.scene.cameras.get(id) else { return };
-    section(ui, "Place and direction", true, |ui| {
+    section(ui, "Transform", true, |ui| {
         pose_ui(ui, state, requests, id, camera);
         row(ui, "Moves", |ui| frame_ui(ui, state, requests));
     });
     section(ui, "Lens", true, |ui| lens_ui(ui, state, requests, id, camera));
     steps_ui(ui, state, requests, false);
-    section(ui, "Mark", true, |ui| mark_ui(ui, state, requests, id, camera));
+    section(ui, "Camera model", true, |ui| mark_ui(ui, state, requests, id, camera));
 }
 
 fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
@@ -69,25 +69,25 @@ fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
         }
     };
     ui.weak("Perspective");
-    let hint = "Degrees to each side of the axis, across the shorter side of the picture";
-    let number = Number::new("Half-angle", hint).speed(0.1).range(0.01..=89.9).suffix(" deg");
-    let half_angle = number_row(ui, "Half-angle", number, lens.half_angle);
-    set(half_angle, &|half_angle| Lens { half_angle, ..lens });
+    let hint = "The whole angle across the shorter side of the picture, usually the vertical one";
+    let number = Number::new("Field of view", hint).speed(0.2).range(0.02..=179.8).suffix(" deg");
+    let angle = number_row(ui, "Field of view", number, 2.0 * lens.half_angle);
+    set(angle, &|angle| Lens { half_angle: angle / 2.0, ..lens });
     let number = Number::new("Near", "Where the view begins: more than 0").speed(0.1);
     let near = number_row(ui, "Near", number, lens.near);
     set(near, &|near| Lens { near, ..lens });
     let number = Number::new("Far", "Where the view ends: more than Near").speed(5.0);
     let far = number_row(ui, "Far", number, lens.far);
     set(far, &|far| Lens { far, ..lens });
-    ui.weak("Parallel");
+    ui.weak("Orthographic");
     let hint = "Units to each side of the axis, across the shorter side of the picture";
     let number = Number::new("Half-size", hint).range(1e-9..=1e12);
     let half_size = number_row(ui, "Half-size", number, lens.half_size);
     set(half_size, &|half_size| Lens { half_size, ..lens });
-    let number = Number::new("Parallel near", "Where the parallel view begins");
+    let number = Number::new("Orthographic near", "Where the orthographic view begins");
     let near = number_row(ui, "Near", number, lens.parallel_near);
     set(near, &|parallel_near| Lens { parallel_near, ..lens });
-    let number = Number::new("Parallel far", "Where it ends: more than Near").speed(5.0);
+    let number = Number::new("Orthographic far", "Where it ends: more than Near").speed(5.0);
     let far = number_row(ui, "Far", number, lens.parallel_far);
     set(far, &|parallel_far| Lens { parallel_far, ..lens });
 }
@@ -96,7 +96,7 @@ fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
 fn mark_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let scene = &state.scene;
     let hint = "Other cameras see it as a small pyramid";
-    if Switch::new("Seen by others", camera.visible).ui(ui).on_hover_text(hint).clicked() {
+    if Switch::new("Visible", camera.visible).ui(ui).on_hover_text(hint).clicked() {
         let command = items::change_camera(scene, id, |camera| camera.visible ^= true);
         change(requests, format!("Show or hide {}", camera.name), Gesture::Whole, command);
     }

@@ -61,7 +61,7 @@ fn title(ui: &mut Ui, state: &State, item: ItemId) {
 
 /// How far one press of x, y or z goes.
 fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bool) {
-    section(ui, "Steps of x, y, z", false, |ui| {
+    section(ui, "Step sizes", false, |ui| {
         let steps = state.view.steps;
         let does = |to| match to {
             Transformation::Translation => ("Move", "Units that a press of x, y or z moves"),
