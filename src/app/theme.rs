@@ -1,8 +1,8 @@
 //! How the window looks: colours, sizes, distances.
 //!
-//! The picture is the star, so that everything about it is grey; one accent says what is selected and
-//! what has the keyboard. A light and a dark palette hold the same places, and every text keeps a
-//! contrast of at least 4.5 to 1 on whatever it stands on (WCAG 2.1, success criterion 1.4.3).
+//! The picture is the star, so that everything about it is grey; one accent says what is selected
+//! and what has the keyboard. A light and a dark palette hold the same places, and every text keeps
+//! a contrast of at least 4.5 to 1 on whatever it stands on (WCAG 2.1, success criterion 1.4.3).
 
 use egui::style::{HandleShape, ScrollStyle, WidgetVisuals, Widgets};
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style};

@@ -89,8 +89,9 @@ pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, 
     framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
 }
 
-/// Models that no scene says how to look at: the selected camera sees everything that is shown, with a
-/// margin of a twentieth, from `right` degrees to the right of the front and `up` degrees above.
+/// Models that no scene says how to look at: the selected camera sees everything that is shown,
+/// with a margin of a twentieth, from `right` degrees to the right of the front and `up` degrees
+/// above.
 ///
 /// # Errors
 /// Where nothing is shown.
@@ -145,8 +146,8 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     (distance, framed)
 }
 
-/// The selected camera sees these objects whole along these axes, farther away than necessary by a part
-/// of the distance.
+/// The selected camera sees these objects whole along these axes, farther away than necessary by a
+/// part of the distance.
 fn framed(
     scene: &Scene,
     view: &View,

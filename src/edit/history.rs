@@ -1,7 +1,7 @@
 //! What was changed, so that it can be taken back.
 //!
-//! A step is what one undo takes back. It holds the command that leads away from where the scene is:
-//! steps before the present position lead back, those after it lead forward.
+//! A step is what one undo takes back. It holds the command that leads away from where the scene
+//! is: steps before the present position lead back, those after it lead forward.
 
 use super::Gesture;
 use crate::scene::{Command, CommandError, Scene};
@@ -13,8 +13,8 @@ struct Step {
     commands: Vec<Command>,
 }
 
-/// The changes made so far, and those taken back. Writes the scene; whoever else writes it makes the
-/// steps unfit.
+/// The changes made so far, and those taken back. Writes the scene; whoever else writes it makes
+/// the steps unfit.
 #[derive(Debug)]
 pub struct History {
     steps: Vec<Step>,

@@ -103,9 +103,9 @@ pub fn fly(
 
 /// The wheel: comes nearer by so many notches (away where negative).
 ///
-/// In perspective the eye goes along the ray through the pointer, in parallel projection less of the
-/// world is seen; what is under the pointer stays there. In analysis the camera keeps to its axis,
-/// never nearer to the centre than the near plane.
+/// In perspective the eye goes along the ray through the pointer, in parallel projection less of
+/// the world is seen; what is under the pointer stays there. In analysis the camera keeps to its
+/// axis, never nearer to the centre than the near plane.
 ///
 /// # Errors
 /// Where an object looks, or the camera is as near as it may be.

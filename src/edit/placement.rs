@@ -39,7 +39,8 @@ pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     DVec3::new(about_x, about_y, about_z).map(f64::to_degrees)
 }
 
-/// How much longer an object's axes are than those of its model; X is negative where it is mirrored.
+/// How much longer an object's axes are than those of its model; X is negative where it is
+/// mirrored.
 #[must_use]
 pub fn scale(placement: &DMat4) -> DVec3 {
     let m = DMat3::from_mat4(*placement);

@@ -68,8 +68,8 @@ fn select_in(
     Ok(Selection { view: next, command })
 }
 
-/// Cameras that once were in analysis of an object and fell back to fly, because another was selected
-/// then, stay in fly when it is selected again: nothing has aimed them at it.
+/// Cameras that once were in analysis of an object and fell back to fly, because another was
+/// selected then, stay in fly when it is selected again: nothing has aimed them at it.
 fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
     let fallen = scene
         .cameras

@@ -99,8 +99,8 @@ pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     }
 }
 
-/// Moves the subject's selected item by `delta`: an object in the frame that the view says, a camera
-/// in its own, a light in the world's.
+/// Moves the subject's selected item by `delta`: an object in the frame that the view says, a
+/// camera in its own, a light in the world's.
 ///
 /// # Errors
 /// Where it cannot be moved, and why.
@@ -141,8 +141,9 @@ pub fn translate(
 }
 
 /// Turns the subject's selected item by the right-hand rule about `axis`: an object in the frame
-/// that the view says (the global one turns about the world's origin), a camera in fly about its own
-/// eye and in analysis about the centre it looks at, both in its own frame, a light in the world's.
+/// that the view says (the global one turns about the world's origin), a camera in fly about its
+/// own eye and in analysis about the centre it looks at, both in its own frame, a light in the
+/// world's.
 ///
 /// # Errors
 /// Where it cannot be turned, and why.
@@ -242,8 +243,8 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     }
 }
 
-/// The key `g` while the subject is cameras: from fly to analysis, which aims the selected camera at
-/// the selected object's centre, and back, which moves nothing and pushes nothing.
+/// The key `g` while the subject is cameras: from fly to analysis, which aims the selected camera
+/// at the selected object's centre, and back, which moves nothing and pushes nothing.
 ///
 /// # Errors
 /// Where there is no object to look at.

@@ -36,13 +36,14 @@ proptest! {
         let mut desk = desk();
         let scale = DVec3::new(if mirrored { -2.0 } else { 2.0 }, 3.0, 0.5);
         typed(&mut desk, DMat4::from_translation(DVec3::ONE) * DMat4::from_scale(scale));
-        desk.perform(placement::object_turn(&desk.scene, &desk.view, ID, angles, GesturePhase::First));
+        let first = GesturePhase::First;
+        desk.perform(placement::object_turn(&desk.scene, &desk.view, ID, angles, first));
         let m = desk.placement();
         let expected = turned(Axis::X, angles.x) * turned(Axis::Y, angles.y)
             * turned(Axis::Z, angles.z) * DMat3::from_diagonal(scale);
         prop_assert!(DMat3::from_mat4(m).abs_diff_eq(expected, 1e-9));
         let shown = placement::turn_degrees(&m);
-        desk.perform(placement::object_turn(&desk.scene, &desk.view, ID, shown, GesturePhase::First));
+        desk.perform(placement::object_turn(&desk.scene, &desk.view, ID, shown, first));
         // At 90 degrees about Y, half of the digits of the other two are lost.
         prop_assert!(desk.placement().abs_diff_eq(m, 1e-6));
         prop_assert!((placement::scale(&m) - scale).length() < 1e-9);
@@ -51,13 +52,13 @@ proptest! {
     #[test]
     fn a_cameras_yaw_pitch_and_roll_are_what_was_typed(angles in angles()) {
         let mut desk = desk();
-        let turn = placement::camera_turn(&desk.scene, &desk.view, desk.view.camera, angles, GesturePhase::First);
-        desk.perform(turn);
-        let axes = turned(Axis::Y, angles.x) * turned(Axis::X, angles.y) * turned(Axis::Z, angles.z);
+        let (camera, first) = (desk.view.camera, GesturePhase::First);
+        desk.perform(placement::camera_turn(&desk.scene, &desk.view, camera, angles, first));
+        let [yaw, pitch] = [turned(Axis::Y, angles.x), turned(Axis::X, angles.y)];
+        let axes = yaw * pitch * turned(Axis::Z, angles.z);
         prop_assert!(desk.pose().axes.abs_diff_eq(axes, 1e-9));
         let shown = placement::camera_degrees(&desk.pose());
-        let turn = placement::camera_turn(&desk.scene, &desk.view, desk.view.camera, shown, GesturePhase::First);
-        desk.perform(turn);
+        desk.perform(placement::camera_turn(&desk.scene, &desk.view, camera, shown, first));
         prop_assert!(desk.pose().axes.abs_diff_eq(axes, 1e-6));
         prop_assert_eq!(desk.pose().eye, DVec3::Z * 400.0);
     }

@@ -155,7 +155,8 @@ fn faults(floor: &str, text: &str) -> Vec<String> {
             }
             None => {
                 let home = GUESTS.iter().find(|(guest, _)| *guest == name);
-                // `image` is also the name of a module of ours: `use super::image` begins with super.
+                // `image` is also the name of a module of ours: `use super::image` begins with
+                // super.
                 if home.is_some_and(|(_, home)| *home != floor) {
                     faults.push(format!("uses the crate {name}"));
                 }

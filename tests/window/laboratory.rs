@@ -173,8 +173,8 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
         assert_eq!((axis.sense)(&editor.scene(), &editor.view()), Ok(()));
         until(&mut editor, "the comparison", |e| lab(e).judged.is_some());
         let error = lab(&editor).judged.unwrap().error;
-        // Some are off by a step or two at most, which is what they teach, and samples are judged against
-        // as many of them; all else is plain to see.
+        // Some are off by a step or two at most, which is what they teach, and samples are judged
+        // against as many of them; all else is plain to see.
         let least = match axis.key {
             "arithmetic" | "faint" | "specular" | "samples" => 0,
             "normalising" | "rounding" => 1,
@@ -210,8 +210,8 @@ fn the_help_menu_leads_to_every_lesson() {
     assert!(editor.shows("Nothing is measured yet."));
 }
 
-/// The compare line cuts the bright spot in half: light at vertices misses the one half, and the other is
-/// the exact picture's.
+/// The compare line cuts the bright spot in half: light at vertices misses the one half, and the
+/// other is the exact picture's.
 #[test]
 fn the_bright_spot_of_the_first_lesson_lies_on_the_compare_line() {
     let mut editor = editor();

@@ -1,7 +1,8 @@
-//! The panel that says what the picture is made of, and that nothing is drawn while nothing changes.
+//! The panel that says what the picture is made of, and that nothing is drawn while nothing
+//! changes.
 //!
-//! Catches: a panel that lags behind the scene, a list of another picture, an effect without a line, a
-//! window that repaints or draws by itself.
+//! Catches: a panel that lags behind the scene, a list of another picture, an effect without a
+//! line, a window that repaints or draws by itself.
 
 use egui::accesskit::Role;
 use marraztu::app::actions::Action;

@@ -88,7 +88,10 @@ const ONCE: bool = false;
 const REPEATS: bool = true;
 
 macro_rules! actions {
-    ($($name:ident $group:ident $repeats:ident [$($key:expr),*] $label:literal $hint:literal;)+) => {
+    ($(
+        $name:ident $group:ident $repeats:ident [$($key:expr),*]
+            $label:literal $hint:literal;
+    )+) => {
         /// Something a user can ask for that needs no further words.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Action {
@@ -116,107 +119,194 @@ macro_rules! actions {
     };
 }
 
-#[rustfmt::skip]
-mod table {
-use super::*;
 actions! {
-    New            File ONCE [Command(Key::N)] "New scene" "Starts over with the default scene.";
-    Open           File ONCE [Command(Key::O)] "Open scene..." "Opens a scene file instead of this scene.";
-    Load           File ONCE [Lower(Key::F)] "Load model..." "Loads an .obj file, asks for its material and places it at the origin.";
-    Save           File ONCE [Command(Key::S)] "Save scene" "Saves the scene to its file.";
-    SaveAs         File ONCE [CommandShift(Key::S)] "Save scene as..." "Saves the scene to a new file.";
-    SavePicture    File ONCE [Named(Key::F12)] "Save picture..." "Saves the picture in the viewport as PNG, JPEG, WebP or PPM.";
-    Quit           File ONCE [Named(Key::Escape), Command(Key::Q)] "Quit" "Closes the program; asks first if there are unsaved changes.";
+    New File ONCE [Command(Key::N)]
+        "New scene" "Starts over with the default scene.";
+    Open File ONCE [Command(Key::O)]
+        "Open scene..." "Opens a scene file instead of this scene.";
+    Load File ONCE [Lower(Key::F)]
+        "Load model..." "Loads an .obj file, asks for its material and places it at the origin.";
+    Save File ONCE [Command(Key::S)]
+        "Save scene" "Saves the scene to its file.";
+    SaveAs File ONCE [CommandShift(Key::S)]
+        "Save scene as..." "Saves the scene to a new file.";
+    SavePicture File ONCE [Named(Key::F12)]
+        "Save picture..." "Saves the picture in the viewport as PNG, JPEG, WebP or PPM.";
+    Quit File ONCE [Named(Key::Escape), Command(Key::Q)]
+        "Quit" "Closes the program; asks first if there are unsaved changes.";
 
-    Undo           Edit ONCE [Command(Key::Z)] "Undo" "Undoes the last change to the scene.";
-    Redo           Edit ONCE [CommandShift(Key::Z), Command(Key::Y)] "Redo" "Redoes the change that was undone last.";
-    TakeBack       Edit ONCE [Either(Key::U)] "Undo transformation" "Undoes the last transformation of the selected item.";
-    Rename         Edit ONCE [Named(Key::F2)] "Rename" "Renames the selected item.";
-    Duplicate      Edit ONCE [Command(Key::D)] "Duplicate" "Adds a copy of the selected item and selects it.";
-    Delete         Edit ONCE [Named(Key::Delete)] "Delete" "Deletes the selected item and the spots attached to it.";
-    Split          Edit ONCE [] "Split into parts" "Turns each part of the selected object into an object of its own.";
-    ToggleVisible  Edit ONCE [] "Visible" "Shows or hides the selected object or camera.";
+    Undo Edit ONCE [Command(Key::Z)]
+        "Undo" "Undoes the last change to the scene.";
+    Redo Edit ONCE [CommandShift(Key::Z), Command(Key::Y)]
+        "Redo" "Redoes the change that was undone last.";
+    TakeBack Edit ONCE [Either(Key::U)]
+        "Undo transformation" "Undoes the last transformation of the selected item.";
+    Rename Edit ONCE [Named(Key::F2)]
+        "Rename" "Renames the selected item.";
+    Duplicate Edit ONCE [Command(Key::D)]
+        "Duplicate" "Adds a copy of the selected item and selects it.";
+    Delete Edit ONCE [Named(Key::Delete)]
+        "Delete" "Deletes the selected item and the spots attached to it.";
+    Split Edit ONCE []
+        "Split into parts" "Turns each part of the selected object into an object of its own.";
+    ToggleVisible Edit ONCE []
+        "Visible" "Shows or hides the selected object or camera.";
 
-    AddCamera      Add ONCE [Upper(Key::F)] "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z.";
-    AddSun         Add ONCE [] "Sun" "Adds a light that is infinitely far away.";
-    AddBulb        Add ONCE [] "Bulb" "Adds a light that shines from a point in all directions.";
-    AddSpot        Add ONCE [] "Spot" "Adds a light that shines from a point of its own in a cone.";
-    AddObjectSpot  Add ONCE [] "Spot on the object" "Adds a spot that shines from the selected object.";
-    AddCameraSpot  Add ONCE [] "Spot on the camera" "Adds a spot that shines from the selected camera.";
+    AddCamera Add ONCE [Upper(Key::F)]
+        "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z.";
+    AddSun Add ONCE []
+        "Sun" "Adds a light that is infinitely far away.";
+    AddBulb Add ONCE []
+        "Bulb" "Adds a light that shines from a point in all directions.";
+    AddSpot Add ONCE []
+        "Spot" "Adds a light that shines from a point of its own in a cone.";
+    AddObjectSpot Add ONCE []
+        "Spot on the object" "Adds a spot that shines from the selected object.";
+    AddCameraSpot Add ONCE []
+        "Spot on the camera" "Adds a spot that shines from the selected camera.";
 
-    NextItem       Select REPEATS [Named(Key::Tab)] "Next item" "Selects the next camera, object or light of the subject.";
-    NextPolygon    Select REPEATS [Named(Key::Enter)] "Next polygon" "Selects the next polygon of the selected object in polygon mode.";
-    NextSubject    Select ONCE [Lower(Key::C)] "Next subject" "Changes what the keys act on, from camera to object to light.";
-    SubjectCamera  Select ONCE [] "Cameras" "Makes the keys act on the selected camera.";
-    SubjectObject  Select ONCE [] "Objects" "Makes the keys act on the selected object.";
-    SubjectLight   Select ONCE [] "Lights" "Makes the keys act on the selected light.";
+    NextItem Select REPEATS [Named(Key::Tab)]
+        "Next item" "Selects the next camera, object or light of the subject.";
+    NextPolygon Select REPEATS [Named(Key::Enter)]
+        "Next polygon" "Selects the next polygon of the selected object in polygon mode.";
+    NextSubject Select ONCE [Lower(Key::C)]
+        "Next subject" "Changes what the keys act on, from camera to object to light.";
+    SubjectCamera Select ONCE []
+        "Cameras" "Makes the keys act on the selected camera.";
+    SubjectObject Select ONCE []
+        "Objects" "Makes the keys act on the selected object.";
+    SubjectLight Select ONCE []
+        "Lights" "Makes the keys act on the selected light.";
 
-    Translate      Transform ONCE [Either(Key::T)] "Move" "Makes the keys x, y and z move.";
-    Rotate         Transform ONCE [Either(Key::R)] "Rotate" "Makes the keys x, y and z rotate.";
-    Scale          Transform ONCE [Either(Key::S)] "Scale" "Makes the keys x, y and z scale the selected object.";
-    ToggleFrame    Transform ONCE [Either(Key::G)] "Analysis / global" "Switches cameras between flying and orbiting the selected object, and objects between their own axes and the world's.";
-    StepXUp        Transform REPEATS [Lower(Key::X)] "Step along or about +X" "Transforms the selected item one step along or about +X.";
-    StepXDown      Transform REPEATS [Upper(Key::X)] "Step along or about -X" "Transforms the selected item one step along or about -X.";
-    StepYUp        Transform REPEATS [Lower(Key::Y)] "Step along or about +Y" "Transforms the selected item one step along or about +Y.";
-    StepYDown      Transform REPEATS [Upper(Key::Y)] "Step along or about -Y" "Transforms the selected item one step along or about -Y.";
-    StepZUp        Transform REPEATS [Lower(Key::Z)] "Step along or about +Z" "Transforms the selected item one step along or about +Z.";
-    StepZDown      Transform REPEATS [Upper(Key::Z)] "Step along or about -Z" "Transforms the selected item one step along or about -Z.";
+    Translate Transform ONCE [Either(Key::T)]
+        "Move" "Makes the keys x, y and z move.";
+    Rotate Transform ONCE [Either(Key::R)]
+        "Rotate" "Makes the keys x, y and z rotate.";
+    Scale Transform ONCE [Either(Key::S)]
+        "Scale" "Makes the keys x, y and z scale the selected object.";
+    ToggleFrame Transform ONCE [Either(Key::G)]
+        "Analysis / global"
+        "Makes cameras fly or orbit, and objects use their own axes or the world's.";
+    StepXUp Transform REPEATS [Lower(Key::X)]
+        "Step along or about +X" "Transforms the selected item one step along or about +X.";
+    StepXDown Transform REPEATS [Upper(Key::X)]
+        "Step along or about -X" "Transforms the selected item one step along or about -X.";
+    StepYUp Transform REPEATS [Lower(Key::Y)]
+        "Step along or about +Y" "Transforms the selected item one step along or about +Y.";
+    StepYDown Transform REPEATS [Upper(Key::Y)]
+        "Step along or about -Y" "Transforms the selected item one step along or about -Y.";
+    StepZUp Transform REPEATS [Lower(Key::Z)]
+        "Step along or about +Z" "Transforms the selected item one step along or about +Z.";
+    StepZDown Transform REPEATS [Upper(Key::Z)]
+        "Step along or about -Z" "Transforms the selected item one step along or about -Z.";
 
-    ToggleEdges    Show ONCE [Either(Key::L)] "Wireframe" "Draws the edges of polygons instead of filling them.";
-    ToggleEdgesOverFill Show ONCE [] "Edges over faces" "Draws the edges of polygons over the filled polygons.";
-    TogglePolygons Show ONCE [Either(Key::O)] "Polygon by polygon" "Shows a single polygon of the selected object instead of whole objects.";
-    ToggleOthers   Show ONCE [Either(Key::D)] "Isolate selection" "Hides everything but the selected object or polygon.";
-    ToggleBackFaces Show ONCE [Either(Key::B)] "Back faces" "Draws back faces in red instead of culling them.";
-    ToggleFaceNormals Show ONCE [Either(Key::N)] "Face normals" "Draws the normal of each polygon.";
-    ToggleVertexNormals Show ONCE [Either(Key::M)] "Vertex normals" "Draws the normal of each vertex.";
-    ToggleNormalLength Show ONCE [] "Normals by size" "Draws normals in proportion to the object instead of 5 units long.";
-    ToggleLeaveOut Show ONCE [] "Leave out faint light" "Skips lights that together add less than half a step of a byte.";
-    ToggleMarks    Show ONCE [] "Camera and light models" "Draws the models of the other cameras and of bulbs.";
-    ToggleCoarse   Show ONCE [] "Coarser while moving" "Draws slow scenes at reduced quality while something moves.";
-    ToggleLightNormals Show ONCE [Either(Key::I)] "Flat shading (face normals)" "Lights polygons with face normals instead of vertex normals.";
+    ToggleEdges Show ONCE [Either(Key::L)]
+        "Wireframe" "Draws the edges of polygons instead of filling them.";
+    ToggleEdgesOverFill Show ONCE []
+        "Edges over faces" "Draws the edges of polygons over the filled polygons.";
+    TogglePolygons Show ONCE [Either(Key::O)]
+        "Polygon by polygon"
+        "Shows a single polygon of the selected object instead of whole objects.";
+    ToggleOthers Show ONCE [Either(Key::D)]
+        "Isolate selection" "Hides everything but the selected object or polygon.";
+    ToggleBackFaces Show ONCE [Either(Key::B)]
+        "Back faces" "Draws back faces in red instead of culling them.";
+    ToggleFaceNormals Show ONCE [Either(Key::N)]
+        "Face normals" "Draws the normal of each polygon.";
+    ToggleVertexNormals Show ONCE [Either(Key::M)]
+        "Vertex normals" "Draws the normal of each vertex.";
+    ToggleNormalLength Show ONCE []
+        "Normals by size" "Draws normals in proportion to the object instead of 5 units long.";
+    ToggleLeaveOut Show ONCE []
+        "Leave out faint light" "Skips lights that together add less than half a step of a byte.";
+    ToggleMarks Show ONCE []
+        "Camera and light models" "Draws the models of the other cameras and of bulbs.";
+    ToggleCoarse Show ONCE []
+        "Coarser while moving" "Draws slow scenes at reduced quality while something moves.";
+    ToggleLightNormals Show ONCE [Either(Key::I)]
+        "Flat shading (face normals)"
+        "Lights polygons with face normals instead of vertex normals.";
 
-    ToggleProjection Camera ONCE [Either(Key::P)] "Orthographic" "Switches between orthographic and perspective projection.";
-    ToggleObserver Camera ONCE [Upper(Key::C)] "Look from the object" "Looks from the selected object instead of through the selected camera.";
-    FrameSelection Camera ONCE [Text(".")] "Frame selection" "Moves the camera so that the selected item fills the picture.";
-    FrameAll       Camera ONCE [Named(Key::Home)] "Frame all" "Moves the camera so that everything visible fills the picture.";
-    LookFront      Camera ONCE [Command(Key::Num1)] "Front view" "Looks from the front, along -Z.";
-    LookRight      Camera ONCE [Command(Key::Num3)] "Right view" "Looks from the right, along -X.";
-    LookTop        Camera ONCE [Command(Key::Num7)] "Top view" "Looks from above, along -Y.";
+    ToggleProjection Camera ONCE [Either(Key::P)]
+        "Orthographic" "Switches between orthographic and perspective projection.";
+    ToggleObserver Camera ONCE [Upper(Key::C)]
+        "Look from the object"
+        "Looks from the selected object instead of through the selected camera.";
+    FrameSelection Camera ONCE [Text(".")]
+        "Frame selection" "Moves the camera so that the selected item fills the picture.";
+    FrameAll Camera ONCE [Named(Key::Home)]
+        "Frame all" "Moves the camera so that everything visible fills the picture.";
+    LookFront Camera ONCE [Command(Key::Num1)]
+        "Front view" "Looks from the front, along -Z.";
+    LookRight Camera ONCE [Command(Key::Num3)]
+        "Right view" "Looks from the right, along -X.";
+    LookTop Camera ONCE [Command(Key::Num7)]
+        "Top view" "Looks from above, along -Y.";
 
-    Light0         Light ONCE [Lower(Key::Num0)] "Light 0" "Switches light 0 on or off.";
-    Light1         Light ONCE [Lower(Key::Num1)] "Light 1" "Switches light 1 on or off.";
-    Light2         Light ONCE [Lower(Key::Num2)] "Light 2" "Switches light 2 on or off.";
-    Light3         Light ONCE [Lower(Key::Num3)] "Light 3" "Switches light 3 on or off.";
-    Light4         Light ONCE [Lower(Key::Num4)] "Light 4" "Switches light 4 on or off.";
-    Light5         Light ONCE [Lower(Key::Num5)] "Light 5" "Switches light 5 on or off.";
-    Light6         Light ONCE [Lower(Key::Num6)] "Light 6" "Switches light 6 on or off.";
-    Light7         Light ONCE [Lower(Key::Num7)] "Light 7" "Switches light 7 on or off.";
-    Light8         Light ONCE [Lower(Key::Num8)] "Light 8" "Switches light 8 on or off.";
-    Light9         Light ONCE [Lower(Key::Num9)] "Light 9" "Switches light 9 on or off.";
-    ApertureUp     Light REPEATS [Text("+")] "Wider spot" "Opens the selected spot by 5 degrees.";
-    ApertureDown   Light REPEATS [Text("-")] "Narrower spot" "Closes the selected spot by 5 degrees.";
-    RedUp          Light REPEATS [Lower(Key::Q)] "More red" "Adds 1 to the selected light's red.";
-    RedDown        Light REPEATS [Upper(Key::Q)] "Less red" "Subtracts 1 from the selected light's red.";
-    GreenUp        Light REPEATS [Lower(Key::V)] "More green" "Adds 1 to the selected light's green.";
-    GreenDown      Light REPEATS [Upper(Key::V)] "Less green" "Subtracts 1 from the selected light's green.";
-    BlueUp         Light REPEATS [Lower(Key::A)] "More blue" "Adds 1 to the selected light's blue.";
-    BlueDown       Light REPEATS [Upper(Key::A)] "Less blue" "Subtracts 1 from the selected light's blue.";
+    Light0 Light ONCE [Lower(Key::Num0)]
+        "Light 0" "Switches light 0 on or off.";
+    Light1 Light ONCE [Lower(Key::Num1)]
+        "Light 1" "Switches light 1 on or off.";
+    Light2 Light ONCE [Lower(Key::Num2)]
+        "Light 2" "Switches light 2 on or off.";
+    Light3 Light ONCE [Lower(Key::Num3)]
+        "Light 3" "Switches light 3 on or off.";
+    Light4 Light ONCE [Lower(Key::Num4)]
+        "Light 4" "Switches light 4 on or off.";
+    Light5 Light ONCE [Lower(Key::Num5)]
+        "Light 5" "Switches light 5 on or off.";
+    Light6 Light ONCE [Lower(Key::Num6)]
+        "Light 6" "Switches light 6 on or off.";
+    Light7 Light ONCE [Lower(Key::Num7)]
+        "Light 7" "Switches light 7 on or off.";
+    Light8 Light ONCE [Lower(Key::Num8)]
+        "Light 8" "Switches light 8 on or off.";
+    Light9 Light ONCE [Lower(Key::Num9)]
+        "Light 9" "Switches light 9 on or off.";
+    ApertureUp Light REPEATS [Text("+")]
+        "Wider spot" "Opens the selected spot by 5 degrees.";
+    ApertureDown Light REPEATS [Text("-")]
+        "Narrower spot" "Closes the selected spot by 5 degrees.";
+    RedUp Light REPEATS [Lower(Key::Q)]
+        "More red" "Adds 1 to the selected light's red.";
+    RedDown Light REPEATS [Upper(Key::Q)]
+        "Less red" "Subtracts 1 from the selected light's red.";
+    GreenUp Light REPEATS [Lower(Key::V)]
+        "More green" "Adds 1 to the selected light's green.";
+    GreenDown Light REPEATS [Upper(Key::V)]
+        "Less green" "Subtracts 1 from the selected light's green.";
+    BlueUp Light REPEATS [Lower(Key::A)]
+        "More blue" "Adds 1 to the selected light's blue.";
+    BlueDown Light REPEATS [Upper(Key::A)]
+        "Less blue" "Subtracts 1 from the selected light's blue.";
 
-    CheatSheet     Window ONCE [Either(Key::H), Text("?"), Named(Key::F1)] "Keys" "Lists every key and what it would do now.";
-    ToPanels       Window ONCE [Named(Key::F6)] "Keyboard to the panels" "Moves keyboard focus to the panels; Esc returns it to the viewport.";
-    ToggleOutline  Window ONCE [] "Outline" "Shows or hides the list of objects, cameras and lights.";
-    ToggleProperties Window ONCE [] "Properties" "Shows or hides the properties of the selected item.";
-    ToggleViewPanel Window ONCE [] "View switches" "Shows or hides the switches of the view.";
-    ToggleStatistics Window ONCE [] "Statistics" "Shows or hides how much is drawn and how long it takes.";
-    TogglePlan     Window ONCE [Named(Key::F3)] "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost.";
-    MeasurePlan    Window ONCE [Named(Key::F4)] "Measure effects" "Measures the time of a picture with and without each of its effects.";
-    ToggleLaboratory Window ONCE [Named(Key::F5)] "Laboratory" "Shows or hides what accuracy costs in time: each choice of each axis, measured and judged.";
-    ThemeSystem    Window ONCE [] "Follow the system" "Makes the window light or dark as the system is.";
-    ThemeLight     Window ONCE [] "Light" "Shows dark text on light panels.";
-    ThemeDark      Window ONCE [] "Dark" "Shows light text on dark panels.";
+    CheatSheet Window ONCE [Either(Key::H), Text("?"), Named(Key::F1)]
+        "Keys" "Lists every key and what it would do now.";
+    ToPanels Window ONCE [Named(Key::F6)]
+        "Keyboard to the panels"
+        "Moves keyboard focus to the panels; Esc returns it to the viewport.";
+    ToggleOutline Window ONCE []
+        "Outline" "Shows or hides the list of objects, cameras and lights.";
+    ToggleProperties Window ONCE []
+        "Properties" "Shows or hides the properties of the selected item.";
+    ToggleViewPanel Window ONCE []
+        "View switches" "Shows or hides the switches of the view.";
+    ToggleStatistics Window ONCE []
+        "Statistics" "Shows or hides how much is drawn and how long it takes.";
+    TogglePlan Window ONCE [Named(Key::F3)]
+        "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost.";
+    MeasurePlan Window ONCE [Named(Key::F4)]
+        "Measure effects" "Measures the time of a picture with and without each of its effects.";
+    ToggleLaboratory Window ONCE [Named(Key::F5)]
+        "Laboratory"
+        "Shows or hides the laboratory, which measures what accuracy costs in time.";
+    ThemeSystem Window ONCE []
+        "Follow the system" "Makes the window light or dark as the system is.";
+    ThemeLight Window ONCE []
+        "Light" "Shows dark text on light panels.";
+    ThemeDark Window ONCE []
+        "Dark" "Shows light text on dark panels.";
 }
-}
-pub use table::Action;
 
 #[cfg(test)]
 mod tests {

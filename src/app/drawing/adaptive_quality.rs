@@ -3,10 +3,10 @@
 //! While something moves and the pictures come too late, each is drawn with less; as soon as it is
 //! still, with all. Nothing here reads a clock: the times come from outside.
 //!
-//! When frames are given up for newer ones: only at full accuracy, only where a frame takes longer than
-//! the budget, and never two in a row. Then a slow frame is never in the way of what is done next,
-//! while in a stream of changes at least every second frame is finished and shown. Coarser frames are
-//! finished: in a stream the next would come no sooner.
+//! When frames are given up for newer ones: only at full accuracy, only where a frame takes longer
+//! than the budget, and never two in a row. Then a slow frame is never in the way of what is done
+//! next, while in a stream of changes at least every second frame is finished and shown. Coarser
+//! frames are finished: in a stream the next would come no sooner.
 
 use std::time::Duration;
 
@@ -104,8 +104,8 @@ pub(crate) struct AdaptiveQuality {
 }
 
 impl AdaptiveQuality {
-    /// With what the next picture is drawn, of which `share` (0 to 1) would have to be drawn again if it
-    /// were drawn with all.
+    /// With what the next picture is drawn, of which `share` (0 to 1) would have to be drawn again
+    /// if it were drawn with all.
     pub(crate) fn choose(&self, moving: bool, share: f64, applicable: Applicable) -> Reduction {
         if !moving || self.expected(Reduction::NONE, share).is_none_or(|time| time <= BUDGET) {
             return Reduction::NONE;
@@ -212,8 +212,8 @@ pub(crate) struct Motion {
 
 impl Motion {
     /// Whether it moves: it changes while a button of the mouse is held, or changes again and again
-    /// without one, as by the wheel or a held key. It is still again when the button is let go, or soon
-    /// after the last change, but not before the picture that shows it is drawn.
+    /// without one, as by the wheel or a held key. It is still again when the button is let go, or
+    /// soon after the last change, but not before the picture that shows it is drawn.
     pub(crate) fn notice(&mut self, now: f64, happening: Happening) -> bool {
         let Happening { changed, held, drawing } = happening;
         let let_go = std::mem::replace(&mut self.held, held) && !held;

@@ -1,4 +1,5 @@
-//! The thread that draws the pictures of the viewport, and how exactly it draws while the user waits.
+//! The thread that draws the pictures of the viewport, and how exactly it draws while the user
+//! waits.
 
 pub(crate) mod adaptive_quality;
 pub(crate) mod border;

@@ -1,7 +1,7 @@
 //! Draws the pictures that the viewport shows, and knows what is on them.
 //!
-//! A picture is drawn with as much as the hand leaves time for (see [`pace`](super::adaptive_quality)), and only
-//! what has changed of the one before is drawn again.
+//! A picture is drawn with as much as the hand leaves time for (see
+//! [`pace`](super::adaptive_quality)), and only what has changed of the one before is drawn again.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

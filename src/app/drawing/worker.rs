@@ -1,8 +1,9 @@
 //! Draws on a thread of its own, so that the window answers however long a picture takes.
 //!
-//! The newest wish is drawn and older ones are forgotten, also one that is being drawn where it keeps
-//! the newer one waiting (see [`adaptive_quality`](super::adaptive_quality)). What is seen at a pixel is asked of the picture
-//! that was finished last, before the next one is begun: that is the one the user clicked on.
+//! The newest wish is drawn and older ones are forgotten, also one that is being drawn where it
+//! keeps the newer one waiting (see [`adaptive_quality`](super::adaptive_quality)). What is seen at
+//! a pixel is asked of the picture that was finished last, before the next one is begun: that is
+//! the one the user clicked on.
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -10,8 +10,8 @@ use crate::app::viewport::comparison::{Compared, Pair, draw};
 use crate::io;
 
 impl App {
-    /// Begins to draw the two pictures where they are wanted and others were drawn last, and takes those
-    /// that are finished.
+    /// Begins to draw the two pictures where they are wanted and others were drawn last, and takes
+    /// those that are finished.
     pub(crate) fn compare(&mut self, ctx: &Context) {
         let comparison = &mut self.comparison;
         if let Some(task) = &comparison.task {

@@ -1,8 +1,8 @@
 //! The laboratory in the window: what it knows, and the thread that finds it out.
 //!
-//! Measuring has a thread of its own, and so has the comparison with the exact picture; the window only
-//! asks how far they are. While it is measured, the window is drawn at most four times a second, and a
-//! pair of pictures that was measured meanwhile is thrown away.
+//! Measuring has a thread of its own, and so has the comparison with the exact picture; the window
+//! only asks how far they are. While it is measured, the window is drawn at most four times a
+//! second, and a pair of pictures that was measured meanwhile is thrown away.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -43,8 +43,8 @@ pub(crate) struct Work {
 /// A pixel, and what is seen there; `None` for the background.
 type Explained = (Blame, Option<String>);
 
-/// While it is measured, the window is drawn no sooner than so long after the last time, and so seldom
-/// that one pair of pictures at least is measured in between.
+/// While it is measured, the window is drawn no sooner than so long after the last time, and so
+/// seldom that one pair of pictures at least is measured in between.
 const REST: Duration = Duration::from_millis(250);
 
 /// How many pairs have room between two drawings of the window.

@@ -206,7 +206,8 @@ impl App {
         }
     }
 
-    /// Wants the picture of what there is now; while it moves, and soon after, a coarser one will do.
+    /// Wants the picture of what there is now; while it moves, and soon after, a coarser one will
+    /// do.
     fn draw(&mut self, ctx: &Context) {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
         let State { scene, view, settings, .. } = &self.state;

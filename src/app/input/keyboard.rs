@@ -1,8 +1,9 @@
 //! Which keys belong to the viewport, and what they ask for.
 //!
 //! The keys are read before egui sees them: what the viewport owns (Tab, Enter, Esc, arrows) never
-//! moves the focus or clicks a button, not even in the frame in which the viewport gets the keyboard.
-//! While text is edited, a menu is open, or a panel's control has the keyboard, they stay egui's.
+//! moves the focus or clicks a button, not even in the frame in which the viewport gets the
+//! keyboard. While text is edited, a menu is open, or a panel's control has the keyboard, they stay
+//! egui's.
 
 use std::collections::BTreeSet;
 

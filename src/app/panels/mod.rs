@@ -17,8 +17,8 @@ use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
 
-/// Below this width of the window the panels at the sides are narrower, so that the picture stays the
-/// largest thing.
+/// Below this width of the window the panels at the sides are narrower, so that the picture stays
+/// the largest thing.
 const WIDE: f32 = 1200.0;
 
 /// Shows all panels that are to be shown. What is left of `ui` is the viewport's.

@@ -1,8 +1,8 @@
 //! What the picture is made of: each effect, on or left out, why, and what it costs.
 //!
-//! An effect has a line, with what it is on under it where that differs from thing to thing. What is on
-//! is told by a full disk and by full text, so that the eye runs down the disks; costs are numbers with
-//! bars, so that the eye finds the largest.
+//! An effect has a line, with what it is on under it where that differs from thing to thing. What
+//! is on is told by a full disk and by full text, so that the eye runs down the disks; costs are
+//! numbers with bars, so that the eye finds the largest.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -49,8 +49,8 @@ fn header_ui(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>, explaine
         ui.add_space(theme::GAP);
         let label = ui.add(egui::Label::new(RichText::new(summary(explained)).weak()).truncate());
         label.on_hover_text(
-            "What is left out by class E changes no bit of the picture. By class B, which \"Leave out \
-            faint light\" allows, a byte is one step off at most.",
+            "Effects left out by class E change no bit of the picture. Those left out by class B, \
+            which \"Leave out faint light\" allows, change a byte by at most one step.",
         );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(f32::from(theme::MARGIN));
@@ -77,8 +77,8 @@ fn times_ui(ui: &mut Ui, measured: &Measured, now: bool) {
         "measured before the last change".to_owned()
     };
     ui.weak(text).on_hover_text(
-        "Milliseconds are medians of pairs of frames, with an effect and without it in turn. What two \
-        equal frames seem to differ by is noise.",
+        "Milliseconds are medians over pairs of frames, one with an effect and one without it. \
+        The noise is the difference between two equal frames.",
     );
 }
 

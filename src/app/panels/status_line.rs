@@ -1,6 +1,7 @@
 //! What the next key would do, and the last word to the user.
 //!
-//! Where there is no room for all, what matters least is left out from the middle; nothing is cut off.
+//! Where there is no room for all, what matters least is left out from the middle; nothing is cut
+//! off.
 
 use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
@@ -46,9 +47,9 @@ fn line_ui(ui: &mut Ui, state: &State) {
     response.on_hover_text(format!("{whole}\n{TIME}"));
 }
 
-/// What the time at the end of the line is.
-const TIME: &str = "The time is that of the last picture: from the scene to pixels in memory, on the \
-    thread that draws. What the window takes to show it is not in it.";
+/// Explains the time at the end of the line.
+const TIME: &str = "The time to draw the last picture, from the scene to pixels in memory. \
+    It does not include the time to show the picture in the window.";
 
 fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     let (icon, color) = match message.tone {
@@ -65,7 +66,8 @@ fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     response.on_hover_text(&message.text);
 }
 
-/// The parts of the line, in order: what is selected, what the keys do to it, who looks, what it cost.
+/// The parts of the line, in order: what is selected, what the keys do to it, who looks, what it
+/// cost.
 fn parts(state: &State) -> Vec<String> {
     let (scene, view) = (&state.scene, &state.view);
     let mut parts = vec![selected(state), transformation(state).to_owned()];

@@ -53,7 +53,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// Choices among actions: each with its name, whether it is the one, and the action that makes it so.
+/// Choices among actions: each with its name, whether it is the one, and the action that makes it
+/// so.
 fn actions_ui(
     ui: &mut Ui,
     state: &State,

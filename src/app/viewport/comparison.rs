@@ -1,7 +1,7 @@
 //! The picture beside the exact one: a slider that splits the viewport, or the error, amplified.
 //!
-//! Both pictures are drawn on a thread of its own whenever what is shown has changed, so that the two
-//! always show the same moment.
+//! Both pictures are drawn on a thread of its own whenever what is shown has changed, so that the
+//! two always show the same moment.
 
 use std::sync::Arc;
 

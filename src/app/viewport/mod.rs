@@ -248,8 +248,8 @@ impl Viewport {
             }
         }
         self.image = Some(image);
-        // Another picture may show something else there. What was seen before is the best guess until
-        // that is known.
+        // Another picture may show something else there. What was seen before is the best guess
+        // until that is known.
         self.stale = true;
         self.asked = None;
     }

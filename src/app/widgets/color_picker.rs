@@ -1,4 +1,5 @@
-//! A colour that opens a picker: a square of shades, a bar of hues, and red, green and blue as numbers.
+//! A colour that opens a picker: a square of shades, a bar of hues, and red, green and blue as
+//! numbers.
 //!
 //! Hue, saturation and value are those of Smith, "Color Gamut Transform Pairs", SIGGRAPH 1978, of
 //! display values. What is picked is kept beside the colour that it gave, so that grey does not

@@ -1,7 +1,7 @@
 //! What panels are made of: sections, rows, switches, choices, small buttons.
 //!
-//! Each control has a name for screen readers, a ring while it has the keyboard, a tooltip, and tells
-//! what is on by a shape as well as by a colour.
+//! Each control has a name for screen readers, a ring while it has the keyboard, a tooltip, and
+//! tells what is on by a shape as well as by a colour.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! Small pictures, drawn with lines: the fonts have no arrows, ticks or symbols that can be relied on.
+//! Small pictures, drawn with lines: the fonts have no arrows, ticks or symbols that can be relied
+//! on.
 //!
 //! Each is drawn in a square from (-1, -1) at the upper left to (1, 1).
 

@@ -1,8 +1,8 @@
 //! Fields for numbers: they can be dragged, typed, or given as an expression.
 //!
-//! At rest a field shows as many digits as it has room for; while it is edited, all of them. A field
-//! that is left without another number typed into it asks for nothing, so that walking through the
-//! fields rounds nothing.
+//! At rest a field shows as many digits as it has room for; while it is edited, all of them. A
+//! field that is left without another number typed into it asks for nothing, so that walking
+//! through the fields rounds nothing.
 
 use std::ops::RangeInclusive;
 

@@ -1,9 +1,9 @@
 //! Materials as small spheres, drawn by the program's own renderer.
 //!
 //! A sphere of radius 1 before an orthographic camera, lit by ambient light and by a sun from the
-//! upper left. It is drawn at twice its size and every four pixels become one. Its outline is not the
-//! renderer's, which covers a pixel or does not, but a disk whose border is as transparent as it
-//! covers its pixels; the sphere goes a little beyond it.
+//! upper left. It is drawn at twice its size and every four pixels become one. Its outline is not
+//! the renderer's, which covers a pixel or does not, but a disk whose border is as transparent as
+//! it covers its pixels; the sphere goes a little beyond it.
 
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@ use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::theme;
-use crate::app::widgets::controls::{Choice, Switch, choices, row};
+use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, row};
 use crate::app::widgets::number::Number;
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::Measure;
@@ -41,8 +41,8 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         }
         None => {
             let quick = ui.button("Measure").on_hover_text(
-                "Times every choice against the default, and judges its picture against the exact one: \
-                 some 20 seconds for the first scene",
+                "Times every choice against the default and compares its picture with the exact \
+                 one: about 20 seconds for the default scene",
             );
             let whole = ui.button("Thoroughly").on_hover_text(
                 "The same with more pairs of pictures and more combinations: some minutes",

@@ -1,7 +1,7 @@
 //! The laboratory: time against error, the table behind it, and what each axis teaches.
 //!
-//! At the left what is asked, in the middle the scatter, at the right the table or the lessons. A click
-//! on a mark or on a row of the table draws the picture so.
+//! At the left what is asked, in the middle the scatter, at the right the table or the lessons. A
+//! click on a mark or on a row of the table draws the picture so.
 
 mod controls_ui;
 mod lessons;

@@ -41,8 +41,8 @@ fn empty_ui(ui: &mut Ui, state: &State) {
             "The default is measured against itself first: how much it differs is the noise."
         }
         None => {
-            "What does accuracy cost? Measure draws this picture with every choice, and shows here how \
-             long each takes and how far it is from the exact picture."
+            "What does accuracy cost? Measure draws this picture with every choice and shows \
+             here how long each takes and how far it is from the exact picture."
         }
     };
     ui.add_space(ui.available_height() * 0.35);

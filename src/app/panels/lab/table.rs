@@ -182,9 +182,9 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
     small(
         ui,
         format!(
-            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself it differed \
-             by {:.1} % in {} pairs: less than that means nothing. * is the default; a bar marks what \
-             nothing beats in both.",
+            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself \
+             it differed by {:.1} % in {} pairs, so smaller differences mean nothing. * is the \
+             default; a bar marks choices that no other beats in both.",
             findings.threads,
             findings.instructions,
             brief(findings.control.a_ms),

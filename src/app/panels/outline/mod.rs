@@ -1,7 +1,7 @@
 //! The list of objects, cameras and lights.
 //!
-//! All its lines are of one height, so that only those in sight are made, however many parts a model
-//! has. What is selected here is what the keys select.
+//! All its lines are of one height, so that only those in sight are made, however many parts a
+//! model has. What is selected here is what the keys select.
 
 mod order;
 mod row;

@@ -151,7 +151,8 @@ pub(crate) fn forget_new_name(ui: &Ui) {
     ui.data_mut(|data| data.remove_temp::<String>(new_name()));
 }
 
-/// A field for another name. It is left with Enter, by Esc without a new name, by a click elsewhere.
+/// A field for another name. It is left with Enter, by Esc without a new name, by a click
+/// elsewhere.
 fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
     let id = new_name();
     let begun: Option<String> = ui.data(|data| data.get_temp(id));

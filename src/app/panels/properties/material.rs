@@ -15,8 +15,8 @@ use crate::scene::{Material, MaterialChoice, Object, PresetId};
 /// Spheres in a row: the nineteen, the file's and the user's own fill three rows.
 const COLUMNS: u8 = 7;
 
-/// Shows the choice; `object` is what has the material, where it is an object. Gives the choice that
-/// was made.
+/// Shows the choice; `object` is what has the material, where it is an object. Gives the choice
+/// that was made.
 pub(crate) fn choice_ui(
     ui: &mut Ui,
     choice: &MaterialChoice,
