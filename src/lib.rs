@@ -1,7 +1,7 @@
 //! An editor for 3D scenes of `.obj` models whose pictures are drawn by the CPU alone.
 //!
 //! The folders are floors: a file uses its own floor and those below it, never one above
-//! (`tests/floors.rs` reads the sources and fails otherwise).
+//! (`tests/floors` reads the sources and fails otherwise).
 //!
 //! ```text
 //! base  <  scene  <  { io, edit, render }  <  lab  <  app

@@ -23,7 +23,9 @@ use marraztu::base::math::Axis;
 use marraztu::base::rng::Rng;
 use marraztu::edit::lights::{self, Channel};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Gesture, History, Refusal, Stroke, items, look, motion, selection};
+use marraztu::edit::{
+    Gesture, GesturePhase, History, Refusal, items, motion, navigation, selection,
+};
 use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer};
 use marraztu::scene::{
     AXES, Arithmetic, Command, Fill, Filter, Frame, ItemId, LightAt, LightKind, MaterialChoice,
@@ -172,8 +174,8 @@ impl Desk {
             }
             _ => {
                 let turn = [0.2 * rng.real(-1.0, 1.0), 0.2 * rng.real(-1.0, 1.0)];
-                let first = Stroke::First;
-                self.perform(look::look(&self.scene, &self.view, turn[0], turn[1], first));
+                let first = GesturePhase::First;
+                self.perform(navigation::look(&self.scene, &self.view, turn[0], turn[1], first));
             }
         }
     }
@@ -271,7 +273,7 @@ impl Desk {
         );
         self.view.frame = rng.one_of(&[Frame::Local, Frame::Global]);
         let sign = rng.one_of(&[Sign::Positive, Sign::Negative]);
-        let first = Stroke::First;
+        let first = GesturePhase::First;
         transform::step(&self.scene, &self.view, rng.one_of(&Axis::ALL), sign, first)
     }
 }

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
 use marraztu::base::math::Axis;
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Stroke, items, selection};
+use marraztu::edit::{GesturePhase, items, selection};
 use marraztu::scene::{MaterialChoice, Model, Object, Placed, PresetId};
 
 use super::shapes;
@@ -37,7 +37,8 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("move", count), |b| {
             b.iter(|| {
                 let (mut scene, mut view) = (stage.scene.clone(), stage.view.clone());
-                let moved = transform::step(&scene, &view, Axis::X, Sign::Positive, Stroke::First);
+                let moved =
+                    transform::step(&scene, &view, Axis::X, Sign::Positive, GesturePhase::First);
                 moved.expect("it can be moved").apply(&mut scene).expect("it fits");
                 selection::follow(&stage.scene, &scene, &mut view);
                 scene == stage.scene

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use eframe::NativeOptions;
 use egui::ViewportBuilder;
 
-use super::editor::App;
-use super::theme;
+use crate::app::editor::App;
+use crate::app::theme;
 use crate::io;
 
 /// Why no window could be opened.

@@ -8,16 +8,16 @@ use crate::io::Progress;
 
 /// Work that goes on while the window answers.
 #[derive(Debug)]
-pub(super) struct Task<T> {
+pub(crate) struct Task<T> {
     /// "Loading teapot.obj".
-    pub(super) label: String,
-    pub(super) progress: Progress,
+    pub(crate) label: String,
+    pub(crate) progress: Progress,
     receiver: Receiver<T>,
 }
 
 /// How far a task is.
 #[derive(Debug)]
-pub(super) enum Outcome<T> {
+pub(crate) enum Outcome<T> {
     Running,
     Done(T),
     /// The thread ended without a word: a fault of the program's own.
@@ -29,7 +29,7 @@ impl<T: Send + 'static> Task<T> {
     ///
     /// # Errors
     /// Where the system gives no thread.
-    pub(super) fn start(
+    pub(crate) fn start(
         ctx: &Context,
         label: String,
         work: impl FnOnce(&Progress) -> T + Send + 'static,
@@ -48,7 +48,7 @@ impl<T: Send + 'static> Task<T> {
     }
 
     /// What has become of it. Once it is done it has nothing more to tell.
-    pub(super) fn outcome(&self) -> Outcome<T> {
+    pub(crate) fn outcome(&self) -> Outcome<T> {
         match self.receiver.try_recv() {
             Ok(result) => Outcome::Done(result),
             Err(TryRecvError::Empty) => Outcome::Running,

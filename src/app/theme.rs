@@ -1,8 +1,8 @@
 //! How the window looks: colours, sizes, distances.
 //!
-//! The picture is the star, so that everything about it is grey; one accent says what is selected and
-//! what has the keyboard. A light and a dark palette hold the same places, and every text keeps a
-//! contrast of at least 4.5 to 1 on whatever it stands on (WCAG 2.1, success criterion 1.4.3).
+//! The picture is the star, so that everything about it is grey; one accent says what is selected
+//! and what has the keyboard. A light and a dark palette hold the same places, and every text keeps
+//! a contrast of at least 4.5 to 1 on whatever it stands on (WCAG 2.1, success criterion 1.4.3).
 
 use egui::style::{HandleShape, ScrollStyle, WidgetVisuals, Widgets};
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style};
@@ -98,27 +98,27 @@ pub fn install(ctx: &Context) {
 }
 
 /// What marks the selected and the focused.
-pub(super) fn accent(visuals: &Visuals) -> Color32 {
+pub(crate) fn accent(visuals: &Visuals) -> Color32 {
     palette(visuals).accent
 }
 
 /// What says that something was not done.
-pub(super) fn error(visuals: &Visuals) -> Color32 {
+pub(crate) fn error(visuals: &Visuals) -> Color32 {
     palette(visuals).error
 }
 
 /// The colour of an axis' letter.
-pub(super) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
+pub(crate) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
     palette(visuals).axes[axis.index()]
 }
 
 /// The line between panels and about fields.
-pub(super) fn line(visuals: &Visuals) -> Color32 {
+pub(crate) fn line(visuals: &Visuals) -> Color32 {
     palette(visuals).line
 }
 
 /// The ring about what has the keyboard.
-pub(super) fn ring(visuals: &Visuals) -> Stroke {
+pub(crate) fn ring(visuals: &Visuals) -> Stroke {
     Stroke::new(2.0, palette(visuals).accent)
 }
 

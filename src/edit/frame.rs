@@ -12,7 +12,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{Refusal, Stroke, put};
+use super::{GesturePhase, Refusal, set_transform};
 use crate::base::math;
 use crate::scene::{
     CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, Scene, View, dvec3,
@@ -61,7 +61,7 @@ const MARGIN: f64 = 1.0 / 20.0;
 /// # Errors
 /// Where there is no object, or it has no vertices.
 pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
-    let (id, _) = put::selected_object(scene, view)?;
+    let (id, _) = set_transform::selected_object(scene, view)?;
     objects(scene, view, &[id])
 }
 
@@ -89,8 +89,9 @@ pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, 
     framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
 }
 
-/// Models that no scene says how to look at: the selected camera sees everything that is shown, with a
-/// margin of a twentieth, from `right` degrees to the right of the front and `up` degrees above.
+/// Models that no scene says how to look at: the selected camera sees everything that is shown,
+/// with a margin of a twentieth, from `right` degrees to the right of the front and `up` degrees
+/// above.
 ///
 /// # Errors
 /// Where nothing is shown.
@@ -105,7 +106,7 @@ pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Comma
 /// # Errors
 /// Where there is no object, or it has no vertices.
 pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
-    let (id, _) = put::selected_object(scene, view)?;
+    let (id, _) = set_transform::selected_object(scene, view)?;
     framed(scene, view, &[id], side.axes(), 0.0)
 }
 
@@ -145,8 +146,8 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     (distance, framed)
 }
 
-/// The selected camera sees these objects whole along these axes, farther away than necessary by a part
-/// of the distance.
+/// The selected camera sees these objects whole along these axes, farther away than necessary by a
+/// part of the distance.
 fn framed(
     scene: &Scene,
     view: &View,
@@ -174,7 +175,7 @@ fn framed(
     // In parallel projection a margin is there already.
     let lens = Lens { half_size: 1.1 * radius, ..lens };
     let pose = Pose { eye: centre + axes.z_axis * distance, axes, mode };
-    put::pose_and_lens(scene, view.camera, pose, lens, Stroke::First)
+    set_transform::pose_and_lens(scene, view.camera, pose, lens, GesturePhase::First)
 }
 
 /// The sphere about the mean of an object's vertices, through the one farthest from it.

@@ -1,19 +1,10 @@
 //! What was changed, so that it can be taken back.
 //!
-//! A step is what one undo takes back. It holds the command that leads away from where the scene is:
-//! steps before the present position lead back, those after it lead forward.
+//! A step is what one undo takes back. It holds the command that leads away from where the scene
+//! is: steps before the present position lead back, those after it lead forward.
 
+use super::Gesture;
 use crate::scene::{Command, CommandError, Scene};
-
-/// Whether a change stands alone, or is one of many that a single drag or held key makes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Gesture {
-    /// A key, a click, a typed number: undone by itself.
-    #[default]
-    Whole,
-    /// Part of the gesture with this number: the gesture is undone as a whole.
-    Part(u64),
-}
 
 #[derive(Debug)]
 struct Step {
@@ -22,8 +13,8 @@ struct Step {
     commands: Vec<Command>,
 }
 
-/// The changes made so far, and those taken back. Writes the scene; whoever else writes it makes the
-/// steps unfit.
+/// The changes made so far, and those taken back. Writes the scene; whoever else writes it makes
+/// the steps unfit.
 #[derive(Debug)]
 pub struct History {
     steps: Vec<Step>,

@@ -319,7 +319,7 @@ fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
 
 fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
     if let LightKind::Spot { owner, .. } = &light.kind {
-        super::lights::check_owner(scene, owner)?;
+        check_owner(scene, owner)?;
     }
     let mut names: Names<'_> = scene.lights.iter().map(|(_, other)| &*other.name).collect();
     light.name = names.take(&light.name);
@@ -349,4 +349,14 @@ const fn light_name(kind: &LightKind) -> &'static str {
         }
         LightKind::Spot { owner: SpotOwner::Fixed(_), .. } => "spot",
     }
+}
+
+/// Whether what a spot should be fixed to is there.
+pub(super) fn check_owner(scene: &Scene, owner: &SpotOwner) -> Result<(), Refusal> {
+    let there = match owner {
+        SpotOwner::Object(id) => scene.objects.get(*id).is_some(),
+        SpotOwner::Camera(id) => scene.cameras.get(*id).is_some(),
+        SpotOwner::SelectedObject | SpotOwner::SelectedCamera | SpotOwner::Fixed(_) => true,
+    };
+    if there { Ok(()) } else { Err(Refusal::Gone) }
 }

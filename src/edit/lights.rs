@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::items::change_light;
-use super::{Refusal, put};
+use super::items::{change_light, check_owner};
+use super::{Refusal, set_transform};
 use crate::scene::{
     Aim, Attenuation, Command, CommandError, LightId, LightKind, Orbit, Placed, Scene, SpotOwner,
     Subject, View,
@@ -158,16 +158,6 @@ pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Result<Co
     change_light(scene, id, |light| light.attenuation = to)
 }
 
-/// Whether what a spot should be fixed to is there.
-pub(super) fn check_owner(scene: &Scene, owner: &SpotOwner) -> Result<(), Refusal> {
-    let there = match owner {
-        SpotOwner::Object(id) => scene.objects.get(*id).is_some(),
-        SpotOwner::Camera(id) => scene.cameras.get(*id).is_some(),
-        SpotOwner::SelectedObject | SpotOwner::SelectedCamera | SpotOwner::Fixed(_) => true,
-    };
-    if there { Ok(()) } else { Err(Refusal::Gone) }
-}
-
 fn change_spot(
     scene: &Scene,
     id: LightId,
@@ -192,5 +182,5 @@ fn subject_light<'a>(
     if view.subject != Subject::Light {
         return Err(Refusal::OnlyLights);
     }
-    put::selected_light(scene, view)
+    set_transform::selected_light(scene, view)
 }

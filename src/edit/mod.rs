@@ -5,27 +5,19 @@
 //! line. [`History`] is the one that writes a scene.
 
 pub mod frame;
+mod gesture;
 mod history;
 pub mod items;
 pub mod lights;
-pub mod look;
 pub mod motion;
 mod names;
-pub mod place;
-mod put;
+pub mod navigation;
+pub mod placement;
 mod refusal;
 pub mod selection;
+mod set_transform;
 pub mod transform;
 
-pub use history::{Gesture, History};
+pub use gesture::{Gesture, GesturePhase};
+pub use history::History;
 pub use refusal::Refusal;
-
-/// Where in a gesture (a drag, a held key) a change stands: what the item was before the gesture is
-/// pushed once, so that `u` takes the whole gesture back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Stroke {
-    /// Its first change, or its only one: what the item was goes onto its stack.
-    First,
-    /// A later one: the stack stays as it is.
-    Continued,
-}

@@ -4,7 +4,7 @@
 //! the motion begins anew from there: nothing jumps on the screen.
 
 use super::items::change_object;
-use super::{Refusal, Stroke};
+use super::{GesturePhase, Refusal};
 use crate::base::math::Axis;
 use crate::scene::{Command, Item, LightId, LightKind, ObjectId, Orbit, Scene, Spin};
 
@@ -15,7 +15,7 @@ use crate::scene::{Command, Item, LightId, LightKind, ObjectId, Orbit, Scene, Sp
 pub fn toggle_spin(scene: &Scene, id: ObjectId, axis: Axis, time: f64) -> Result<Command, Refusal> {
     let mut spin = scene.objects.get(id).ok_or(Refusal::Gone)?.spin;
     spin.axes[axis.index()] = !spin.axes[axis.index()];
-    set_spin(scene, id, spin, time, Stroke::First)
+    set_spin(scene, id, spin, time, GesturePhase::First)
 }
 
 /// Gives an object another spin, which begins at `time`; what it has turned so far stays.
@@ -27,7 +27,7 @@ pub fn set_spin(
     id: ObjectId,
     spin: Spin,
     time: f64,
-    stroke: Stroke,
+    phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if !(spin.speed.is_finite() && time.is_finite()) {
@@ -39,7 +39,7 @@ pub fn set_spin(
     }
     change_object(scene, id, |object| {
         if object.spin.is_on() {
-            object.placement = stroke.put(&object.placement, turned);
+            object.placement = phase.apply(&object.placement, turned);
         }
         object.spin = Spin { since: time, ..spin };
     })
@@ -54,7 +54,7 @@ pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Ref
     if !object.spin.is_on() {
         return Err(Refusal::NotSpinning);
     }
-    set_spin(scene, id, object.spin, time, Stroke::First)
+    set_spin(scene, id, object.spin, time, GesturePhase::First)
 }
 
 /// Lets a bulb circle the world's Y, or no longer.
@@ -64,7 +64,7 @@ pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Ref
 pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Result<Command, Refusal> {
     match &scene.lights.get(id).ok_or(Refusal::Gone)?.kind {
         LightKind::Bulb { orbit, .. } => {
-            set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, Stroke::First)
+            set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, GesturePhase::First)
         }
         _ => Err(Refusal::NotABulb),
     }
@@ -79,7 +79,7 @@ pub fn set_orbit(
     id: LightId,
     to: Orbit,
     time: f64,
-    stroke: Stroke,
+    phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     if !(to.speed.is_finite() && time.is_finite()) {
         return Err(Refusal::TooLarge);
@@ -89,7 +89,7 @@ pub fn set_orbit(
         return Err(Refusal::NotABulb);
     };
     if orbit.on {
-        *position = stroke.put(position, orbit.at(*position.now(), time));
+        *position = phase.apply(position, orbit.at(*position.now(), time));
     }
     *orbit = Orbit { since: time, ..to };
     Ok(Command::Replace(Item::Light(id, Box::new(light))))

@@ -4,8 +4,8 @@
 //! selecting another object aims the camera at that one. So a selection is a view and, sometimes, a
 //! command.
 
-use super::put;
-use super::{Refusal, Stroke};
+use super::set_transform;
+use super::{GesturePhase, Refusal};
 use crate::scene::{
     Camera, CameraId, CameraMode, Command, Item, ItemId, List, ObjectId, Observer, PolygonMode,
     Pose, Scene, Subject, Transformation, View,
@@ -25,11 +25,16 @@ pub struct Selection {
 /// # Errors
 /// Where the item is gone.
 pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
-    select_in(scene, view, id, Stroke::First)
+    select_in(scene, view, id, GesturePhase::First)
 }
 
 /// The same as part of a gesture: a held key pushes on the camera's stack once.
-fn select_in(scene: &Scene, view: &View, id: ItemId, stroke: Stroke) -> Result<Selection, Refusal> {
+fn select_in(
+    scene: &Scene,
+    view: &View,
+    id: ItemId,
+    phase: GesturePhase,
+) -> Result<Selection, Refusal> {
     if !scene.contains(id) {
         return Err(Refusal::Gone);
     }
@@ -45,9 +50,9 @@ fn select_in(scene: &Scene, view: &View, id: ItemId, stroke: Stroke) -> Result<S
             let camera = scene.selected_camera(view);
             let mode = camera.pose.now().mode_with(view.object);
             if let (CameraMode::Analysis { .. }, Some(object)) = (mode, scene.objects.get(id)) {
-                let aimed = put::aimed(camera.pose.now(), id, object.centre(view.time));
+                let aimed = set_transform::aimed(camera.pose.now(), id, object.centre(view.time));
                 let mut camera = camera.clone();
-                camera.pose = stroke.put(&camera.pose, aimed);
+                camera.pose = phase.apply(&camera.pose, aimed);
                 commands.push(Command::Replace(Item::Camera(view.camera, Box::new(camera))));
             } else {
                 commands.extend(left_in_fly(scene, id));
@@ -63,8 +68,8 @@ fn select_in(scene: &Scene, view: &View, id: ItemId, stroke: Stroke) -> Result<S
     Ok(Selection { view: next, command })
 }
 
-/// Cameras that once were in analysis of an object and fell back to fly, because another was selected
-/// then, stay in fly when it is selected again: nothing has aimed them at it.
+/// Cameras that once were in analysis of an object and fell back to fly, because another was
+/// selected then, stay in fly when it is selected again: nothing has aimed them at it.
 fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
     let fallen = scene
         .cameras
@@ -93,7 +98,7 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
 ///
 /// # Errors
 /// Where there is no other to go on to.
-pub fn next(scene: &Scene, view: &View, stroke: Stroke) -> Result<Selection, Refusal> {
+pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection, Refusal> {
     fn after<K: Copy + Ord, T>(list: &List<K, T>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
     }
@@ -104,7 +109,7 @@ pub fn next(scene: &Scene, view: &View, stroke: Stroke) -> Result<Selection, Ref
         Subject::Light if scene.lights.is_empty() => return Err(Refusal::NoLight),
         Subject::Light => after(&scene.lights, view.light).map(ItemId::Light),
     };
-    select_in(scene, view, id.ok_or(Refusal::OnlyOne)?, stroke)
+    select_in(scene, view, id.ok_or(Refusal::OnlyOne)?, phase)
 }
 
 /// The item that the subject's keys act on.
@@ -166,7 +171,7 @@ pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.observer = match view.observer {
         Observer::Object => Observer::Camera,
         Observer::Camera => {
-            put::selected_object(scene, view)?;
+            set_transform::selected_object(scene, view)?;
             Observer::Object
         }
     };
@@ -270,7 +275,7 @@ fn followed<K: Copy + Ord, T>(
 }
 
 fn polygon_count(scene: &Scene, view: &View) -> Result<u32, Refusal> {
-    let (_, object) = put::selected_object(scene, view)?;
+    let (_, object) = set_transform::selected_object(scene, view)?;
     match u32::try_from(object.model.mesh.polygon_count()) {
         Ok(0) | Err(_) => Err(Refusal::NoPolygons),
         Ok(count) => Ok(count),

@@ -4,7 +4,7 @@ use glam::{DMat3, DMat4, DVec3};
 use marraztu::base::math::Axis;
 use marraztu::edit::selection::{self, Selection};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Refusal, Stroke};
+use marraztu::edit::{GesturePhase, Refusal};
 use marraztu::scene::{
     CameraMode, Command, LightKind, Object, Pose, Scene, SpotOwner, Subject, Transformation, View,
 };
@@ -32,7 +32,7 @@ impl Desk {
     }
 
     pub(crate) fn step(&self, axis: Axis, sign: Sign) -> Result<Command, Refusal> {
-        transform::step(&self.scene, &self.view, axis, sign, Stroke::First)
+        transform::step(&self.scene, &self.view, axis, sign, GesturePhase::First)
     }
 
     pub(crate) fn press(&mut self, axis: Axis, sign: Sign) {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use marraztu::base::image::Size;
 use marraztu::edit::frame::{self, Side};
-use marraztu::edit::{Refusal, Stroke, items, place};
+use marraztu::edit::{GesturePhase, Refusal, items, placement};
 use marraztu::scene::{
     CameraMode, ItemId, ObjectId, Observer, Projection, Subject, Transformation, dvec3,
 };
@@ -51,7 +51,7 @@ fn whatever_its_size_every_vertex_is_in_the_picture_in_both_projections() {
         let mut desk = desk();
         let to = DVec3::splat(scale);
         let id = ObjectId(3);
-        desk.perform(place::object_scale(&desk.scene, &desk.view, id, to, Stroke::First));
+        desk.perform(placement::object_scale(&desk.scene, &desk.view, id, to, GesturePhase::First));
         desk.perform(frame::selection(&desk.scene, &desk.view));
         let lens = desk.scene.selected_camera(&desk.view).lens;
         for projection in [Projection::Perspective, Projection::Orthographic] {

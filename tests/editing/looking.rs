@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 use marraztu::base::image::Size;
 use marraztu::base::math::Axis;
-use marraztu::edit::look::{self, Pointer};
-use marraztu::edit::{Refusal, Stroke};
+use marraztu::edit::navigation::{self, Pointer};
+use marraztu::edit::{GesturePhase, Refusal};
 use marraztu::scene::{CameraMode, Observer, Projection, Subject, Transformation};
 
 use super::desk::{Desk, close, turned};
@@ -30,7 +30,7 @@ fn looking_yaws_about_the_worlds_y_and_pitches_about_the_cameras_x() {
     let angle = |degrees: f64| degrees.to_radians();
     for (yaw, pitch) in [(0.0, 30.0), (40.0, 0.0)] {
         let (scene, view) = (&desk.scene, &desk.view);
-        desk.perform(look::look(scene, view, angle(yaw), angle(pitch), Stroke::First));
+        desk.perform(navigation::look(scene, view, angle(yaw), angle(pitch), GesturePhase::First));
     }
     let expected = turned(Axis::Y, 40.0) * turned(Axis::X, 30.0);
     close(desk.pose().axes.z_axis, expected.z_axis);
@@ -47,7 +47,7 @@ fn an_orbit_keeps_what_it_goes_round_at_its_place_on_the_picture() {
         }
         let centre = desk.object().centre(0.0);
         let (before, distance) = (pixel(&desk, centre), desk.pose().eye.distance(centre));
-        desk.perform(look::orbit(&desk.scene, &desk.view, 0.7, -0.4, Stroke::First));
+        desk.perform(navigation::orbit(&desk.scene, &desk.view, 0.7, -0.4, GesturePhase::First));
         assert!((pixel(&desk, centre) - before).length() < 1e-9);
         assert!((desk.pose().eye.distance(centre) - distance).abs() < 1e-9);
         assert_eq!(desk.mode() == CameraMode::Fly, !analysis);
@@ -62,7 +62,7 @@ fn in_parallel_and_in_perspective_a_pan_takes_the_object_along_with_the_pointer(
         desk.view.projection = projection;
         let centre = desk.object().centre(0.0);
         let (before, by) = (pixel(&desk, centre), DVec2::new(30.0, -20.0));
-        desk.perform(look::pan(&desk.scene, &desk.view, by, SIZE, Stroke::First));
+        desk.perform(navigation::pan(&desk.scene, &desk.view, by, SIZE, GesturePhase::First));
         assert!((pixel(&desk, centre) - before - by).length() < 1e-9, "{projection:?}");
         assert_eq!(desk.mode(), CameraMode::Fly);
     }
@@ -76,7 +76,8 @@ fn the_wheel_keeps_what_is_under_the_pointer_there() {
         let point = DVec3::new(-60.0, 40.0, 100.0);
         let at = pixel(&desk, point);
         let pointer = Pointer { at, depth: Some(300.0) };
-        let zoom = look::zoom(&desk.scene, &desk.view, 3.0, pointer, SIZE, Stroke::First);
+        let zoom =
+            navigation::zoom(&desk.scene, &desk.view, 3.0, pointer, SIZE, GesturePhase::First);
         desk.perform(zoom);
         assert!((pixel(&desk, point) - at).length() < 1e-9, "{projection:?}");
         if projection == Projection::Perspective {
@@ -97,7 +98,7 @@ fn the_wheel_in_analysis_keeps_to_the_axis_and_stops_at_the_near_plane() {
     let centre = desk.object().centre(0.0);
     let mut refusal = None;
     for _ in 0..100 {
-        match look::zoom(&desk.scene, &desk.view, 1.0, pointer, SIZE, Stroke::First) {
+        match navigation::zoom(&desk.scene, &desk.view, 1.0, pointer, SIZE, GesturePhase::First) {
             Ok(command) => drop(desk.perform(Ok(command))),
             Err(error) => refusal = Some(error),
         }
@@ -113,7 +114,8 @@ fn the_wheel_goes_through_what_it_looked_at_rather_than_stop_before_it() {
     let mut desk = desk();
     let pointer = Pointer { at: DVec2::new(320.0, 240.0), depth: None };
     for _ in 0..300 {
-        let zoom = look::zoom(&desk.scene, &desk.view, 1.0, pointer, SIZE, Stroke::First);
+        let zoom =
+            navigation::zoom(&desk.scene, &desk.view, 1.0, pointer, SIZE, GesturePhase::First);
         desk.perform(zoom);
     }
     assert!(desk.pose().eye.z < 0.0, "{}", desk.pose().eye);
@@ -126,11 +128,11 @@ fn while_an_object_looks_the_mouse_moves_nothing_and_says_why() {
     let (scene, view) = (&desk.scene, &desk.view);
     let pointer = Pointer { at: DVec2::ZERO, depth: None };
     let all = [
-        look::look(scene, view, 0.1, 0.1, Stroke::First),
-        look::orbit(scene, view, 0.1, 0.1, Stroke::First),
-        look::pan(scene, view, DVec2::ONE, SIZE, Stroke::First),
-        look::fly(scene, view, DVec3::ONE, Stroke::First),
-        look::zoom(scene, view, 1.0, pointer, SIZE, Stroke::First),
+        navigation::look(scene, view, 0.1, 0.1, GesturePhase::First),
+        navigation::orbit(scene, view, 0.1, 0.1, GesturePhase::First),
+        navigation::pan(scene, view, DVec2::ONE, SIZE, GesturePhase::First),
+        navigation::fly(scene, view, DVec3::ONE, GesturePhase::First),
+        navigation::zoom(scene, view, 1.0, pointer, SIZE, GesturePhase::First),
     ];
     for result in all {
         assert_eq!(result, Err(Refusal::ObjectLooks));

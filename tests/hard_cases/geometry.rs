@@ -5,7 +5,7 @@ use glam::{DMat3, DMat4, DVec3};
 use marraztu::base::math;
 use marraztu::base::rng::Rng;
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Refusal, Stroke, place};
+use marraztu::edit::{GesturePhase, Refusal, placement};
 use marraztu::render::screen::coverage::{Snapped, Triangle, doubled_area};
 use marraztu::scene::{
     Frame, Light, LightId, LightKind, List, ObjectId, Placed, Scene, Settings, Sides, Subject,
@@ -230,7 +230,7 @@ fn case_5_an_object_made_smaller_329_times_is_still_an_object() {
     let (mut scene, view) = desk(Subject::Object, Transformation::Scaling);
     let mut single = 1.0_f32;
     for _ in 0..329 {
-        let command = transform::scale(&scene, &view, 0.9, Stroke::First);
+        let command = transform::scale(&scene, &view, 0.9, GesturePhase::First);
         apply(&mut scene, command);
         single *= 0.9;
     }
@@ -312,16 +312,16 @@ fn case_7_a_scale_of_zero_is_refused_whatever_way_it_comes() {
     for factors in [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, -0.0, 1.0)] {
         for frame in [Frame::Local, Frame::Global] {
             let view = View { frame, ..view.clone() };
-            let dragged = transform::stretch(&scene, &view, factors, Stroke::First);
+            let dragged = transform::stretch(&scene, &view, factors, GesturePhase::First);
             assert_eq!(dragged, Err(Refusal::Flat));
         }
-        let typed = place::object_scale(&scene, &view, id, factors, Stroke::First);
+        let typed = placement::object_scale(&scene, &view, id, factors, GesturePhase::First);
         assert_eq!(typed, Err(Refusal::Flat));
     }
     let mut view = view;
     view.steps.scaling = 0.0;
     for sign in [Sign::Positive, Sign::Negative] {
-        assert!(transform::step(&scene, &view, math::Axis::X, sign, Stroke::First).is_err());
+        assert!(transform::step(&scene, &view, math::Axis::X, sign, GesturePhase::First).is_err());
     }
 }
 

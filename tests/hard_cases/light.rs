@@ -3,7 +3,7 @@
 use glam::{DMat4, DQuat, DVec3};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
-use marraztu::edit::{Stroke, place};
+use marraztu::edit::{GesturePhase, placement};
 use marraztu::lab::instructions::levels;
 use marraztu::render::simd::{Power, Real as _};
 use marraztu::render::{FramePlan, Renderer};
@@ -261,10 +261,11 @@ fn case_44_small_angles_are_shown_as_they_were_typed() {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             let mut scene = scene.clone();
             let typed = axis * degrees;
-            let command = place::object_turn(&scene, &view, id, typed, Stroke::First).unwrap();
+            let command =
+                placement::object_turn(&scene, &view, id, typed, GesturePhase::First).unwrap();
             command.apply(&mut scene).unwrap();
             let m = *scene.objects.get(id).unwrap().placement.now();
-            let shown = place::turn_degrees(&m).dot(axis);
+            let shown = placement::turn_degrees(&m).dot(axis);
             ours = ours.max((shown - degrees).abs() / (degrees * f64::EPSILON));
             // By the trace: cos of the angle is (trace - 1) / 2.
             let by_trace = ((m.x_axis.x + m.y_axis.y + m.z_axis.z - 1.0) / 2.0).acos().to_degrees();

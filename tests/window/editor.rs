@@ -4,10 +4,10 @@ use std::cell::RefCell;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use marraztu::app::action::Action;
-use marraztu::app::chord::Chord;
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord;
 use marraztu::app::state::State;
-use marraztu::app::{App, ask::Ask};
+use marraztu::app::{App, actions::Request};
 use marraztu::edit::Gesture;
 use marraztu::io;
 use marraztu::scene::{Scene, View};
@@ -112,9 +112,9 @@ impl Editor {
         self.settle();
     }
 
-    pub(crate) fn ask(&mut self, ask: Ask) {
+    pub(crate) fn ask(&mut self, ask: Request) {
         let ctx = self.harness.ctx.clone();
-        self.harness.state_mut().answer_ask(&ctx, ask);
+        self.harness.state_mut().answer(&ctx, ask);
         self.settle();
     }
 

@@ -2,11 +2,10 @@
 
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
-use super::controls;
-use crate::app::action::{Action, Group};
-use crate::app::ask::Ask;
+use crate::app::actions::{Action, Group, Request};
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::controls;
 
 const WIDTH: f32 = 700.0;
 const KEYS: f32 = 160.0;
@@ -14,7 +13,7 @@ const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &Ui, state: &State, asks: &mut Vec<Ask>) {
+pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
     Window::new("Keys")
@@ -23,13 +22,13 @@ pub(super) fn show(ui: &Ui, state: &State, asks: &mut Vec<Ask>) {
         .resizable(false)
         .default_pos(ui.ctx().content_rect().center() - vec2(WIDTH, room.y) / 2.0)
         .fixed_size(vec2(WIDTH.min(room.x), room.y.min(520.0)))
-        .show(ui.ctx(), |ui| contents(ui, state, asks));
+        .show(ui.ctx(), |ui| contents(ui, state, requests));
     if !open {
-        asks.push(Action::CheatSheet.into());
+        requests.push(Action::CheatSheet.into());
     }
 }
 
-fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let id = Id::unique("search among the keys");
     let mut wanted: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let field = egui::TextEdit::singleline(&mut wanted)
@@ -50,7 +49,7 @@ fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         response.request_focus();
     }
     if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
-        asks.push(Action::CheatSheet.into());
+        requests.push(Action::CheatSheet.into());
     }
     ui.data_mut(|data| data.insert_temp(id, wanted.clone()));
     ui.add_space(theme::GAP);
@@ -66,7 +65,7 @@ fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             ui.add_space(theme::GAP);
             ui.label(RichText::new(group.label()).strong());
             for action in actions {
-                line(ui, state, asks, action);
+                line(ui, state, requests, action);
             }
         }
         if !found {
@@ -78,7 +77,7 @@ fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
 /// Whether an action is what is searched for: by one of its keys as it is written, or by any of its
 /// words.
 fn matches(action: Action, wanted: &str) -> bool {
-    let look = action.look();
+    let look = action.info();
     let wanted = wanted.trim();
     let keys = || look.keys.iter().flat_map(|key| key.names());
     if wanted.chars().count() == 1 && keys().any(|key| key == wanted) {
@@ -92,8 +91,8 @@ fn matches(action: Action, wanted: &str) -> bool {
 }
 
 /// One action: a click does it.
-fn line(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action) {
-    let look = action.look();
+fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action) {
+    let look = action.info();
     let available = action.availability(state);
     let enabled = available.is_ok();
     let size = vec2(ui.available_width(), theme::ROW);
@@ -137,7 +136,7 @@ fn line(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action) {
     controls::put_text(ui, rest, text(ui, &hint, rest.width()), weak);
     controls::focus_ring(ui, rect, &response);
     if action.explain(response, state).clicked() {
-        asks.push(action.into());
+        requests.push(action.into());
     }
 }
 

@@ -1,15 +1,16 @@
 //! What the next key would do, and the last word to the user.
 //!
-//! Where there is no room for all, what matters least is left out from the middle; nothing is cut off.
+//! Where there is no room for all, what matters least is left out from the middle; nothing is cut
+//! off.
 
 use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use super::controls;
-use super::icons::Icon;
-use super::number::short;
-use crate::app::ask::Ask;
-use crate::app::state::{Economy, Message, State, Tone};
+use crate::app::actions::Request;
+use crate::app::state::{Message, Reduction, State, Tone};
 use crate::app::theme;
+use crate::app::widgets::controls;
+use crate::app::widgets::icons::Icon;
+use crate::app::widgets::number::short;
 use crate::scene::{
     CameraMode, Frame, ItemId, LightKind, Observer, Projection, Subject, Transformation,
 };
@@ -21,7 +22,7 @@ const BETWEEN: &str = "  |  ";
 const LONGEST_NAME: usize = 28;
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Ask>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -46,9 +47,9 @@ fn line_ui(ui: &mut Ui, state: &State) {
     response.on_hover_text(format!("{whole}\n{TIME}"));
 }
 
-/// What the time at the end of the line is.
-const TIME: &str = "The time is that of the last picture: from the scene to pixels in memory, on the \
-    thread that draws. What the window takes to show it is not in it.";
+/// Explains the time at the end of the line.
+const TIME: &str = "The time to draw the last picture, from the scene to pixels in memory. \
+    It does not include the time to show the picture in the window.";
 
 fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     let (icon, color) = match message.tone {
@@ -65,7 +66,8 @@ fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     response.on_hover_text(&message.text);
 }
 
-/// The parts of the line, in order: what is selected, what the keys do to it, who looks, what it cost.
+/// The parts of the line, in order: what is selected, what the keys do to it, who looks, what it
+/// cost.
 fn parts(state: &State) -> Vec<String> {
     let (scene, view) = (&state.scene, &state.view);
     let mut parts = vec![selected(state), transformation(state).to_owned()];
@@ -88,8 +90,8 @@ fn parts(state: &State) -> Vec<String> {
         _ => format!("{on} lights"),
     });
     let statistics = &state.statistics;
-    if statistics.economy != Economy::NONE {
-        parts.push(format!("while moving: {}", statistics.economy.words()));
+    if statistics.reduction != Reduction::NONE {
+        parts.push(format!("while moving: {}", statistics.reduction.words()));
     }
     if statistics.pictures > 0 {
         parts.push(format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0));
@@ -210,7 +212,7 @@ fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
 }
 
 /// `name`, with dots in its middle where it has more than `longest` letters.
-pub(super) fn middle_elided(name: &str, longest: usize) -> String {
+pub(crate) fn middle_elided(name: &str, longest: usize) -> String {
     let letters: Vec<char> = name.chars().collect();
     if letters.len() <= longest {
         return name.to_owned();
@@ -238,8 +240,8 @@ mod tests {
         let mut state = State::new(scene, view);
         state.statistics.pictures = 1;
         assert!(!parts(&state).join(BETWEEN).contains("moving"));
-        state.statistics.economy.vertex_light = true;
-        state.statistics.economy.half_size = true;
+        state.statistics.reduction.vertex_light = true;
+        state.statistics.reduction.half_size = true;
         let said = "  |  while moving: light per vertex, half size  |  0.0 ms";
         assert!(parts(&state).join(BETWEEN).ends_with(said));
     }

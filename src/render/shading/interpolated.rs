@@ -12,7 +12,7 @@ use crate::render::lights::{Batch, Light, set};
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::weights::{barycentric, cut_place, cut_w, cut_weights};
 use crate::render::simd::gather::{SLOTS, paged, pick};
-use crate::render::simd::{Lanes as _, Number as _, Sixteen};
+use crate::render::simd::{Lanes as _, Sixteen};
 
 /// Numbers that are interpolated.
 pub(crate) trait Interpolated: Faced {

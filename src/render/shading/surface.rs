@@ -5,7 +5,6 @@
 //! ([`Batch`]), and made bytes. Light that is evaluated at faces is evaluated at the faces of the
 //! block; no pixel asks where it lies.
 
-
 use super::barycentric_variants::locate_by_variant;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;

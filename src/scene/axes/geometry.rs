@@ -85,7 +85,7 @@ pub(super) const COVERAGE: Axis = Axis {
         choice!("points" "Points" coverage = Coverage::Points,
             "Ancestor A's way: points every 0.1 unit of the observer's space, each drawn by itself.",
             "holes nearer than 97; 17 writes a pixel at distance 400, 100 at 966"),
-        choice!("scan-lines" "Rows" coverage = Coverage::ScanLines,
+        choice!("scan-lines" "Scan lines" coverage = Coverage::ScanLines,
             "Ancestor B's way: rows between edges that are rounded to whole pixels.",
             "outlines a pixel too wide, and every seam written twice"),
         choice!("f32-edges" "32 bits" coverage = Coverage::F32Edges,
@@ -111,7 +111,7 @@ pub(super) const COVERAGE: Axis = Axis {
 pub(super) const INTERPOLATION: Axis = Axis {
     name: "interpolation",
     key: "interpolation",
-    label: "Mixing",
+    label: "Interpolation",
     what: "How what corners carry gets to pixels",
     kind: AxisKind::Scored,
     choices: &[
@@ -145,9 +145,9 @@ pub(super) const INTERPOLATION: Axis = Axis {
 };
 
 pub(super) const STRETCHED: Axis = Axis {
-    name: "normals under scaling",
+    name: "normal transform",
     key: "stretched",
-    label: "Stretched",
+    label: "Normal transform",
     what: "How the normals of a stretched object are placed",
     kind: AxisKind::Scored,
     choices: &[

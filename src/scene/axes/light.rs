@@ -5,22 +5,22 @@ use super::{Axis, AxisKind, Choice, Lesson};
 use crate::scene::{Arithmetic, LeaveOut, LightAt, Normalising, SpecularForm, SpecularPower};
 
 pub(super) const SHADING: Axis = Axis {
-    name: "light evaluated",
+    name: "shading",
     key: "shading",
     label: "Shading",
     what: "Where light is evaluated",
     kind: AxisKind::Scored,
     choices: &[
-        choice!("face" "Face" light = LightAt::Face,
+        choice!("face" "Flat" light = LightAt::Face,
             "Light is evaluated once a polygon (flat).",
             "whole polygons, by as much as light changes across one"),
-        choice!("vertex" "Vertex" light = LightAt::Vertex,
+        choice!("vertex" "Gouraud" light = LightAt::Vertex,
             "Light is evaluated at vertices (Gouraud).",
             "highlights smaller than a polygon dim or vanish"),
-        choice!("pixel" "Pixel" light = LightAt::Pixel,
+        choice!("pixel" "Phong" light = LightAt::Pixel,
             "Light is evaluated at each pixel (Phong).",
             "none with one sample; with several, highlights narrower than a pixel"),
-        choice!("sample" "Sample" light = LightAt::Sample,
+        choice!("sample" "Per sample" light = LightAt::Sample,
             "Light is evaluated in each place of a pixel that is looked at: a picture for each.",
             "none",
             |_, _| Ok(()), has_several_samples),
@@ -107,16 +107,16 @@ pub(super) const POWER: Axis = Axis {
 };
 
 pub(super) const NORMALISING: Axis = Axis {
-    name: "normalising",
+    name: "normalisation",
     key: "normalising",
-    label: "Unit length",
+    label: "Normalisation",
     what: "How vectors are brought to length 1",
     kind: AxisKind::Scored,
     choices: &[
         choice!("rsqrt" "rsqrt" normalising = Normalising::Rsqrt,
             "By the processor's estimate of one by the root. Differs between CPUs.",
             "8 byte steps at Ns 76.8 with AVX2; another number on another CPU"),
-        choice!("newton" "+ Newton" normalising = Normalising::Newton,
+        choice!("newton" "rsqrt + Newton step" normalising = Normalising::Newton,
             "By the estimate and one step of Newton's. Differs between CPUs.",
             "0.01 of a byte step at Ns 76.8"),
         choice!("root" "1/sqrt" normalising = Normalising::Root,

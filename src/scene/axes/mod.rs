@@ -49,7 +49,7 @@ use super::{Scene, Settings, View};
 /// One way in which a picture can be more or less exact, or otherwise modelled.
 #[derive(Debug)]
 pub struct Axis {
-    /// What it is called in text: "light evaluated".
+    /// What it is called in text: "shading".
     pub name: &'static str,
     /// Its option on the command line, and its field in a scene file.
     pub key: &'static str,

@@ -20,7 +20,7 @@ pub(super) const DEPTH: Axis = Axis {
         choice!("f32" "32 bits" depth = DepthFormat::F32,
             "32-bit numbers with 0 at the near plane, one pixel after the other.",
             "0.060 units at z 1000: the fine steps are where nothing is"),
-        choice!("f32-reversed" "Reversed" depth = DepthFormat::F32Reversed,
+        choice!("f32-reversed" "Reversed depth" depth = DepthFormat::F32Reversed,
             "32-bit numbers with 0 at the far plane.",
             "0.000058 units at z 1000"),
     ],
@@ -41,11 +41,11 @@ pub(super) const DEPTH: Axis = Axis {
 pub(super) const ROUNDING: Axis = Axis {
     name: "rounding",
     key: "rounding",
-    label: "Bytes",
+    label: "Rounding",
     what: "How colours become bytes",
     kind: AxisKind::Scored,
     choices: &[
-        choice!("truncated" "Cut off" rounding = Rounding::Truncated,
+        choice!("truncated" "Truncate" rounding = Rounding::Truncated,
             "What is behind the point is cut off, as ancestor A did.",
             "one byte step; half a step too dark on average"),
         choice!("dithered" "Dither" rounding = Rounding::Dithered,
@@ -60,7 +60,7 @@ pub(super) const ROUNDING: Axis = Axis {
         title: "Why dim walls fall into bands",
         what: "A colour has many digits and a byte has 256 steps: what is between two steps is cut off, \
             rounded, or shared out among neighbours by a pattern.",
-        coarse: "Cut off, every colour is half a step too dark; without a pattern a slow change falls \
+        coarse: "Truncated, every colour is half a step too dark; without a pattern a slow change falls \
             into bands.",
         shows: "On a wall in dim light: bands with Nearest, none with Dither when it is looked at from \
             afar.",

@@ -43,7 +43,7 @@ pub const ACCURACY_PRESETS: &[Preset] = &[
     },
     Preset {
         word: "ancestor-a",
-        label: "A",
+        label: "Ancestor A (points)",
         what: "As ancestor A drew: points every 0.1 unit, lit at vertices, in 32 bits.",
         points: &[
             ("shading", "vertex"),
@@ -67,7 +67,7 @@ pub const ACCURACY_PRESETS: &[Preset] = &[
     },
     Preset {
         word: "ancestor-b",
-        label: "B",
+        label: "Ancestor B (scan lines)",
         what: "As ancestor B drew: rows of pixels, textures without perspective.",
         points: &[
             ("shading", "vertex"),

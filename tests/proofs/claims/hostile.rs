@@ -12,7 +12,7 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::base::{Shared, math};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Stroke, place};
+use marraztu::edit::{GesturePhase, placement};
 use marraztu::scene::{
     Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
     Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
@@ -141,15 +141,16 @@ impl Hostile {
 
     fn command(&mut self, scene: &Scene, view: &View) -> Option<Command> {
         let object = view.object?;
-        let (v, stroke) = (self.vector(10.0), self.rng.one_of(&[Stroke::First, Stroke::Continued]));
+        let (v, stroke) =
+            (self.vector(10.0), self.rng.one_of(&[GesturePhase::First, GesturePhase::Continued]));
         let axis = self.rng.one_of(&math::Axis::ALL);
         match self.rng.below(7) {
             0 => transform::translate(scene, view, v, stroke),
             1 => transform::rotate(scene, view, v, self.number(7.0), stroke),
             2 => transform::stretch(scene, view, v, stroke),
-            3 => place::object_scale(scene, view, object, v, stroke),
-            4 => place::object_turn(scene, view, object, v, stroke),
-            5 => place::object_translation(scene, view, object, v, stroke),
+            3 => placement::object_scale(scene, view, object, v, stroke),
+            4 => placement::object_turn(scene, view, object, v, stroke),
+            5 => placement::object_translation(scene, view, object, v, stroke),
             _ => transform::step(scene, view, axis, Sign::Positive, stroke),
         }
         .ok()

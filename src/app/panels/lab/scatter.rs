@@ -3,14 +3,14 @@
 use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 
-use crate::app::ask::Ask;
-use crate::app::panels::controls;
+use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::controls;
 use crate::lab::report::{Chart, Mark, MarkKind, Report, brief};
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(report) = &state.lab.report else {
         return empty_ui(ui, state);
     };
@@ -24,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     marks.sort_by_key(|mark| (is_now(mark), mark.on_front));
     for mark in &marks {
         if mark_ui(ui, place(mark, &transform), mark, is_now(mark), report).clicked() {
-            asks.push(Ask::Settings(report.findings.points[mark.point].settings));
+            requests.push(Request::Settings(report.findings.points[mark.point].settings));
         }
     }
     marks.reverse();
@@ -41,8 +41,8 @@ fn empty_ui(ui: &mut Ui, state: &State) {
             "The default is measured against itself first: how much it differs is the noise."
         }
         None => {
-            "What does accuracy cost? Measure draws this picture with every choice, and shows here how \
-             long each takes and how far it is from the exact picture."
+            "What does accuracy cost? Measure draws this picture with every choice and shows \
+             here how long each takes and how far it is from the exact picture."
         }
     };
     ui.add_space(ui.available_height() * 0.35);
@@ -202,7 +202,7 @@ fn tip_ui(ui: &mut Ui, mark: &Mark, report: &Report) {
     ));
     ui.label(format!(
         "Error: {}; FLIP {}",
-        crate::app::comparison::in_words(&point.error),
+        crate::app::state::laboratory::in_words(&point.error),
         brief(point.error.flip)
     ));
     if mark.on_front {

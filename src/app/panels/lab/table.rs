@@ -2,10 +2,10 @@
 
 use egui::{Color32, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::ask::Ask;
-use crate::app::panels::controls::{focus_ring, put_text, text};
+use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::controls::{focus_ring, put_text, text};
 use crate::lab::report::{Report, brief, heading};
 use crate::lab::sweep::{Measured, Row, Verdict};
 
@@ -69,7 +69,7 @@ const COLUMNS: [Column; 7] = [
 ];
 
 /// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(report) = &state.lab.report else {
         ui.weak("Nothing is measured yet.");
         return;
@@ -87,7 +87,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
                 ui.label(RichText::new(&heading).small().strong());
                 last = heading;
             }
-            row_ui(ui, state, report, row, front.contains(&row.point), asks);
+            row_ui(ui, state, report, row, front.contains(&row.point), requests);
         }
         foot_ui(ui, report);
     });
@@ -120,7 +120,7 @@ fn row_ui(
     report: &Report,
     row: &Row,
     on_front: bool,
-    asks: &mut Vec<Ask>,
+    requests: &mut Vec<Request>,
 ) {
     let point = &report.findings.points[row.point];
     let now = point.settings == state.settings;
@@ -160,7 +160,7 @@ fn row_ui(
         point.ratio.pairs, point.ratio.thrown, point.error.coverage
     );
     if response.on_hover_text(hint).clicked() {
-        asks.push(Ask::Settings(point.settings));
+        requests.push(Request::Settings(point.settings));
     }
 }
 
@@ -182,9 +182,9 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
     small(
         ui,
         format!(
-            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself it differed \
-             by {:.1} % in {} pairs: less than that means nothing. * is the default; a bar marks what \
-             nothing beats in both.",
+            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself \
+             it differed by {:.1} % in {} pairs, so smaller differences mean nothing. * is the \
+             default; a bar marks choices that no other beats in both.",
             findings.threads,
             findings.instructions,
             brief(findings.control.a_ms),

@@ -2,12 +2,12 @@
 
 use egui::{Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use super::super::color_picker::swatch;
-use super::super::controls::{self, row};
-use super::super::number::Number;
-use super::super::spheres::{self, Sphere};
 use super::number_row;
 use crate::app::theme;
+use crate::app::widgets::color_picker::swatch;
+use crate::app::widgets::controls::{self, row};
+use crate::app::widgets::number::Number;
+use crate::app::widgets::spheres::{self, Sphere};
 use crate::base::color::Color;
 use crate::edit::Gesture;
 use crate::scene::{Material, MaterialChoice, Object, PresetId};
@@ -15,9 +15,9 @@ use crate::scene::{Material, MaterialChoice, Object, PresetId};
 /// Spheres in a row: the nineteen, the file's and the user's own fill three rows.
 const COLUMNS: u8 = 7;
 
-/// Shows the choice; `object` is what has the material, where it is an object. Gives the choice that
-/// was made.
-pub(super) fn choice_ui(
+/// Shows the choice; `object` is what has the material, where it is an object. Gives the choice
+/// that was made.
+pub(crate) fn choice_ui(
     ui: &mut Ui,
     choice: &MaterialChoice,
     object: Option<&Object>,

@@ -1,0 +1,4 @@
+//! Keys and buttons: both give an action.
+
+pub(crate) mod buttons;
+pub(crate) mod keyboard;
