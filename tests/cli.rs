@@ -5,12 +5,13 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use marraztu::accuracy::Settings;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math::Axis;
 use marraztu::edit::{lights, motion};
 use marraztu::io;
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{Projection, Scene, Settings};
+use marraztu::scene::{Projection, Scene};
 use tempfile::TempDir;
 
 /// A square of one unit on a side, its corners counter-clockwise seen from +Z, far from the origin.
@@ -142,7 +143,8 @@ fn every_option_of_looking_changes_the_picture() {
         // Not `assert_ne`: nobody wants to read two pictures in numbers.
         assert!(drawn(folder.path(), change) != plain, "{change:?} changes nothing");
     }
-    let settings = Settings { arithmetic: marraztu::scene::Arithmetic::F64, ..Settings::default() };
+    let settings =
+        Settings { arithmetic: marraztu::accuracy::Arithmetic::F64, ..Settings::default() };
     let exact = drawn(folder.path(), &["--arithmetic", "f64"]);
     assert!(exact == in_the_house(&settings, Size::new(160, 120)));
 }
@@ -272,7 +274,7 @@ fn a_scene_is_drawn_as_it_was_saved_and_models_go_into_it() {
     let folder = folder();
     let (scene, mut view) = io::default_scene();
     view.projection = Projection::Orthographic;
-    let settings = Settings { light: marraztu::scene::LightAt::Face, ..Settings::default() };
+    let settings = Settings { light: marraztu::accuracy::LightAt::Face, ..Settings::default() };
     io::save(&folder.path().join("s.marraztu"), &scene, &view, &settings).unwrap();
     let plan = FramePlan::new(&scene, &view, &settings, Size::new(160, 120));
     let expected = Renderer::default().render(&plan).clone();

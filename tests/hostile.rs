@@ -8,11 +8,12 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use glam::DMat4;
+use marraztu::accuracy::Settings;
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::io::{Loaded, Progress, describe, load, load_picture, open, to_text};
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{LoadOptions, Settings};
+use marraztu::scene::LoadOptions;
 
 /// The files of a kind, each with its content.
 fn files(kind: &str) -> Vec<PathBuf> {

@@ -12,11 +12,12 @@ use std::fmt::Write as _;
 
 use dhat::{HeapStats, Profiler};
 use glam::DMat4;
+use marraztu::accuracy::{LightAt, Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::io::{self, Progress};
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{LightAt, LoadOptions, Samples, Settings};
+use marraztu::scene::LoadOptions;
 
 #[global_allocator]
 static COUNTING: dhat::Alloc = dhat::Alloc;

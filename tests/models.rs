@@ -9,6 +9,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DVec3};
+use marraztu::accuracy::{Arithmetic, LightAt, Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math;
@@ -16,8 +17,8 @@ use marraztu::edit::{frame, items, selection};
 use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Arithmetic, Camera, Command, Corner, ItemId, LightAt, LoadOptions, MaterialChoice, Mesh, Model,
-    Object, Placed, Pose, Samples, Scene, Settings, View, dvec3, newell,
+    Camera, Command, Corner, ItemId, LoadOptions, MaterialChoice, Mesh, Model, Object, Pose, Scene,
+    Tracked, View, dvec3, newell,
 };
 
 /// The folder of the models, where it is there.
@@ -281,7 +282,7 @@ fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
     view.marks = false;
     let turned = |camera: &mut Camera| {
         let axes = math::frame(side, DVec3::Y, DMat3::IDENTITY);
-        camera.pose = Placed::new(Pose { axes, ..*camera.pose.now() });
+        camera.pose = Tracked::new(Pose { axes, ..*camera.pose.now() });
     };
     items::change_camera(&scene, view.camera, turned).unwrap().apply(&mut scene).unwrap();
     // A file without vertices has nothing to be framed.

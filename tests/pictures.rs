@@ -8,6 +8,7 @@ mod common;
 use common::{at, ball, covered, cube, draw, edit, model, scene, square};
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::{Arithmetic, LightAt, Settings, SpecularForm};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -15,8 +16,8 @@ use marraztu::base::rng::Rng;
 use marraztu::lab::instructions::levels;
 use marraztu::render::{EffectUse, FramePlan, Renderer};
 use marraztu::scene::{
-    Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Model, Normals, ObjectId,
-    PolygonMode, PresetId, Projection, Scene, Settings, Sides, SpecularForm, View,
+    Command, Fill, ItemId, MaterialChoice, Model, Normals, ObjectId, PolygonMode, PresetId,
+    Projection, Scene, Sides, View,
 };
 
 const FIRST: ObjectId = ObjectId(10);

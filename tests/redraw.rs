@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::{at, ball, cube, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::{AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -28,10 +29,9 @@ use marraztu::edit::{
 };
 use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer};
 use marraztu::scene::{
-    AXES, Arithmetic, Command, Fill, Filter, Frame, ItemId, LightAt, LightKind, MaterialChoice,
-    MeshSource, Model, Normals, Object, ObjectId, Observer, Part, PolygonMode, PresetId,
-    Projection, Samples, Scene, Settings, Sides, SourceCorner, SpecularForm, SpotOwner, Subject,
-    Surface, Texture, Transformation, View, Wrap,
+    Command, Fill, Frame, ItemId, LightKind, MaterialChoice, MeshSource, Model, Normals, Object,
+    ObjectId, Observer, Part, PolygonMode, PresetId, Projection, Scene, Sides, SourceCorner,
+    SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
 };
 
 fn random_color(rng: &mut Rng) -> Color {

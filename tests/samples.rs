@@ -8,6 +8,7 @@ mod common;
 
 use common::{at, ball, draw, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::{Arithmetic, Axis, LightAt, Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -16,9 +17,9 @@ use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::screen::coverage::Snapped;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Aim, Arithmetic, Axis, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,
-    MeshSource, NONE, NormalLength, ObjectId, Part, Placed, Projection, Samples, Scene, Settings,
-    Sides, SourceCorner, SpotOwner, Surface, Texture, View, Wrap,
+    Aim, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
+    NormalLength, ObjectId, Part, Projection, Scene, Sides, SourceCorner, SpotOwner, Surface,
+    Texture, Tracked, View, Wrap,
 };
 
 const SIDE: usize = 128;
@@ -282,7 +283,7 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
         scene(&[(square(), at(90.0, 3.0, 2.0, 0.0) * DMat4::from_rotation_y(0.3))]);
     let view = View { marks: false, ..view };
     let aim = Aim { position: DVec3::new(5.0, 1.0, 120.0), direction: DVec3::NEG_Z };
-    let owner = SpotOwner::Fixed(Placed::new(aim));
+    let owner = SpotOwner::Fixed(Tracked::new(aim));
     let kind = LightKind::Spot { owner, half_aperture: 25.0, exponent: 0.0 };
     scene.lights = [(LightId(900), Light::new("spot", 1, kind))].into_iter().collect();
     edit(&mut scene, ObjectId(10), |object| {
@@ -409,7 +410,7 @@ fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
     assert!(*renderer.picture() == wanted);
     // Whenever it is given up, what is picked is of the last picture, and the next one is right.
     edit(&mut scene, ObjectId(10), |object| {
-        object.placement = Placed::new(at(50.0, 0.0, 0.0, 30.0));
+        object.placement = Tracked::new(at(50.0, 0.0, 0.0, 30.0));
     });
     let moved = planned(&scene, LightAt::Sample);
     for patience in [0, 1, 5, 20, 60] {

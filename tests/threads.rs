@@ -16,11 +16,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::DMat4;
+use marraztu::accuracy::{Filter, LightAt, Samples, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{
-    Fill, Filter, LightAt, Normals, ObjectId, Samples, Scene, Settings, Sides, View,
-};
+use marraztu::scene::{Fill, Normals, ObjectId, Scene, Sides, View};
 
 use common::{ball, edit, scene};
 

@@ -53,7 +53,7 @@ fn everything() -> Stage {
     let mut object = stage.scene.objects.get(id).expect("there is one").clone();
     object.texture = Some(Shared::new(holed()));
     let turn = glam::DMat4::from_rotation_y(0.6) * glam::DMat4::from_rotation_x(1.0);
-    object.placement = marraztu::scene::Placed::new(*object.placement.now() * turn);
+    object.placement = marraztu::scene::Tracked::new(*object.placement.now() * turn);
     Command::Replace(Item::Object(id, Box::new(object))).apply(&mut stage.scene).expect("it fits");
     stage.view = View {
         marks: true,

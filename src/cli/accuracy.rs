@@ -2,7 +2,7 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use marraztu::scene::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, Settings};
+use marraztu::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, Settings};
 
 /// What was chosen; everything else stays as it is.
 #[derive(Debug, Default)]

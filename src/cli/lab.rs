@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use marraztu::accuracy::{AXES, Axis, Settings};
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::attribution::attribute;
@@ -15,7 +16,6 @@ use marraztu::lab::picture_source::{PictureSource, Studio};
 use marraztu::lab::report::{self, Budgets, Report};
 use marraztu::lab::sweep::{Question, sweep};
 use marraztu::lab::timing::WallClock;
-use marraztu::scene::{AXES, Axis, Settings};
 
 use super::accuracy::Accuracy;
 use super::arguments::{Reading, Seeing, Surfaces};

@@ -6,12 +6,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::CommandFactory;
 use clap::error::ErrorKind;
+use marraztu::accuracy::Settings;
 use marraztu::base::Shared;
 use marraztu::edit::{items, selection};
 use marraztu::io::{self, Finding, Input, LoadError, Loaded, Progress};
-use marraztu::scene::{
-    Command, LoadOptions, MaterialChoice, Model, Object, Scene, Settings, Sides, View,
-};
+use marraztu::scene::{Command, LoadOptions, MaterialChoice, Model, Object, Scene, Sides, View};
 use rayon::prelude::*;
 
 use super::arguments::{Arguments, Reading};

@@ -1,6 +1,6 @@
 //! Which changes belong to one gesture, such as a drag or a held key.
 
-use crate::scene::Placed;
+use crate::scene::Tracked;
 
 /// Whether a change stands alone, or is one of many that a single drag or held key makes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub enum GesturePhase {
 
 impl GesturePhase {
     /// `placed` after this change of a gesture.
-    pub(super) fn apply<T: Clone>(self, placed: &Placed<T>, now: T) -> Placed<T> {
+    pub(super) fn apply<T: Clone>(self, placed: &Tracked<T>, now: T) -> Tracked<T> {
         match self {
             Self::First => placed.moved(now),
             Self::Continued => placed.replaced(now),

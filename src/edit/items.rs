@@ -9,7 +9,7 @@ use super::names::Names;
 use crate::base::Shared;
 use crate::scene::{
     Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId, LightKind,
-    MaterialChoice, Model, Object, ObjectId, Placed, Pose, Scene, Smoothing, SpotOwner,
+    MaterialChoice, Model, Object, ObjectId, Pose, Scene, Smoothing, SpotOwner, Tracked,
 };
 
 /// More parts than this are not made objects at once: the outline could not be read any more.
@@ -47,7 +47,7 @@ pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoi
         visible: true,
         model,
         material,
-        pose: Placed::new(Pose::facing_minus_z(DVec3::ZERO)),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::ZERO)),
         lens: Lens::default(),
     };
     put_camera(scene, camera)
@@ -69,21 +69,21 @@ pub fn duplicate(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     match id {
         ItemId::Object(id) => {
             let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
-            object.placement = Placed::new(*object.placement.now());
+            object.placement = Tracked::new(*object.placement.now());
             Ok(insert_object(scene, object))
         }
         ItemId::Camera(id) => {
             let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
-            camera.pose = Placed::new(*camera.pose.now());
+            camera.pose = Tracked::new(*camera.pose.now());
             Ok(put_camera(scene, camera))
         }
         ItemId::Light(id) => {
             let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
             match &mut light.kind {
-                LightKind::Sun { direction } => *direction = Placed::new(*direction.now()),
-                LightKind::Bulb { position, .. } => *position = Placed::new(*position.now()),
+                LightKind::Sun { direction } => *direction = Tracked::new(*direction.now()),
+                LightKind::Bulb { position, .. } => *position = Tracked::new(*position.now()),
                 LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } => {
-                    *aim = Placed::new(*aim.now());
+                    *aim = Tracked::new(*aim.now());
                 }
                 LightKind::Ambient | LightKind::Spot { .. } => {}
             }
@@ -195,7 +195,7 @@ pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
         if i == 0 {
             commands.push(Command::Replace(Item::Object(id, Box::new(piece))));
         } else {
-            piece.placement = Placed::new(*piece.placement.now());
+            piece.placement = Tracked::new(*piece.placement.now());
             let item = Item::Object(ObjectId(next_id), Box::new(piece));
             commands.push(Command::Insert { at: at + i, item });
             next_id += 1;

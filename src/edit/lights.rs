@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::items::{change_light, check_owner};
 use super::{Refusal, set_transform};
 use crate::scene::{
-    Aim, Attenuation, Command, CommandError, LightId, LightKind, Orbit, Placed, Scene, SpotOwner,
-    Subject, View,
+    Aim, Attenuation, Command, CommandError, LightId, LightKind, Orbit, Scene, SpotOwner, Subject,
+    Tracked, View,
 };
 
 /// The degrees by which a press of `+` or `-` opens or closes a spot.
@@ -36,13 +36,13 @@ impl Channel {
 /// A sun whose light goes straight down.
 #[must_use]
 pub const fn sun() -> LightKind {
-    LightKind::Sun { direction: Placed::new(DVec3::NEG_Y) }
+    LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) }
 }
 
 /// A bulb at the centre of the world.
 #[must_use]
 pub fn bulb() -> LightKind {
-    LightKind::Bulb { position: Placed::new(DVec3::ZERO), orbit: Orbit::default() }
+    LightKind::Bulb { position: Tracked::new(DVec3::ZERO), orbit: Orbit::default() }
 }
 
 /// A spot with the aperture and concentration that spots have at first.
@@ -54,7 +54,7 @@ pub const fn spot(owner: SpotOwner) -> LightKind {
 /// The owner of a spot that stands at the centre of the world and shines along -Z.
 #[must_use]
 pub const fn fixed() -> SpotOwner {
-    SpotOwner::Fixed(Placed::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
+    SpotOwner::Fixed(Tracked::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
 }
 
 /// The keys 0 to 9: puts the light in a slot on or out.

@@ -9,7 +9,7 @@ use super::{GesturePhase, Refusal};
 use crate::base::math;
 use crate::scene::{
     Aim, CameraId, CameraMode, Command, CommandError, Item, Lens, Light, LightId, LightKind,
-    Object, ObjectId, Placed, Pose, Scene, SpotOwner, View,
+    Object, ObjectId, Pose, Scene, SpotOwner, Tracked, View,
 };
 
 /// The selected object.
@@ -47,7 +47,7 @@ pub(super) fn object_placed(
     scene: &Scene,
     view: &View,
     id: ObjectId,
-    placement: Placed<DMat4>,
+    placement: Tracked<DMat4>,
 ) -> Result<Command, Refusal> {
     if !placement.now().is_finite() {
         return Err(Refusal::TooLarge);

@@ -10,9 +10,10 @@ use std::time::{Duration, Instant};
 
 use super::statistics::Quartiles;
 use super::timing::time;
+use crate::accuracy::Settings;
 use crate::base::image::Size;
 use crate::render::{Effect, EffectUse, FramePlan, Renderer};
-use crate::scene::{Scene, Settings, View};
+use crate::scene::{Scene, View};
 
 /// Pairs that are measured of each effect at the least, where there is time.
 const PAIRS: usize = 7;

@@ -2,9 +2,10 @@
 
 use super::error::Rendering;
 use super::hash::fnv1a;
+use crate::accuracy::{Samples, Settings};
 use crate::base::image::{Picture, Size};
 use crate::render::{FramePlan, Renderer};
-use crate::scene::{Samples, Scene, Settings, View};
+use crate::scene::{Scene, View};
 
 /// Draws one scene, seen one way, in one size, with any settings.
 pub trait PictureSource {

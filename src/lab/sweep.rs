@@ -15,8 +15,8 @@ use super::pairs::{Ratio, Unmeasured, Watch, measure};
 use super::picture_source::{PictureSource, Studio, hash};
 use super::statistics::Quartiles;
 use super::timing::Clock;
+use crate::accuracy::{Axis, Settings};
 use crate::base::image::Size;
-use crate::scene::{Axis, Settings};
 
 /// What is to be found out.
 #[derive(Clone, Debug)]

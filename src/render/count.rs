@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use fearless_simd::Level;
 use rayon::prelude::*;
 
+use crate::accuracy::LightAt;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Form;
 use crate::render::frame::draw::{Pipeline, Shaded, Stage};
@@ -22,7 +23,7 @@ use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
 use crate::render::screen::coverage::{PixelBox, doubled_area};
 use crate::render::screen::tiles::tiles_of;
 use crate::render::shading::painter::bounds_of;
-use crate::scene::{ItemId, LightAt};
+use crate::scene::ItemId;
 
 /// The triangle that a word shows.
 fn triangle(word: u64) -> Option<u32> {

@@ -13,6 +13,7 @@ use fearless_simd::Level;
 use super::shading::context::ShadingContext;
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Painter, TileSums, bounds_of};
+use crate::accuracy::Arithmetic;
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
@@ -30,7 +31,7 @@ use crate::render::screen::tiles::{TILE, TILE_SIDE, tiles_of};
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
 use crate::render::timings::{Laps, Stages};
-use crate::scene::{Arithmetic, ItemId};
+use crate::scene::ItemId;
 
 /// Draws pictures, and keeps the memory that this takes from one to the next.
 #[derive(Debug)]

@@ -9,11 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use super::{Effect, FramePlan, Renderer, State};
+use crate::accuracy::{LightAt, Settings};
 use crate::base::image::Size;
 use crate::render::frame::draw::Draw;
 use crate::scene::{
-    Fill, ItemId, LightAt, List, MaterialChoice, Object, ObjectId, Scene, Settings, Sides, Surface,
-    View,
+    Fill, ItemId, List, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View,
 };
 
 /// Why nothing of an object is seen.

@@ -11,19 +11,73 @@ use arrows::{Sources, cycles};
 const FLOORS: &[(&str, &[&str])] = &[
     ("base", &[]),
     ("scene", &["base"]),
-    ("io", &["base", "scene"]),
-    ("edit", &["base", "scene"]),
-    ("render", &["base", "scene"]),
-    ("lab", &["base", "scene", "io", "edit", "render"]),
-    ("app", &["base", "scene", "io", "edit", "render", "lab"]),
+    ("accuracy", &["base", "scene"]),
+    ("io", &["base", "scene", "accuracy"]),
+    ("edit", &["base", "scene", "accuracy"]),
+    ("render", &["base", "scene", "accuracy"]),
+    ("lab", &["base", "scene", "accuracy", "io", "edit", "render"]),
+    ("app", &["base", "scene", "accuracy", "io", "edit", "render", "lab"]),
     // The command line opens the window, and lists its keys.
-    ("cli", &["base", "scene", "io", "edit", "render", "lab", "app"]),
+    ("cli", &["base", "scene", "accuracy", "io", "edit", "render", "lab", "app"]),
 ];
 
 /// The rooms of a folder, files or folders, lowest first: a room may use those named before it. The
 /// folder's own `mod.rs` stands above them all.
 const ROOMS: &[(&str, &[&str])] = &[
-    ("base", &["once", "lists", "shared", "color", "image", "math"]),
+    (
+        "base",
+        &[
+            "once",
+            "lists",
+            "shared",
+            "color",
+            "image",
+            "math",
+            "rng",
+            "cancellation",
+            "work_stealing",
+        ],
+    ),
+    (
+        "render",
+        &[
+            "timings",
+            "simd",
+            "lights",
+            "frame",
+            "texture",
+            "screen",
+            "plan",
+            "reference",
+            "raster",
+            "shading",
+            "count",
+            "damage",
+            "renderer",
+            "unseen",
+        ],
+    ),
+    (
+        "lab",
+        &[
+            "hash",
+            "timing",
+            "statistics",
+            "front",
+            "flip",
+            "error",
+            "picture_source",
+            "attribution",
+            "pairs",
+            "candidates",
+            "cost",
+            "kernels",
+            "instructions",
+            "pictures",
+            "sweep",
+            "report",
+        ],
+    ),
     (
         "edit",
         &[

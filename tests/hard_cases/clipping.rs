@@ -2,6 +2,7 @@
 
 use crate::claims::exact::span;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::{Filter, Settings};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
@@ -9,8 +10,8 @@ use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Fill, Filter, List, MeshSource, Object, ObjectId, Part, Placed, Pose, Settings, Sides,
-    SourceCorner, Surface, View,
+    Fill, List, MeshSource, Object, ObjectId, Part, Pose, Sides, SourceCorner, Surface, Tracked,
+    View,
 };
 
 use super::cases::quick_round;
@@ -63,7 +64,7 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
             object.placement = object.placement.replaced(front);
         });
         let placed = corners.map(|corner| front.transform_point3(DVec3::from_array(corner)));
-        for light in [marraztu::scene::LightAt::Pixel, marraztu::scene::LightAt::Vertex] {
+        for light in [marraztu::accuracy::LightAt::Pixel, marraztu::accuracy::LightAt::Vertex] {
             let settings = Settings { light, ..Settings::default() };
             let plan = FramePlan::new(&scene, &view, &settings, Size::new(SIDE, SIDE));
             let mut renderer = Renderer::default();
@@ -105,7 +106,7 @@ fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
         let line = model("line", &positions, &[&[0, 1, 2], &[2, 1, 0]]);
         let (mut scene, view) = scene(&[(line, DMat4::IDENTITY)]);
         let mut camera = scene.selected_camera(&view).clone();
-        camera.pose = Placed::new(Pose::facing_minus_z(DVec3::ZERO));
+        camera.pose = Tracked::new(Pose::facing_minus_z(DVec3::ZERO));
         camera.lens.half_angle = 60.0;
         camera.lens.near = 0.5;
         scene.cameras = List::from_iter([(view.camera, camera)]);

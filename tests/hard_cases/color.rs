@@ -1,11 +1,9 @@
 //! From light to bytes.
 
+use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::color::{Color, byte};
 use marraztu::base::rng::Rng;
-use marraztu::scene::{
-    Arithmetic, Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, Settings,
-    View,
-};
+use marraztu::scene::{Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, View};
 
 use super::common::{at, draw, edit, scene, square};
 use super::figures::Figure;

@@ -2,6 +2,7 @@
 
 use crate::claims::exact::{span, wind};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Settings;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::lab::instructions::levels;
@@ -9,9 +10,7 @@ use marraztu::lab::pictures;
 use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{
-    LoadOptions, MeshSource, Object, ObjectId, Projection, Settings, View, Winding,
-};
+use marraztu::scene::{LoadOptions, MeshSource, Object, ObjectId, Projection, View, Winding};
 
 use super::cases::quick_round;
 use super::common::{at, ball, covered, draw, edit, model_of, scene};

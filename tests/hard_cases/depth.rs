@@ -2,14 +2,14 @@
 
 use crate::claims::double_double::Double;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Settings;
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, FAR, Flat};
 use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Command, ItemId, MaterialChoice, ObjectId, PresetId, Projection, Scene, Settings, Sides,
-    Surface, View,
+    Command, ItemId, MaterialChoice, ObjectId, PresetId, Projection, Scene, Sides, Surface, View,
 };
 
 use super::common::{at, draw, edit, model, scene, square};

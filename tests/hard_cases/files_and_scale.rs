@@ -1,12 +1,13 @@
 //! Odd numbers and faces in files, scenes of other sizes, nothing and very much.
 
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::{FindingKind, LoadError, Loaded, Progress, parse};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Arithmetic, Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource,
-    ObjectId, Orbit, Placed, Pose, Projection, Scene, Settings, View, newell,
+    Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource, ObjectId, Orbit,
+    Pose, Projection, Scene, Tracked, View, newell,
 };
 
 use super::cases::quick_round;
@@ -151,7 +152,7 @@ fn scaled(by: f64, projection: Projection) -> (Scene, View) {
     ]);
     let mut camera = scene.selected_camera(&view).clone();
     let lens = Lens::default();
-    camera.pose = Placed::new(Pose::facing_minus_z(DVec3::Z * 400.0 * by));
+    camera.pose = Tracked::new(Pose::facing_minus_z(DVec3::Z * 400.0 * by));
     camera.lens = Lens {
         near: lens.near * by,
         far: lens.far * by,
@@ -166,7 +167,7 @@ fn scaled(by: f64, projection: Projection) -> (Scene, View) {
         let mut light: Light = light.clone();
         light.attenuation = fades;
         if let LightKind::Bulb { .. } = light.kind {
-            let position = Placed::new(DVec3::new(0.0, 90.0, 120.0) * by);
+            let position = Tracked::new(DVec3::new(0.0, 90.0, 120.0) * by);
             light.kind = LightKind::Bulb { position, orbit: Orbit::default() };
         }
         (id, light)

@@ -2,13 +2,14 @@
 
 use crate::claims::double_double::Double;
 use glam::{DMat3, DMat4, DVec3};
+use marraztu::accuracy::Settings;
 use marraztu::base::math;
 use marraztu::base::rng::Rng;
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{GesturePhase, Refusal, placement};
 use marraztu::render::screen::coverage::{Snapped, Triangle, doubled_area};
 use marraztu::scene::{
-    Frame, Light, LightId, LightKind, List, ObjectId, Placed, Scene, Settings, Sides, Subject,
+    Frame, Light, LightId, LightKind, List, ObjectId, Scene, Sides, Subject, Tracked,
     Transformation, View, newell,
 };
 
@@ -155,7 +156,7 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
         let (mut scene, view) =
             scene(&[(strips.clone(), DMat4::from_translation(away + DVec3::Z * 300.0))]);
         let mut camera = scene.selected_camera(&view).clone();
-        camera.pose = Placed::new(marraztu::scene::Pose::facing_minus_z(away + DVec3::Z * 400.0));
+        camera.pose = Tracked::new(marraztu::scene::Pose::facing_minus_z(away + DVec3::Z * 400.0));
         scene.cameras = List::from_iter([(view.camera, camera)]);
         let view = View { marks: false, ..view };
         let picture = draw(&scene, &view, &Settings::default(), ROWS);
@@ -271,10 +272,10 @@ fn case_6_a_mirrored_scene_gives_the_mirrored_picture() {
         let lights = [
             LightKind::Ambient,
             LightKind::Sun {
-                direction: Placed::new(super::oracle::unit(DVec3::new(-sign, -2.0, -1.0))),
+                direction: Tracked::new(super::oracle::unit(DVec3::new(-sign, -2.0, -1.0))),
             },
             LightKind::Bulb {
-                position: Placed::new(DVec3::new(90.0 * sign, 60.0, 150.0)),
+                position: Tracked::new(DVec3::new(90.0 * sign, 60.0, 150.0)),
                 orbit: marraztu::scene::Orbit::default(),
             },
         ];

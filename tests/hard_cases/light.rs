@@ -1,6 +1,7 @@
 //! Light, against the page's equation along rays.
 
 use glam::{DMat4, DQuat, DVec3};
+use marraztu::accuracy::{Arithmetic, LightAt, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::edit::{GesturePhase, placement};
@@ -8,9 +9,8 @@ use marraztu::lab::instructions::levels;
 use marraztu::render::simd::{Power, Real as _};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    Aim, Arithmetic, Command, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,
-    MeshSource, NONE, ObjectId, Orbit, Part, Placed, Scene, Settings, SourceCorner, SpotOwner,
-    View,
+    Aim, Command, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
+    ObjectId, Orbit, Part, Scene, SourceCorner, SpotOwner, Tracked, View,
 };
 
 use super::common::{at, ball, draw, edit, model_of, scene, square};
@@ -23,10 +23,10 @@ const SIDE: usize = 96;
 fn with_lamps(scene: &mut Scene, lamps: &[Lamp]) {
     let kind = |lamp: &Lamp| match *lamp {
         Lamp::Ambient => LightKind::Ambient,
-        Lamp::Sun(direction) => LightKind::Sun { direction: Placed::new(direction) },
-        Lamp::Bulb(at) => LightKind::Bulb { position: Placed::new(at), orbit: Orbit::default() },
+        Lamp::Sun(direction) => LightKind::Sun { direction: Tracked::new(direction) },
+        Lamp::Bulb(at) => LightKind::Bulb { position: Tracked::new(at), orbit: Orbit::default() },
         Lamp::Spot(position, direction, half_aperture, exponent) => {
-            let aim = Placed::new(Aim { position, direction });
+            let aim = Tracked::new(Aim { position, direction });
             LightKind::Spot { owner: SpotOwner::Fixed(aim), half_aperture, exponent }
         }
     };
@@ -601,7 +601,7 @@ fn case_51_light_is_held_to_full_once_and_after_the_texture() {
             let settings = Settings {
                 arithmetic,
                 light,
-                filter: marraztu::scene::Filter::Nearest,
+                filter: marraztu::accuracy::Filter::Nearest,
                 ..Settings::default()
             };
             let middle = draw(&scene, &view, &settings, 33).pixel(16, 18)[0];

@@ -1,10 +1,11 @@
 //! What comes back.
 
+use marraztu::accuracy::Settings;
 use marraztu::base::math::{self, Axis};
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{Gesture, GesturePhase, History, items, selection};
 use marraztu::io::{self, Progress};
-use marraztu::scene::{ItemId, ObjectId, Scene, Settings, Subject, Transformation, View};
+use marraztu::scene::{ItemId, ObjectId, Scene, Subject, Transformation, View};
 
 use glam::{DMat3, DVec3};
 

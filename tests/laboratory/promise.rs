@@ -6,14 +6,13 @@
 //! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is promised;
 //! a reference that is not where the presets lead.
 
+use marraztu::accuracy::{AccuracyPreset, Filter, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io;
 use marraztu::lab::error::Error;
 use marraztu::lab::picture_source::{PictureSource as _, Studio};
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{
-    AccuracyPreset, Command, Filter, Item, MaterialChoice, Scene, Settings, View,
-};
+use marraztu::scene::{Command, Item, MaterialChoice, Scene, View};
 
 use crate::random_scenes::random_scene;
 

@@ -1,11 +1,11 @@
 //! Tables, data and plots hold every choice.
 
+use marraztu::accuracy::{AXES, Axis, Choice, LightAt, Samples, Settings};
 use marraztu::lab::candidates::Group;
 use marraztu::lab::error::Measure;
 use marraztu::lab::report::{Budgets, Chart, MarkKind, Report, csv, png, svg, tabs, text};
 use marraztu::lab::sweep::Against;
 use marraztu::lab::sweep::Row;
-use marraztu::scene::{AXES, Axis, Choice, LightAt, Samples, Settings};
 
 use crate::bench::{FalseClock, FalseSource, found};
 

@@ -1,10 +1,11 @@
 //! What is said of a frame is what the frame does.
 
+use marraztu::accuracy::{LeaveOut, Settings};
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::cost;
 use marraztu::render::{Class, Effect, FramePlan, Renderer, State};
-use marraztu::scene::{Fill, ItemId, LeaveOut, LightKind, Scene, Settings, View};
+use marraztu::scene::{Fill, ItemId, LightKind, Scene, View};
 
 use crate::random_scenes::random_scene;
 

@@ -8,6 +8,7 @@ use std::time::Duration;
 use egui::PointerButton;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{By, Queryable as _};
+use marraztu::accuracy::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Request;
 use marraztu::app::state::laboratory::Compare;
@@ -15,7 +16,6 @@ use marraztu::app::state::laboratory::Laboratory;
 use marraztu::base::image::Picture;
 use marraztu::lab::report::tabs;
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
 
 use crate::editor::Editor;
 use crate::panels::{click, control};

@@ -5,11 +5,11 @@
 //! line, a window that repaints or draws by itself.
 
 use egui::accesskit::Role;
+use marraztu::accuracy::{LeaveOut, Settings};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Lower;
 use marraztu::app::actions::Request;
 use marraztu::render::Effect;
-use marraztu::scene::{LeaveOut, Settings};
 
 use crate::editor::Editor;
 use crate::panels::{click, control};

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use super::table::Action;
+use crate::accuracy::Settings;
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::Measure;
 use crate::lab::report::Budgets;
-use crate::scene::{Command, ItemId, ObjectId, Settings, View};
+use crate::scene::{Command, ItemId, ObjectId, View};
 
 /// Something that is asked for.
 #[derive(Clone, Debug, PartialEq)]

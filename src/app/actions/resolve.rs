@@ -7,6 +7,7 @@
 use egui::ThemePreference;
 
 use super::table::Action;
+use crate::accuracy::{LeaveOut, Settings};
 use crate::app::state::State;
 use crate::base::math::Axis;
 use crate::edit::frame::Side;
@@ -15,8 +16,8 @@ use crate::edit::selection::Selection;
 use crate::edit::transform::Sign;
 use crate::edit::{GesturePhase, Refusal, frame, items, lights, selection, transform};
 use crate::scene::{
-    CameraMode, Command, Fill, Frame, ItemId, LeaveOut, LightKind, NormalLength, Normals, ObjectId,
-    Observer, Panels, Projection, Settings, SpotOwner, Subject, Transformation, View,
+    CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
+    Panels, Projection, SpotOwner, Subject, Transformation, View,
 };
 
 /// What an action means.

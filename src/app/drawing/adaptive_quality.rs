@@ -10,8 +10,8 @@
 
 use std::time::Duration;
 
+use crate::accuracy::{Filter, LightAt, Settings};
 use crate::base::image::Size;
-use crate::scene::{Filter, LightAt, Settings};
 
 /// What a frame may take before the picture lags behind the hand: thirty in a second.
 const BUDGET: Duration = Duration::from_millis(33);

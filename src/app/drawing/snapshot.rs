@@ -1,7 +1,8 @@
 //! Everything that a picture of the viewport depends on.
 
+use crate::accuracy::Settings;
 use crate::base::image::Size;
-use crate::scene::{Scene, Settings, View};
+use crate::scene::{Scene, View};
 
 /// Everything that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]

@@ -197,10 +197,11 @@ mod tests {
     use std::sync::OnceLock;
 
     use super::*;
+    use crate::accuracy::Settings;
     use crate::app::drawing::border::Run;
     use crate::base::color::Color;
     use crate::io;
-    use crate::scene::{Command, Settings};
+    use crate::scene::Command;
 
     fn snapshot(size: Size) -> Snapshot {
         let (scene, view) = io::default_scene();

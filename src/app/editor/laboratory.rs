@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use egui::Context;
 
 use super::App;
+use crate::accuracy::{AXES, Axis, Settings};
 use crate::app::actions::LabRequest;
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
@@ -24,7 +25,6 @@ use crate::lab::picture_source::{PictureSource as _, Studio};
 use crate::lab::report::Report;
 use crate::lab::sweep::{Findings, Question, sweep};
 use crate::lab::timing::WallClock;
-use crate::scene::{AXES, Axis, Settings};
 
 /// What works for the laboratory.
 #[derive(Debug, Default)]

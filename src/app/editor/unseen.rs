@@ -109,7 +109,7 @@ mod tests {
         let mut object = object.clone();
         let state = State::new(scene.clone(), view);
         let mut at = |m: DMat4| {
-            object.placement = crate::scene::Placed::new(m);
+            object.placement = crate::scene::Tracked::new(m);
             out_of_sight(&state, &object, Size::new(800, 600))
         };
         assert!(!at(DMat4::IDENTITY));

@@ -2,9 +2,9 @@
 
 use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
+use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
 use crate::app::state::State;
-use crate::scene::AXES;
 
 /// The actions of [`Group::Window`] that have a menu of their own.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];

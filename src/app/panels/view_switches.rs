@@ -2,6 +2,7 @@
 
 use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
+use crate::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis};
 use crate::app::actions::{Action, Request, change};
 use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::State;
@@ -9,8 +10,7 @@ use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{self, Choice, choices, choices_in_rows, row, section};
 use crate::scene::{
-    ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, CameraMode, Command, Frame, Normals, Observer,
-    Projection, Subject, Transformation,
+    CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation,
 };
 
 /// Shows it; what is asked for is added to `asks`.
@@ -234,7 +234,8 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Vec<Request>) {
     let now = state.settings;
     let senseless = (axis.sense)(&state.scene, &state.view).err();
-    let own = |choice: &crate::scene::Choice| choice.is_of_its_own(&state.scene, &state.view, &now);
+    let own =
+        |choice: &crate::accuracy::Choice| choice.is_of_its_own(&state.scene, &state.view, &now);
     let hints: Vec<String> = axis
         .choices
         .iter()

@@ -1,10 +1,11 @@
 //! What the panel of the laboratory shows, and how the picture is compared with the exact one.
 
 use super::State;
+use crate::accuracy::{AXES, Axis, Settings};
 use crate::base::image::Size;
 use crate::lab::error::{Error, Measure};
 use crate::lab::report::{Budgets, Report, brief};
-use crate::scene::{AXES, Axis, Scene, Settings, View};
+use crate::scene::{Scene, View};
 
 /// What the panel of the laboratory shows.
 #[derive(Debug)]

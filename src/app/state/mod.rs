@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use egui::ThemePreference;
 
+use crate::accuracy::Settings;
 pub use crate::app::drawing::adaptive_quality::Reduction;
 use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
@@ -15,7 +16,7 @@ use crate::edit::{Gesture, GesturePhase, History, Refusal, frame, items, selecti
 use crate::lab::cost::{Costs, Explained};
 use crate::render::Changes;
 use crate::scene::{
-    Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Settings, Sides, View,
+    Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Sides, View,
 };
 use laboratory::Laboratory;
 

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use egui::{Align2, ColorImage, Context, CursorIcon, Id, Pos2, Rect, Sense, Stroke, TextureHandle};
 use egui::{TextureOptions, Ui, pos2, vec2};
 
+use crate::accuracy::Settings;
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
@@ -17,7 +18,7 @@ use crate::app::widgets::plate::plate_ui;
 use crate::base::image::{Picture, Size};
 use crate::lab::error::{Error, amplified};
 use crate::lab::picture_source::{PictureSource as _, Studio};
-use crate::scene::{Scene, Settings, View};
+use crate::scene::{Scene, View};
 
 /// Everything that the two pictures depend on.
 #[derive(Clone, Debug, PartialEq)]

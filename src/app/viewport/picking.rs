@@ -92,7 +92,7 @@ mod tests {
     use super::*;
     use crate::base::Shared;
     use crate::io;
-    use crate::scene::{Command, Item, LoadOptions, MaterialChoice, Placed};
+    use crate::scene::{Command, Item, LoadOptions, MaterialChoice, Tracked};
 
     const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n\
         v 1 1 1\nv -1 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
@@ -111,7 +111,7 @@ mod tests {
             let mut object = Object::new(model.clone(), MaterialChoice::File);
             let placement =
                 DMat4::from_translation(DVec3::Z * *depth) * DMat4::from_scale(DVec3::splat(5.0));
-            object.placement = Placed::new(placement);
+            object.placement = Tracked::new(placement);
             let item = Item::Object(ObjectId(id), Box::new(object));
             Command::Insert { at: 0, item }.apply(&mut scene).unwrap();
         }

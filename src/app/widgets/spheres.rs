@@ -12,6 +12,7 @@ use egui::{Color32, ColorImage, Id, Rect, TextureHandle, TextureOptions, Ui, pos
 use fearless_simd::Level;
 use glam::DVec3;
 
+use crate::accuracy::Settings;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::base::math;
@@ -19,8 +20,8 @@ use crate::io::cam_model;
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     Camera, Command, Item, Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice,
-    Mesh, MeshSource, Model, NONE, Object, ObjectId, Part, Placed, Pose, PresetId, Projection,
-    Scene, Settings, SourceCorner,
+    Mesh, MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Projection, Scene,
+    SourceCorner, Tracked,
 };
 
 /// Quarters of a pixel come from this many by this many.
@@ -113,11 +114,11 @@ fn studio() -> (Scene, Renderer) {
         visible: false,
         model: cam_model(),
         material: MaterialChoice::File,
-        pose: Placed::new(Pose::facing_minus_z(DVec3::Z * 5.0)),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::Z * 5.0)),
         lens: Lens { half_size: 0.95, parallel_far: 10.0, ..Lens::default() },
     });
     let direction = math::unit(DVec3::new(0.5, -0.6, -0.75)).unwrap_or(DVec3::NEG_Z);
-    let sun = LightKind::Sun { direction: Placed::new(direction) };
+    let sun = LightKind::Sun { direction: Tracked::new(direction) };
     let object = Object::new(ball(), MaterialChoice::File);
     let items = [
         Item::Object(ObjectId(1), Box::new(object)),

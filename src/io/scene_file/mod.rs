@@ -22,11 +22,10 @@ use super::progress::Progress;
 use super::read::{MOST_WORDS, read, utf_8};
 use super::replace::{SaveError, Worth, replace};
 use super::texture::Pictures;
+use crate::accuracy::Settings;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
-use crate::scene::{
-    Crease, LoadOptions, Model, Scale, Scene, Settings, Texture, UpAxis, View, Winding,
-};
+use crate::scene::{Crease, LoadOptions, Model, Scale, Scene, Texture, UpAxis, View, Winding};
 
 /// What the names of scene files end in, without the point.
 pub const SCENE_ENDING: &str = "marraztu";

@@ -10,10 +10,11 @@ use super::format::{
     FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, UNSAID, VERSION,
 };
 use super::paths::relative;
+use crate::accuracy::Settings;
 use crate::io::own_texture;
 use crate::scene::{
     Aim, Camera, CameraId, CameraMode, Light, LightKind, LoadOptions, Model, Object, Orbit, Pose,
-    Scene, Settings, Spin, SpotOwner, Texture, View,
+    Scene, Spin, SpotOwner, Texture, View,
 };
 
 /// A scene with what is saved beside it, as a file holds it. `folder` is the file's, complete.

@@ -11,6 +11,9 @@ use glam::{DMat4, DVec3};
 
 use self::flat::Flat;
 use super::hash::fnv1a;
+use crate::accuracy::{
+    AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm, SpecularPower,
+};
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::base::rng::Rng;
@@ -18,9 +21,8 @@ use crate::io;
 use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
-    AXES, Arithmetic, Command, Fill, Filter, Item, LightAt, LoadOptions, Mesh, MeshSource, Model,
-    NONE, Normals, Object, Part, Projection, Samples, Scene, Settings, SourceCorner, SpecularForm,
-    SpecularPower, Texture, View, Wrap,
+    Command, Fill, Item, LoadOptions, Mesh, MeshSource, Model, NONE, Normals, Object, Part,
+    Projection, Scene, SourceCorner, Texture, View, Wrap,
 };
 
 /// The width and height of the pictures in pixels.

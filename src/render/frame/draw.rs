@@ -6,10 +6,11 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use glam::{DMat3, DMat4};
 
 use super::FramePlan;
+use crate::accuracy::LightAt;
 use crate::base::{Shared, color::Color};
 use crate::render::lights;
 use crate::render::lights::{LightRow, PhongMaterial};
-use crate::scene::{Derived, ItemId, LightAt, Model, NormalSource, Normals, Texture};
+use crate::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
 
 /// One mesh of a frame.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,9 +8,10 @@ use glam::DMat4;
 use self::draw::{Draw, Pipeline};
 use self::variants::Variants;
 use super::lights::ViewLight;
+use crate::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples};
 use crate::base::color::Color;
 use crate::base::image::Size;
-use crate::scene::{Arithmetic, Filter, LeaveOut, LightAt, LightId, Samples};
+use crate::scene::LightId;
 
 /// Everything that a frame needs.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,11 +4,11 @@
 //! it in its stage, and is chosen once a batch, a draw or a tile: a choice that is not made costs a
 //! comparison there, and nothing at a pixel.
 
-use crate::render::simd::Number;
-use crate::scene::{
+use crate::accuracy::{
     Coverage, DepthFormat, Interpolation, Normalising, Rounding, Settings, SpecularPower,
     Subpixels, VertexArithmetic,
 };
+use crate::render::simd::Number;
 
 /// By which ways a frame is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

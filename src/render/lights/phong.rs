@@ -4,9 +4,9 @@
 
 use super::batch::{Reflected, Sample, set};
 use super::region::Region;
+use crate::accuracy::{Normalising, SpecularPower};
 use crate::render::simd::power::least_cosine;
 use crate::render::simd::{Lanes, Number, Power, Real, Vec3};
-use crate::scene::{Normalising, SpecularPower};
 
 /// A light that shines in this frame, in view space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -6,8 +6,8 @@
 use fearless_simd::Level;
 
 use super::*;
+use crate::accuracy::SpecularPower;
 use crate::render::simd::BATCH;
-use crate::scene::SpecularPower;
 
 fn one(position: [f64; 3], normal: [f64; 3]) -> Batch<f64> {
     let mut batch = Batch { len: 1, ..Batch::default() };

@@ -6,8 +6,9 @@ use std::borrow::Cow;
 
 use super::planning::{Planner, Planning};
 use super::uses::{Effect, EffectUse, State, Thing};
+use crate::accuracy::{Filter, LightAt, Settings};
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
-use crate::scene::{Filter, ItemId, LightAt, Normals, Object, Settings, Sides, Surface};
+use crate::scene::{ItemId, Normals, Object, Sides, Surface};
 
 /// What a row reads.
 struct Facts<'a> {

@@ -25,10 +25,11 @@ use self::observer::ObserverSpace;
 use self::planning::{Planner, Planning};
 use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectUse, State, Thing};
+use crate::accuracy::{Arithmetic, LightAt, Samples, Settings};
 use crate::base::image::Size;
 use crate::render::frame::variants::Variants;
 use crate::render::frame::{Eye, FramePlan, Rules};
-use crate::scene::{Arithmetic, LightAt, Projection, Samples, Scene, Settings, View};
+use crate::scene::{Projection, Scene, View};
 
 impl FramePlan {
     /// Plans the picture of a scene: `size` in pixels, at least 1 x 1.

@@ -10,6 +10,7 @@ use super::rules::Thing;
 use super::surfaces::Ground;
 use super::turning::turning_of;
 use super::uses::{self, EffectUse, State};
+use crate::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
 use crate::base::{Shared, color::Color, math};
 use crate::render::frame::draw::{Back, Draw, Lines, Pipeline};
 use crate::render::frame::variants::Variants;
@@ -17,8 +18,7 @@ use crate::render::lights::region::Region;
 use crate::render::plan::helpers;
 use crate::render::plan::observer::ObserverSpace;
 use crate::scene::{
-    Fill, ItemId, LightAt, LightId, LightKind, Model, NormalLength, NormalMatrix, NormalSource,
-    Object, ObjectId, Observer, VertexArithmetic,
+    Fill, ItemId, LightId, LightKind, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
 };
 
 /// Where an object is, for the observer.

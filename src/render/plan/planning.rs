@@ -4,10 +4,11 @@ use std::collections::HashMap;
 
 use super::observer::ObserverSpace;
 use super::uses::Notes;
+use crate::accuracy::Settings;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Pipeline;
 use crate::render::lights::LightRow;
-use crate::scene::{LightId, Scene, Settings, View};
+use crate::scene::{LightId, Scene, View};
 
 /// A plan while it is made.
 #[derive(Debug)]

@@ -7,6 +7,7 @@ use super::bounded;
 use super::planning::{Planner, Planning, Shining};
 use super::rules::{Covering, Meeting, Reading};
 use super::uses::{self, Class, Effect, EffectUse, State};
+use crate::accuracy::{Arithmetic, LeaveOut, LightAt, SpecularForm};
 use crate::base::image::{Picture, Size};
 use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color};
@@ -15,9 +16,7 @@ use crate::render::frame::draw::{Pipeline, Shaded, Stage};
 use crate::render::lights::PhongMaterial;
 use crate::render::lights::region::Region;
 use crate::render::lights::turning::Turning;
-use crate::scene::{
-    Arithmetic, ItemId, LeaveOut, LightAt, Object, PartLook, SpecularForm, Surface, Texture, Wrap,
-};
+use crate::scene::{ItemId, Object, PartLook, Surface, Texture, Wrap};
 
 /// What the surfaces of an object have in common.
 #[derive(Debug)]

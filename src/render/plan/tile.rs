@@ -7,12 +7,12 @@
 use glam::DVec3;
 
 use super::rules::{Meeting, Reading};
+use crate::accuracy::{LeaveOut, Samples};
 use crate::render::frame::draw::{Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::region::Region;
 use crate::render::plan::bounded;
 use crate::render::screen::coverage::PixelBox;
-use crate::scene::{LeaveOut, Samples};
 
 /// What interpolating a depth, or one by w, in 32 bits may be wrong by, as a part of the largest.
 const ROUNDING: f64 = 2e-6;

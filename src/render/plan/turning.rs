@@ -3,13 +3,14 @@
 
 use glam::DVec3;
 
+use crate::accuracy::LightAt;
 use crate::base::image::Size;
 use crate::base::math;
 use crate::render::frame::draw::{Back, Draw};
 use crate::render::lights::turning::Turning;
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::doubled_area;
-use crate::scene::{LightAt, Normals, dvec3};
+use crate::scene::{Normals, dvec3};
 
 /// As many triangles or normals at most.
 const FEW: usize = 64;

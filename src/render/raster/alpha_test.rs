@@ -1,12 +1,13 @@
 //! The alpha test: a pixel at which a texture's alpha is below one half shows what is behind it.
 
 use super::geometry::ScreenGeometry;
+use crate::accuracy::Filter;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Pipeline, Shaded};
 use crate::render::screen::weights::Weights;
 use crate::render::texture::sample::sample;
 use crate::render::texture::uv::{Uvs, uv, uvs};
-use crate::scene::{Filter, Texture};
+use crate::scene::Texture;
 
 /// A triangle with a texture that leaves some of it out.
 #[derive(Debug)]

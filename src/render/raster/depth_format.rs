@@ -7,7 +7,7 @@
 //! in 32-bit numbers 0.06 too, for their finest steps are next to 0, where nothing is far; turned round,
 //! with 0 far, they are 5.8e-5. Reed, "Depth Precision Visualized", 2015.
 
-use crate::scene::DepthFormat;
+use crate::accuracy::DepthFormat;
 
 /// The bits of 1.
 const ONE: u32 = 1.0_f32.to_bits();

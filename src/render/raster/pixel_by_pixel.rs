@@ -1,6 +1,7 @@
 //! What is seen in a tile, pixel by pixel, by the way of covering and the format of depth that are
 //! chosen. Words come out as they do elsewhere, so all that follows goes on as it does.
 
+use crate::accuracy::{Coverage, DepthFormat};
 use crate::render::frame::FramePlan;
 use crate::render::frame::variants::Variants;
 use crate::render::raster::alpha_test::AlphaTest;
@@ -13,7 +14,6 @@ use crate::render::reference::points;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::interpolation::subpixels;
 use crate::render::screen::tiles::pixel_at;
-use crate::scene::{Coverage, DepthFormat};
 
 /// How many steps of a format of its own lines are nearer than the surfaces that they lie on.
 const LINES_NEARER: u32 = 2;

@@ -6,11 +6,12 @@
 
 use fearless_simd::Level;
 
+use crate::accuracy::{Subpixels, VertexArithmetic};
 use crate::render::frame::variants::Variants;
 use crate::render::raster::vertices;
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::{SUBPIXELS, Snapped};
-use crate::scene::{DrawOrder, Subpixels, VertexArithmetic};
+use crate::scene::DrawOrder;
 
 /// The guard band of fine corners, in pixels.
 pub(crate) const FINE_GUARD: f64 = 131_072.0;

@@ -6,9 +6,9 @@
 //! cut into pieces of sixteen pixels from its left end, the last one shorter, with perspective at their
 //! ends and evenly between. Abrash, "Graphics Programming Black Book", 1997, chapter 70.
 
+use crate::accuracy::{Coverage, Interpolation};
 use crate::render::frame::variants::Variants;
 use crate::render::screen::coverage::{SUBPIXELS, Snapped, doubled_area};
-use crate::scene::{Coverage, Interpolation};
 
 /// Pixels of a piece of a row.
 const PIECE: i64 = 16;

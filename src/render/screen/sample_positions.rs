@@ -8,7 +8,7 @@
 //! Four and sixteen lie where Vulkan has them ("Standard sample locations", in multiples of 1/16 of a
 //! pixel), sixty-four on a grid of 8 x 8.
 
-use crate::scene::Samples;
+use crate::accuracy::Samples;
 
 /// How many samples a pass looks at, where it does not look at the middle alone.
 pub(crate) const FOUR: usize = 4;

@@ -8,9 +8,9 @@ use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::surface::{Out, Shader};
+use crate::accuracy::{LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
 use crate::render::shading::full_blocks::{BlockLight, Blocks, Canvas};
-use crate::scene::{LightAt, Rounding};
 
 impl<T: ShadingNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers as a whole.

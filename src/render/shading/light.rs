@@ -11,6 +11,7 @@ use fearless_simd::Level;
 use glam::{DMat3, DVec3};
 
 use super::interpolated::ShadingNumber;
+use crate::accuracy::{LightAt, Normalising};
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
@@ -19,7 +20,7 @@ use crate::render::plan::tile::TileLight;
 use crate::render::shading::triangle_attributes::TriangleAttributes;
 use crate::render::simd::BATCH;
 use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
-use crate::scene::{Facet, LightAt, Normalising, Normals, dvec3};
+use crate::scene::{Facet, Normals, dvec3};
 
 /// Light at the vertices of a frame, and what it takes to light faces.
 #[derive(Debug, Default)]

@@ -1,6 +1,7 @@
 //! What is made ready of a plan before any pixel: lamps in the numbers that light is computed in, tables
 //! of powers, and textures at smaller sizes. What the last picture had is used again.
 
+use crate::accuracy::Filter;
 use crate::base::Shared;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Pipeline, Shaded};
@@ -8,7 +9,7 @@ use crate::render::lights::{LightTerm, PhongMaterial};
 use crate::render::simd::Number;
 use crate::render::simd::power::{Power, Tables};
 use crate::render::texture::mips::Mips;
-use crate::scene::{Filter, Texture};
+use crate::scene::Texture;
 
 /// For each pipeline its lamps, in the order of its stages.
 #[derive(Debug, Default)]

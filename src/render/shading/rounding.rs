@@ -7,13 +7,13 @@
 //! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973,
 //! of order 8.
 
+use crate::accuracy::Rounding;
 use crate::render::lights::{Batch, load};
 use crate::render::shading::colors::Colors;
 use crate::render::shading::fragments::Fragments;
 use crate::render::shading::quantize::Own;
 use crate::render::simd::BATCH;
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
-use crate::scene::Rounding;
 
 /// What is added to 255 c at a pixel before the rest is cut off.
 fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {

@@ -12,6 +12,7 @@ use super::groups::{Group, group_of, one_group};
 use super::interpolate::{Mixed, mix, surroundings};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
+use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
 use crate::render::frame::draw::{Back, Pipeline, Shaded, Stage};
 use crate::render::lights::{Batch, Rows};
@@ -27,7 +28,6 @@ use crate::render::shading::rounding::{FinishBy, thresholds};
 use crate::render::shading::triangle_attributes::TriangleAttributes;
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
-use crate::scene::{LightAt, Rounding};
 
 /// Colours pixels. Each thread has its own.
 #[derive(Debug)]

@@ -6,7 +6,7 @@ use super::lanes::{Exact, Kernel};
 use super::real::Real;
 use super::sixteen::Sixteen;
 use super::variant_lanes::VariantLanes;
-use crate::scene::{Normalising, SpecularPower};
+use crate::accuracy::{Normalising, SpecularPower};
 
 /// The numbers that pictures can be computed in.
 pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use crate::scene::SpecularPower;
+use crate::accuracy::SpecularPower;
 
 /// To which power numbers are taken, and how.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -84,7 +84,7 @@ fn linear(table: &[f64], x: f64) -> f64 {
 mod tests {
     use super::super::power::{Tables, least_cosine};
     use super::*;
-    use crate::scene::SpecularPower;
+    use crate::accuracy::SpecularPower;
 
     fn worst(way: SpecularPower, exponent: f64) -> f64 {
         let power = Power::by(way, exponent, -24.0, &mut Tables::default());

@@ -17,7 +17,7 @@ use fearless_simd::{Simd, SimdBase as _, f32x16};
 use fearless_simd::{SimdCombine as _, SimdInto as _, SimdSplit as _, f32x4, f32x8};
 
 use super::real::Real;
-use crate::scene::Normalising;
+use crate::accuracy::Normalising;
 
 /// Below this, a number of 32 bits is not normal any more; above the other, it is infinite.
 const SMALLEST: f64 = 1.175_494_4e-38;

@@ -4,7 +4,7 @@ use super::gather::SLOTS;
 use super::lanes::{BATCH, Lanes};
 use super::variant_real::VariantNumber;
 use super::vec3::Vec3;
-use crate::scene::Normalising;
+use crate::accuracy::Normalising;
 
 /// What another lanes does, by a rare way.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@ use super::power::Power;
 use super::power_variants;
 use super::real::Real;
 use super::reciprocal_root;
-use crate::scene::Normalising;
+use crate::accuracy::Normalising;
 
 /// Numbers that can be asked for a rare way.
 pub trait VariantReal: Real {

@@ -7,11 +7,12 @@
 //! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer way as in the specification of OpenGL
 //! 4.6, 8.14.1.
 
+use crate::accuracy::Filter;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::render::simd::Number;
 use crate::render::texture::sample::sample;
-use crate::scene::{Filter, Texture};
+use crate::scene::Texture;
 
 /// A texture at the size that it has, at half of that, and so on down to one texel.
 #[derive(Debug)]

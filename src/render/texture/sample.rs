@@ -1,7 +1,8 @@
 //! What a texture shows at a place: texels are bytes / 255, and (0, 0) is the lower left corner.
 
+use crate::accuracy::Filter;
 use crate::render::simd::Number;
-use crate::scene::{Filter, Texture, Wrap};
+use crate::scene::{Texture, Wrap};
 
 /// Red, green, blue and alpha at `uv`, as factors.
 ///

@@ -7,6 +7,7 @@
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::Tally;
+use marraztu::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
@@ -14,11 +15,10 @@ use marraztu::base::{Shared, math};
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{GesturePhase, placement};
 use marraztu::scene::{
-    Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
-    Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, NormalLength, Normals, Object, ObjectId, Observer, Orbit, Part,
-    Placed, Pose, PresetId, Projection, Samples, Scene, Settings, Sides, SourceCorner,
-    SpecularForm, Spin, SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
+    Aim, Attenuation, Camera, CameraId, Command, Fill, Frame, Item, Lens, Light, LightId,
+    LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE, NormalLength,
+    Normals, Object, ObjectId, Observer, Orbit, Part, Pose, PresetId, Projection, Scene, Sides,
+    SourceCorner, Spin, SpotOwner, Subject, Surface, Texture, Tracked, Transformation, View, Wrap,
 };
 
 /// A command is done, or refused with nothing changed.
@@ -206,7 +206,7 @@ impl Hostile {
         let placement = self.placement();
         let mean = placement.transform_point3(object.model.mesh.polygon_centre(0));
         self.surfaces.push(mean);
-        object.placement = Placed::new(placement);
+        object.placement = Tracked::new(placement);
         if self.rng.one_in(4) {
             let axes = [self.bool(), self.bool(), self.bool()];
             object.spin = Spin { axes, speed: self.number(90.0), since: self.number(1.0) };
@@ -284,7 +284,7 @@ impl Hostile {
             visible: self.bool(),
             model: marraztu::io::cam_model(),
             material: MaterialChoice::Preset(PresetId::SILVER),
-            pose: Placed::new(pose),
+            pose: Tracked::new(pose),
             lens,
         }
     }
@@ -297,12 +297,12 @@ impl Hostile {
             0 => SpotOwner::SelectedObject,
             1 => SpotOwner::SelectedCamera,
             2 => SpotOwner::Object(ObjectId(1)),
-            _ => SpotOwner::Fixed(Placed::new(Aim { position: place, direction })),
+            _ => SpotOwner::Fixed(Tracked::new(Aim { position: place, direction })),
         };
         let kind = match self.rng.below(4) {
             0 => LightKind::Ambient,
-            1 => LightKind::Sun { direction: Placed::new(direction) },
-            2 => LightKind::Bulb { position: Placed::new(place), orbit },
+            1 => LightKind::Sun { direction: Tracked::new(direction) },
+            2 => LightKind::Bulb { position: Tracked::new(place), orbit },
             _ => LightKind::Spot {
                 owner,
                 half_aperture: self.amount(90.0),

@@ -3,8 +3,8 @@
 
 use marraztu::base::image::Picture;
 
+use marraztu::accuracy::{LeaveOut, Settings};
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{LeaveOut, Settings};
 
 use super::random_scenes::{RandomScene, random_scene};
 use super::{Proof, Tally};

@@ -3,12 +3,12 @@
 
 use super::fans::seen;
 use super::{Proof, Tally};
+use marraztu::accuracy::Settings;
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::Settings;
 
 pub(crate) const PROOF: Proof = Proof {
     name: "sizes",

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Proof, Tally};
+use marraztu::accuracy::Settings;
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::base::math::Axis;
@@ -15,7 +16,7 @@ use marraztu::edit::{
 };
 use marraztu::io;
 use marraztu::scene::{
-    Command, Frame, ItemId, LightKind, MaterialChoice, Model, Scene, Settings, SpotOwner, Subject,
+    Command, Frame, ItemId, LightKind, MaterialChoice, Model, Scene, SpotOwner, Subject,
     Transformation, View,
 };
 

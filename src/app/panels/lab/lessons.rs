@@ -2,11 +2,11 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
+use crate::accuracy::{AXES, AxisKind};
 use crate::app::actions::{LabRequest, Request};
 use crate::app::panels::view_switches::axis_ui;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::scene::{AXES, AxisKind};
 
 /// Shows it; what is asked for is added to `asks`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {

@@ -14,7 +14,7 @@ use crate::app::widgets::number::{Number, vector};
 use crate::base::color;
 use crate::edit::{Gesture, items, lights, motion, placement};
 use crate::scene::{
-    Aim, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Placed, Scene, SpotOwner,
+    Aim, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Scene, SpotOwner, Tracked,
 };
 
 /// A light that is being shown.
@@ -166,7 +166,7 @@ impl Shown<'_> {
         owners.extend(scene.cameras.ids().map(SpotOwner::Camera));
         owners.push(match owner {
             SpotOwner::Fixed(_) => owner.clone(),
-            _ => SpotOwner::Fixed(Placed::new(self.aim(owner))),
+            _ => SpotOwner::Fixed(Tracked::new(self.aim(owner))),
         });
         row(ui, "Shines from", |ui| {
             let combo = ComboBox::from_id_salt("owner")

@@ -1,6 +1,7 @@
 use fearless_simd::{SimdBase as _, i32x16};
 
 use super::*;
+use crate::accuracy::Samples;
 use crate::base::image::Size;
 use crate::render::raster::queue::{ROWS, SMALL};
 use crate::render::raster::small;
@@ -9,7 +10,6 @@ use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::Snapped;
 use crate::render::screen::sample_positions::passes;
 use crate::render::screen::tiles::TILE;
-use crate::scene::Samples;
 
 const SIZE: Size = Size { width: 150, height: 140 };
 const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };

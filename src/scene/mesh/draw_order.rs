@@ -9,8 +9,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::clusters::{Cluster, clusters};
-use super::{Bounds, Mesh, NONE, dvec3};
 use crate::base::lists::sorted_by_keys;
+use crate::scene::{Bounds, Mesh, NONE, dvec3};
 
 /// A triangle as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +84,7 @@ impl Points {
 
 impl DrawOrder {
     /// Along a Morton curve.
-    pub(super) fn along_curve(mesh: &Mesh) -> Self {
+    pub(crate) fn along_curve(mesh: &Mesh) -> Self {
         let Some(bounds) = mesh.bounds() else { return Self::default() };
         let count = mesh.triangle_count();
         let key = |number: usize| morton(mesh, bounds, vertices(mesh, number));
@@ -101,7 +101,7 @@ impl DrawOrder {
     }
 
     /// As the mesh has them.
-    pub(super) fn as_filed(mesh: &Mesh) -> Self {
+    pub(crate) fn as_filed(mesh: &Mesh) -> Self {
         let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
         let numbers = (0..index(mesh.triangle_count())).into_par_iter();
         Self::of(mesh, numbers.map(triangle).collect())

@@ -1,5 +1,8 @@
 use super::*;
-use crate::scene::{Arithmetic, Filter, LeaveOut, LightAt, Samples, SpecularForm, SpecularPower};
+use crate::accuracy::AccuracyPreset;
+use crate::accuracy::{
+    Arithmetic, Filter, LeaveOut, LightAt, Samples, SpecularForm, SpecularPower,
+};
 
 #[test]
 fn each_choice_is_read_back_as_it_was_set_and_touches_no_other_axis() {
@@ -48,7 +51,7 @@ fn several_samples_are_judged_against_the_most_of_them_each_lit() {
 
 #[test]
 fn presets_are_the_points_that_their_names_promise() {
-    let of = |word: &str| Preset::named(word).unwrap().of(&Settings::default());
+    let of = |word: &str| AccuracyPreset::named(word).unwrap().of(&Settings::default());
     let draft = Settings { light: LightAt::Vertex, filter: Filter::Nearest, ..of("default") };
     assert_eq!(of("draft"), draft);
     assert_eq!(of("default"), Settings::default());
@@ -94,7 +97,7 @@ fn a_filter_makes_no_sense_without_a_texture_and_a_highlight_none_without_ks() {
         visible: true,
         model: model.clone(),
         material: MaterialChoice::Own(dull),
-        pose: Placed::new(Pose::facing_minus_z(glam::DVec3::Z)),
+        pose: Tracked::new(Pose::facing_minus_z(glam::DVec3::Z)),
         lens: Lens::default(),
     });
     let sense = |scene: &Scene, key: &str| {

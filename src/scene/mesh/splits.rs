@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::{Edge, Mesh, dvec3};
+use crate::scene::{Edge, Mesh, dvec3};
 
 /// A corner stands on an edge where it is nearer to it than this part of the edge's length.
 const NEAR: f64 = 1e-6;

@@ -2,7 +2,7 @@
 
 use super::sense::{if_any, if_any_object, is_any, is_lit};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::scene::{DepthFormat, Rounding};
+use crate::accuracy::{DepthFormat, Rounding};
 
 pub(super) const DEPTH: Axis = Axis {
     name: "depth",

@@ -2,9 +2,8 @@
 
 use super::sense::{if_any_object, is_any, is_stretched};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::scene::{
-    Coverage, Interpolation, NormalMatrix, Projection, Scene, Subpixels, VertexArithmetic, View,
-};
+use crate::accuracy::{Coverage, Interpolation, NormalMatrix, Subpixels, VertexArithmetic};
+use crate::scene::{Projection, Scene, View};
 
 /// Whether something is shown.
 fn anything(scene: &Scene, view: &View) -> Result<(), &'static str> {
@@ -165,7 +164,7 @@ pub(super) const STRETCHED: Axis = Axis {
         title: "Why stretched things are lit wrongly",
         what: "A normal stands across its surface, and a stretched surface leans the other way than a \
             stretched arrow would: normals need a matrix of their own.",
-        coarse: "Placed by the object's own matrix, normals lean with the stretch, and light falls on \
+        coarse: "Tracked by the object's own matrix, normals lean with the stretch, and light falls on \
             a flat thing as if it were long.",
         shows: "On a ball that is pressed flat: compare its upper side with As it is and with Cofactor.",
         scene: "pressed",

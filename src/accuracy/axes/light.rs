@@ -2,7 +2,7 @@
 
 use super::sense::{has_even_power, has_several_samples, if_any, is_lit, is_mirroring};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::scene::{Arithmetic, LeaveOut, LightAt, Normalising, SpecularForm, SpecularPower};
+use crate::accuracy::{Arithmetic, LeaveOut, LightAt, Normalising, SpecularForm, SpecularPower};
 
 pub(super) const SHADING: Axis = Axis {
     name: "shading",

@@ -2,7 +2,7 @@
 
 use super::sense::{if_any, is_there};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::scene::Samples;
+use crate::accuracy::Samples;
 
 pub(super) const SAMPLES: Axis = Axis {
     name: "samples a pixel",

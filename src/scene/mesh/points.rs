@@ -3,11 +3,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::mesh::index;
-use super::mesh_build::Outlines;
-use super::mesh_fans::{Limit, Rule, fan_points};
-use super::{CornerLists, Crease, MeshSource, NONE, Point, Smoothing, dvec3};
 use crate::base::math;
+use crate::scene::mesh::build::Outlines;
+use crate::scene::mesh::fans::{Limit, Rule, fan_points};
+use crate::scene::mesh::index;
+use crate::scene::{CornerLists, Crease, MeshSource, NONE, Point, Smoothing, dvec3};
 
 /// Unit normals that cancel out leave only their rounding errors, which are less.
 const CANCELLED: f64 = 1e-9;
@@ -20,17 +20,17 @@ const BLOCK: usize = 1 << 15;
 
 /// What is computed of the normals of polygons.
 #[derive(Debug)]
-pub(super) struct Computed {
+pub(crate) struct Computed {
     /// The polygons without area; ascending.
-    pub(super) without_area: Vec<u32>,
+    pub(crate) without_area: Vec<u32>,
     /// The points of corners: the first are one a vertex.
-    pub(super) points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
     /// The point of each corner; empty if each has its vertex's.
     of_corners: Vec<u32>,
 }
 
 impl Computed {
-    pub(super) fn of(outlines: &Outlines<'_>, vertices: usize, smoothing: &Smoothing) -> Self {
+    pub(crate) fn of(outlines: &Outlines<'_>, vertices: usize, smoothing: &Smoothing) -> Self {
         let rule = match smoothing {
             Smoothing::Crease(crease) if *crease == Crease::SMOOTH => None,
             Smoothing::Crease(crease) => Some(Rule::Crease(Limit::new(*crease))),
@@ -120,37 +120,37 @@ impl Normals {
 
 /// The points of a mesh's corners.
 #[derive(Debug, Default, PartialEq)]
-pub(super) struct CornerPoints {
+pub(crate) struct CornerPoints {
     /// The point of each corner with the computed normal; empty if each has its vertex's.
     smooth: Vec<u32>,
     /// The point of each corner with the file's normal; empty if no corner has one.
-    pub(super) filed: Vec<u32>,
+    pub(crate) filed: Vec<u32>,
     /// The points from here on have normals of the file.
     first_filed: u32,
     /// Whether all corners have normals of the file.
-    pub(super) filed_only: bool,
+    pub(crate) filed_only: bool,
 }
 
 impl CornerPoints {
     /// The point of a corner with the computed normal; `vertices` are those of all corners.
-    pub(super) fn smooth(&self, vertices: &[u32], corner: usize) -> u32 {
+    pub(crate) fn smooth(&self, vertices: &[u32], corner: usize) -> u32 {
         let list = if self.smooth.is_empty() { vertices } else { &self.smooth };
         list[corner]
     }
 
     /// Its point with the file's normal, or else with the computed one.
-    pub(super) fn filed(&self, vertices: &[u32], corner: usize) -> u32 {
+    pub(crate) fn filed(&self, vertices: &[u32], corner: usize) -> u32 {
         if self.filed.is_empty() { self.smooth(vertices, corner) } else { self.filed[corner] }
     }
 
     /// Whether the points of all corners with computed normals are numbered as the vertices.
-    pub(super) const fn are_vertices(&self) -> bool {
+    pub(crate) const fn are_vertices(&self) -> bool {
         self.smooth.is_empty()
     }
 
     /// The points and those of the corners, with other computed normals and the same ones of the
     /// file.
-    pub(super) fn with_computed(
+    pub(crate) fn with_computed(
         &self,
         points: &[Point],
         computed: Computed,
@@ -174,7 +174,7 @@ impl CornerPoints {
 
 /// What is computed of a mesh's normals, with the file's normals behind, and the points of its
 /// corners.
-pub(super) fn points_and_corners(
+pub(crate) fn points_and_corners(
     source: &MeshSource,
     lists: &CornerLists,
     starts: &[u32],
@@ -192,7 +192,7 @@ pub(super) fn points_and_corners(
 }
 
 /// Whether the unit normals whose sum this is cancel out.
-pub(super) fn cancels(sum: DVec3) -> bool {
+pub(crate) fn cancels(sum: DVec3) -> bool {
     sum.length() <= CANCELLED
 }
 
@@ -268,10 +268,10 @@ fn filed_points(
 }
 
 /// A normal as it is shown: (0, 0, 1) where there is none.
-pub(super) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
+pub(crate) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
     narrow(normal.unwrap_or(DVec3::Z))
 }
 
-pub(super) fn narrow(v: DVec3) -> [f32; 3] {
+pub(crate) fn narrow(v: DVec3) -> [f32; 3] {
     v.as_vec3().to_array()
 }

@@ -1,16 +1,16 @@
 //! The edges of a mesh in the order in which they are drawn fastest.
 //!
-//! Along the vertices as [`DrawOrder`](super::DrawOrder) numbers them, so that what is near in space
+//! Along the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so that what is near in space
 //! is near in memory. Each edge keeps its number among the mesh's edges, which decides between equal
 //! depths, so that the order cannot show.
 
-use super::mesh::index;
-use super::{Mesh, NONE};
+use crate::scene::mesh::index;
+use crate::scene::{Mesh, NONE};
 
 /// An edge as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawEdge {
-    /// The vertices at its ends, as places in [`DrawOrder::x`](super::DrawOrder::x); [`NONE`] where no
+    /// The vertices at its ends, as places in [`DrawOrder::x`](crate::scene::DrawOrder::x); [`NONE`] where no
     /// triangle uses them.
     pub vertices: [u32; 2],
     /// Its two polygons, or the same twice where it has one; the second is [`NONE`] where it has more.
@@ -30,7 +30,7 @@ pub struct EdgeOrder {
 
 impl EdgeOrder {
     /// The order for a mesh.
-    pub(super) fn new(mesh: &Mesh) -> Self {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
         let mut vertices = vec![NONE; mesh.positions().len()];
         for triangle in &mesh.draw_order().triangles {
             let corners = mesh.triangle(triangle.number as usize);

@@ -4,17 +4,29 @@
 //! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
 //! polygon names the point it has with computed normals and the one it has with the file's.
 //!
-//! What not every picture needs is found when it is first asked for (`mesh_found`). Meshes that
+//! What not every picture needs is found when it is first asked for (`cache`). Meshes that
 //! differ in their computed normals alone share everything else.
 //!
 //! The fields are private and the constructor checks them, so that no index is ever out of range.
 
+mod around;
+pub(super) mod build;
+pub(super) mod cache;
+mod closed;
+pub(super) mod clusters;
+pub(super) mod draw_order;
+pub(super) mod edge_order;
+pub(super) mod edges;
+mod fans;
+mod points;
+mod splits;
+
 use glam::DVec3;
 
-use super::mesh_found::{Found, FoundOfShape};
-use super::mesh_points::CornerPoints;
 use super::{Bounds, Smoothing};
 use crate::base::Shared;
+use crate::scene::mesh::cache::{Found, FoundOfShape};
+use crate::scene::mesh::points::CornerPoints;
 
 /// In place of an index: there is none.
 pub const NONE: u32 = u32::MAX;

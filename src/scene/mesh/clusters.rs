@@ -8,12 +8,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::order::DrawTriangle;
+use crate::scene::mesh::draw_order::DrawTriangle;
 
 /// Triangles of a cluster; the last has what is left.
 pub const CLUSTER: usize = 64;
 
-/// Some triangles of a [`DrawOrder`](super::DrawOrder), in object space.
+/// Some triangles of a [`DrawOrder`](crate::scene::DrawOrder), in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cluster {
     /// The middle of a ball about all corners.
@@ -71,7 +71,7 @@ impl Cluster {
 }
 
 /// The clusters of some triangles, whose corners `place` knows.
-pub(super) fn clusters(
+pub(crate) fn clusters(
     triangles: &[DrawTriangle],
     place: impl Fn(u32) -> DVec3 + Sync,
 ) -> Vec<Cluster> {

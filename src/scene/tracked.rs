@@ -7,12 +7,12 @@
 use std::sync::Arc;
 
 /// A value with the stack of those it had before.
-pub struct Placed<T> {
+pub struct Tracked<T> {
     now: T,
     before: Option<Arc<Self>>,
 }
 
-impl<T> Placed<T> {
+impl<T> Tracked<T> {
     /// A value that was never anything else.
     pub const fn new(now: T) -> Self {
         Self { now, before: None }
@@ -36,7 +36,7 @@ impl<T> Placed<T> {
     }
 }
 
-impl<T: Clone> Placed<T> {
+impl<T: Clone> Tracked<T> {
     /// It becomes `now`, and what it was goes onto the stack.
     #[must_use]
     pub fn moved(&self, now: T) -> Self {
@@ -56,20 +56,20 @@ impl<T: Clone> Placed<T> {
     }
 }
 
-impl<T: Clone> Clone for Placed<T> {
+impl<T: Clone> Clone for Tracked<T> {
     fn clone(&self) -> Self {
         Self { now: self.now.clone(), before: self.before.clone() }
     }
 }
 
-impl<T: Default> Default for Placed<T> {
+impl<T: Default> Default for Tracked<T> {
     fn default() -> Self {
         Self::new(T::default())
     }
 }
 
 /// Two are equal where value and stack are; a shared tail is not walked.
-impl<T: PartialEq> PartialEq for Placed<T> {
+impl<T: PartialEq> PartialEq for Tracked<T> {
     fn eq(&self, other: &Self) -> bool {
         let (mut a, mut b) = (self, other);
         loop {
@@ -86,14 +86,14 @@ impl<T: PartialEq> PartialEq for Placed<T> {
     }
 }
 
-impl<T: std::fmt::Debug> std::fmt::Debug for Placed<T> {
+impl<T: std::fmt::Debug> std::fmt::Debug for Tracked<T> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Placed").field("now", &self.now).field("depth", &self.depth()).finish()
+        f.debug_struct("Tracked").field("now", &self.now).field("depth", &self.depth()).finish()
     }
 }
 
 /// Lets go of a long stack one by one: the compiler's own way would call itself once for each.
-impl<T> Drop for Placed<T> {
+impl<T> Drop for Tracked<T> {
     fn drop(&mut self) {
         let mut next = self.before.take();
         while let Some(mut last) = next.and_then(Arc::into_inner) {
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn a_stack_of_a_million_is_walked_compared_and_dropped() {
-        let build = || (1..=1_000_000).fold(Placed::new(0), |placed, i| placed.moved(i));
+        let build = || (1..=1_000_000).fold(Tracked::new(0), |placed, i| placed.moved(i));
         let (a, b) = (build(), build());
         assert_eq!(a.depth(), 1_000_000);
         assert!(a == b);

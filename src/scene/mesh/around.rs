@@ -3,12 +3,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::mesh::index;
-use super::mesh_build::Outlines;
+use crate::scene::mesh::build::Outlines;
+use crate::scene::mesh::index;
 
 /// The corners around each vertex, vertex after vertex.
 #[derive(Debug)]
-pub(super) struct Around {
+pub(crate) struct Around {
     /// Where the corners of each vertex begin, and where the last one's end.
     starts: Vec<u32>,
     /// Those of a vertex in ascending order.
@@ -25,7 +25,7 @@ enum Polygons {
 }
 
 impl Around {
-    pub(super) fn of(outlines: &Outlines<'_>, vertices: usize) -> Self {
+    pub(crate) fn of(outlines: &Outlines<'_>, vertices: usize) -> Self {
         // Every thread goes through all corners and takes those of its own vertices.
         let own = vertices.div_ceil(rayon::current_num_threads()).max(1 << 12);
         let mut starts = vec![0; vertices + 1];
@@ -67,7 +67,7 @@ impl Around {
     }
 
     /// The normals of all polygons, if some are so large that one cannot be computed for each corner.
-    pub(super) fn large_normals(&self, outlines: &Outlines<'_>) -> Option<Vec<Option<DVec3>>> {
+    pub(crate) fn large_normals(&self, outlines: &Outlines<'_>) -> Option<Vec<Option<DVec3>>> {
         matches!(self.polygons, Polygons::Mixed(_)).then(|| {
             let polygons = 0..outlines.starts.len() - 1;
             polygons.into_par_iter().map(|polygon| outlines.normal(polygon)).collect()
@@ -75,13 +75,13 @@ impl Around {
     }
 
     /// The corners around a vertex, ascending.
-    pub(super) fn corners(&self, vertex: usize) -> &[u32] {
+    pub(crate) fn corners(&self, vertex: usize) -> &[u32] {
         &self.corners[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 
     /// The polygon of a corner.
     #[inline]
-    pub(super) fn polygon(&self, corner: u32) -> usize {
+    pub(crate) fn polygon(&self, corner: u32) -> usize {
         let polygon = match &self.polygons {
             Polygons::Triangles => corner / 3,
             Polygons::Quads => corner / 4,

@@ -6,17 +6,17 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::mesh::{Shape, index, mean};
-use super::mesh_found::{Found, FoundOfShape};
-use super::mesh_points::{Computed, points_and_corners};
-use super::triangulate::Triangulator;
-use super::{
-    Bounds, Crease, Mesh, MeshError, MeshSource, NONE, Smoothing, SourceCorner, Triangle, dvec3,
-    newell,
-};
 use crate::base::Shared;
 use crate::base::lists::concatenated;
 use crate::base::math;
+use crate::scene::mesh::cache::{Found, FoundOfShape};
+use crate::scene::mesh::points::{Computed, points_and_corners};
+use crate::scene::mesh::{Shape, index, mean};
+use crate::scene::triangulate::Triangulator;
+use crate::scene::{
+    Bounds, Crease, Mesh, MeshError, MeshSource, NONE, Smoothing, SourceCorner, Triangle, dvec3,
+    newell,
+};
 
 /// Polygons that a thread takes at a time.
 const SHARE: usize = 4096;
@@ -138,28 +138,28 @@ impl Mesh {
 
 /// The outlines of all polygons.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outlines<'a> {
-    pub(super) places: &'a [[f32; 3]],
+pub(crate) struct Outlines<'a> {
+    pub(crate) places: &'a [[f32; 3]],
     /// The vertices of all corners.
-    pub(super) corners: &'a [u32],
+    pub(crate) corners: &'a [u32],
     /// Where each polygon's corners begin, and where the last one's end.
-    pub(super) starts: &'a [u32],
+    pub(crate) starts: &'a [u32],
 }
 
 impl<'a> Outlines<'a> {
     /// The vertices of a polygon's corners.
-    pub(super) fn vertices(&self, polygon: usize) -> &'a [u32] {
+    pub(crate) fn vertices(&self, polygon: usize) -> &'a [u32] {
         &self.corners[self.starts[polygon] as usize..self.starts[polygon + 1] as usize]
     }
 
     /// Where a polygon's corners are.
-    pub(super) fn of(&self, polygon: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone + 'a {
+    pub(crate) fn of(&self, polygon: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone + 'a {
         let places = self.places;
         self.vertices(polygon).iter().map(|vertex| dvec3(places[*vertex as usize]))
     }
 
     /// The normal of a polygon by Newell's method, of length 1; `None` for one without area.
-    pub(super) fn normal(&self, polygon: usize) -> Option<DVec3> {
+    pub(crate) fn normal(&self, polygon: usize) -> Option<DVec3> {
         math::unit(newell(self.of(polygon)))
     }
 }
@@ -177,7 +177,7 @@ fn running_sum(counts: &[u32]) -> Vec<u32> {
 }
 
 /// The triangles of all polygons, in their order.
-pub(super) fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
+pub(crate) fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
     let count = outlines.starts.len() - 1;
     if outlines.corners.len() == 3 * count {
         let own = |polygon: usize| {

@@ -37,14 +37,12 @@ macro_rules! choice {
 mod geometry;
 mod light;
 mod picture;
-mod presets;
 mod sampling;
 mod sense;
 mod texture;
 
-pub use presets::{ACCURACY_PRESETS, Preset};
-
-use super::{Scene, Settings, View};
+use crate::accuracy::Settings;
+use crate::scene::{Scene, View};
 
 /// One way in which a picture can be more or less exact, or otherwise modelled.
 #[derive(Debug)]

@@ -1,11 +1,11 @@
 //! Named points in the space of accuracy, and what settings are called.
 
-use super::{AXES, Axis, AxisKind};
-use crate::scene::Settings;
+use crate::accuracy::Settings;
+use crate::accuracy::axes::{AXES, Axis, AxisKind};
 
 /// A named point in the space of accuracy.
 #[derive(Debug)]
-pub struct Preset {
+pub struct AccuracyPreset {
     /// Its word on the command line.
     pub word: &'static str,
     /// Its name on a button.
@@ -19,29 +19,29 @@ pub struct Preset {
 }
 
 /// Named points, from the fast to the exact; then two of history.
-pub const ACCURACY_PRESETS: &[Preset] = &[
-    Preset {
+pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
+    AccuracyPreset {
         word: "draft",
         label: "Draft",
         what: "Quick: light at vertices, the nearest texel.",
         points: &[("shading", "vertex"), ("filter", "nearest")],
         faults: &[],
     },
-    Preset {
+    AccuracyPreset {
         word: "default",
         label: "Default",
         what: "What the editor begins with: at most a quarter of a byte step of light is lost.",
         points: &[],
         faults: &[],
     },
-    Preset {
+    AccuracyPreset {
         word: "exact",
         label: "Exact",
         what: "At most one byte step from the reference on every pixel.",
         points: &[("arithmetic", "f64"), ("power", "library")],
         faults: &[],
     },
-    Preset {
+    AccuracyPreset {
         word: "ancestor-a",
         label: "Ancestor A (points)",
         what: "As ancestor A drew: points every 0.1 unit, lit at vertices, in 32 bits.",
@@ -65,7 +65,7 @@ pub const ACCURACY_PRESETS: &[Preset] = &[
             "every colour half a step too dark",
         ],
     },
-    Preset {
+    AccuracyPreset {
         word: "ancestor-b",
         label: "Ancestor B (scan lines)",
         what: "As ancestor B drew: rows of pixels, textures without perspective.",
@@ -89,7 +89,7 @@ pub const ACCURACY_PRESETS: &[Preset] = &[
     },
 ];
 
-impl Preset {
+impl AccuracyPreset {
     /// The preset of this word.
     #[must_use]
     pub fn named(word: &str) -> Option<&'static Self> {
@@ -106,7 +106,7 @@ impl Preset {
     }
 }
 
-impl Preset {
+impl AccuracyPreset {
     /// What it is for, and what is wrong with it.
     #[must_use]
     pub fn in_words(&self) -> String {

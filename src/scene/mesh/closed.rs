@@ -13,14 +13,14 @@
 
 use rayon::prelude::*;
 
-use super::mesh_build::Outlines;
+use crate::scene::mesh::build::Outlines;
 
 /// Polygons that a thread takes at a time.
 const SHARE: usize = 4096;
 
 /// Whether the polygons form closed surfaces, each with one side outside. Polygons that turn against
 /// their neighbours leave an edge that is passed twice in one direction: open.
-pub(super) fn is_closed(outlines: &Outlines<'_>) -> bool {
+pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
     let keys: Vec<u64> = outlines.places.par_iter().map(|place| key(*place)).collect();
     let polygons = (0..outlines.starts.len() - 1).into_par_iter().with_min_len(SHARE);
     let sum = polygons.map(|polygon| boundary(outlines.vertices(polygon), &keys));
@@ -61,7 +61,7 @@ const fn mixed(x: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Mesh, MeshSource, NONE, Part, SourceCorner};
+    use crate::scene::{Mesh, MeshSource, NONE, Part, SourceCorner};
 
     /// The faces of a cube from -1 to 1, seen from outside.
     const CUBE: [[u32; 4]; 6] =

@@ -8,12 +8,12 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::closed::is_closed;
-use super::mesh::{Shape, index};
-use super::mesh_build::{Outlines, triangles};
-use super::mesh_edges::{Edge, Edges};
-use super::mesh_points::shown_normal;
-use super::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
 use crate::base::once::get_or_compute;
+use crate::scene::mesh::build::{Outlines, triangles};
+use crate::scene::mesh::edges::{Edge, Edges};
+use crate::scene::mesh::points::shown_normal;
+use crate::scene::mesh::{Shape, index};
+use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
 
 /// A polygon that is lit as a whole. What is fetched together lies together, in one line of the cache.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,14 +46,14 @@ pub enum Derived {
 
 /// What was asked for.
 #[derive(Default)]
-pub(super) struct Found {
+pub(crate) struct Found {
     corners: OnceLock<Vec<Corner>>,
     order: OnceLock<DrawOrder>,
 }
 
 /// What was asked for, and does not depend on the normals of vertices.
 #[derive(Default)]
-pub(super) struct FoundOfShape {
+pub(crate) struct FoundOfShape {
     triangles: OnceLock<Vec<Triangle>>,
     normals: OnceLock<Vec<[f32; 3]>>,
     facets: OnceLock<Vec<Facet>>,
@@ -122,7 +122,7 @@ impl Mesh {
     }
 
     /// The corners of a triangle, as places in [`Self::corners`].
-    pub(super) fn triangle(&self, number: usize) -> [usize; 3] {
+    pub(crate) fn triangle(&self, number: usize) -> [usize; 3] {
         if self.has_triangles_only() {
             return [3 * number, 3 * number + 1, 3 * number + 2];
         }
@@ -194,14 +194,14 @@ impl Mesh {
     }
 
     /// The outlines of all polygons.
-    pub(super) fn outlines(&self) -> Outlines<'_> {
+    pub(crate) fn outlines(&self) -> Outlines<'_> {
         self.shape.outlines()
     }
 }
 
 impl Shape {
     /// The outlines of all polygons.
-    pub(super) fn outlines(&self) -> Outlines<'_> {
+    pub(crate) fn outlines(&self) -> Outlines<'_> {
         Outlines { places: &self.positions, corners: &self.corners, starts: &self.starts }
     }
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::mesh::{Mesh, index};
+use crate::scene::mesh::{Mesh, index};
 
 /// A side of one or more polygons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,13 +16,13 @@ pub struct Edge {
 
 /// The sides of a mesh's polygons, each once, sorted by their ends.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Edges {
+pub(crate) struct Edges {
     edges: Vec<Edge>,
     polygons: Vec<u32>,
 }
 
 impl Edges {
-    pub(super) fn of(mesh: &Mesh) -> Self {
+    pub(crate) fn of(mesh: &Mesh) -> Self {
         // Sides as (ends, polygon), sorted so that those with equal ends stand together.
         let outlines = mesh.outlines();
         let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(outlines.corners.len());
@@ -48,12 +48,12 @@ impl Edges {
         Self { edges, polygons }
     }
 
-    pub(super) fn edges(&self) -> &[Edge] {
+    pub(crate) fn edges(&self) -> &[Edge] {
         &self.edges
     }
 
     /// The polygons that have this edge as a side.
-    pub(super) fn polygons(&self, edge: &Edge) -> &[u32] {
+    pub(crate) fn polygons(&self, edge: &Edge) -> &[u32] {
         &self.polygons[edge.first as usize..(edge.first + edge.count) as usize]
     }
 }

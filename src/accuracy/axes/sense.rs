@@ -2,8 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::accuracy::{Samples, Settings};
 use crate::base::math::power_of_two_near;
-use crate::scene::{Object, ObjectId, Samples, Scene, Settings, Surface, View};
+use crate::scene::{Object, ObjectId, Scene, Surface, View};
 
 /// The objects that are shown.
 fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> {

@@ -16,12 +16,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::mesh::index;
-use super::mesh_around::Around;
-use super::mesh_build::Outlines;
-use super::mesh_points::{cancels, narrow, shown_normal};
-use super::{Crease, NONE, Point, dvec3};
 use crate::base::math;
+use crate::scene::mesh::around::Around;
+use crate::scene::mesh::build::Outlines;
+use crate::scene::mesh::index;
+use crate::scene::mesh::points::{cancels, narrow, shown_normal};
+use crate::scene::{Crease, NONE, Point, dvec3};
 
 /// How much sharper than the crease angle a smooth edge may be, in degrees. Files have numbers of
 /// some six digits, so a right angle in them is right only up to that.
@@ -35,7 +35,7 @@ const BLOCK: usize = 4096;
 
 /// Which faces around a vertex are smooth with each other.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Rule<'a> {
+pub(crate) enum Rule<'a> {
     /// Those that share an edge at the vertex that is not too sharp.
     Crease(Limit),
     /// Those of the same smoothing group; each polygon's, 0 for none.
@@ -44,7 +44,7 @@ pub(super) enum Rule<'a> {
 
 /// The crease angle c, as it is compared with.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Limit {
+pub(crate) struct Limit {
     /// cos^2(c / 2)
     cos2: f64,
     /// sin^2(c / 2)
@@ -54,7 +54,7 @@ pub(super) struct Limit {
 }
 
 impl Limit {
-    pub(super) fn new(crease: Crease) -> Self {
+    pub(crate) fn new(crease: Crease) -> Self {
         let half = |degrees: f64| degrees.min(180.0).to_radians() / 2.0;
         let (sin, cos) = libm::sincos(half(crease.get() + TOLERANCE));
         // Half of the tolerance is left for rounding.
@@ -75,7 +75,7 @@ impl Limit {
 
 /// The points of all corners, the first of them one a vertex; and the point of each corner, or
 /// nothing if each has its vertex's. `sums` are those of the unit normals around each vertex.
-pub(super) fn fan_points(
+pub(crate) fn fan_points(
     outlines: &Outlines<'_>,
     sums: &[DVec3],
     rule: Rule<'_>,

@@ -2,7 +2,7 @@
 
 use super::sense::{if_any, is_textured};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::scene::Filter;
+use crate::accuracy::Filter;
 
 pub(super) const FILTER: Axis = Axis {
     name: "texture filter",
