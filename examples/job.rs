@@ -17,6 +17,7 @@ use clap::Parser;
 use cpu_time::ProcessTime;
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{LightAt, Samples, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::{Shared, color::Color, math};
@@ -24,7 +25,8 @@ use marraztu::io::{self, LoadError, Progress, SaveError};
 use marraztu::lab::instructions;
 use marraztu::lab::statistics::median;
 use marraztu::lab::timing::time;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
     Aim, Attenuation, Camera, CameraId, Command, CommandError, Crease, Fill, Item, Lens, Light,
     LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
@@ -225,7 +227,7 @@ fn measure(
         let elapsed = time(|| {
             let camera = Item::Camera(CameraId(0), Box::new(camera(job, i, &scene)));
             changed = Command::Replace(camera).apply(&mut scene).map(drop);
-            renderer.render(&FramePlan::new(&scene, view, settings, job.size));
+            renderer.render(&plan_frame(&Shot::new(&scene, view, settings, job.size)));
         });
         changed.map(|()| elapsed.as_secs_f64() * 1e3)
     };

@@ -6,11 +6,13 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math::Axis;
 use marraztu::edit::{lights, motion};
 use marraztu::io;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{Projection, Scene};
 use tempfile::TempDir;
 
@@ -55,7 +57,7 @@ fn drawn(folder: &Path, arguments: &[&str]) -> Picture {
 
 fn in_the_house(settings: &Settings, size: Size) -> Picture {
     let (scene, view) = io::default_scene();
-    Renderer::default().render(&FramePlan::new(&scene, &view, settings, size)).clone()
+    Renderer::default().render(&plan_frame(&Shot::new(&scene, &view, settings, size))).clone()
 }
 
 #[test]
@@ -276,7 +278,7 @@ fn a_scene_is_drawn_as_it_was_saved_and_models_go_into_it() {
     view.projection = Projection::Orthographic;
     let settings = Settings { light: marraztu::accuracy::LightAt::Face, ..Settings::default() };
     io::save(&folder.path().join("s.marraztu"), &scene, &view, &settings).unwrap();
-    let plan = FramePlan::new(&scene, &view, &settings, Size::new(160, 120));
+    let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(160, 120)));
     let expected = Renderer::default().render(&plan).clone();
     assert!(drawn(folder.path(), &["s.marraztu"]) == expected);
     let with_more = drawn(folder.path(), &["s.marraztu", "square.obj", "--scale", "20"]);
@@ -302,7 +304,7 @@ fn the_named_lights_shine_and_no_others_whatever_the_scene_says() {
     for slot in [0, 1, 2, 4] {
         toggle(&mut scene, slot);
     }
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(160, 120));
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(160, 120)));
     let expected = Renderer::default().render(&plan).clone();
     assert!(drawn(folder.path(), &["s.marraztu", "--lights", "1, 3"]) == expected);
 }

@@ -9,13 +9,15 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DVec3};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{Arithmetic, LightAt, Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math;
 use marraztu::edit::{frame, items, selection};
 use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
     Camera, Command, Corner, ItemId, LoadOptions, MaterialChoice, Mesh, Model, Object, Pose, Scene,
     Tracked, View, dvec3, newell,
@@ -303,7 +305,7 @@ fn every_model_is_seen_and_drawn_alike_to_a_step_in_both_arithmetics() {
     let Some(sweep) = sweep() else { return };
     let side = 128;
     let draw = |scene: &Scene, view: &View, settings: Settings| {
-        let plan = FramePlan::new(scene, view, &settings, Size::new(side, side));
+        let plan = plan_frame(&Shot::new(scene, view, &settings, Size::new(side, side)));
         Renderer::default().render(&plan).clone()
     };
     for (row, loaded) in sweep {
@@ -336,7 +338,7 @@ fn pictures_of(file: &Path) -> Vec<Picture> {
         let loaded = load(file, &LoadOptions::default(), &Progress::new()).ok()?;
         let (scene, view) = staged(&Shared::new(loaded.model), DVec3::new(3.0, 2.0, 5.0));
         let settings = Settings { light, samples: Samples::Four, ..Settings::default() };
-        let plan = FramePlan::new(&scene, &view, &settings, Size::new(96, 80));
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(96, 80)));
         Some(Renderer::default().render(&plan).clone())
     };
     shadings.into_iter().filter_map(draw).collect()

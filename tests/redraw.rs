@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::{at, ball, cube, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
@@ -27,6 +28,7 @@ use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{
     Gesture, GesturePhase, History, Refusal, items, motion, navigation, selection,
 };
+use marraztu::render::plan_frame;
 use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer};
 use marraztu::scene::{
     Command, Fill, Frame, ItemId, LightKind, MaterialChoice, MeshSource, Model, Normals, Object,
@@ -110,7 +112,7 @@ impl Desk {
     }
 
     fn plan(&self) -> FramePlan {
-        FramePlan::new(&self.scene, &self.view, &self.settings, self.size)
+        plan_frame(&Shot::new(&self.scene, &self.view, &self.settings, self.size))
     }
 
     /// Changes anything: mostly the scene, now and then how it is looked at.
@@ -395,8 +397,9 @@ fn marks_in_one_place_are_drawn_again_when_their_order_changes() {
         let material = MaterialChoice::Preset(PresetId::named(name).unwrap());
         items::insert_camera(&scene, cube(), material).apply(&mut scene).unwrap();
     }
-    let plan =
-        |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), Size::new(200, 200));
+    let plan = |scene: &Scene| {
+        plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(200, 200)))
+    };
     let mut renderer = Renderer::default();
     let before = renderer.render(&plan(&scene)).clone();
     let last = scene.cameras.ids().last().unwrap();
@@ -409,8 +412,9 @@ fn marks_in_one_place_are_drawn_again_when_their_order_changes() {
 fn drawn_normals_are_those_that_the_object_has_by_now() {
     let (mut scene, view) = scene(&[(plates(), at(60.0, 0.0, 0.0, 0.0))]);
     let view = View { vertex_normals: true, ..view };
-    let plan =
-        |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), Size::new(200, 200));
+    let plan = |scene: &Scene| {
+        plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(200, 200)))
+    };
     let mut renderer = Renderer::default();
     renderer.render(&plan(&scene));
     edit(&mut scene, ObjectId(10), |object| object.file_normals ^= true);
@@ -420,8 +424,9 @@ fn drawn_normals_are_those_that_the_object_has_by_now() {
 #[test]
 fn what_reaches_behind_the_camera_is_drawn_again_wherever_it_is_seen() {
     let (mut scene, view) = scene(&[(plates(), DMat4::IDENTITY)]);
-    let plan =
-        |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), Size::new(500, 500));
+    let plan = |scene: &Scene| {
+        plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(500, 500)))
+    };
     let mut renderer = Renderer::default();
     renderer.render(&plan(&scene));
     // A floor under the camera, from behind it to far before it.
@@ -441,7 +446,7 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
         scene(&[(square(), at(20.0, -125.0, 125.0, 0.0)), (square(), at(20.0, 125.0, 125.0, 0.0))]);
     let view = View { marks: false, ..view };
     let size = Size::new(640, 640);
-    let plan = |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), size);
+    let plan = |scene: &Scene| plan_frame(&Shot::new(scene, &view, &Settings::default(), size));
     // The spots of the selected object and camera follow it, and the diamond is a mark.
     for (id, light) in
         scene.lights.iter().map(|(id, light)| (id, light.clone())).collect::<Vec<_>>()
@@ -466,8 +471,9 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
 #[test]
 fn what_shows_nowhere_paints_no_tile() {
     let (mut scene, view) = scene(&[(square(), at(20.0, 0.0, 0.0, 0.0))]);
-    let plan =
-        |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), Size::new(100, 100));
+    let plan = |scene: &Scene| {
+        plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(100, 100)))
+    };
     let mut renderer = Renderer::default();
     renderer.render(&plan(&scene));
     edit(&mut scene, ObjectId(10), |object| object.name = "another name".to_owned());
@@ -486,7 +492,7 @@ fn edges_that_stand_over_the_border_of_a_tile_are_drawn_again_on_both_sides() {
             let projection = Projection::Orthographic;
             let view = View { projection, wide_lines, edges_over_fill: true, ..view };
             let plan = |scene: &Scene| {
-                FramePlan::new(scene, &view, &Settings::default(), Size::new(128, 128))
+                plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(128, 128)))
             };
             let mut renderer = Renderer::default();
             renderer.render(&plan(&scene));

@@ -6,13 +6,15 @@ mod common;
 
 use common::{at, ball, covered, draw, edit, scene, square};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{
     ACCURACY_PRESETS, AXES, Arithmetic, Axis, Coverage, DepthFormat, Filter, Interpolation,
     NormalMatrix, Rounding, Settings, SpecularPower, Subpixels, VertexArithmetic,
 };
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::lesson_scene;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, View};
 
 const FIRST: ObjectId = ObjectId(10);
@@ -31,7 +33,7 @@ fn unmarked(view: View) -> View {
 /// What each pixel of a picture shows.
 fn primitives(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Vec<u32> {
     let mut renderer = Renderer::default();
-    renderer.render(&FramePlan::new(scene, view, settings, Size::new(side, side)));
+    renderer.render(&plan_frame(&Shot::new(scene, view, settings, Size::new(side, side))));
     renderer.primitives()
 }
 

@@ -5,9 +5,11 @@ use std::time::Duration;
 use criterion::Bencher;
 use glam::DVec3;
 use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::io;
+use marraztu::render::plan_frame;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     CameraId, Command, Item, ItemId, MaterialChoice, Model, Object, ObjectId, Pose, PresetId,
@@ -50,7 +52,7 @@ impl Stage {
         camera.pose = Tracked::new(Pose::facing_minus_z(eye));
         let camera = Item::Camera(id, Box::new(camera));
         Command::Replace(camera).apply(&mut scene).expect("it is there");
-        FramePlan::new(&scene, &self.view, &self.settings, self.size)
+        plan_frame(&Shot::new(&scene, &self.view, &self.settings, self.size))
     }
 
     /// Draws frames, and adds up what `time` says of each.

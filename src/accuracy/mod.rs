@@ -3,6 +3,7 @@
 mod axes;
 mod presets;
 mod settings;
+mod shot;
 
 pub use axes::{AXES, Axis, AxisKind, Choice, Lesson};
 pub use presets::{ACCURACY_PRESETS, AccuracyPreset};
@@ -11,3 +12,4 @@ pub use settings::{
     Normalising, Rounding, Samples, Settings, SpecularForm, SpecularPower, Subpixels,
     VertexArithmetic,
 };
+pub use shot::Shot;

@@ -93,7 +93,7 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
     let stage = staged(files, reading, surfaces, seeing, accuracy)?;
     let settings = stage.settings;
-    let mut studio = Studio::new(stage.scene, stage.view, *size);
+    let mut studio = Studio::new(stage.shot(*size));
     if let Some(Pixel(at)) = arguments.pixel {
         return explain_pixel(&mut studio, &settings, at);
     }
@@ -152,7 +152,7 @@ fn command() -> String {
 
 fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Result<(), Failure> {
     let Some(attribution) = attribute(studio, settings, at) else {
-        let Size { width, height } = studio.size();
+        let Size { width, height } = studio.shot().size;
         let [x, y] = at;
         let outside = format!("the picture has {width} x {height} pixels: there is no {x},{y}");
         return Err(Failure::Absent(outside));

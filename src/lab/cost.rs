@@ -10,10 +10,11 @@ use std::time::{Duration, Instant};
 
 use super::statistics::Quartiles;
 use super::timing::time;
-use crate::accuracy::Settings;
+use crate::accuracy::Shot;
 use crate::base::image::Size;
+use crate::render::explain_frame;
+use crate::render::plan_frame;
 use crate::render::{Effect, EffectUse, FramePlan, Renderer};
-use crate::scene::{Scene, View};
 
 /// Pairs that are measured of each effect at the least, where there is time.
 const PAIRS: usize = 7;
@@ -118,34 +119,27 @@ impl Costs {
     }
 }
 
-/// What a picture is made of.
-pub type Of<'a> = (&'a Scene, &'a View, &'a Settings, Size);
-
 /// Plans and draws a picture, and counts the pixels of each of its effects.
 #[must_use]
-pub fn explain((scene, view, settings, size): Of<'_>) -> Explained {
+pub fn explain(shot: &Shot) -> Explained {
     let mut renderer = Renderer::default();
-    renderer.render(&FramePlan::new(scene, view, settings, size));
-    explain_with(&mut renderer, (scene, view, settings, size))
+    renderer.render(&plan_frame(shot));
+    explain_with(&mut renderer, shot)
 }
 
 /// The same of the picture that `renderer` drew last.
 #[must_use]
-pub fn explain_with(renderer: &mut Renderer, (scene, view, settings, size): Of<'_>) -> Explained {
-    let (_, mut uses) = FramePlan::explained(scene, view, settings, size);
+pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
+    let (_, mut uses) = explain_frame(shot);
     let off_by = renderer.count(&mut uses);
-    Explained { uses, off_by, size }
+    Explained { uses, off_by, size: shot.size }
 }
 
 /// Measures what the effects of a picture cost, within some `budget` of time. Stops where `stopped` says
 /// so, and gives what was measured till then.
 #[must_use]
-pub fn measure(
-    (scene, view, settings, size): Of<'_>,
-    budget: Duration,
-    stopped: impl Fn() -> bool,
-) -> Costs {
-    let (plan, uses) = FramePlan::explained(scene, view, settings, size);
+pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Costs {
+    let (plan, uses) = explain_frame(shot);
     let mut effects: Vec<Effect> =
         uses.iter().filter(|one| one.state.is_on()).map(|one| one.effect).collect();
     effects.dedup();

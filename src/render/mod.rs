@@ -1,7 +1,7 @@
 //! From a scene to a picture.
 //!
 //! ```text
-//! Scene, View, Settings, Size  ->  FramePlan  ->  Renderer  ->  Picture
+//! Shot  ->  FramePlan  ->  Renderer  ->  Picture
 //! ```
 //!
 //! The rooms are floors: each uses itself and those before it in this list.
@@ -35,7 +35,7 @@ mod unseen;
 
 pub use damage::{Cause, Change, Changes};
 pub use frame::FramePlan;
-pub use plan::{Class, Effect, EffectUse, State};
+pub use plan::{Class, Effect, EffectUse, State, explain_frame, plan_everything, plan_frame};
 pub use renderer::{GivenUp, Hit, Renderer};
 pub use timings::Stages;
 pub use unseen::{Unseen, unseen};

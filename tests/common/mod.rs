@@ -5,9 +5,11 @@
 
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
     Camera, CameraId, Command, Item, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
     MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
@@ -128,7 +130,7 @@ pub(crate) fn edit(scene: &mut Scene, id: ObjectId, change: impl FnOnce(&mut Obj
 
 /// Draws a scene.
 pub(crate) fn draw(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Picture {
-    let plan = FramePlan::new(scene, view, settings, Size::new(side, side));
+    let plan = plan_frame(&Shot::new(scene, view, settings, Size::new(side, side)));
     Renderer::default().render(&plan).clone()
 }
 

@@ -2,13 +2,15 @@
 
 use crate::claims::exact::span;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{Filter, Settings};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, Flat};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
-use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Fill, List, MeshSource, Object, ObjectId, Part, Pose, Sides, SourceCorner, Surface, Tracked,
     View,
@@ -66,7 +68,7 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
         let placed = corners.map(|corner| front.transform_point3(DVec3::from_array(corner)));
         for light in [marraztu::accuracy::LightAt::Pixel, marraztu::accuracy::LightAt::Vertex] {
             let settings = Settings { light, ..Settings::default() };
-            let plan = FramePlan::new(&scene, &view, &settings, Size::new(SIDE, SIDE));
+            let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(SIDE, SIDE)));
             let mut renderer = Renderer::default();
             let picture = renderer.render(&plan).clone();
             wrong += wrong_pixels(placed, &picture, &covered(&picture, &scene));
@@ -170,7 +172,8 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
             let (mut scene, view) = scene(&[(both, DMat4::IDENTITY)]);
             edit(&mut scene, ObjectId(10), |object| object.sides = Sides::Two);
             let view = View { marks: false, ..view };
-            let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(32, 32));
+            let plan =
+                plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(32, 32)));
             let mut renderer = Renderer::default();
             renderer.render(&plan);
             let mut face = |x: usize, y: usize| renderer.hit(x, y).map(|hit| hit.polygon);
@@ -219,7 +222,8 @@ fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
             let (mut scene, view) = scene(&[(model("face", &positions, &[face]), DMat4::IDENTITY)]);
             edit(&mut scene, ObjectId(10), |object| object.sides = Sides::Two);
             let view = View { marks: false, ..view };
-            let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(64, 64));
+            let plan =
+                plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(64, 64)));
             let mut renderer = Renderer::default();
             renderer.render(&plan);
             let seen = |i: usize| renderer.hit(i % 64, i / 64).is_some();
@@ -471,7 +475,8 @@ fn case_18_what_is_behind_the_observer_is_not_there() {
         let mut corner = || DVec3::new(0.0, 0.0, 600.0) + rng.vector(190.0);
         let corners = [corner(), corner(), corner()];
         let (scene, view) = alone(corners);
-        let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
+        let plan =
+            plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE)));
         let mut renderer = Renderer::default();
         let picture = renderer.render(&plan);
         drawn += covered(picture, &scene).iter().filter(|seen| **seen).count();

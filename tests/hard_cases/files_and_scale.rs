@@ -1,10 +1,12 @@
 //! Odd numbers and faces in files, scenes of other sizes, nothing and very much.
 
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::{FindingKind, LoadError, Loaded, Progress, parse};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
     Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource, ObjectId, Orbit,
     Pose, Projection, Scene, Tracked, View, newell,
@@ -237,7 +239,7 @@ fn case_67_nothing_and_very_much_are_drawn() {
     edit(&mut scene, ObjectId(10), |object| object.visible = false);
     // Pictures of one pixel, one row and one column of what a tile is not.
     for size in [Size::new(1, 1), Size::new(1, 130), Size::new(130, 1), Size::new(65, 63)] {
-        let plan = FramePlan::new(&scene, &view, &Settings::default(), size);
+        let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), size));
         assert_eq!(Renderer::default().render(&plan).size(), size);
     }
     // The sizes up to a picture of 2048 pixels a side and 50,000 faces; the rest by `cargo test --test proofs -- sizes --whole`.

@@ -1,13 +1,15 @@
 //! Light, against the page's equation along rays.
 
 use glam::{DMat4, DQuat, DVec3};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{Arithmetic, LightAt, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::edit::{GesturePhase, placement};
 use marraztu::lab::instructions::levels;
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::render::simd::{Power, Real as _};
-use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
     Aim, Command, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
     ObjectId, Orbit, Part, Scene, SourceCorner, SpotOwner, Tracked, View,
@@ -365,7 +367,7 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
             let (scene, view) = lit_square(&[Lamp::Ambient, lamp]);
             for light in [LightAt::Pixel, LightAt::Vertex, LightAt::Face] {
                 let settings = Settings { light, ..Settings::default() };
-                let plan = FramePlan::new(&scene, &view, &settings, Size::new(65, 65));
+                let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(65, 65)));
                 let pictures: Vec<Picture> = levels()
                     .into_iter()
                     .map(|level| Renderer::new(level).render(&plan).clone())

@@ -6,12 +6,14 @@
 //! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is promised;
 //! a reference that is not where the presets lead.
 
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{AccuracyPreset, Filter, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io;
 use marraztu::lab::error::Error;
 use marraztu::lab::picture_source::{PictureSource as _, Studio};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{Command, Item, MaterialChoice, Scene, View};
 
 use crate::random_scenes::random_scene;
@@ -33,10 +35,10 @@ fn reference() -> Settings {
 
 fn studios() -> Vec<(String, Studio)> {
     let (scene, view) = io::default_scene();
-    let first = Studio::new(scene, view, SIZE);
+    let first = Studio::new(Shot::new(&scene, &view, &Settings::default(), SIZE));
     let by_chance = SEEDS.map(|seed| {
         let it = random_scene(seed);
-        (format!("scene {seed}"), Studio::new(it.scene, it.view, SIZE))
+        (format!("scene {seed}"), Studio::new(Shot::new(&it.scene, &it.view, &it.settings, SIZE)))
     });
     std::iter::once(("the first scene".to_owned(), first)).chain(by_chance).collect()
 }
@@ -48,7 +50,7 @@ fn apart(ours: &Settings, exact: &Settings) -> (Vec<(String, Error)>, f64) {
     for (name, mut studio) in studios() {
         let exact = studio.rendering(exact);
         let error = studio.rendering(ours).error(&exact);
-        let alike = 3.0 * (studio.size().area() - error.coverage) as f64;
+        let alike = 3.0 * (studio.shot().size.area() - error.coverage) as f64;
         differing += error.differing * alike;
         bytes += alike;
         errors.push((name, error));
@@ -91,7 +93,7 @@ fn before_rounding(scene: &Scene, view: &View, settings: &Settings) -> Vec<f64> 
             object.material = MaterialChoice::Own(material);
             Command::Replace(Item::Object(id, Box::new(object))).apply(&mut scene).unwrap();
         }
-        let plan = FramePlan::new(&scene, view, settings, Size::new(96, 96));
+        let plan = plan_frame(&Shot::new(&scene, view, settings, Size::new(96, 96)));
         renderer.render(&plan).clone()
     };
     let first = picture(0);

@@ -8,11 +8,13 @@ pub(crate) mod shapes;
 
 use glam::{DMat3, DMat4, DVec3};
 
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm};
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
 use marraztu::base::{color::Color, math};
 use marraztu::render::FramePlan;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
     Aim, Attenuation, Camera, CameraId, Fill, Lens, Light, LightId, LightKind, List,
     MaterialChoice, Normals, Object, ObjectId, Observer, Orbit, PolygonMode, Pose, PresetId,
@@ -34,7 +36,7 @@ pub(crate) struct RandomScene {
 impl RandomScene {
     /// The plan of its picture.
     pub(crate) fn plan(&self) -> FramePlan {
-        FramePlan::new(&self.scene, &self.view, &self.settings, self.size)
+        plan_frame(&Shot::new(&self.scene, &self.view, &self.settings, self.size))
     }
 }
 

@@ -8,6 +8,7 @@ use std::time::Duration;
 use egui::PointerButton;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{By, Queryable as _};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Request;
@@ -15,7 +16,8 @@ use marraztu::app::state::laboratory::Compare;
 use marraztu::app::state::laboratory::Laboratory;
 use marraztu::base::image::Picture;
 use marraztu::lab::report::tabs;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 
 use crate::editor::Editor;
 use crate::panels::{click, control};
@@ -224,7 +226,7 @@ fn the_bright_spot_of_the_first_lesson_lies_on_the_compare_line() {
     let size = editor.state().statistics.size;
     let drawn = |light| {
         let settings = Settings { light, ..Settings::default() };
-        let plan = FramePlan::new(&scene, &view, &settings, size);
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, size));
         Renderer::default().render(&plan).clone()
     };
     let (vertex, pixel) = (drawn(LightAt::Vertex), drawn(LightAt::Pixel));

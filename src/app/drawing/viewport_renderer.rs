@@ -11,8 +11,10 @@ use egui::ColorImage;
 use super::adaptive_quality::{AdaptiveQuality, Applicable, Attempt, Reduction};
 use super::border::Border;
 use super::snapshot::Snapshot;
+use crate::accuracy::Shot;
 use crate::base::image::{Picture, Size};
 use crate::lab::cost::{self, Explained};
+use crate::render::plan_frame;
 use crate::render::{Changes, FramePlan, GivenUp, Hit, Renderer};
 use crate::scene::{ItemId, Surface};
 
@@ -129,8 +131,8 @@ impl ViewportRenderer {
             return None;
         }
         let (settings, size) = self.shown?.applied(wanted.settings, wanted.size);
-        let of = (&wanted.scene, &wanted.view, &settings, size);
-        let explained = cost::explain_with(&mut self.renderer, of);
+        let of = Shot::new(&wanted.scene, &wanted.view, &settings, size);
+        let explained = cost::explain_with(&mut self.renderer, &of);
         if self.explained.as_deref() == Some(&explained) {
             return None;
         }
@@ -147,7 +149,7 @@ impl ViewportRenderer {
 
 fn planned(wanted: &Snapshot, reduction: Reduction) -> FramePlan {
     let (settings, size) = reduction.applied(wanted.settings, wanted.size);
-    FramePlan::new(&wanted.scene, &wanted.view, &settings, size)
+    plan_frame(&Shot::new(&wanted.scene, &wanted.view, &settings, size))
 }
 
 /// Which part of the picture is drawn again, from 0 to 1.

@@ -9,6 +9,7 @@ use egui::Context;
 
 use super::App;
 use super::unseen::out_of_sight;
+use crate::accuracy::Shot;
 use crate::app::documents::dialogs::{After, Answer, Wanted};
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
@@ -22,7 +23,8 @@ use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::edit::{Gesture, items};
 use crate::io::{self, Finding, LoadError, Loaded};
-use crate::render::{FramePlan, Renderer};
+use crate::render::Renderer;
+use crate::render::plan_frame;
 use crate::scene::{MaterialChoice, Object, ObjectId, Texture};
 
 /// How many files are read at the same time, however many are named.
@@ -302,7 +304,7 @@ impl App {
         if statistics.reduction == Reduction::NONE {
             return self.viewport.image().and_then(|image| viewport_renderer::picture(image));
         }
-        let plan = FramePlan::new(scene, view, settings, self.viewport.size()?);
+        let plan = plan_frame(&Shot::new(scene, view, settings, self.viewport.size()?));
         Some(Renderer::default().render(&plan).clone())
     }
 

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use egui::Context;
 
 use super::App;
+use crate::accuracy::Shot;
 use crate::accuracy::{AXES, Axis, Settings};
 use crate::app::actions::LabRequest;
 use crate::app::state::State;
@@ -137,12 +138,13 @@ impl App {
     fn sweep(&mut self, ctx: &Context, thoroughness: Thoroughness) {
         let Some(size) = self.viewport.size().filter(|_| self.lab.sweep.is_none()) else { return };
         let State { scene, view, settings, .. } = &self.state;
-        let (scene, view) = (scene.clone(), view.clone());
+        let shot = Shot::new(scene, view, settings, size);
+        let measured = Some((scene.clone(), view.clone(), size));
         let question = Question { current: *settings, axes: all_axes(), thoroughness };
         // One that was given up may still tell something: it has a cell of its own.
         self.lab.so_far = Arc::default();
         let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
-        let mut studio = Studio::new(scene.clone(), view.clone(), size);
+        let mut studio = Studio::new(shot);
         let work = move |progress: &io::Progress| {
             let watch = watch.with(progress);
             let mut tell = |findings: &Findings| {
@@ -156,7 +158,7 @@ impl App {
                 let command = command(&self.state, size, &thoroughness);
                 let lab = &mut self.state.lab;
                 (lab.running, lab.failed, lab.report) = (Some(0.0), None, None);
-                lab.measured = Some((scene, view, size));
+                lab.measured = measured;
                 self.lab.command = command;
             }
             Err(error) => self.refuse(format!("no thread to measure with: {error}")),
@@ -176,7 +178,8 @@ impl App {
         self.state.lab.picking = false;
         let Some(size) = self.viewport.size() else { return };
         let State { scene, view, settings, .. } = &self.state;
-        let (mut studio, settings) = (Studio::new(scene.clone(), view.clone(), size), *settings);
+        let (mut studio, settings) =
+            (Studio::new(Shot::new(scene, view, settings, size)), *settings);
         let work = move |_: &io::Progress| {
             let blame = attribute(&mut studio, &settings, at)?;
             studio.draw(&settings);

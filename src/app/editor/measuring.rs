@@ -6,6 +6,7 @@ use std::time::Duration;
 use egui::Context;
 
 use super::App;
+use crate::accuracy::Shot;
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::state::Measured;
 use crate::app::tasks::{Outcome, Task};
@@ -40,8 +41,8 @@ impl App {
         let of = Snapshot { scene, view, settings, size, moving: false, explain: true };
         let theirs = of.clone();
         let task = Task::start(ctx, "measure effects".to_owned(), move |progress| {
-            let of = (&theirs.scene, &theirs.view, &theirs.settings, theirs.size);
-            cost::measure(of, BUDGET, || progress.is_cancelled())
+            let of = Shot::new(&theirs.scene, &theirs.view, &theirs.settings, theirs.size);
+            cost::measure(&of, BUDGET, || progress.is_cancelled())
         });
         match task {
             Ok(task) => {

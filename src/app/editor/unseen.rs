@@ -5,10 +5,12 @@
 use egui::Context;
 
 use super::App;
+use crate::accuracy::Shot;
 use crate::app::state::{Notice, Offer, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::base::image::Size;
-use crate::render::{FramePlan, Renderer, Unseen, unseen};
+use crate::render::plan_frame;
+use crate::render::{Renderer, Unseen, unseen};
 use crate::scene::{Object, ObjectId, Projection};
 
 /// A search for the reasons why nothing of some objects is seen.
@@ -24,10 +26,11 @@ impl App {
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
         let size = self.viewport.size().unwrap_or(SIZE);
         let search = Task::start(ctx, "looking for objects".to_owned(), move |_| {
-            let plan = FramePlan::new(&scene, &view, &settings, size);
+            let shot = Shot::new(&scene, &view, &settings, size);
+            let plan = plan_frame(&shot);
             let mut renderer = Renderer::default();
             renderer.render(&plan);
-            let mut all = unseen(&mut renderer, &scene, &view, &settings, size);
+            let mut all = unseen(&mut renderer, &shot);
             all.retain(|(id, _)| ids.contains(id));
             all
         });

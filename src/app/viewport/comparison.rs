@@ -9,6 +9,7 @@ use egui::{Align2, ColorImage, Context, CursorIcon, Id, Pos2, Rect, Sense, Strok
 use egui::{TextureOptions, Ui, pos2, vec2};
 
 use crate::accuracy::Settings;
+use crate::accuracy::Shot;
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
@@ -39,7 +40,7 @@ pub(crate) struct Pair {
 
 /// Draws both.
 pub(crate) fn draw(of: Compared) -> Pair {
-    let mut studio = Studio::new(of.scene.clone(), of.view.clone(), of.size);
+    let mut studio = Studio::new(Shot::new(&of.scene, &of.view, &of.settings, of.size));
     let exact = studio.rendering(&of.settings.reference());
     let ours = studio.rendering(&of.settings);
     let error = ours.error(&exact);

@@ -13,11 +13,13 @@ use fearless_simd::Level;
 use glam::DVec3;
 
 use crate::accuracy::Settings;
+use crate::accuracy::Shot;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::base::math;
 use crate::io::cam_model;
-use crate::render::{FramePlan, Renderer};
+use crate::render::Renderer;
+use crate::render::plan_frame;
 use crate::scene::{
     Camera, Command, Item, Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice,
     Mesh, MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Projection, Scene,
@@ -147,7 +149,7 @@ fn image(
     let mut view = scene.first_view();
     view.projection = Projection::Orthographic;
     let size = Size::new(side * FINER, side * FINER);
-    let plan = FramePlan::new(scene, &view, &Settings::default(), size);
+    let plan = plan_frame(&Shot::new(scene, &view, &Settings::default(), size));
     disk(renderer.render(&plan), side)
 }
 

@@ -7,11 +7,13 @@
 use glam::{DMat4, DVec3};
 
 use crate::accuracy::Settings;
+use crate::accuracy::Shot;
 use crate::base::Shared;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
+use crate::render::Renderer;
+use crate::render::plan_frame;
 use crate::render::screen::coverage::{SUBPIXELS, Snapped};
-use crate::render::{FramePlan, Renderer};
 use crate::scene::{
     Camera, CameraId, Lens, List, LoadOptions, MaterialChoice, Mesh, MeshSource, Model, NONE,
     Object, ObjectId, Part, Pose, PresetId, Projection, Scene, Sides, SourceCorner, Surface,
@@ -94,7 +96,7 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
 /// Draws a scene of [`scene`].
 #[must_use]
 pub fn draw((scene, view): &(Scene, View), side: usize, renderer: &mut Renderer) -> Picture {
-    let plan = FramePlan::new(scene, view, &Settings::default(), Size::new(side, side));
+    let plan = plan_frame(&Shot::new(scene, view, &Settings::default(), Size::new(side, side)));
     renderer.render(&plan).clone()
 }
 

@@ -54,7 +54,7 @@ impl Planner<'_> {
                 Pipeline::Shaded(shaded) => Some(shaded),
                 Pipeline::Flat(_) => None,
             });
-            Facts { settings: self.settings, object, draw, shaded: shaded.collect() }
+            Facts { settings: &self.shot.settings, object, draw, shaded: shaded.collect() }
         };
         let note = |effect: Effect, state: State| EffectUse {
             effect,

@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
+use crate::accuracy::Shot;
 use crate::base::image::Size;
 use crate::base::math;
 use crate::render::lights::region::Region;
 use crate::render::screen::clip::Screen;
-use crate::scene::{Lens, Projection, Scene, View};
+use crate::scene::{Lens, Projection};
 
 /// How far is seen in the unit of view space: at least so far, and less than twice as far.
 const FAR: f64 = 1024.0;
@@ -38,7 +39,9 @@ pub(crate) struct ObserverSpace {
 }
 
 impl ObserverSpace {
-    pub(super) fn new(scene: &Scene, view: &View, size: Size) -> Self {
+    pub(super) fn new(shot: &Shot) -> Self {
+        let Shot { scene, view, size, .. } = shot;
+        let size = *size;
         let world_from_view = scene.observer_frame(view);
         // The axes are orthonormal, so the inverse turn is the transposed one.
         let turn = DMat3::from_mat4(world_from_view).transpose();

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use super::observer::ObserverSpace;
 use super::uses::Notes;
-use crate::accuracy::Settings;
+use crate::accuracy::Shot;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Pipeline;
 use crate::render::lights::LightRow;
-use crate::scene::{LightId, Scene, View};
+use crate::scene::LightId;
 
 /// A plan while it is made.
 #[derive(Debug)]
@@ -40,9 +40,7 @@ impl Planning {
 
 /// What planning reads.
 pub(super) struct Planner<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) view: &'a View,
-    pub(super) settings: &'a Settings,
+    pub(super) shot: &'a Shot,
     pub(super) observer: ObserverSpace,
     pub(super) shining: Vec<Shining>,
 }

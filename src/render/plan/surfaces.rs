@@ -94,7 +94,7 @@ impl Planner<'_> {
     fn lit(&self, into: &mut Planning, ground: &Ground<'_>, look: &PartLook<'_>) -> Shaded {
         let matter = coefficients(look);
         let floor = self.floor(into, ground.region.as_ref(), &matter);
-        let mut matter = matter.with_floor(floor, self.settings.power);
+        let mut matter = matter.with_floor(floor, self.shot.settings.power);
         let mut shaded = Shaded {
             matter,
             light: None,
@@ -111,7 +111,7 @@ impl Planner<'_> {
             return shaded;
         }
         let mut stages = self.stages(into, ground, &matter);
-        if self.settings.leave_out == LeaveOut::HalfStep {
+        if self.shot.settings.leave_out == LeaveOut::HalfStep {
             shaded.dropped = self.thin(into, ground, &matter, &mut stages);
             (matter, shaded.cut_off) = self.cut(into, ground, matter, &mut stages);
         }
@@ -119,7 +119,7 @@ impl Planner<'_> {
         shaded.places = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
         // Tile by tile where some light shines on a part of space only, or is too faint in some.
         shaded.tiled = ground.tiled
-            && (self.settings.leave_out == LeaveOut::HalfStep
+            && (self.shot.settings.leave_out == LeaveOut::HalfStep
                 || stages.iter().any(|stage| stage.effect.has_reach));
         shaded.light = Some(stages);
         shaded
@@ -144,12 +144,12 @@ impl Planner<'_> {
             let lamp = &into.plan.lamps[shining.lamp as usize];
             (shining.effect.max_falloff)(lamp, region)
         };
-        let arriving = match self.settings.light {
+        let arriving = match self.shot.settings.light {
             LightAt::Face | LightAt::Vertex => 1.0,
             LightAt::Pixel | LightAt::Sample => lit().map(arriving).fold(1.0, f64::max),
         };
         let deeper = |floor: f64| (floor - libm::log2(strongest * arriving)).max(LOWEST);
-        if self.settings.arithmetic == Arithmetic::F64 {
+        if self.shot.settings.arithmetic == Arithmetic::F64 {
             return deeper(-24.0);
         }
         let count = lit().count().max(1);
@@ -188,7 +188,7 @@ impl Planner<'_> {
             if effect.reads_positions {
                 no_highlight = no_highlight.and(plain);
             }
-            let highlight = match self.settings.specular {
+            let highlight = match self.shot.settings.specular {
                 _ if plain.is_some() => Form::Plain,
                 SpecularForm::Reflection => Form::Reflection,
                 SpecularForm::HalfVector => Form::HalfVector,
@@ -200,7 +200,7 @@ impl Planner<'_> {
     }
 
     fn note_highlights(&self, ground: &Ground<'_>, left_out: Option<State>) -> EffectUse {
-        let form = match self.settings.specular {
+        let form = match self.shot.settings.specular {
             SpecularForm::Reflection => "(R.V)^Ns",
             SpecularForm::HalfVector => "(N.H)^Ns",
         };
@@ -256,7 +256,7 @@ impl Planner<'_> {
         }
         let cut_off = bounded::cut_off(stages, lit, region, power.min(1.0));
         if power < 1.0 {
-            return (matter.with_floor(floor, self.settings.power), cut_off);
+            return (matter.with_floor(floor, self.shot.settings.power), cut_off);
         }
         for stage in stages {
             stage.highlight = Form::Plain;

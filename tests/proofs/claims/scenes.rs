@@ -6,10 +6,12 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::hostile::Hostile;
 use super::{Proof, Tally};
+use marraztu::accuracy::Shot;
 use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
     Aim, Command, Item, Light, LightKind, MaterialChoice, Orbit, Scene, SpotOwner, Tracked, View,
 };
@@ -37,7 +39,7 @@ fn check(batch: u64) -> Result<Tally, String> {
         let (scene, view) = hostile.scene(&mut tally);
         let settings = hostile.settings();
         let size = Size::new(1 + hostile.rng.index(40), 1 + hostile.rng.index(40));
-        let plan = FramePlan::new(&scene, &view, &settings, size);
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, size));
         let first = plain.render(&plan).clone();
         let fail = |what: String| Err(format!("scene {i}: {what}"));
         if let Some(at) = difference(&first, best.render(&plan)) {
@@ -53,8 +55,9 @@ fn check(batch: u64) -> Result<Tally, String> {
         }
         if settings.arithmetic == Arithmetic::F32 {
             let settings = Settings { arithmetic: Arithmetic::F64, ..settings };
-            let mut in_f64 =
-                |scene: &Scene| best.render(&FramePlan::new(scene, &view, &settings, size)).clone();
+            let mut in_f64 = |scene: &Scene| {
+                best.render(&plan_frame(&Shot::new(scene, &view, &settings, size))).clone()
+            };
             let exact = in_f64(&scene);
             let differ = first.pixels().iter().zip(exact.pixels());
             tally.count("pixels", size.area() as u64);
