@@ -1,4 +1,4 @@
-//! How an action is pressed on the keyboard.
+//! Key chords: how an action is pressed on the keyboard.
 //!
 //! Letters and digits go by the key, with Shift for the upper case, so that Caps Lock has no say.
 //! Signs go by the text typed, since every layout has them elsewhere.
@@ -16,7 +16,7 @@ pub enum Chord {
     Either(Key),
     /// A key that types nothing.
     Named(Key),
-    /// A sign, by what is typed.
+    /// A sign, by the text typed.
     Text(&'static str),
     /// With Ctrl (Cmd on a Mac).
     Command(Key),

@@ -1,4 +1,4 @@
-//! What each action means for the scene as it is now.
+//! Resolves an action to what it means for the scene as it is now.
 //!
 //! Whether an action is available is decided here as well, by resolving it: a disabled button, a
 //! refusal in the status line and the action's effect can never disagree. The matches are
@@ -36,7 +36,7 @@ pub(crate) enum Intent {
     Panels(Panels),
     /// The window becomes light or dark.
     Theme(ThemePreference),
-    /// A new name is asked for.
+    /// Asks for a new name.
     Rename(ItemId),
     /// One step back in the history.
     Undo,

@@ -1,4 +1,4 @@
-//! What effects cost in time, measured on a thread of its own while the window answers.
+//! Measures the cost of effects on a thread of its own, so that the window stays responsive.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -28,7 +28,7 @@ impl Drop for Measuring {
 }
 
 impl App {
-    /// Begins to measure what the effects of the picture cost, or gives that up where it goes on.
+    /// Starts to measure the cost of each effect, or cancels a measurement in progress.
     pub(crate) fn measure(&mut self, ctx: &Context) {
         self.state.panels.plan = true;
         if let Some(measuring) = &self.measuring {
@@ -48,7 +48,7 @@ impl App {
                 self.state.plan.measuring = true;
                 self.measuring = Some(Measuring { task, of });
             }
-            Err(error) => self.refuse(format!("no thread to measure with: {error}")),
+            Err(error) => self.refuse(format!("cannot start a thread to measure: {error}")),
         }
     }
 
@@ -69,7 +69,7 @@ impl App {
                 self.state.plan.costs = Some(Arc::new(measured));
             }
             _ => self
-                .refuse("the effects could not be measured: this is a fault of the program".into()),
+                .refuse("the effects could not be measured: this is a bug in the program".into()),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Every key, with what it would do now.
+//! The cheat sheet: every key, with what it would do now.
 
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
@@ -12,7 +12,7 @@ const KEYS: f32 = 160.0;
 const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
@@ -74,7 +74,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// Whether an action is what is searched for: by one of its keys as it is written, or by any of its
+/// Whether an action matches a search: by one of its keys as it is written, or by any of its
 /// words.
 fn matches(action: Action, wanted: &str) -> bool {
     let look = action.info();

@@ -1,4 +1,4 @@
-//! What the picture is made of: each effect, on or left out, why, and what it costs.
+//! The plan panel: each effect of the picture, on or left out, why, and its cost.
 //!
 //! An effect has a line, with what it is on under it where that differs from thing to thing. What
 //! is on is told by a full disk and by full text, so that the eye runs down the disks; costs are
@@ -21,7 +21,7 @@ use crate::app::widgets::text::grouped;
 use crate::lab::cost::{Explained, Group};
 use crate::render::{Effect, EffectUse};
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>) {
     let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
     let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
@@ -41,7 +41,7 @@ pub(crate) fn show(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>) {
         });
 }
 
-/// What is said of all together, and the button that measures.
+/// The summary, and the button that measures.
 fn header_ui(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
@@ -93,14 +93,14 @@ fn summary(explained: &Explained) -> String {
     format!("{on} on; {left_out} left out, which {changes}")
 }
 
-/// Whether what was measured is what is shown.
+/// Whether the measurement is of the picture in the viewport.
 fn is_of_now(measured: &Measured, state: &Editing) -> bool {
     measured.settings == state.settings
         && measured.view == state.view
         && measured.scene == state.scene
 }
 
-/// Where the columns begin, and how wide they are.
+/// The start and width of each column.
 struct Columns {
     name: Rect,
     on: Rect,
@@ -229,7 +229,7 @@ fn use_ui(ui: &mut Ui, most: u64, one: &EffectUse) {
 struct Row<'a> {
     name: &'a str,
     indent: f32,
-    /// Whether it is unfolded, where it can be.
+    /// Whether it is unfolded; `None` if it cannot be.
     chevron: Option<bool>,
     on: bool,
     things: &'a str,
@@ -298,7 +298,7 @@ impl Row<'_> {
     }
 }
 
-/// Full where something is on, empty where it is left out.
+/// A disk: full if an effect is on, empty if it is left out.
 fn disk_ui(ui: &Ui, at: egui::Pos2, on: bool) {
     let visuals = ui.visuals();
     if on {

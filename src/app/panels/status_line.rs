@@ -1,4 +1,4 @@
-//! What the next key would do, and the last word to the user.
+//! The status line: what the next key would do, and the last message.
 //!
 //! Where there is no room for all, what matters least is left out from the middle; nothing is cut
 //! off.
@@ -21,7 +21,7 @@ const BETWEEN: &str = "  |  ";
 /// A longer name is written with dots in its middle.
 const LONGEST_NAME: usize = 28;
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
@@ -66,7 +66,7 @@ fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     response.on_hover_text(&message.text);
 }
 
-/// The parts of the line, in order: what is selected, what the keys do to it, who looks, what it
+/// The parts of the line, in order: the selection, what the keys do to it, the observer, what it
 /// cost.
 fn parts(state: &State) -> Vec<String> {
     let (scene, view) = (&state.scene, &state.view);
@@ -128,7 +128,7 @@ fn selected(state: &State) -> String {
     }
 }
 
-/// What x, y and z do to what is selected.
+/// What x, y and z do to the selection.
 fn transformation(state: &State) -> &'static str {
     let (scene, view) = (&state.scene, &state.view);
     if let Some(ItemId::Light(id)) = state.selected() {
@@ -188,7 +188,7 @@ fn step(state: &State) -> Option<String> {
     })
 }
 
-/// The parts joined; where that does not fit, dots stand for those in the middle.
+/// The parts joined; if they do not fit, dots replace those in the middle.
 fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     let whole = parts.join(BETWEEN);
     // The first part and the last ones say most.
@@ -211,7 +211,7 @@ fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     parts.first().cloned().unwrap_or_default()
 }
 
-/// `name`, with dots in its middle where it has more than `longest` letters.
+/// `name`, with dots in its middle if it has more than `longest` letters.
 pub(crate) fn middle_elided(name: &str, longest: usize) -> String {
     let letters: Vec<char> = name.chars().collect();
     if letters.len() <= longest {

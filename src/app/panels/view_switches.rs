@@ -1,4 +1,4 @@
-//! Every switch of the view, with its key, and how exactly pictures are drawn.
+//! The switches of the view, with their keys, and the settings of accuracy.
 
 use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
@@ -13,7 +13,7 @@ use crate::scene::{
     Projection, Subject, Transformation,
 };
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let area = ScrollArea::vertical().id_salt("view switches").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
@@ -144,7 +144,7 @@ fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     row(ui, "Background", |ui| {
         let color = state.scene.background;
-        let changed = swatch(ui, "Background", "What is seen where nothing is", color);
+        let changed = swatch(ui, "Background", "Colour of the background", color);
         if let Some((color, gesture)) = changed {
             change(requests, "Set the background", gesture, Ok(Command::Background(color)));
         }

@@ -19,7 +19,7 @@ use crate::scene::{
 };
 use laboratory::Laboratory;
 
-/// What is edited and shown.
+/// The scene being edited, and everything shown about it.
 #[derive(Debug)]
 pub struct State {
     /// What there is to draw.
@@ -30,11 +30,11 @@ pub struct State {
     pub settings: Settings,
     /// What was done to the scene.
     pub history: History,
-    /// The scene's file, where it has one.
+    /// The scene's file, if it has one.
     pub path: Option<PathBuf>,
     /// The last word to the user, for the status line.
     pub message: Option<Message>,
-    /// What is to be told until the user puts it away.
+    /// Notices that stay until the user dismisses them.
     pub notices: Vec<Notice>,
     /// What the last picture took.
     pub statistics: Statistics,
@@ -77,7 +77,7 @@ pub struct Notice {
     pub text: String,
     /// More, one line each, for those who want to see it.
     pub details: Vec<String>,
-    /// What is offered with it, as a button.
+    /// An offer shown with it as a button.
     pub offer: Option<Offer>,
 }
 
@@ -218,7 +218,7 @@ impl State {
         selection::selected(&self.view)
     }
 
-    /// Its name; empty where there is none.
+    /// Its name; empty if nothing is selected.
     #[must_use]
     pub fn selected_name(&self) -> &str {
         self.selected().and_then(|id| self.name(id)).unwrap_or_default()

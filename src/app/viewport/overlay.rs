@@ -1,4 +1,4 @@
-//! What stands over the picture: words, numbers, the outline of what the pointer is over.
+//! Draws over the picture: statistics, and the border of the item under the pointer.
 
 use egui::{Align2, Color32, Mesh, Rect, Ui, vec2};
 
