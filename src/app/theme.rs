@@ -91,8 +91,9 @@ const fn gray(level: u8) -> Color32 {
     Color32::from_gray(level)
 }
 
-/// Gives `ctx` the program's looks, for both themes.
+/// Installs the styles of both themes and the font of the icons.
 pub fn install(ctx: &Context) {
+    egui_material_icons::initialize(ctx);
     ctx.set_style_of(Theme::Dark, style(Visuals::dark(), &DARK));
     ctx.set_style_of(Theme::Light, style(Visuals::light(), &LIGHT));
 }

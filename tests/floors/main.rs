@@ -63,6 +63,7 @@ const ROOMS: &[(&str, &[&str])] = &[
 const GUESTS: &[(&str, &str)] = &[
     ("egui", "app"),
     ("eframe", "app"),
+    ("egui_material_icons", "app"),
     ("rfd", "app"),
     ("tobj", "io"),
     ("image", "io"),
