@@ -162,7 +162,7 @@ fn framed(
     let mode = camera.pose.now().mode_with(view.object);
     let analysed = match (mode, ids) {
         (CameraMode::Analysis { target }, [id]) if target == *id => scene.objects.get(*id),
-        _ => None,
+        (CameraMode::Analysis { .. } | CameraMode::Fly, _) => None,
     };
     let (sphere, mode) = match analysed {
         Some(object) => (Some(about_the_mean(object, view.time)), mode),

@@ -103,12 +103,15 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     if matches!(id, ItemId::Camera(_)) && scene.cameras.len() == 1 {
         return Err(CommandError::LastCamera.into());
     }
-    let attached = |kind: &LightKind| match kind {
-        LightKind::Spot { owner: SpotOwner::Object(owner), .. } => id == ItemId::Object(*owner),
-        LightKind::Spot { owner: SpotOwner::Camera(owner), .. } => id == ItemId::Camera(*owner),
-        _ => false,
+    let attached = |light: &Light| {
+        let LightKind::Spot { owner, .. } = &light.kind else { return false };
+        match owner {
+            SpotOwner::Object(owner) => id == ItemId::Object(*owner),
+            SpotOwner::Camera(owner) => id == ItemId::Camera(*owner),
+            SpotOwner::SelectedObject | SpotOwner::SelectedCamera | SpotOwner::Fixed(_) => false,
+        }
     };
-    let spots = scene.lights.iter().filter(|(_, light)| attached(&light.kind));
+    let spots = scene.lights.iter().filter(|(_, light)| attached(light));
     let spots = spots.map(|(spot, _)| Command::Remove(ItemId::Light(spot)));
     let commands: Vec<Command> = spots.chain([Command::Remove(id)]).collect();
     Ok(one_or_batch(commands))

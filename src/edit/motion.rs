@@ -62,12 +62,9 @@ pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Ref
 /// # Errors
 /// If the light is no bulb, or is gone.
 pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Result<Command, Refusal> {
-    match &scene.lights.get(id).ok_or(Refusal::Gone)?.kind {
-        LightKind::Bulb { orbit, .. } => {
-            set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, GesturePhase::First)
-        }
-        _ => Err(Refusal::NotABulb),
-    }
+    let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
+    let LightKind::Bulb { orbit, .. } = &light.kind else { return Err(Refusal::NotABulb) };
+    set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, GesturePhase::First)
 }
 
 /// Gives a bulb another orbit, which begins at `time`; it stays where it has come to.

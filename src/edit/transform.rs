@@ -122,11 +122,10 @@ pub fn translate(
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
             // A bulb that circles is moved as it is seen: its place is turned before it is shown.
-            let delta = match &light.kind {
-                LightKind::Bulb { orbit, .. } => {
-                    Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
-                }
-                _ => delta,
+            let delta = if let LightKind::Bulb { orbit, .. } = &light.kind {
+                Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
+            } else {
+                delta
             };
             let place = match set_transform::place_of(light)? {
                 LightPlace::Direction(_) => return Err(Refusal::SunMoved),

@@ -58,11 +58,10 @@ impl Chord {
     #[must_use]
     pub fn clashes_with(self, other: Self) -> bool {
         use Chord::{Either, Lower, Upper};
-        match (self, other) {
-            (Either(a), Lower(b) | Upper(b) | Either(b)) | (Lower(a) | Upper(a), Either(b)) => {
-                a == b
-            }
-            _ => self == other,
+        if let (Either(a), Lower(b) | Upper(b)) | (Lower(a) | Upper(a), Either(b)) = (self, other) {
+            a == b
+        } else {
+            self == other
         }
     }
 
@@ -84,9 +83,10 @@ impl Chord {
     /// Everything that can be pressed for it.
     #[must_use]
     pub fn names(self) -> Vec<String> {
-        match self {
-            Self::Either(key) => vec![Self::Lower(key).name(), Self::Upper(key).name()],
-            _ => vec![self.name()],
+        if let Self::Either(key) = self {
+            vec![Self::Lower(key).name(), Self::Upper(key).name()]
+        } else {
+            vec![self.name()]
         }
     }
 }

@@ -322,6 +322,9 @@ impl Action {
     #[must_use]
     pub fn is_on(self, state: &State) -> Option<bool> {
         let (scene, view, panels) = (&state.scene, &state.view, &state.panels);
+        if let Some(slot) = self.slot() {
+            return Some(scene.lights.iter().any(|(_, light)| light.slot == slot && light.on));
+        }
         Some(match self {
             Self::SubjectCamera => view.subject == Subject::Camera,
             Self::SubjectObject => view.subject == Subject::Object,
@@ -370,19 +373,6 @@ impl Action {
             Self::ThemeSystem => state.theme == ThemePreference::System,
             Self::ThemeLight => state.theme == ThemePreference::Light,
             Self::ThemeDark => state.theme == ThemePreference::Dark,
-            Self::Light0
-            | Self::Light1
-            | Self::Light2
-            | Self::Light3
-            | Self::Light4
-            | Self::Light5
-            | Self::Light6
-            | Self::Light7
-            | Self::Light8
-            | Self::Light9 => {
-                let slot = self.slot()?;
-                scene.lights.iter().any(|(_, light)| light.slot == slot && light.on)
-            }
             Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
                 return None;
             }
@@ -399,7 +389,11 @@ impl Action {
             Self::LookFront | Self::LookRight | Self::LookTop => return None,
             Self::ApertureUp | Self::ApertureDown | Self::RedUp | Self::RedDown => return None,
             Self::GreenUp | Self::GreenDown | Self::BlueUp | Self::BlueDown => return None,
-            Self::ToPanels => return None,
+            Self::ToPanels | Self::Light0 | Self::Light1 | Self::Light2 | Self::Light3 => {
+                return None;
+            }
+            Self::Light4 | Self::Light5 | Self::Light6 | Self::Light7 => return None,
+            Self::Light8 | Self::Light9 => return None,
         })
     }
 }

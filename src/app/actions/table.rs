@@ -353,11 +353,11 @@ mod tests {
     #[test]
     fn every_hint_is_a_sentence_and_no_two_labels_are_alike_in_a_group() {
         for (i, action) in Action::ALL.iter().enumerate() {
-            let look = action.info();
-            assert!(look.hint.ends_with('.'), "{action:?}");
+            let info = action.info();
+            assert!(info.hint.ends_with('.'), "{action:?}");
             for other in &Action::ALL[i + 1..] {
-                let same = other.info().label == look.label;
-                assert!(!same, "{action:?} and {other:?} are both called {}", look.label);
+                let same = other.info().label == info.label;
+                assert!(!same, "{action:?} and {other:?} are both called {}", info.label);
             }
         }
     }

@@ -119,12 +119,10 @@ impl Dialogs {
 
     /// Gives the model whose material is being chosen a texture.
     pub(crate) fn set_texture(&mut self, path: PathBuf) {
-        let materials = self.open.iter_mut().rev().filter_map(|dialog| match dialog {
-            Dialog::Material(material) => Some(material),
-            _ => None,
-        });
-        if let Some(material) = materials.into_iter().next() {
-            material.set_texture(path);
+        for dialog in self.open.iter_mut().rev() {
+            if let Dialog::Material(material) = dialog {
+                return material.set_texture(path);
+            }
         }
     }
 
@@ -188,28 +186,37 @@ impl Dialogs {
     }
 
     fn close(&mut self, dialog: Dialog, end: End) -> Option<Answer> {
-        match (dialog, end) {
-            (Dialog::Browser(wanted, _), End::File(path)) => Some(self.chosen(wanted, vec![path])),
-            (Dialog::Browser(wanted, _), _) => Some(Answer::NoFile(wanted)),
-            (Dialog::Unsaved(after), End::Save) => Some(Answer::Save(after)),
-            (Dialog::Unsaved(after), End::Discard) => Some(Answer::Discard(after)),
-            (Dialog::Material(dialog), End::Material(choices)) => {
-                Some(Answer::Material(dialog, choices))
-            }
-            _ => None,
+        match dialog {
+            Dialog::Browser(wanted, _) => Some(match end {
+                End::File(path) => self.chosen(wanted, vec![path]),
+                End::Cancelled | End::Save | End::Discard | End::Material(_) | End::Asked => {
+                    Answer::NoFile(wanted)
+                }
+            }),
+            Dialog::Unsaved(after) => match end {
+                End::Save => Some(Answer::Save(after)),
+                End::Discard => Some(Answer::Discard(after)),
+                End::Cancelled | End::File(_) | End::Material(_) | End::Asked => None,
+            },
+            Dialog::Material(dialog) => match end {
+                End::Material(choices) => Some(Answer::Material(dialog, choices)),
+                End::Cancelled | End::File(_) | End::Save | End::Discard | End::Asked => None,
+            },
+            Dialog::Fault(_) | Dialog::Details(..) => None,
         }
     }
 
     fn hear_system(&mut self) -> Option<Answer> {
-        let outcome = self.system.as_ref()?.task.outcome();
-        if matches!(outcome, Outcome::Running) {
-            return None;
-        }
+        let outcome = match self.system.as_ref()?.task.outcome() {
+            Outcome::Running => return None,
+            Outcome::Done(paths) => Some(paths),
+            Outcome::Lost => None,
+        };
         let SystemDialog { wanted, name, begun, .. } = self.system.take()?;
         match outcome {
-            Outcome::Done(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
-            Outcome::Done(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
-            _ => {
+            Some(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
+            Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
+            Some(_) | None => {
                 // The system has none: it is not asked again.
                 self.native = false;
                 self.browse(wanted, &name);

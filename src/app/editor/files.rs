@@ -189,16 +189,17 @@ impl App {
             if loading.asks && self.dialogs.asks_material() {
                 return;
             }
-            let outcome = loading.task.outcome();
-            if matches!(outcome, Outcome::Running) {
-                return;
-            }
+            let fetched = match loading.task.outcome() {
+                Outcome::Running => return,
+                Outcome::Done(fetched) => Some(fetched),
+                Outcome::Lost => None,
+            };
             let Loading { task, .. } = self.loading.remove(0);
             self.begin_queued(ctx);
             ctx.request_repaint();
-            match outcome {
-                Outcome::Done(fetched) => self.take_fetched(ctx, fetched),
-                _ => self.dialogs.tell_fault(format!(
+            match fetched {
+                Some(fetched) => self.take_fetched(ctx, fetched),
+                None => self.dialogs.tell_fault(format!(
                     "{} failed because of a bug in the program; nothing has changed.",
                     task.label
                 )),

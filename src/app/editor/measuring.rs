@@ -55,20 +55,22 @@ impl App {
     /// Takes what was measured meanwhile.
     pub(crate) fn hear_measuring(&mut self) {
         let Some(Measuring { task, .. }) = &self.measuring else { return };
-        let (outcome, cancelled) = (task.outcome(), task.progress.is_cancelled());
-        if matches!(outcome, Outcome::Running) {
-            return;
-        }
+        let cancelled = task.progress.is_cancelled();
+        let costs = match task.outcome() {
+            Outcome::Running => return,
+            Outcome::Done(costs) => Some(costs),
+            Outcome::Lost => None,
+        };
         self.state.plan.measuring = false;
         let Some(of) = self.measuring.take().map(|measuring| measuring.of.clone()) else { return };
-        match outcome {
-            Outcome::Done(_) if cancelled => {}
-            Outcome::Done(costs) => {
+        match costs {
+            Some(_) if cancelled => {}
+            Some(costs) => {
                 let Snapshot { scene, view, settings, .. } = of;
                 let measured = Measured { costs, scene, view, settings };
                 self.state.plan.costs = Some(Arc::new(measured));
             }
-            _ => self
+            None => self
                 .refuse("the effects could not be measured: this is a bug in the program".into()),
         }
     }

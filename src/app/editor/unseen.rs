@@ -56,18 +56,16 @@ impl App {
 fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
     let object = state.scene.objects.get(id)?;
     let name = &object.name;
-    let far = out_of_sight(state, object, SIZE);
-    let (text, offer) = match why {
-        Unseen::TurnedAway { .. } => {
-            (format!("Nothing of {name} is visible: {why}"), Some(Offer::TwoSides(id)))
-        }
-        _ if far => (format!("{name} is out of view or too small to see"), Some(Offer::Frame(id))),
-        Unseen::Covered { .. } | Unseen::BetweenPixels => {
-            (format!("Nothing of {name} is visible: {why}"), Some(Offer::Frame(id)))
-        }
-        Unseen::Transparent | Unseen::LeftOut(_) | Unseen::Unexamined => {
-            (format!("Nothing of {name} is visible: {why}"), None)
-        }
+    let offer = match why {
+        Unseen::TurnedAway { .. } => Some(Offer::TwoSides(id)),
+        Unseen::Covered { .. } | Unseen::BetweenPixels => Some(Offer::Frame(id)),
+        Unseen::Transparent | Unseen::LeftOut(_) | Unseen::Unexamined => None,
+    };
+    let turned_away = matches!(why, Unseen::TurnedAway { .. });
+    let (text, offer) = if !turned_away && out_of_sight(state, object, SIZE) {
+        (format!("{name} is out of view or too small to see"), Some(Offer::Frame(id)))
+    } else {
+        (format!("Nothing of {name} is visible: {why}"), offer)
     };
     let told = state.notices.iter().any(|notice| offer.is_some() && notice.offer == offer);
     (!told).then(|| Notice { text, details: Vec::new(), offer })

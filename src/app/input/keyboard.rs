@@ -130,21 +130,21 @@ impl Keyboard {
         let fitting = |action: &Action| action.info().keys.iter().copied().find(|key| fits(key));
         let found = Action::ALL.iter().find_map(|action| Some((*action, fitting(action)?)));
         let Some((action, chord)) = found else { return };
-        let look = action.info();
+        let info = action.info();
         let acts = match owner {
             Owner::Viewport => !self.steering || chord == Chord::Named(Key::Escape),
             Owner::Panel => chord.is_global(),
             // A text field has an undo of its own.
-            Owner::Text => chord.is_global() && look.group != Group::Edit,
+            Owner::Text => chord.is_global() && info.group != Group::Edit,
             Owner::Modal => false,
         };
-        if !acts || (self.last_was_repeat && !look.repeats) {
+        if !acts || (self.last_was_repeat && !info.repeats) {
             return;
         }
         if !self.last_was_repeat {
             self.presses += 1;
         }
-        let gesture = match look.repeats {
+        let gesture = match info.repeats {
             true => gestures::numbered(self.presses, "key"),
             false => Gesture::Whole,
         };

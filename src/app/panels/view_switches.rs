@@ -2,7 +2,7 @@
 
 use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::actions::{Action, Request, change};
+use crate::app::actions::{Action, Group, Request, change};
 use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::State;
 use crate::app::theme;
@@ -29,19 +29,9 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         section(ui, "Display", true, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            for action in [
-                Action::ToggleEdges,
-                Action::ToggleEdgesOverFill,
-                Action::TogglePolygons,
-                Action::ToggleOthers,
-                Action::ToggleBackFaces,
-                Action::ToggleFaceNormals,
-                Action::ToggleVertexNormals,
-                Action::ToggleNormalLength,
-                Action::ToggleMarks,
-                Action::ToggleLeaveOut,
-                Action::ToggleCoarse,
-            ] {
+            // Flat shading is a choice in the section below.
+            let choice = Action::ToggleLightNormals;
+            for action in Group::Show.actions().filter(|action| *action != choice) {
                 action_switch(ui, state, requests, action);
             }
         });

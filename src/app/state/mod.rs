@@ -250,10 +250,8 @@ impl State {
     /// Whether anything in the scene moves by itself.
     #[must_use]
     pub fn is_animated(&self) -> bool {
-        let circles = |light: &Light| match &light.kind {
-            LightKind::Bulb { orbit, .. } => orbit.on,
-            _ => false,
-        };
+        let circles =
+            |light: &Light| matches!(&light.kind, LightKind::Bulb { orbit, .. } if orbit.on);
         self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
             || self.scene.lights.iter().any(|(_, light)| circles(light))
     }

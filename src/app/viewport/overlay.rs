@@ -101,7 +101,7 @@ mod tests {
         let names = ["teapot", "cube", "ball"];
         let name = |item| match item {
             ItemId::Object(ObjectId(id)) => names.get(id as usize).copied(),
-            _ => None,
+            ItemId::Camera(_) | ItemId::Light(_) => None,
         };
         let items = |changes: &[Change]| -> Vec<(ItemId, Change)> {
             (0..).map(object).zip(changes.iter().copied()).collect()

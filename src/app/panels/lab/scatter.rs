@@ -215,12 +215,11 @@ fn tip_ui(ui: &mut Ui, mark: &Mark, report: &Report) {
         MarkKind::Apart => {
             ui.label("Judged against 64 samples a pixel, each lit: a front of its own.");
         }
-        _ if !report.is_scored(mark.point) => {
-            ui.label(
-                "Shows other triangles at some pixels, which FLIP alone judges: on no front here.",
-            );
+        MarkKind::Default | MarkKind::Preset | MarkKind::Axis | MarkKind::Combination => {
+            if !report.is_scored(mark.point) {
+                ui.label("Some pixels show other triangles, which only FLIP judges: on no front.");
+            }
         }
-        _ => {}
     }
-    ui.weak("Click to draw the picture so.");
+    ui.weak("Click to draw the picture with these settings.");
 }

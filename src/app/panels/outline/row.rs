@@ -115,7 +115,7 @@ fn shown_ui(
     icon_at(ui, rect, &response, icon, &label, true);
     let key = match item {
         ItemId::Light(id) => state.scene.lights.get(id).map(|light| light.slot),
-        _ => None,
+        ItemId::Object(_) | ItemId::Camera(_) => None,
     };
     let clicked = response.clicked();
     response.on_hover_ui(|ui| {

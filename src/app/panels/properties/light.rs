@@ -164,10 +164,8 @@ impl Shown<'_> {
         let mut owners = vec![SpotOwner::SelectedObject, SpotOwner::SelectedCamera];
         owners.extend(scene.objects.ids().map(SpotOwner::Object));
         owners.extend(scene.cameras.ids().map(SpotOwner::Camera));
-        owners.push(match owner {
-            SpotOwner::Fixed(_) => owner.clone(),
-            _ => SpotOwner::Fixed(Placed::new(self.aim(owner))),
-        });
+        let fixed = matches!(owner, SpotOwner::Fixed(_)).then(|| owner.clone());
+        owners.push(fixed.unwrap_or_else(|| SpotOwner::Fixed(Placed::new(self.aim(owner)))));
         row(ui, "Shines from", |ui| {
             let combo = ComboBox::from_id_salt("owner")
                 .selected_text(owner_name(scene, owner))

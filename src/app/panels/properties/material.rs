@@ -67,11 +67,9 @@ fn coefficients(choice: &MaterialChoice, object: Option<&Object>) -> Material {
 }
 
 fn same_kind(a: &MaterialChoice, b: &MaterialChoice) -> bool {
-    match (a, b) {
-        (MaterialChoice::Preset(a), MaterialChoice::Preset(b)) => a == b,
-        (MaterialChoice::File, MaterialChoice::File)
-        | (MaterialChoice::Own(_), MaterialChoice::Own(_)) => true,
-        _ => false,
+    match a {
+        MaterialChoice::Own(_) => matches!(b, MaterialChoice::Own(_)),
+        MaterialChoice::Preset(_) | MaterialChoice::File => a == b,
     }
 }
 
