@@ -12,7 +12,7 @@ use glam::{DMat3, DVec3};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math;
-use marraztu::edit::{frame, items, selection};
+use marraztu::edit::{framing, items, selection};
 use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
@@ -285,7 +285,7 @@ fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
     };
     items::change_camera(&scene, view.camera, turned).unwrap().apply(&mut scene).unwrap();
     // A file without vertices has nothing to be framed.
-    if let Ok(framed) = frame::all(&scene, &view) {
+    if let Ok(framed) = framing::all(&scene, &view) {
         framed.apply(&mut scene).unwrap();
     }
     (scene, view)

@@ -4,7 +4,7 @@
 //! [`Command`](crate::scene::Command) or the view that is meant, or a [`Refusal`] for the status
 //! line. [`History`] is the one that writes a scene.
 
-pub mod frame;
+pub mod framing;
 mod gesture;
 mod history;
 pub mod items;

@@ -32,7 +32,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "items",
             "lights",
             "motion",
-            "frame",
+            "framing",
             "transform",
             "navigation",
             "placement",

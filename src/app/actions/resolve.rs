@@ -9,11 +9,11 @@ use egui::ThemePreference;
 use super::table::Action;
 use crate::app::state::State;
 use crate::base::math::Axis;
-use crate::edit::frame::Side;
+use crate::edit::framing::Side;
 use crate::edit::lights::{APERTURE_STEP, Channel};
 use crate::edit::selection::Selection;
 use crate::edit::transform::Sign;
-use crate::edit::{GesturePhase, Refusal, frame, items, lights, selection, transform};
+use crate::edit::{GesturePhase, Refusal, framing, items, lights, selection, transform};
 use crate::scene::{
     CameraMode, Command, Fill, Frame, ItemId, LeaveOut, LightKind, NormalLength, Normals, ObjectId,
     Observer, Panels, Projection, Settings, SpotOwner, Subject, Transformation, View,
@@ -89,7 +89,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
     let step = |axis, sign| transform::step(scene, view, axis, sign, phase).map(Intent::Change);
     let color = |channel, by| lights::step_color(scene, view, channel, by).map(Intent::Change);
     let aperture = |by| lights::step_aperture(scene, view, by).map(Intent::Change);
-    let look_from = |side| frame::side(scene, view, side).map(Intent::Change);
+    let look_from = |side| framing::side(scene, view, side).map(Intent::Change);
     let file = |intent| Ok(Intent::File(intent));
     match action {
         Action::New => file(FileIntent::New),
@@ -181,8 +181,8 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
                 other(view.projection, Projection::Perspective, Projection::Orthographic);
         }),
         Action::ToggleObserver => seen(state, |view| selection::toggle_observer(scene, view)),
-        Action::FrameSelection => frame::selection(scene, view).map(Intent::Change),
-        Action::FrameAll => frame::all(scene, view).map(Intent::Change),
+        Action::FrameSelection => framing::selection(scene, view).map(Intent::Change),
+        Action::FrameAll => framing::all(scene, view).map(Intent::Change),
         Action::LookFront => look_from(Side::Front),
         Action::LookRight => look_from(Side::Right),
         Action::LookTop => look_from(Side::Top),

@@ -13,7 +13,7 @@ use egui::{
 };
 
 use crate::app::actions::{Action, Request};
-use crate::app::state::{Measured, State as Editing};
+use crate::app::state::{Measured, State};
 use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
@@ -22,7 +22,7 @@ use crate::lab::cost::{Explained, Group};
 use crate::render::{Effect, EffectUse};
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
     let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
     let height = ui.available_height();
@@ -42,7 +42,7 @@ pub(crate) fn show(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>) {
 }
 
 /// The summary, and the button that measures.
-fn header_ui(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>, explained: &Explained) {
+fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.label(RichText::new("Plan").strong());
@@ -94,7 +94,7 @@ fn summary(explained: &Explained) -> String {
 }
 
 /// Whether the measurement is of the picture in the viewport.
-fn is_of_now(measured: &Measured, state: &Editing) -> bool {
+fn is_of_now(measured: &Measured, state: &State) -> bool {
     measured.settings == state.settings
         && measured.view == state.view
         && measured.scene == state.scene
@@ -129,7 +129,7 @@ impl Columns {
     }
 }
 
-fn table_ui(ui: &mut Ui, state: &Editing, explained: &Explained) {
+fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
     let (head, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
     let columns = Columns::of(head.with_max_x(head.right() - f32::from(theme::MARGIN)));
     let titles = [

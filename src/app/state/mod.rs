@@ -11,7 +11,7 @@ use egui::ThemePreference;
 pub use crate::app::drawing::adaptive_quality::Reduction;
 use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
-use crate::edit::{Gesture, GesturePhase, History, Refusal, frame, items, selection};
+use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
 use crate::lab::cost::{Costs, Explained};
 use crate::render::Changes;
 use crate::scene::{
@@ -108,7 +108,7 @@ impl Offer {
         let (Self::Frame(id) | Self::TwoSides(id)) = self;
         let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
         Ok(match self {
-            Self::Frame(_) => (frame::objects(scene, view, &[id])?, format!("Frame {name}")),
+            Self::Frame(_) => (framing::objects(scene, view, &[id])?, format!("Frame {name}")),
             Self::TwoSides(_) => {
                 let two = |object: &mut Object| object.sides = Sides::Two;
                 (items::change_object(scene, id, two)?, format!("Draw both sides of {name}"))

@@ -11,7 +11,7 @@ use crate::edit::lights::{self, Channel};
 use crate::edit::navigation::{self, Pointer};
 use crate::edit::transform::{self, Sign};
 use crate::edit::{
-    Gesture, GesturePhase, History, Refusal, frame, items, motion, placement, selection,
+    Gesture, GesturePhase, History, Refusal, framing, items, motion, placement, selection,
 };
 use crate::io;
 use crate::scene::{
@@ -218,7 +218,7 @@ fn looking(
         0 => navigation::orbit(scene, view, amount.x, amount.y, phase),
         1 => navigation::pan(scene, view, at, size, phase),
         2 => navigation::zoom(scene, view, amount.z, Pointer { at, depth: None }, size, phase),
-        _ => frame::selection(scene, view),
+        _ => framing::selection(scene, view),
     }
 }
 
