@@ -14,7 +14,7 @@ use marraztu::accuracy::{Arithmetic, LightAt, Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math;
-use marraztu::edit::{frame, items, selection};
+use marraztu::edit::{framing, items, selection};
 use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
 use marraztu::render::Renderer;
 use marraztu::render::plan_frame;
@@ -288,7 +288,7 @@ fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
     };
     items::change_camera(&scene, view.camera, turned).unwrap().apply(&mut scene).unwrap();
     // A file without vertices has nothing to be framed.
-    if let Ok(framed) = frame::all(&scene, &view) {
+    if let Ok(framed) = framing::all(&scene, &view) {
         framed.apply(&mut scene).unwrap();
     }
     (scene, view)

@@ -1,4 +1,4 @@
-//! Work that takes long, on threads of its own: loading, and the system's dialogs.
+//! Background tasks on threads of their own, such as loading and the system's dialogs.
 
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 
@@ -28,7 +28,7 @@ impl<T: Send + 'static> Task<T> {
     /// Begins `work` on a thread, and wakes the window when it is done.
     ///
     /// # Errors
-    /// Where the system gives no thread.
+    /// If the system provides no thread.
     pub(crate) fn start(
         ctx: &Context,
         label: String,
@@ -41,7 +41,7 @@ impl<T: Send + 'static> Task<T> {
             // Dropped last, so that the window is woken when everything has been told.
             let _wake = Wake(ctx);
             let sender = sender;
-            // Nobody may wait for it any more.
+            // The receiver may be gone.
             let _ = sender.send(work(&theirs));
         })?;
         Ok(Self { label, progress, receiver })

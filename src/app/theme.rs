@@ -1,4 +1,4 @@
-//! How the window looks: colours, sizes, distances.
+//! The theme of the window: colours, sizes, spacing.
 //!
 //! The picture is the star, so that everything about it is grey; one accent says what is selected
 //! and what has the keyboard. A light and a dark palette hold the same places, and every text keeps
@@ -18,7 +18,7 @@ pub const GAP: f32 = 4.0;
 pub const MARGIN: i8 = 10;
 /// To the right of what can be scrolled: the bar stands in it.
 pub const SCROLL_MARGIN: Margin = Margin { left: 0, right: MARGIN, top: 0, bottom: 0 };
-/// Where the labels of a panel's rows end and its controls begin.
+/// The width of the labels in the rows of a panel.
 pub const LABEL: f32 = 62.0;
 /// Small text: keys, units, what can be missed.
 pub const SMALL: f32 = 11.0;
@@ -31,7 +31,7 @@ pub const HEADING: f32 = 15.0;
 #[derive(Clone, Copy, Debug)]
 struct Palette {
     panel: Color32,
-    /// Where one types.
+    /// Text fields.
     field: Color32,
     /// Buttons at rest, under the pointer, pressed.
     control: Color32,
@@ -91,8 +91,9 @@ const fn gray(level: u8) -> Color32 {
     Color32::from_gray(level)
 }
 
-/// Gives `ctx` the program's looks, for both themes.
+/// Installs the styles of both themes and the font of the icons.
 pub fn install(ctx: &Context) {
+    egui_material_icons::initialize(ctx);
     ctx.set_style_of(Theme::Dark, style(Visuals::dark(), &DARK));
     ctx.set_style_of(Theme::Light, style(Visuals::light(), &LIGHT));
 }

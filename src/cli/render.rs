@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use marraztu::accuracy::Shot;
-use marraztu::edit::{frame, items};
+use marraztu::edit::{framing, items};
 use marraztu::io::{self, Progress};
 use marraztu::render::plan_frame;
 use marraztu::render::{Renderer, Unseen, unseen};
@@ -148,8 +148,8 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     match seeing.camera {
         Some(number) => stage.view.camera = camera(stage, number)?,
         None if stage.models_alone => {
-            let from = seeing.from.unwrap_or(frame::MODELS_FROM);
-            match frame::models(&stage.scene, &stage.view, from) {
+            let from = seeing.from.unwrap_or(framing::MODELS_FROM);
+            match framing::models(&stage.scene, &stage.view, from) {
                 Ok(command) => stage.change(command)?,
                 Err(refusal) => note(&refusal),
             }

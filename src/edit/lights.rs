@@ -1,4 +1,4 @@
-//! What of lights the keys and panels change: on, colour, aperture, slot, owner.
+//! Changes of lights: on, colour, aperture, slot, owner.
 
 use glam::DVec3;
 
@@ -60,7 +60,7 @@ pub const fn fixed() -> SpotOwner {
 /// The keys 0 to 9: puts the light in a slot on or out.
 ///
 /// # Errors
-/// Where the slot is empty.
+/// If the slot is empty.
 pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
     let in_slot = scene.lights.iter().find(|(_, light)| light.slot == slot);
     let (id, _) = in_slot.ok_or(Refusal::EmptySlot(slot))?;
@@ -88,7 +88,7 @@ pub fn step_color(
     change_light(scene, id, |light| light.color.0[index] = new)
 }
 
-/// The keys + and -: opens or closes the selected spot by so many degrees, within 0 to 90.
+/// Changes the aperture of the selected spot by an angle in degrees, within 0 to 90 (+ and -).
 ///
 /// # Errors
 /// At the end of the range, for other lights, and while the subject is not lights.
@@ -105,10 +105,10 @@ pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Result<Command
     set_aperture(scene, id, new)
 }
 
-/// Opens a spot to so many degrees from its axis; what is outside 0 to 90 is brought to its border.
+/// Sets the half-aperture of a spot in degrees, clamped to 0 to 90.
 ///
 /// # Errors
-/// Where the light is not a spot, or the number is none.
+/// If the light is not a spot, or the number is NaN.
 pub fn set_aperture(scene: &Scene, id: LightId, degrees: f64) -> Result<Command, Refusal> {
     if degrees.is_nan() {
         return Err(Refusal::TooLarge);
@@ -119,7 +119,7 @@ pub fn set_aperture(scene: &Scene, id: LightId, degrees: f64) -> Result<Command,
 /// Gathers a spot's light along its axis by an exponent of at least 0.
 ///
 /// # Errors
-/// Where the light is not a spot, or the number is not finite.
+/// If the light is not a spot, or the number is not finite.
 pub fn set_exponent(scene: &Scene, id: LightId, to: f64) -> Result<Command, Refusal> {
     if !to.is_finite() {
         return Err(Refusal::TooLarge);
@@ -130,7 +130,7 @@ pub fn set_exponent(scene: &Scene, id: LightId, to: f64) -> Result<Command, Refu
 /// Fixes a spot to something else.
 ///
 /// # Errors
-/// Where the light is not a spot, or the owner is not there.
+/// If the light is not a spot, or the owner is not there.
 pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, Refusal> {
     check_owner(scene, &to)?;
     change_spot(scene, id, |owner, _, _| *owner = to)
@@ -150,7 +150,7 @@ pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusa
 /// Lets a light fade otherwise.
 ///
 /// # Errors
-/// Where it would become infinite or negative.
+/// If it would become infinite or negative.
 pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Result<Command, Refusal> {
     if !to.is_valid() {
         return Err(CommandError::Attenuation.into());

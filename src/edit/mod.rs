@@ -1,10 +1,10 @@
-//! Which command a key means, and the history of commands.
+//! Decides commands: what a change of the scene consists of, and the history of changes.
 //!
 //! Everything here but [`History`] only decides: it reads a scene and a view, and gives back the
 //! [`Command`](crate::scene::Command) or the view that is meant, or a [`Refusal`] for the status
 //! line. [`History`] is the one that writes a scene.
 
-pub mod frame;
+pub mod framing;
 mod gesture;
 mod history;
 pub mod items;

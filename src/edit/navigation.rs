@@ -1,4 +1,4 @@
-//! What the mouse does to the selected camera while it looks.
+//! Navigation: orbit, pan, zoom, look and fly with the selected camera.
 //!
 //! Drags yaw about the world's Y and pitch about the camera's X. Pixels are brought to units of the
 //! world at the depth of what is looked at, so that what is under the pointer stays there.
@@ -14,7 +14,7 @@ use crate::scene::{CameraMode, Command, Lens, Observer, Pose, Projection, Scene,
 pub const NOTCH: f64 = 0.9;
 
 /// A place on the picture from which to zoom: in pixels, x to the right and y down from the upper
-/// left, with how far before the camera lies what is seen there, where that is known.
+/// left, with how far before the camera lies what is seen there, if known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
     /// Pixels from the upper left.
@@ -27,7 +27,7 @@ pub struct Pointer {
 /// which cannot look aside, the camera orbits the other way round instead.
 ///
 /// # Errors
-/// Where an object looks.
+/// If the observer is an object.
 pub fn look(
     scene: &Scene,
     view: &View,
@@ -47,7 +47,7 @@ pub fn look(
 /// `yaw` about the world's Y and `pitch` about the camera's X, in radians.
 ///
 /// # Errors
-/// Where an object looks.
+/// If the observer is an object.
 pub fn orbit(
     scene: &Scene,
     view: &View,
@@ -72,7 +72,7 @@ pub fn orbit(
 /// pointer that has moved by `pixels` (x to the right, y down). Returns to fly.
 ///
 /// # Errors
-/// Where an object looks.
+/// If the observer is an object.
 pub fn pan(
     scene: &Scene,
     view: &View,
@@ -90,7 +90,7 @@ pub fn pan(
 /// Returns to fly.
 ///
 /// # Errors
-/// Where an object looks.
+/// If the observer is an object.
 pub fn fly(
     scene: &Scene,
     view: &View,
@@ -101,14 +101,14 @@ pub fn fly(
     set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
 }
 
-/// The wheel: comes nearer by so many notches (away where negative).
+/// Zooms in by this number of notches of the wheel (out if negative).
 ///
 /// In perspective the eye goes along the ray through the pointer, in parallel projection less of
 /// the world is seen; what is under the pointer stays there. In analysis the camera keeps to its
 /// axis, never nearer to the centre than the near plane.
 ///
 /// # Errors
-/// Where an object looks, or the camera is as near as it may be.
+/// If the observer is an object, or the camera is as near as it may be.
 pub fn zoom(
     scene: &Scene,
     view: &View,
@@ -118,7 +118,7 @@ pub fn zoom(
     phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     let pose = looking_pose(scene, view)?;
-    // What is left of the distance, within what a number can hold.
+    // The factor of the distance, within the range of f64.
     let left = libm::pow(NOTCH, notches.clamp(-200.0, 200.0));
     let centre = set_transform::analysis_centre(scene, view);
     match (view.projection, centre) {

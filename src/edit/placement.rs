@@ -1,4 +1,4 @@
-//! Placements as numbers, to be shown, dragged and typed.
+//! Placements as numbers: position, rotation, scale.
 //!
 //! An object's placement is a matrix, which need not be a product of one translation, rotation and
 //! scale. So each number is set without touching what the others say: a new turn is multiplied with
@@ -15,7 +15,7 @@ use super::{GesturePhase, Refusal};
 use crate::base::math::{self, Axis};
 use crate::scene::{Aim, CameraId, CameraMode, Command, LightId, ObjectId, Pose, Scene, View};
 
-/// Where an object's origin is.
+/// The position of an object's origin.
 #[must_use]
 pub fn translation(placement: &DMat4) -> DVec3 {
     placement.w_axis.truncate()
@@ -67,7 +67,7 @@ pub fn camera_degrees(pose: &Pose) -> DVec3 {
 /// Puts an object's origin at a place.
 ///
 /// # Errors
-/// Where the numbers are not finite, or the object is gone.
+/// If the numbers are not finite, or the object is gone.
 pub fn object_translation(
     scene: &Scene,
     view: &View,
@@ -82,7 +82,7 @@ pub fn object_translation(
 /// Gives an object another turn, in degrees as [`turn_degrees`] shows it.
 ///
 /// # Errors
-/// Where the numbers are not finite, or the object is gone.
+/// If the numbers are not finite, or the object is gone.
 pub fn object_turn(
     scene: &Scene,
     view: &View,
@@ -99,7 +99,7 @@ pub fn object_turn(
 /// Gives an object's axes other lengths, as [`scale`] shows them. Negative ones mirror.
 ///
 /// # Errors
-/// Where the object would become flat, a number is not finite, or the object is gone.
+/// If the object would become flat, a number is not finite, or the object is gone.
 pub fn object_scale(
     scene: &Scene,
     view: &View,
@@ -129,7 +129,7 @@ pub fn object_scale(
 /// Gives an object a placement as a whole.
 ///
 /// # Errors
-/// Where it is not finite, or flat, or the object is gone.
+/// If it is not finite, or flat, or the object is gone.
 pub fn object(
     scene: &Scene,
     view: &View,
@@ -146,7 +146,7 @@ pub fn object(
 /// Puts a camera's eye at a place. In analysis the camera goes on looking at its centre.
 ///
 /// # Errors
-/// Where the numbers are not finite, or the camera is gone.
+/// If the numbers are not finite, or the camera is gone.
 pub fn camera_eye(
     scene: &Scene,
     view: &View,
@@ -167,7 +167,7 @@ pub fn camera_eye(
 /// goes to where it sees its centre so, as far away as it was.
 ///
 /// # Errors
-/// Where the numbers are not finite, or the camera is gone.
+/// If the numbers are not finite, or the camera is gone.
 pub fn camera_turn(
     scene: &Scene,
     view: &View,
@@ -189,7 +189,7 @@ pub fn camera_turn(
 /// Gives a camera a pose as a whole. It flies afterwards.
 ///
 /// # Errors
-/// Where the numbers are not finite, or the camera is gone.
+/// If the numbers are not finite, or the camera is gone.
 pub fn camera(
     scene: &Scene,
     id: CameraId,
@@ -203,7 +203,7 @@ pub fn camera(
 /// Puts a bulb, or a spot of its own, at a place.
 ///
 /// # Errors
-/// Where the light has no place of its own, or the numbers are not finite.
+/// If the light has no place of its own, or the numbers are not finite.
 pub fn light_position(
     scene: &Scene,
     id: LightId,
@@ -221,7 +221,7 @@ pub fn light_position(
 /// Gives a sun, or a spot of its own, a direction, of any length but 0.
 ///
 /// # Errors
-/// Where the light has no direction of its own, or the numbers give none.
+/// If the light has no direction of its own, or the numbers give none.
 pub fn light_direction(
     scene: &Scene,
     id: LightId,

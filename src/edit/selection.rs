@@ -1,4 +1,4 @@
-//! What is selected, what is the subject, and what keeps both true after a change of the scene.
+//! The selection and the subject, and how they follow changes of the scene.
 //!
 //! None of this is a step of undo, but for one thing: while the selected camera is in analysis,
 //! selecting another object aims the camera at that one. So a selection is a view and, sometimes, a
@@ -16,14 +16,14 @@ use crate::scene::{
 pub struct Selection {
     /// The view to be shown.
     pub view: View,
-    /// What aims the selected camera at the newly selected object, where it is in analysis.
+    /// Aims the selected camera at the newly selected object, if it is in analysis.
     pub command: Option<Command>,
 }
 
 /// Selects an item in its list. The subject stays.
 ///
 /// # Errors
-/// Where the item is gone.
+/// If the item is gone.
 pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
     select_in(scene, view, id, GesturePhase::First)
 }
@@ -87,7 +87,7 @@ fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
 /// Selects an item and makes its kind the subject, as a click in the outline does.
 ///
 /// # Errors
-/// Where the item is gone.
+/// If the item is gone.
 pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
     let mut selection = select(scene, view, id)?;
     set_subject(&mut selection.view, subject_of(id));
@@ -97,7 +97,7 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
 /// The key Tab: selects the next item of the subject, round and round.
 ///
 /// # Errors
-/// Where there is no other to go on to.
+/// If there is no other item.
 pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection, Refusal> {
     fn after<K: Copy + Ord, T>(list: &List<K, T>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
@@ -166,7 +166,7 @@ pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Ref
 /// The key `C`: the selected camera looks, or the selected object.
 ///
 /// # Errors
-/// Where there is no object.
+/// If there is no object.
 pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.observer = match view.observer {
         Observer::Object => Observer::Camera,
@@ -181,7 +181,7 @@ pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
 /// The key `o`: the whole object, or one polygon of it at a time, from polygon 0.
 ///
 /// # Errors
-/// Where there is no object, or it has no polygons.
+/// If there is no object, or it has no polygons.
 pub fn toggle_polygons(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.polygons = match view.polygons {
         Some(_) => None,
@@ -207,7 +207,7 @@ pub fn next_polygon(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
 /// Goes to a polygon of the selected object, as a click on it does.
 ///
 /// # Errors
-/// Outside of polygon mode, and where the object has no such polygon.
+/// Outside polygon mode, and if the object has no such polygon.
 pub fn go_to_polygon(scene: &Scene, view: &mut View, polygon: u32) -> Result<(), Refusal> {
     let count = polygon_count(scene, view)?;
     let mode = view.polygons.as_mut().ok_or(Refusal::NotInPolygonMode)?;
@@ -282,7 +282,7 @@ fn polygon_count(scene: &Scene, view: &View) -> Result<u32, Refusal> {
     }
 }
 
-/// Ends polygon mode where there is no polygon to show, and brings it back into range.
+/// Ends polygon mode if there is no polygon to show, and clamps the polygon to the range.
 fn keep_polygons(scene: &Scene, view: &mut View) {
     let count = polygon_count(scene, view).unwrap_or(0);
     match &mut view.polygons {

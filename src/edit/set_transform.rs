@@ -1,4 +1,4 @@
-//! New placements as commands: what goes onto the stack, and which cameras look after it.
+//! Sets transforms: pushes the old one once a gesture, and keeps cameras in analysis aimed.
 //!
 //! A transformation pushes what the item was, once a gesture. A camera in analysis that looks at a
 //! moved object is aimed again in the same command; that pushes nothing on the camera.
@@ -110,7 +110,7 @@ pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
     }
 }
 
-/// Where the selected camera, as it moves now, has its centre; `None` in fly.
+/// The centre of the selected camera in analysis; `None` in fly.
 pub(super) fn analysis_centre(scene: &Scene, view: &View) -> Option<DVec3> {
     match scene.selected_camera(view).pose.now().mode_with(view.object) {
         CameraMode::Fly => None,

@@ -1,4 +1,4 @@
-//! What x, y and z do to whom, by a step or by an amount, and what `u` takes back.
+//! Transformations of the selected item by a step or an amount, and undoing the last one.
 //!
 //! * An object, M its placement: M := M T in the local frame, M := T M in the global one.
 //! * A camera in fly moves and turns in its own frame: X yaws about its own Y, Y pitches about its
@@ -38,7 +38,7 @@ impl Sign {
 /// One press of x, y or z: transforms the subject's selected item by the view's step.
 ///
 /// # Errors
-/// Where the item cannot be transformed so, and why.
+/// If the item cannot be transformed in this way.
 pub fn step(
     scene: &Scene,
     view: &View,
@@ -103,7 +103,7 @@ pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
 /// camera in its own, a light in the world's.
 ///
 /// # Errors
-/// Where it cannot be moved, and why.
+/// If it cannot be moved.
 pub fn translate(
     scene: &Scene,
     view: &View,
@@ -122,11 +122,10 @@ pub fn translate(
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
             // A bulb that circles is moved as it is seen: its place is turned before it is shown.
-            let delta = match &light.kind {
-                LightKind::Bulb { orbit, .. } => {
-                    Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
-                }
-                _ => delta,
+            let delta = if let LightKind::Bulb { orbit, .. } = &light.kind {
+                Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
+            } else {
+                delta
             };
             let place = match set_transform::place_of(light)? {
                 LightPlace::Direction(_) => return Err(Refusal::SunMoved),
@@ -146,7 +145,7 @@ pub fn translate(
 /// world's.
 ///
 /// # Errors
-/// Where it cannot be turned, and why.
+/// If it cannot be turned.
 pub fn rotate(
     scene: &Scene,
     view: &View,
@@ -182,7 +181,7 @@ pub fn rotate(
 /// Makes the selected object larger or smaller by `factor` in all directions.
 ///
 /// # Errors
-/// Where the subject is not objects, and where the object would become flat.
+/// If the subject is not objects, or the object would become flat.
 pub fn scale(
     scene: &Scene,
     view: &View,
@@ -196,7 +195,7 @@ pub fn scale(
 /// says; a negative one mirrors it.
 ///
 /// # Errors
-/// Where the subject is not objects, and where the object would become flat.
+/// If the subject is not objects, or the object would become flat.
 pub fn stretch(
     scene: &Scene,
     view: &View,
@@ -213,7 +212,7 @@ pub fn stretch(
 /// The key `u`: the subject's selected item becomes what it was before its last transformation.
 ///
 /// # Errors
-/// Where it never was anything else.
+/// If it was never transformed.
 pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let nothing = Refusal::NothingToTakeBack;
     match view.subject {
@@ -247,7 +246,7 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 /// at the selected object's centre, and back, which moves nothing and pushes nothing.
 ///
 /// # Errors
-/// Where there is no object to look at.
+/// If there is no object to look at.
 pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let pose = effective_pose(scene, view);
     match pose.mode {
@@ -279,7 +278,7 @@ fn transform(
     if !placement.is_finite() {
         return Err(Refusal::TooLarge);
     }
-    // What is flat already, from a file, may be moved and turned.
+    // Objects that are flat already, from a file, may be moved and turned.
     let linear = |m: DMat4| DMat3::from_mat4(m);
     let was_whole = math::has_full_rank(linear(m));
     let is_whole = math::has_full_rank(linear(placement)) && math::has_full_rank(linear(t));

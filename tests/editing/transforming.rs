@@ -289,7 +289,7 @@ fn u_takes_a_whole_drag_back_and_says_when_there_is_nothing_more() {
     assert_eq!(desk.placement(), start);
     let refusal = transform::take_back(&desk.scene, &desk.view).unwrap_err();
     assert_eq!(refusal, Refusal::NothingToTakeBack);
-    assert_eq!(refusal.to_string(), "there is no transformation to take back");
+    assert_eq!(refusal.to_string(), "there is no transformation to undo");
 }
 
 #[test]

@@ -88,7 +88,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "items",
             "lights",
             "motion",
-            "frame",
+            "framing",
             "transform",
             "navigation",
             "placement",
@@ -119,6 +119,7 @@ const ROOMS: &[(&str, &[&str])] = &[
 const GUESTS: &[(&str, &str)] = &[
     ("egui", "app"),
     ("eframe", "app"),
+    ("egui_material_icons", "app"),
     ("rfd", "app"),
     ("tobj", "io"),
     ("image", "io"),

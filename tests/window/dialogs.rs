@@ -145,9 +145,9 @@ fn a_model_is_loaded_by_key_path_and_material() {
     assert_eq!(object.material, MaterialChoice::Preset(PresetId::named("gold").unwrap()));
     assert_eq!(object.placement.depth(), 0);
     assert_eq!(editor.steps(), 1);
-    assert!(editor.shows("can hardly be seen from here"), "a cube of one unit is tiny");
+    assert!(editor.shows("is out of view or too small to see"), "a cube of one unit is tiny");
     editor.click_label("Frame");
-    assert!(!editor.shows("can hardly be seen from here"));
+    assert!(!editor.shows("is out of view or too small to see"));
     assert_eq!(editor.steps(), 2);
     editor.press(Command(Key::Z));
     editor.press(Command(Key::Z));
@@ -209,18 +209,18 @@ fn a_bad_file_is_told_in_one_sentence_with_its_line_and_changes_nothing() {
     let mut editor = Editor::new();
     let before = editor.scene();
     editor.ask(Request::LoadFiles(vec![path]));
-    editor.wait_until(|editor| editor.shows("That did not work"));
+    editor.wait_until(|editor| editor.shows("Something went wrong"));
     assert!(editor.shows("bad.obj:2: "));
     assert!(editor.scene() == before);
     editor.press(Named(Key::Enter));
-    assert!(!editor.shows("That did not work"), "Enter closes it");
+    assert!(!editor.shows("Something went wrong"), "Enter closes it");
 }
 
 #[test]
 fn a_file_that_is_not_there_is_told() {
     let mut editor = Editor::new();
     editor.ask(Request::LoadFiles(vec![PathBuf::from("nowhere.obj")]));
-    editor.wait_until(|editor| editor.shows("That did not work"));
+    editor.wait_until(|editor| editor.shows("Something went wrong"));
     assert!(editor.shows("there is no such file"));
 }
 
@@ -236,7 +236,7 @@ fn what_was_mended_is_told_and_listed_on_a_click() {
     assert!(editor.shows("that the file does not have"), "a sentence for each finding");
     editor.click_label("Close");
     editor.click_label("Frame");
-    assert!(!editor.shows("can hardly be seen from here"), "it is seen now");
+    assert!(!editor.shows("is out of view or too small to see"), "it is seen now");
     assert!(editor.shows("Details"), "what was mended is another matter");
     editor.click_label("Dismiss");
     assert!(editor.state().notices.is_empty());
@@ -362,13 +362,16 @@ fn an_object_whose_faces_are_turned_away_is_told_of_with_a_button_that_draws_bot
     std::fs::write(&file, scene).unwrap();
     let mut editor = Editor::new();
     editor.ask(Request::LoadFiles(vec![file.clone()]));
-    editor.wait_until(|editor| editor.shows("Nothing of square is seen"));
+    editor.wait_until(|editor| editor.shows("Nothing of square is visible"));
     assert!(editor.shows("its only face is turned away"));
-    assert!(!editor.shows("Nothing of behind is seen"), "both sides of an open surface are drawn");
+    assert!(
+        !editor.shows("Nothing of behind is visible"),
+        "both sides of an open surface are drawn"
+    );
     editor.click_label("Draw both sides");
     let scene = editor.scene();
     assert_eq!(scene.objects.get(ObjectId(1)).unwrap().sides, Sides::Two);
-    assert_eq!(editor.steps(), 1, "it can be taken back");
+    assert_eq!(editor.steps(), 1, "it can be undone");
     assert!(editor.state().notices.is_empty());
 }
 
@@ -378,7 +381,7 @@ fn a_scene_that_cannot_be_saved_is_told_and_stays_unsaved() {
     editor.press(Lower(Key::Z));
     editor.press(Command(Key::S));
     editor.type_path(Path::new("/proc/nowhere/x.marraztu"));
-    assert!(editor.shows("That did not work"));
+    assert!(editor.shows("Something went wrong"));
     assert!(!editor.state().history.is_saved());
 }
 

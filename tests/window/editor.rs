@@ -95,7 +95,7 @@ impl Editor {
         self.state().view.clone()
     }
 
-    /// Number of steps that can be taken back.
+    /// Number of steps that can be undone.
     pub(crate) fn steps(&self) -> usize {
         self.state().history.position()
     }

@@ -1,4 +1,4 @@
-//! How an action is pressed on the keyboard.
+//! Key chords: how an action is pressed on the keyboard.
 //!
 //! Letters and digits go by the key, with Shift for the upper case, so that Caps Lock has no say.
 //! Signs go by the text typed, since every layout has them elsewhere.
@@ -16,7 +16,7 @@ pub enum Chord {
     Either(Key),
     /// A key that types nothing.
     Named(Key),
-    /// A sign, by what is typed.
+    /// A sign, by the text typed.
     Text(&'static str),
     /// With Ctrl (Cmd on a Mac).
     Command(Key),
@@ -58,11 +58,10 @@ impl Chord {
     #[must_use]
     pub fn clashes_with(self, other: Self) -> bool {
         use Chord::{Either, Lower, Upper};
-        match (self, other) {
-            (Either(a), Lower(b) | Upper(b) | Either(b)) | (Lower(a) | Upper(a), Either(b)) => {
-                a == b
-            }
-            _ => self == other,
+        if let (Either(a), Lower(b) | Upper(b)) | (Lower(a) | Upper(a), Either(b)) = (self, other) {
+            a == b
+        } else {
+            self == other
         }
     }
 
@@ -84,9 +83,10 @@ impl Chord {
     /// Everything that can be pressed for it.
     #[must_use]
     pub fn names(self) -> Vec<String> {
-        match self {
-            Self::Either(key) => vec![Self::Lower(key).name(), Self::Upper(key).name()],
-            _ => vec![self.name()],
+        if let Self::Either(key) = self {
+            vec![Self::Lower(key).name(), Self::Upper(key).name()]
+        } else {
+            vec![self.name()]
         }
     }
 }

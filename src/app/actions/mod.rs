@@ -1,4 +1,4 @@
-//! What a user can ask for: the table of actions, their keys, and what each means for the scene.
+//! Actions: everything a user can ask for by a key, a menu or a button.
 
 mod chord;
 mod request;

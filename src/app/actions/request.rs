@@ -1,4 +1,4 @@
-//! What panels, menus, keys and the viewport give back: wishes, which only the app fulfils.
+//! Requests: what panels, menus, keys and the viewport return. Only the app answers them.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::lab::error::Measure;
 use crate::lab::report::Budgets;
 use crate::scene::{Command, ItemId, ObjectId, View};
 
-/// Something that is asked for.
+/// A request to the app.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// What stands in the table of actions.
@@ -36,7 +36,7 @@ pub enum Request {
     Select(ItemId),
     /// Selects a polygon of the selected object while polygons are shown one at a time.
     SelectPolygon(u32),
-    /// Goes to where this many steps of the history are done.
+    /// Goes to the point in the history after this number of steps.
     GoTo(usize),
     /// Asks for a name of this item.
     BeginRename(ItemId),
@@ -54,7 +54,7 @@ pub enum Request {
     PutAway(usize),
     /// Takes a gesture back while it lasts, as if it had never begun.
     Abandon(Gesture),
-    /// Says in the status line why something that was asked for is not done.
+    /// Says in the status line why a request was refused.
     Refuse(String),
 }
 
@@ -64,14 +64,14 @@ impl From<Action> for Request {
     }
 }
 
-/// What is asked of the laboratory.
+/// A request to the laboratory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LabRequest {
-    /// Measure what is shown now.
+    /// Measure the picture in the viewport.
     Measure(Thoroughness),
-    /// Give up measuring.
+    /// Cancel measuring.
     Cancel,
-    /// Let this stand for an error.
+    /// Use this error metric.
     Judge(Measure),
     /// Keep to these budgets.
     Budgets(Budgets),
@@ -83,7 +83,7 @@ pub enum LabRequest {
     Attribute([usize; 2]),
     /// Show this beside the scatter.
     Side(Side),
-    /// Show the lesson of this axis, by its key, and the laboratory where it is not shown.
+    /// Show the lesson of this axis, by its key; opens the laboratory if needed.
     Lesson(&'static str),
     /// Open the scene of this lesson.
     ShowLesson(&'static str),

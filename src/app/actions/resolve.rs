@@ -1,4 +1,4 @@
-//! What each action means for the scene as it is now.
+//! Resolves an action to what it means for the scene as it is now.
 //!
 //! Whether an action is available is decided here as well, by resolving it: a disabled button, a
 //! refusal in the status line and the action's effect can never disagree. The matches are
@@ -10,11 +10,11 @@ use super::table::Action;
 use crate::accuracy::{LeaveOut, Settings};
 use crate::app::state::State;
 use crate::base::math::Axis;
-use crate::edit::frame::Side;
+use crate::edit::framing::Side;
 use crate::edit::lights::{APERTURE_STEP, Channel};
 use crate::edit::selection::Selection;
 use crate::edit::transform::Sign;
-use crate::edit::{GesturePhase, Refusal, frame, items, lights, selection, transform};
+use crate::edit::{GesturePhase, Refusal, framing, items, lights, selection, transform};
 use crate::scene::{
     CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
     Panels, Projection, SpotOwner, Subject, Transformation, View,
@@ -37,7 +37,7 @@ pub(crate) enum Intent {
     Panels(Panels),
     /// The window becomes light or dark.
     Theme(ThemePreference),
-    /// A new name is asked for.
+    /// Asks for a new name.
     Rename(ItemId),
     /// One step back in the history.
     Undo,
@@ -90,7 +90,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
     let step = |axis, sign| transform::step(scene, view, axis, sign, phase).map(Intent::Change);
     let color = |channel, by| lights::step_color(scene, view, channel, by).map(Intent::Change);
     let aperture = |by| lights::step_aperture(scene, view, by).map(Intent::Change);
-    let look_from = |side| frame::side(scene, view, side).map(Intent::Change);
+    let look_from = |side| framing::side(scene, view, side).map(Intent::Change);
     let file = |intent| Ok(Intent::File(intent));
     match action {
         Action::New => file(FileIntent::New),
@@ -182,8 +182,8 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
                 other(view.projection, Projection::Perspective, Projection::Orthographic);
         }),
         Action::ToggleObserver => seen(state, |view| selection::toggle_observer(scene, view)),
-        Action::FrameSelection => frame::selection(scene, view).map(Intent::Change),
-        Action::FrameAll => frame::all(scene, view).map(Intent::Change),
+        Action::FrameSelection => framing::selection(scene, view).map(Intent::Change),
+        Action::FrameAll => framing::all(scene, view).map(Intent::Change),
         Action::LookFront => look_from(Side::Front),
         Action::LookRight => look_from(Side::Right),
         Action::LookTop => look_from(Side::Top),
@@ -323,6 +323,9 @@ impl Action {
     #[must_use]
     pub fn is_on(self, state: &State) -> Option<bool> {
         let (scene, view, panels) = (&state.scene, &state.view, &state.panels);
+        if let Some(slot) = self.slot() {
+            return Some(scene.lights.iter().any(|(_, light)| light.slot == slot && light.on));
+        }
         Some(match self {
             Self::SubjectCamera => view.subject == Subject::Camera,
             Self::SubjectObject => view.subject == Subject::Object,
@@ -371,19 +374,6 @@ impl Action {
             Self::ThemeSystem => state.theme == ThemePreference::System,
             Self::ThemeLight => state.theme == ThemePreference::Light,
             Self::ThemeDark => state.theme == ThemePreference::Dark,
-            Self::Light0
-            | Self::Light1
-            | Self::Light2
-            | Self::Light3
-            | Self::Light4
-            | Self::Light5
-            | Self::Light6
-            | Self::Light7
-            | Self::Light8
-            | Self::Light9 => {
-                let slot = self.slot()?;
-                scene.lights.iter().any(|(_, light)| light.slot == slot && light.on)
-            }
             Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
                 return None;
             }
@@ -400,7 +390,11 @@ impl Action {
             Self::LookFront | Self::LookRight | Self::LookTop => return None,
             Self::ApertureUp | Self::ApertureDown | Self::RedUp | Self::RedDown => return None,
             Self::GreenUp | Self::GreenDown | Self::BlueUp | Self::BlueDown => return None,
-            Self::ToPanels => return None,
+            Self::ToPanels | Self::Light0 | Self::Light1 | Self::Light2 | Self::Light3 => {
+                return None;
+            }
+            Self::Light4 | Self::Light5 | Self::Light6 | Self::Light7 => return None,
+            Self::Light8 | Self::Light9 => return None,
         })
     }
 }

@@ -1,6 +1,6 @@
-//! What a user can ask for, in one table.
+//! The table of actions: labels, hints, keys and groups.
 //!
-//! Keys, menus, buttons and the cheat sheet all read [`Action::info`] and give back an [`Action`];
+//! Keys, menus, buttons and the cheat sheet all read [`Action::info`] and return an [`Action`];
 //! none of them changes anything. What an action means for a scene stands in one place too, and
 //! whether it can be done now is asked there.
 
@@ -18,7 +18,7 @@ pub struct ActionInfo {
     pub hint: &'static str,
     /// Every way to press it; the first is the one that is shown.
     pub keys: &'static [Chord],
-    /// Where it stands in menus and in the cheat sheet.
+    /// Its group in menus and in the cheat sheet.
     pub group: Group,
     /// Whether a held key asks for it again and again.
     pub repeats: bool,
@@ -29,7 +29,7 @@ pub struct ActionInfo {
 pub enum Group {
     /// Files and the program itself.
     File,
-    /// Changes to what is selected, and taking them back.
+    /// Changes to the selection, undo and redo.
     Edit,
     /// New things.
     Add,
@@ -37,7 +37,7 @@ pub enum Group {
     Select,
     /// Moving, turning, scaling.
     Transform,
-    /// What is drawn, and how.
+    /// What is shown, and how.
     Show,
     /// Who looks, and from where.
     Camera,
@@ -353,11 +353,11 @@ mod tests {
     #[test]
     fn every_hint_is_a_sentence_and_no_two_labels_are_alike_in_a_group() {
         for (i, action) in Action::ALL.iter().enumerate() {
-            let look = action.info();
-            assert!(look.hint.ends_with('.'), "{action:?}");
+            let info = action.info();
+            assert!(info.hint.ends_with('.'), "{action:?}");
             for other in &Action::ALL[i + 1..] {
-                let same = other.info().label == look.label;
-                assert!(!same, "{action:?} and {other:?} are both called {}", look.label);
+                let same = other.info().label == info.label;
+                assert!(!same, "{action:?} and {other:?} are both called {}", info.label);
             }
         }
     }

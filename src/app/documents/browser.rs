@@ -1,4 +1,4 @@
-//! A plain choice of a file, for systems that have no dialog of their own to offer.
+//! A simple file browser for systems without a file dialog.
 //!
 //! A path can be typed or pasted as a whole; the list below follows it.
 

@@ -1,4 +1,4 @@
-//! What stands over the window and wants an answer: files, materials, unsaved work, faults.
+//! The dialogs over the window: files, materials, unsaved changes, errors.
 //!
 //! Files are asked for with the system's own dialog, on a thread of its own. A system that has none
 //! answers at once, as no hand could; then a plain choice of our own stands in.
@@ -17,7 +17,7 @@ use crate::scene::ObjectId;
 /// A system's dialog that is gone within this time was never there.
 const AT_ONCE: Duration = Duration::from_millis(400);
 
-/// What a file is asked for.
+/// The purpose of a file dialog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
     /// Models to be loaded.
@@ -32,11 +32,11 @@ pub(crate) enum Wanted {
     Texture(ObjectId),
     /// A texture for the model whose material is being chosen.
     TextureOfModel,
-    /// Where a model of a scene is now that is not where the scene says.
+    /// The new location of a missing model of a scene.
     Missing(PathBuf),
 }
 
-/// What is done once the scene is saved, or given up.
+/// What to do once the scene is saved or discarded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum After {
     Quit,
@@ -66,9 +66,9 @@ pub(crate) enum Answer {
 /// All dialogs that are open.
 #[derive(Debug, Default)]
 pub(crate) struct Dialogs {
-    /// Whether the system may be asked for its own.
+    /// Whether to use the system's file dialogs.
     pub(crate) native: bool,
-    /// Where the last file was.
+    /// The folder of the last file.
     folder: PathBuf,
     system: Option<SystemDialog>,
     /// The last one is on top.
@@ -79,7 +79,7 @@ pub(crate) struct Dialogs {
 #[derive(Debug)]
 struct SystemDialog {
     wanted: Wanted,
-    /// What is offered as the name.
+    /// The suggested name.
     name: String,
     begun: Instant,
     task: Task<Option<Vec<PathBuf>>>,
@@ -119,12 +119,10 @@ impl Dialogs {
 
     /// Gives the model whose material is being chosen a texture.
     pub(crate) fn set_texture(&mut self, path: PathBuf) {
-        let materials = self.open.iter_mut().rev().filter_map(|dialog| match dialog {
-            Dialog::Material(material) => Some(material),
-            _ => None,
-        });
-        if let Some(material) = materials.into_iter().next() {
-            material.set_texture(path);
+        for dialog in self.open.iter_mut().rev() {
+            if let Dialog::Material(material) = dialog {
+                return material.set_texture(path);
+            }
         }
     }
 
@@ -164,7 +162,7 @@ impl Dialogs {
         self.browse(wanted, name);
     }
 
-    /// Shows what is open. Gives what was answered.
+    /// Shows the open dialogs. Returns the answer, if any.
     pub(crate) fn ui(&mut self, ctx: &Context) -> Option<Answer> {
         if let Some(answer) = self.hear_system() {
             return Some(answer);
@@ -188,28 +186,37 @@ impl Dialogs {
     }
 
     fn close(&mut self, dialog: Dialog, end: End) -> Option<Answer> {
-        match (dialog, end) {
-            (Dialog::Browser(wanted, _), End::File(path)) => Some(self.chosen(wanted, vec![path])),
-            (Dialog::Browser(wanted, _), _) => Some(Answer::NoFile(wanted)),
-            (Dialog::Unsaved(after), End::Save) => Some(Answer::Save(after)),
-            (Dialog::Unsaved(after), End::Discard) => Some(Answer::Discard(after)),
-            (Dialog::Material(dialog), End::Material(choices)) => {
-                Some(Answer::Material(dialog, choices))
-            }
-            _ => None,
+        match dialog {
+            Dialog::Browser(wanted, _) => Some(match end {
+                End::File(path) => self.chosen(wanted, vec![path]),
+                End::Cancelled | End::Save | End::Discard | End::Material(_) | End::Asked => {
+                    Answer::NoFile(wanted)
+                }
+            }),
+            Dialog::Unsaved(after) => match end {
+                End::Save => Some(Answer::Save(after)),
+                End::Discard => Some(Answer::Discard(after)),
+                End::Cancelled | End::File(_) | End::Material(_) | End::Asked => None,
+            },
+            Dialog::Material(dialog) => match end {
+                End::Material(choices) => Some(Answer::Material(dialog, choices)),
+                End::Cancelled | End::File(_) | End::Save | End::Discard | End::Asked => None,
+            },
+            Dialog::Fault(_) | Dialog::Details(..) => None,
         }
     }
 
     fn hear_system(&mut self) -> Option<Answer> {
-        let outcome = self.system.as_ref()?.task.outcome();
-        if matches!(outcome, Outcome::Running) {
-            return None;
-        }
+        let outcome = match self.system.as_ref()?.task.outcome() {
+            Outcome::Running => return None,
+            Outcome::Done(paths) => Some(paths),
+            Outcome::Lost => None,
+        };
         let SystemDialog { wanted, name, begun, .. } = self.system.take()?;
         match outcome {
-            Outcome::Done(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
-            Outcome::Done(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
-            _ => {
+            Some(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
+            Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
+            Some(_) | None => {
                 // The system has none: it is not asked again.
                 self.native = false;
                 self.browse(wanted, &name);
@@ -282,7 +289,7 @@ impl Dialog {
             }),
             Self::Fault(sentence) => {
                 ui.set_max_width(420.0);
-                ui.heading("That did not work");
+                ui.heading("Something went wrong");
                 ui.label(sentence.as_str());
                 ui.add_space(4.0);
                 close_ui(ui)
@@ -312,12 +319,12 @@ fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
     ui.set_max_width(420.0);
     ui.heading("Save the scene?");
     ui.label(match after {
-        After::Quit => "It has changes that are not saved. Without saving they are lost.",
-        After::New => "A new scene replaces this one, whose changes are not saved.",
+        After::Quit => "It has unsaved changes, which are lost unless you save them.",
+        After::New => "A new scene will replace this one, which has unsaved changes.",
         After::Lesson(_) => {
-            "The small scene of the lesson replaces this one, whose changes are not saved."
+            "The scene of the lesson will replace this one, which has unsaved changes."
         }
-        After::Open(_) => "Another scene replaces this one, whose changes are not saved.",
+        After::Open(_) => "Another scene will replace this one, which has unsaved changes.",
     });
     ui.add_space(4.0);
     let buttons = ui.horizontal(|ui| {

@@ -33,7 +33,7 @@ impl std::fmt::Debug for Queued {
 /// A file that was read.
 #[derive(Debug)]
 pub(crate) enum Fetched {
-    /// A model; the material is asked for where it is not known.
+    /// A model; asks for the material if it is not known.
     Model(Box<FetchedModel>),
     /// A texture for an object.
     Texture(ObjectId, Result<(Shared<Texture>, Vec<Finding>), LoadError>),

@@ -1,4 +1,4 @@
-//! Which material a new thing gets, and for a model from a file, how the file is read.
+//! The dialog that asks for the material of a new item, and how its file is read.
 
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ use crate::scene::{
 /// The choice of a material.
 #[derive(Debug)]
 pub(crate) struct MaterialDialog {
-    /// The model that was loaded, with its file; `None` where a camera gets the material.
+    /// The model that was loaded, with its file; `None` if a camera gets the material.
     pub(crate) loaded: Option<(PathBuf, Loaded)>,
     choices: MaterialChoices,
     own: Material,
@@ -26,7 +26,7 @@ pub(crate) struct MaterialDialog {
     crease: f64,
 }
 
-/// What is chosen.
+/// The choices made.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MaterialChoices {
     pub(crate) material: MaterialChoice,
@@ -47,7 +47,7 @@ impl MaterialDialog {
         Self::new(None, MaterialChoice::Preset(PresetId::OBSIDIAN), LoadOptions::default())
     }
 
-    /// For a model that was loaded. The file's own material is chosen beforehand where it has one.
+    /// For a model that was loaded. The file's own material is preselected if it has one.
     pub(crate) fn of_model(path: PathBuf, loaded: Loaded) -> Self {
         let material = own_or_silver(&loaded);
         let options = loaded.model.options;
@@ -148,7 +148,7 @@ impl MaterialDialog {
         let mut end = None;
         egui::CollapsingHeader::new("How the file is read").show(ui, |ui| {
             ui.horizontal(|ui| {
-                ui.label("Up is");
+                ui.label("Up axis");
                 for up in UpAxis::ALL {
                     ui.selectable_value(&mut options.up, up, up.word().to_uppercase());
                 }
@@ -160,13 +160,13 @@ impl MaterialDialog {
                 options.scale = Scale::new(self.scale).unwrap_or_default();
             });
             let mut turned = options.winding == Winding::Turned;
-            ui.checkbox(&mut turned, "Faces are inside out: turn them");
+            ui.checkbox(&mut turned, "Flip faces (they are inside out)");
             options.winding = if turned { Winding::Turned } else { Winding::Kept };
             ui.horizontal(|ui| {
                 let label = ui.label("Crease angle");
                 let value = egui::DragValue::new(&mut self.crease).speed(0.5).range(0.0..=180.0);
                 let field = ui.add_enabled(idle.is_none(), value.suffix(" deg"));
-                let hint = "Edges between faces that differ by more degrees are sharp";
+                let hint = "Edges are sharp if their faces differ by more than this angle";
                 field
                     .labelled_by(label.id)
                     .on_hover_text(hint)
@@ -188,7 +188,7 @@ impl MaterialDialog {
     }
 }
 
-/// The file's own material where it has one, else silver.
+/// The file's own material if it has one, otherwise silver.
 pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     if loaded.model.materials.is_empty() {
         MaterialChoice::Preset(PresetId::SILVER)
@@ -205,7 +205,7 @@ pub(crate) fn summary(loaded: &Loaded) -> String {
     match loaded.findings.as_slice() {
         [] => counts,
         [one] => format!("{counts}; {one}"),
-        more => format!("{counts}; {} things to know", more.len()),
+        more => format!("{counts}; {} findings", more.len()),
     }
 }
 

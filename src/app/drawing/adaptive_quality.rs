@@ -1,7 +1,7 @@
-//! How the picture keeps up with the hand.
+//! Adaptive quality: how the picture keeps up with the user.
 //!
-//! While something moves and the pictures come too late, each is drawn with less; as soon as it is
-//! still, with all. Nothing here reads a clock: the times come from outside.
+//! While something moves and frames take too long, they are drawn at reduced quality; as soon as
+//! everything is still, at full quality. No code here reads a clock: times are passed in.
 //!
 //! When frames are given up for newer ones: only at full accuracy, only where a frame takes longer
 //! than the budget, and never two in a row. Then a slow frame is never in the way of what is done
@@ -13,16 +13,16 @@ use std::time::Duration;
 use crate::accuracy::{Filter, LightAt, Settings};
 use crate::base::image::Size;
 
-/// What a frame may take before the picture lags behind the hand: thirty in a second.
+/// The time a frame may take before the picture lags behind the user: 30 frames a second.
 const BUDGET: Duration = Duration::from_millis(33);
 
-/// So many seconds after its last change, and after the picture that shows it, what moved is still.
+/// Seconds after the last change and the picture that shows it until a moving scene is still.
 const STILL: f64 = 0.15;
 
-/// A full frame that takes so many times longer or shorter than before is of another scene.
+/// A full frame that differs in time from the one before by this factor is of another scene.
 const ANOTHER_SCENE: f64 = 1.5;
 
-/// What a picture does without, to be drawn sooner.
+/// What is reduced in a picture so that it is drawn sooner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reduction {
     /// Light at vertices rather than at pixels.
@@ -34,7 +34,7 @@ pub struct Reduction {
 }
 
 impl Reduction {
-    /// With all.
+    /// Full quality.
     pub const NONE: Self = Self { vertex_light: false, nearest_texels: false, half_size: false };
 
     /// What is tried, one after the other: the first that is quick enough is the one. Half the size
@@ -59,7 +59,7 @@ impl Reduction {
         (Settings { light, filter, ..settings }, size)
     }
 
-    /// In words: "light per vertex, half size". Empty where it does without nothing.
+    /// In words: "light per vertex, half size". Empty at full quality.
     #[must_use]
     pub fn words(self) -> String {
         let words = [
@@ -72,7 +72,7 @@ impl Reduction {
     }
 }
 
-/// What the picture could do without: no more than it has.
+/// What can be reduced in this picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Applicable {
     pub(crate) settings: Settings,
@@ -81,7 +81,7 @@ pub(crate) struct Applicable {
 }
 
 impl Applicable {
-    /// Of a reduction what there is to save.
+    /// The part of a reduction that applies.
     fn limited(self, reduction: Reduction) -> Reduction {
         let Settings { light, filter, .. } = self.settings;
         Reduction {
@@ -93,12 +93,12 @@ impl Applicable {
     }
 }
 
-/// How long pictures have taken.
+/// Chooses the reduction from how long frames took.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct AdaptiveQuality {
-    /// The last frame of each reduction that was drawn as a whole.
+    /// The time of the last whole frame at each reduction.
     whole: [Option<Duration>; Reduction::ALL.len()],
-    /// The last frame with all of which only a part was drawn again.
+    /// The time of the last frame at full quality that was redrawn in part.
     part: Option<Duration>,
     last: Reduction,
 }
@@ -127,7 +127,7 @@ impl AdaptiveQuality {
         quickest.0
     }
 
-    /// What a frame will take, where that is known.
+    /// The expected time of a frame, if known.
     pub(crate) fn expected(&self, reduction: Reduction, share: f64) -> Option<Duration> {
         let whole = self.whole[place(reduction)];
         if reduction != Reduction::NONE || share >= 1.0 {
@@ -136,7 +136,7 @@ impl AdaptiveQuality {
         self.part.or(whole.map(|whole| whole.mul_f64(share)))
     }
 
-    /// Notes what a frame took.
+    /// Records the time of a frame.
     pub(crate) fn record(&mut self, reduction: Reduction, share: f64, time: Duration) {
         let again = std::mem::replace(&mut self.last, reduction) == reduction;
         if reduction != Reduction::NONE {
@@ -157,14 +157,14 @@ impl AdaptiveQuality {
         }
     }
 
-    /// Notes that a frame with all was given up after so long: it takes longer than that.
+    /// Records that a frame at full quality was cancelled after this time: it takes longer.
     pub(crate) fn record_given_up(&mut self, share: f64, after: Duration) {
         let known = if share < 1.0 { &mut self.part } else { &mut self.whole[0] };
         *known = (*known).max(Some(after));
     }
 }
 
-/// Where the times of a reduction stand. Those that differ in what the scene has not are one.
+/// The index of the times of a reduction; those that differ only in what does not apply share one.
 fn place(reduction: Reduction) -> usize {
     Reduction::ALL.iter().position(|other| *other == reduction).unwrap_or(match reduction {
         Reduction { half_size: true, .. } => Reduction::ALL.len() - 1,
@@ -172,25 +172,25 @@ fn place(reduction: Reduction) -> usize {
     })
 }
 
-/// A frame on its way.
+/// A frame that is being drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Attempt {
     pub(crate) reduction: Reduction,
-    /// What it was expected to take, where that is known.
+    /// Its expected time, if known.
     pub(crate) expected: Option<Duration>,
-    /// Whether the frame before it was given up.
+    /// Whether the frame before it was cancelled.
     pub(crate) second: bool,
 }
 
 impl Attempt {
-    /// Whether it is given up for a newer one, after so long.
+    /// Whether it is cancelled for a newer frame after this time.
     pub(crate) fn gives_way(&self, elapsed: Duration) -> bool {
         let time = self.expected.map_or(elapsed, |expected| expected.max(elapsed));
         self.reduction == Reduction::NONE && !self.second && time > BUDGET
     }
 }
 
-/// What is noticed of what is shown.
+/// What happened since the last frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Happening {
     /// It is another than the time before.
@@ -201,7 +201,7 @@ pub(crate) struct Happening {
     pub(crate) drawing: bool,
 }
 
-/// Whether what is shown is on the move.
+/// Whether the picture is changing.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Motion {
     /// When it changed last, or was still being drawn, in seconds.
@@ -226,7 +226,7 @@ impl Motion {
         self.moving
     }
 
-    /// In how many seconds it is still unless it changes again; `None` where it is.
+    /// The seconds until it is still unless it changes again; `None` if it is still.
     pub(crate) fn rest(&self, now: f64) -> Option<f64> {
         let changed = self.changed.filter(|_| self.moving)?;
         Some((changed + STILL - now).max(0.0))

@@ -1,9 +1,9 @@
-//! Where the visible part of an item ends in a picture.
+//! The border of the visible part of an item in a picture.
 
 use crate::base::image::Size;
 use crate::scene::ItemId;
 
-/// Where an item's visible part ends in a picture.
+/// The border of the visible part of an item in a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Border {
     pub(crate) item: ItemId,

@@ -1,4 +1,4 @@
-//! Draws the pictures that the viewport shows, and knows what is on them.
+//! Draws the pictures of the viewport, and answers what is seen in them.
 //!
 //! A picture is drawn with as much as the hand leaves time for (see
 //! [`pace`](super::adaptive_quality)), and only what has changed of the one before is drawn again.
@@ -31,7 +31,7 @@ pub(crate) struct Drawn {
     pub(crate) changes: Changes,
 }
 
-/// What is asked for while a frame is drawn.
+/// What is wanted while a frame is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
     /// Still this frame.
@@ -51,7 +51,7 @@ pub(crate) struct ViewportRenderer {
     quality: AdaptiveQuality,
     /// What the last finished picture does without; `None` before the first.
     shown: Option<Reduction>,
-    /// Whether the last frame was given up.
+    /// Whether the last frame was cancelled.
     gave_up: bool,
     /// What was said last of what the picture is made of.
     explained: Option<Arc<Explained>>,
@@ -140,7 +140,7 @@ impl ViewportRenderer {
         self.explained.clone()
     }
 
-    /// What is seen at a pixel of a picture with all.
+    /// The hit at a pixel of the picture at full size.
     pub(crate) fn hit(&mut self, [x, y]: [usize; 2]) -> Option<Hit> {
         let [x, y] = if self.shown?.half_size { [x / 2, y / 2] } else { [x, y] };
         self.renderer.hit(x, y)
@@ -167,7 +167,7 @@ fn applicable(wanted: &Snapshot) -> Applicable {
 }
 
 impl ViewportRenderer {
-    /// Where the visible part of an item ends.
+    /// The border of the visible part of an item.
     pub(crate) fn border(&mut self, item: ItemId) -> Option<Border> {
         self.shown?;
         let [width, height] = self.images[1].size;

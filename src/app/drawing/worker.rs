@@ -1,4 +1,4 @@
-//! Draws on a thread of its own, so that the window answers however long a picture takes.
+//! The thread that draws, so that the window stays responsive however long a picture takes.
 //!
 //! The newest wish is drawn and older ones are forgotten, also one that is being drawn where it
 //! keeps the newer one waiting (see [`adaptive_quality`](super::adaptive_quality)). What is seen at
@@ -19,7 +19,7 @@ use crate::lab::cost::Explained;
 use crate::render::Hit;
 use crate::scene::ItemId;
 
-/// A question what is seen at a pixel, and what it is asked for.
+/// A pick: which item is seen at a pixel, and the purpose of the question.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pick<P> {
     pub(crate) at: [usize; 2],
@@ -48,7 +48,7 @@ pub(crate) struct Worker<P> {
 struct Shared<P> {
     desk: Mutex<Desk<P>>,
     changed: Condvar,
-    /// Whether something newer is wanted than what is being drawn: what is asked between tiles.
+    /// Whether a newer picture is wanted; asked between tiles.
     newer: AtomicBool,
     /// Whether nothing is wanted any more.
     over: AtomicBool,
@@ -105,13 +105,13 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.last.as_ref()
     }
 
-    /// Asks what is seen at a pixel of the picture that was drawn last.
+    /// Picks a pixel of the last picture.
     pub(crate) fn pick(&self, pick: Pick<P>) {
         self.shared.lock().picks.push_back(pick);
         self.shared.changed.notify_all();
     }
 
-    /// Asks where the visible part of an item ends in the picture that was drawn last.
+    /// Asks for the border of an item in the last picture.
     pub(crate) fn border(&self, item: ItemId) {
         self.shared.lock().border = Some(item);
         self.shared.changed.notify_all();
@@ -209,7 +209,7 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
                 continue;
             }
         }
-        // After the picture, which nobody should wait for because of it.
+        // After the picture, so that it is not delayed.
         if let Ok(Some(explained)) = catch_unwind(AssertUnwindSafe(|| painter.explain(&wanted))) {
             shared.lock().news.explained = Some(explained);
             wake();

@@ -1,4 +1,4 @@
-//! What becomes of chosen files: models, textures and pictures.
+//! Loads models and textures, and saves pictures.
 //!
 //! Loading goes on in threads of its own; the scene is changed when a file has been read whole, so
 //! that a bad file leaves it as it was.
@@ -177,7 +177,7 @@ impl App {
             match Task::start(ctx, label, work) {
                 Ok(task) => self.loading.push(Loading { task, asks }),
                 Err(error) => {
-                    self.dialogs.tell_fault(format!("There is no thread to load with: {error}."));
+                    self.dialogs.tell_fault(format!("Cannot start a thread to load: {error}."));
                 }
             }
         }
@@ -185,23 +185,24 @@ impl App {
 
     /// Takes what was read meanwhile.
     pub(crate) fn hear_loading(&mut self, ctx: &Context) {
-        // In the order in which they were asked for, however long each takes.
+        // In the order of the requests, however long each file takes.
         while let Some(loading) = self.loading.first() {
-            // One question at a time; what is read waits for its own.
+            // One question at a time: further models wait for theirs.
             if loading.asks && self.dialogs.asks_material() {
                 return;
             }
-            let outcome = loading.task.outcome();
-            if matches!(outcome, Outcome::Running) {
-                return;
-            }
+            let fetched = match loading.task.outcome() {
+                Outcome::Running => return,
+                Outcome::Done(fetched) => Some(fetched),
+                Outcome::Lost => None,
+            };
             let Loading { task, .. } = self.loading.remove(0);
             self.begin_queued(ctx);
             ctx.request_repaint();
-            match outcome {
-                Outcome::Done(fetched) => self.take_fetched(ctx, fetched),
-                _ => self.dialogs.tell_fault(format!(
-                    "{} failed by a fault of this program; nothing has changed.",
+            match fetched {
+                Some(fetched) => self.take_fetched(ctx, fetched),
+                None => self.dialogs.tell_fault(format!(
+                    "{} failed because of a bug in the program; nothing has changed.",
                     task.label
                 )),
             }
@@ -279,7 +280,7 @@ impl App {
             self.state.notices.push(Notice { text, details, offer: None });
         }
         if unseen {
-            let text = format!("{name} can hardly be seen from here");
+            let text = format!("{name} is out of view or too small to see");
             let offer = Some(Offer::Frame(id));
             self.state.notices.push(Notice { text, details: Vec::new(), offer });
         } else {
@@ -289,7 +290,7 @@ impl App {
 
     fn save_picture(&mut self, path: &Path) {
         let Some(picture) = self.picture() else {
-            self.refuse("there is no picture yet".to_owned());
+            self.refuse("no picture has been drawn yet".to_owned());
             return;
         };
         match io::save_picture(path, &picture) {
@@ -308,7 +309,7 @@ impl App {
         Some(Renderer::default().render(&plan).clone())
     }
 
-    /// What was to be done once the scene is saved, or given up.
+    /// Does what the user asked for, now that the scene is saved or discarded.
     pub(crate) fn after(&mut self, ctx: &Context, after: After) {
         match after {
             After::Quit => self.leave(ctx),
@@ -331,7 +332,7 @@ impl App {
     }
 }
 
-/// The file's own material only where it has one.
+/// The file's own material if it has one, otherwise silver.
 fn settled(material: MaterialChoice, loaded: &Loaded) -> MaterialChoice {
     if material == MaterialChoice::File { own_or_silver(loaded) } else { material }
 }

@@ -1,4 +1,4 @@
-//! The laboratory in the window: what it knows, and the thread that finds it out.
+//! Answers requests to the laboratory, and runs its measurements on threads of their own.
 //!
 //! Measuring has a thread of its own, and so has the comparison with the exact picture; the window
 //! only asks how far they are. While it is measured, the window is drawn at most four times a
@@ -35,13 +35,13 @@ pub(crate) struct Work {
     /// What there is while it is measured.
     so_far: Arc<Mutex<Option<Findings>>>,
     blame: Option<Task<Option<Explained>>>,
-    /// What measures again what is measured.
+    /// The command that repeats the measurement.
     command: String,
     /// When the window was drawn last.
     drawn_at: Option<Instant>,
 }
 
-/// A pixel, and what is seen there; `None` for the background.
+/// An attribution of the error at a pixel, with the item seen there; `None` for the background.
 type Explained = (Attribution, Option<String>);
 
 /// While it is measured, the window is drawn no sooner than so long after the last time, and so
@@ -134,14 +134,14 @@ impl App {
         }
     }
 
-    /// Begins to measure what is shown.
+    /// Starts to measure the picture in the viewport.
     fn sweep(&mut self, ctx: &Context, thoroughness: Thoroughness) {
         let Some(size) = self.viewport.size().filter(|_| self.lab.sweep.is_none()) else { return };
         let State { scene, view, settings, .. } = &self.state;
         let shot = Shot::new(scene, view, settings, size);
         let measured = Some((scene.clone(), view.clone(), size));
         let question = Question { current: *settings, axes: all_axes(), thoroughness };
-        // One that was given up may still tell something: it has a cell of its own.
+        // A cancelled sweep may still report findings: it has a cell of its own.
         self.lab.so_far = Arc::default();
         let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
         let mut studio = Studio::new(shot);
@@ -161,11 +161,11 @@ impl App {
                 lab.measured = measured;
                 self.lab.command = command;
             }
-            Err(error) => self.refuse(format!("no thread to measure with: {error}")),
+            Err(error) => self.refuse(format!("cannot start a thread to measure: {error}")),
         }
     }
 
-    /// What is measured and explained is of a scene that is no longer there.
+    /// Cancels everything that is measured for a scene that is gone.
     pub(crate) fn end_measuring(&mut self) {
         if let Some(task) = self.lab.sweep.take() {
             task.progress.cancel();
@@ -189,7 +189,7 @@ impl App {
         };
         match Task::start(ctx, "Explaining a pixel".to_owned(), work) {
             Ok(task) => self.lab.blame = Some(task),
-            Err(error) => self.refuse(format!("no thread to draw with: {error}")),
+            Err(error) => self.refuse(format!("cannot start a thread to draw: {error}")),
         }
     }
 
@@ -211,7 +211,7 @@ impl App {
             }
             Outcome::Done(Err(why)) => self.state.lab.failed = Some(why.to_string()),
             Outcome::Lost => {
-                self.state.lab.failed = Some("this is a fault of the program".to_owned());
+                self.state.lab.failed = Some("this is a bug in the program".to_owned());
             }
         }
         self.lab.sweep = None;
@@ -229,7 +229,7 @@ impl App {
                 self.state.lab.attribution = Some(lines);
             }
             Outcome::Done(None) | Outcome::Lost => {
-                self.refuse("this pixel could not be explained".to_owned());
+                self.refuse("the error of this pixel could not be attributed".to_owned());
             }
         }
         self.lab.blame = None;
@@ -247,7 +247,7 @@ impl App {
         });
     }
 
-    /// Brings what is told in line with what the user wants to know.
+    /// Updates the report to the chosen error metric and budgets.
     fn tell_report(&mut self) {
         let lab = &mut self.state.lab;
         if let Some(report) = &mut lab.report {

@@ -1,4 +1,4 @@
-//! What effects cost in time, measured on a thread of its own while the window answers.
+//! Measures the cost of effects on a thread of its own, so that the window stays responsive.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -29,7 +29,7 @@ impl Drop for Measuring {
 }
 
 impl App {
-    /// Begins to measure what the effects of the picture cost, or gives that up where it goes on.
+    /// Starts to measure the cost of each effect, or cancels a measurement in progress.
     pub(crate) fn measure(&mut self, ctx: &Context) {
         self.state.panels.plan = true;
         if let Some(measuring) = &self.measuring {
@@ -49,28 +49,30 @@ impl App {
                 self.state.plan.measuring = true;
                 self.measuring = Some(Measuring { task, of });
             }
-            Err(error) => self.refuse(format!("no thread to measure with: {error}")),
+            Err(error) => self.refuse(format!("cannot start a thread to measure: {error}")),
         }
     }
 
     /// Takes what was measured meanwhile.
     pub(crate) fn hear_measuring(&mut self) {
         let Some(Measuring { task, .. }) = &self.measuring else { return };
-        let (outcome, cancelled) = (task.outcome(), task.progress.is_cancelled());
-        if matches!(outcome, Outcome::Running) {
-            return;
-        }
+        let cancelled = task.progress.is_cancelled();
+        let costs = match task.outcome() {
+            Outcome::Running => return,
+            Outcome::Done(costs) => Some(costs),
+            Outcome::Lost => None,
+        };
         self.state.plan.measuring = false;
         let Some(of) = self.measuring.take().map(|measuring| measuring.of.clone()) else { return };
-        match outcome {
-            Outcome::Done(_) if cancelled => {}
-            Outcome::Done(costs) => {
+        match costs {
+            Some(_) if cancelled => {}
+            Some(costs) => {
                 let Snapshot { scene, view, settings, .. } = of;
                 let measured = Measured { costs, scene, view, settings };
                 self.state.plan.costs = Some(Arc::new(measured));
             }
-            _ => self
-                .refuse("the effects could not be measured: this is a fault of the program".into()),
+            None => self
+                .refuse("the effects could not be measured: this is a bug in the program".into()),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The editor: it shows everything, and at the end of the frame does what was asked for.
+//! The editor: shows everything, and answers all requests at the end of the frame.
 //!
 //! [`App::perform`] alone makes of an action a command or another view, and [`App::change`] alone
 //! writes the scene.
@@ -43,7 +43,7 @@ pub struct App {
     pub(crate) searches: Vec<Search>,
     /// Files that are read after these.
     pub(crate) queued: VecDeque<Queued>,
-    /// A scene whose models are not where it says.
+    /// A scene that waits for the user to locate its missing models.
     pub(crate) waiting: Option<Waiting>,
     pub(crate) viewport: Viewport,
     pub(crate) lab: Work,
@@ -53,7 +53,7 @@ pub struct App {
     pub(crate) measuring: Option<Measuring>,
     /// It was decided to leave: nothing more is asked.
     leaving: bool,
-    /// Whether what is shown is on the move.
+    /// Whether the picture is changing.
     motion: Motion,
     /// When the last frame was shown in which something moved by itself.
     moved_at: Option<f64>,
@@ -89,13 +89,13 @@ impl App {
         }
     }
 
-    /// What is edited and shown.
+    /// The scene being edited, and everything shown about it.
     #[must_use]
     pub const fn state(&self) -> &State {
         &self.state
     }
 
-    /// Files are asked for with the system's own dialogs, where it has any.
+    /// Uses the system's file dialogs, if it has any.
     pub(crate) const fn use_system_dialogs(&mut self) {
         self.dialogs.native = true;
     }
@@ -144,7 +144,7 @@ impl App {
         self.name_window(&ctx);
     }
 
-    /// Waits until the picture of what is edited now is drawn, and everything asked of it answered.
+    /// Waits until the picture of the current scene is drawn and all its picks are answered.
     /// The next frame shows it.
     pub fn wait_for_picture(&self) {
         if let Some(worker) = &self.worker {
@@ -167,7 +167,7 @@ impl App {
             };
             match Worker::start(wake) {
                 Ok(worker) => self.worker = Some(worker),
-                Err(error) => self.refuse(format!("no thread to draw with: {error}")),
+                Err(error) => self.refuse(format!("cannot start a thread to draw: {error}")),
             }
         }
         if let Some(worker) = &self.worker {
@@ -185,9 +185,7 @@ impl App {
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, requests);
             if failed {
-                self.refuse(
-                    "the picture could not be drawn: this is a fault of the program".into(),
-                );
+                self.refuse("the picture could not be drawn: this is a bug in the program".into());
             }
         }
         self.tick(ctx);
@@ -280,8 +278,8 @@ impl eframe::App for App {
     }
 }
 
-/// After so many frames that failed one after the other the program gives up.
+/// The number of consecutive failed frames after which the program gives up.
 const MOST_FAULTS: u32 = 10;
 
-const FAULT: &str = "This is a fault of the program. What you asked for last may not have been \
-    done; everything else is as it was. It is wise to save the scene now.";
+const FAULT: &str = "This is a bug in the program. Your last action may not have been done; \
+    everything else is unchanged. Save the scene now.";

@@ -16,7 +16,7 @@ use crate::edit::{Gesture, items};
 use crate::scene::{Command, Subject, View};
 
 impl App {
-    /// A key. Esc puts away what is open before it leaves.
+    /// Performs the action of a key. Esc first closes whatever is open.
     pub(crate) fn press(&mut self, ctx: &Context, press: Press) {
         if press.chord == Chord::Named(Key::Escape) {
             let mut requests = Vec::new();

@@ -1,4 +1,4 @@
-//! Scenes, to and from the disk.
+//! Opens and saves scenes.
 //!
 //! A scene whose models are not where it says is opened all the same once the user has shown where
 //! they are; until then the present scene stays.
@@ -18,7 +18,7 @@ use crate::io::{self, LoadError, Opened, SCENE_ENDING, SceneFileError};
 use crate::scene::View;
 
 impl App {
-    /// Saves the scene, to its file or to one that is asked for; then does what was to be done.
+    /// Saves the scene to its file, or asks for a file; then does `after`.
     pub(crate) fn save(&mut self, ctx: &Context, after: Option<After>) {
         match self.state.path.clone() {
             Some(path) => self.save_to(ctx, path, after),
@@ -52,7 +52,7 @@ impl App {
         }
     }
 
-    /// Opens a scene in place of this one. What is unsaved has been asked about.
+    /// Opens a scene instead of this one. Unsaved changes have been asked about.
     pub(crate) fn open_scene(&mut self, ctx: &Context, path: PathBuf) {
         self.read_scene(ctx, path, BTreeMap::new());
     }
@@ -103,7 +103,7 @@ impl App {
         self.dialogs.ask_file(ctx, Wanted::Missing(first), &name);
     }
 
-    /// The user has shown where a missing model is.
+    /// Opens the waiting scene with a missing model found at `path`.
     pub(crate) fn found_missing(&mut self, ctx: &Context, old: PathBuf, path: PathBuf) {
         if let Some(Waiting { path: scene, mut relocated }) = self.waiting.take() {
             relocated.insert(old, path);
@@ -111,11 +111,11 @@ impl App {
         }
     }
 
-    /// The user does not know where a missing model is: the present scene stays.
+    /// Gives up opening the waiting scene: the current scene stays.
     pub(crate) fn give_up_missing(&mut self, old: &Path) {
         self.waiting = None;
         self.dialogs.tell_fault(format!(
-            "The scene was not opened: {} is missing, which it is made of.",
+            "The scene was not opened: its model {} is missing.",
             old.display()
         ));
     }
@@ -127,7 +127,7 @@ impl App {
         selection::settle(&state.scene, &mut state.view);
         state.tell(Some(format!("Opened {}", path.display())));
         if !findings.is_empty() {
-            let text = format!("{}: {} things to know", file_name(&path), findings.len());
+            let text = format!("{}: {} findings", file_name(&path), findings.len());
             let details = findings.iter().map(ToString::to_string).collect();
             state.notices.push(Notice { text, details, offer: None });
         }

@@ -1,4 +1,4 @@
-//! Says when nothing is seen of an object that a file has brought, and why.
+//! Reports loaded objects of which nothing is visible, and why.
 //!
 //! It is found on a thread of its own, with pictures of its own: the window does not wait for it.
 
@@ -55,28 +55,26 @@ impl App {
     }
 }
 
-/// What is told of an object; nothing if it is gone, or has been told of before.
+/// The notice about an object; `None` if it is gone or was reported before.
 fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
     let object = state.scene.objects.get(id)?;
     let name = &object.name;
-    let far = out_of_sight(state, object, SIZE);
-    let (text, offer) = match why {
-        Unseen::TurnedAway { .. } => {
-            (format!("Nothing of {name} is seen: {why}"), Some(Offer::TwoSides(id)))
-        }
-        _ if far => (format!("{name} can hardly be seen from here"), Some(Offer::Frame(id))),
-        Unseen::Covered { .. } | Unseen::BetweenPixels => {
-            (format!("Nothing of {name} is seen: {why}"), Some(Offer::Frame(id)))
-        }
-        Unseen::Transparent | Unseen::LeftOut(_) | Unseen::Unexamined => {
-            (format!("Nothing of {name} is seen: {why}"), None)
-        }
+    let offer = match why {
+        Unseen::TurnedAway { .. } => Some(Offer::TwoSides(id)),
+        Unseen::Covered { .. } | Unseen::BetweenPixels => Some(Offer::Frame(id)),
+        Unseen::Transparent | Unseen::LeftOut(_) | Unseen::Unexamined => None,
+    };
+    let turned_away = matches!(why, Unseen::TurnedAway { .. });
+    let (text, offer) = if !turned_away && out_of_sight(state, object, SIZE) {
+        (format!("{name} is out of view or too small to see"), Some(Offer::Frame(id)))
+    } else {
+        (format!("Nothing of {name} is visible: {why}"), offer)
     };
     let told = state.notices.iter().any(|notice| offer.is_some() && notice.offer == offer);
     (!told).then(|| Notice { text, details: Vec::new(), offer })
 }
 
-/// Whether an object would be outside of what is seen now, or too small to be noticed.
+/// Whether an object would be outside the picture, or too small to notice.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
     let Some((centre, radius)) = object.bounding_sphere(0.0) else { return false };

@@ -31,10 +31,10 @@ impl Action {
     /// An entry of a menu with its key at the right and, while its switch is on, a tick at the
     /// left. Gives the action back when clicked.
     pub fn menu_item(self, ui: &mut Ui, state: &State) -> Option<Self> {
-        let look = self.info();
-        let key = look.keys.first().map(|key| key.name()).unwrap_or_default();
+        let info = self.info();
+        let key = info.keys.first().map(|key| key.name()).unwrap_or_default();
         let tick = IdSalt::new("tick");
-        let atoms = (Atom::custom(tick, egui::vec2(12.0, 12.0)), look.label);
+        let atoms = (Atom::custom(tick, egui::vec2(12.0, 12.0)), info.label);
         let button = egui::Button::new(atoms).shortcut_text(key);
         let enabled = self.availability(state).is_ok();
         let shown = ui.add_enabled_ui(enabled, |ui| button.atom_ui(ui)).inner;
@@ -44,8 +44,8 @@ impl Action {
             }
         }
         shown.response.widget_info(|| match self.is_on(state) {
-            Some(on) => WidgetInfo::selected(Role::MenuItemCheckBox, enabled, on, look.label),
-            None => WidgetInfo::labeled(Role::MenuItem, enabled, look.label),
+            Some(on) => WidgetInfo::selected(Role::MenuItemCheckBox, enabled, on, info.label),
+            None => WidgetInfo::labeled(Role::MenuItem, enabled, info.label),
         });
         let clicked = self.explain(shown.response, state).clicked().then_some(self);
         if clicked.is_some() {
@@ -58,10 +58,10 @@ impl Action {
     /// done now.
     pub fn explain(self, response: Response, state: &State) -> Response {
         let tip = |ui: &mut Ui| {
-            let look = self.info();
-            ui.label(look.hint);
-            if !look.keys.is_empty() {
-                let keys: Vec<String> = look.keys.iter().map(|key| key.name()).collect();
+            let info = self.info();
+            ui.label(info.hint);
+            if !info.keys.is_empty() {
+                let keys: Vec<String> = info.keys.iter().map(|key| key.name()).collect();
                 ui.label(RichText::new(format!("Key: {}", keys.join(" or "))).weak());
             }
             if let Err(why) = self.availability(state) {
@@ -90,10 +90,10 @@ pub(crate) fn action_switch(
     requests: &mut Vec<Request>,
     action: Action,
 ) {
-    let look = action.info();
+    let info = action.info();
     let switch = Switch {
-        label: look.label,
-        key: look.keys.first().map(|key| key.name()),
+        label: info.label,
+        key: info.keys.first().map(|key| key.name()),
         on: action.is_on(state).unwrap_or(false),
         enabled: action.availability(state).is_ok(),
     };

@@ -1,4 +1,4 @@
-//! Which keys belong to the viewport, and what they ask for.
+//! The keyboard: which keys belong to the viewport, and the actions they press.
 //!
 //! The keys are read before egui sees them: what the viewport owns (Tab, Enter, Esc, arrows) never
 //! moves the focus or clicks a button, not even in the frame in which the viewport gets the
@@ -31,12 +31,12 @@ pub(crate) struct Keyboard {
     /// While the viewport flies, letters steer and ask for nothing.
     steering: bool,
     down: BTreeSet<Key>,
-    /// While Alt is down, what is typed may be a sign of a menu or of another layer of the layout.
+    /// While Alt is down, typed text may belong to a menu or another layer of the layout.
     alt: bool,
     /// Whether the last key event was sent by a held key: its text follows it.
     last_was_repeat: bool,
     presses: u64,
-    /// For so many frames more the keyboard is on its way to the panels.
+    /// The frames left until the keyboard has reached the panels.
     leaving: u8,
     waiting: Vec<Press>,
 }
@@ -125,26 +125,26 @@ impl Keyboard {
         own && owner == Owner::Viewport
     }
 
-    /// Asks for the action whose chord fits, where it may act.
+    /// Asks for the action whose chord fits, if it may act.
     fn ask(&mut self, owner: Owner, fits: impl Fn(&Chord) -> bool) {
         let fitting = |action: &Action| action.info().keys.iter().copied().find(|key| fits(key));
         let found = Action::ALL.iter().find_map(|action| Some((*action, fitting(action)?)));
         let Some((action, chord)) = found else { return };
-        let look = action.info();
+        let info = action.info();
         let acts = match owner {
             Owner::Viewport => !self.steering || chord == Chord::Named(Key::Escape),
             Owner::Panel => chord.is_global(),
             // A text field has an undo of its own.
-            Owner::Text => chord.is_global() && look.group != Group::Edit,
+            Owner::Text => chord.is_global() && info.group != Group::Edit,
             Owner::Modal => false,
         };
-        if !acts || (self.last_was_repeat && !look.repeats) {
+        if !acts || (self.last_was_repeat && !info.repeats) {
             return;
         }
         if !self.last_was_repeat {
             self.presses += 1;
         }
-        let gesture = match look.repeats {
+        let gesture = match info.repeats {
             true => gestures::numbered(self.presses, "key"),
             false => Gesture::Whole,
         };

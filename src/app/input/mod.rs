@@ -1,4 +1,4 @@
-//! Keys and buttons: both give an action.
+//! Keyboard and buttons: both return actions.
 
 pub(crate) mod buttons;
 pub(crate) mod keyboard;

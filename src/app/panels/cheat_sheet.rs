@@ -1,4 +1,4 @@
-//! Every key, with what it would do now.
+//! The cheat sheet: every key, with what it would do now.
 
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
@@ -12,7 +12,7 @@ const KEYS: f32 = 160.0;
 const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
@@ -74,16 +74,16 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// Whether an action is what is searched for: by one of its keys as it is written, or by any of its
+/// Whether an action matches a search: by one of its keys as it is written, or by any of its
 /// words.
 fn matches(action: Action, wanted: &str) -> bool {
-    let look = action.info();
+    let info = action.info();
     let wanted = wanted.trim();
-    let keys = || look.keys.iter().flat_map(|key| key.names());
+    let keys = || info.keys.iter().flat_map(|key| key.names());
     if wanted.chars().count() == 1 && keys().any(|key| key == wanted) {
         return true;
     }
-    let text = format!("{} {} {}", look.label, look.hint, look.group.label()).to_lowercase();
+    let text = format!("{} {} {}", info.label, info.hint, info.group.label()).to_lowercase();
     let wanted = wanted.to_lowercase();
     wanted.split_whitespace().all(|word| {
         text.contains(word) || keys().any(|key| key.len() > 1 && key.to_lowercase().contains(word))
@@ -92,7 +92,7 @@ fn matches(action: Action, wanted: &str) -> bool {
 
 /// One action: a click does it.
 fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action) {
-    let look = action.info();
+    let info = action.info();
     let available = action.availability(state);
     let enabled = available.is_ok();
     let size = vec2(ui.available_width(), theme::ROW);
@@ -101,9 +101,9 @@ fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action)
     let on = action.is_on(state);
     response.widget_info(|| match on {
         Some(on) => {
-            egui::WidgetInfo::selected(egui::Role::MenuItemCheckBox, enabled, on, look.label)
+            egui::WidgetInfo::selected(egui::Role::MenuItemCheckBox, enabled, on, info.label)
         }
-        None => egui::WidgetInfo::labeled(egui::Role::MenuItem, enabled, look.label),
+        None => egui::WidgetInfo::labeled(egui::Role::MenuItem, enabled, info.label),
     });
     if enabled && response.hovered() {
         ui.painter().rect_filled(rect, 4.0, ui.visuals().widgets.inactive.bg_fill);
@@ -115,13 +115,13 @@ fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action)
         controls::key_cap(ui, at, key, enabled);
         left += width + theme::GAP;
     };
-    for key in look.keys.iter().flat_map(|key| key.names()) {
+    for key in info.keys.iter().flat_map(|key| key.names()) {
         cap(ui, &key);
     }
     let color = controls::text_color(ui, enabled);
     let label = rect.with_min_x(rect.left() + KEYS).with_max_x(rect.left() + KEYS + LABEL);
     let text = |ui: &Ui, text: &str, width| controls::text(ui, text, TextStyle::Body, width);
-    controls::put_text(ui, label, text(ui, look.label, label.width()), color);
+    controls::put_text(ui, label, text(ui, info.label, label.width()), color);
     let now = match on {
         Some(true) => "on",
         Some(false) => "off",
@@ -131,7 +131,7 @@ fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action)
     controls::put_text(ui, now_rect, text(ui, now, NOW), color);
     let rest = rect.with_min_x(label.right() + NOW).with_max_x(rect.right() - theme::GAP);
     let hint =
-        available.as_ref().err().map_or(look.hint.to_owned(), |why| format!("Not now: {why}."));
+        available.as_ref().err().map_or(info.hint.to_owned(), |why| format!("Not now: {why}."));
     let weak = ui.visuals().weak_text_color();
     controls::put_text(ui, rest, text(ui, &hint, rest.width()), weak);
     controls::focus_ring(ui, rect, &response);

@@ -12,7 +12,7 @@ const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::Th
 /// Those that stand under Help.
 const HELP: [Action; 2] = [Action::CheatSheet, Action::ToPanels];
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     MenuBar::new().ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
@@ -50,7 +50,7 @@ fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A menu in a menu; its name stands where those of actions stand, behind the column of ticks.
+/// A submenu; its name is aligned with those of actions, after the column of ticks.
 fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     let ticks = Atom::custom(IdSalt::new("tick"), vec2(12.0, 12.0));
     let shown = ui.menu_button((ticks, name), |ui| {
@@ -88,7 +88,7 @@ fn lessons_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
     }
 }
 
-/// The steps of the history; a click goes to where a step is the last one done.
+/// The steps of the history; a click goes to the point just after a step.
 fn history_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let history = &state.history;
     let labels: Vec<&str> = std::iter::once("Beginning").chain(history.steps()).collect();
@@ -100,7 +100,7 @@ fn history_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             let text = format!("{position}  {}", labels[position]);
             let button = egui::Button::selectable(here, text);
             let response = ui.add_sized([ui.available_width(), row], button);
-            if response.on_hover_text("Goes to where this step is the last one done").clicked() {
+            if response.on_hover_text("Goes to the point just after this step").clicked() {
                 requests.push(Request::GoTo(position));
                 ui.close();
             }

@@ -1,5 +1,4 @@
-//! The panels about the viewport. They read the state and give back what is asked for; they change
-//! nothing.
+//! The panels around the viewport. They read the state and return requests; they change nothing.
 
 mod cheat_sheet;
 mod lab;
@@ -21,7 +20,7 @@ use crate::app::theme;
 /// the largest thing.
 const WIDE: f32 = 1200.0;
 
-/// Shows all panels that are to be shown. What is left of `ui` is the viewport's.
+/// Shows all open panels. The rest of `ui` is left to the viewport.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let wide = ui.available_width() >= WIDE;
     let (left, right) = if wide { (228.0, 280.0) } else { (204.0, 256.0) };
@@ -29,7 +28,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let (most_left, most_right) = (most(0.25, 200.0), most(0.3, 250.0));
     let fill = ui.visuals().panel_fill;
     let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
-    // What is in them leaves room for a bar to scroll with.
+    // The contents leave room for a scroll bar.
     let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
     let side = Frame::new().fill(fill).inner_margin(margin);
     Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, requests));

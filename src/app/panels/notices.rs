@@ -1,4 +1,4 @@
-//! What floats over the picture: files being loaded, and what was found in them.
+//! Notices over the picture: files being loaded, and findings about them.
 
 use egui::{Align2, Area, Context, Frame, Id, Order, Ui, vec2};
 
@@ -7,7 +7,7 @@ use crate::app::documents::loading::Loading;
 use crate::app::state::{Notice, State};
 use crate::edit::Gesture;
 
-/// Shows them in the lower right corner; what is asked for is added to `asks`.
+/// Shows them at the top of the picture; their requests are added to `requests`.
 pub(crate) fn show(ctx: &Context, state: &State, loading: &[Loading], requests: &mut Vec<Request>) {
     if loading.is_empty() && state.notices.is_empty() {
         return;

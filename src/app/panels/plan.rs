@@ -1,4 +1,4 @@
-//! What the picture is made of: each effect, on or left out, why, and what it costs.
+//! The plan panel: each effect of the picture, on or left out, why, and its cost.
 //!
 //! An effect has a line, with what it is on under it where that differs from thing to thing. What
 //! is on is told by a full disk and by full text, so that the eye runs down the disks; costs are
@@ -13,7 +13,7 @@ use egui::{
 };
 
 use crate::app::actions::{Action, Request};
-use crate::app::state::{Measured, State as Editing};
+use crate::app::state::{Measured, State};
 use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
@@ -21,8 +21,8 @@ use crate::app::widgets::text::grouped;
 use crate::lab::cost::{Explained, Group};
 use crate::render::{Effect, EffectUse};
 
-/// Shows it; what is asked for is added to `asks`.
-pub(crate) fn show(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
     let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
     let height = ui.available_height();
@@ -41,8 +41,8 @@ pub(crate) fn show(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>) {
         });
 }
 
-/// What is said of all together, and the button that measures.
-fn header_ui(ui: &mut Ui, state: &Editing, requests: &mut Vec<Request>, explained: &Explained) {
+/// The summary, and the button that measures.
+fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.label(RichText::new("Plan").strong());
@@ -93,14 +93,14 @@ fn summary(explained: &Explained) -> String {
     format!("{on} on; {left_out} left out, which {changes}")
 }
 
-/// Whether what was measured is what is shown.
-fn is_of_now(measured: &Measured, state: &Editing) -> bool {
+/// Whether the measurement is of the picture in the viewport.
+fn is_of_now(measured: &Measured, state: &State) -> bool {
     measured.settings == state.settings
         && measured.view == state.view
         && measured.scene == state.scene
 }
 
-/// Where the columns begin, and how wide they are.
+/// The start and width of each column.
 struct Columns {
     name: Rect,
     on: Rect,
@@ -129,7 +129,7 @@ impl Columns {
     }
 }
 
-fn table_ui(ui: &mut Ui, state: &Editing, explained: &Explained) {
+fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
     let (head, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
     let columns = Columns::of(head.with_max_x(head.right() - f32::from(theme::MARGIN)));
     let titles = [
@@ -229,7 +229,7 @@ fn use_ui(ui: &mut Ui, most: u64, one: &EffectUse) {
 struct Row<'a> {
     name: &'a str,
     indent: f32,
-    /// Whether it is unfolded, where it can be.
+    /// Whether it is unfolded; `None` if it cannot be.
     chevron: Option<bool>,
     on: bool,
     things: &'a str,
@@ -298,7 +298,7 @@ impl Row<'_> {
     }
 }
 
-/// Full where something is on, empty where it is left out.
+/// A disk: full if an effect is on, empty if it is left out.
 fn disk_ui(ui: &Ui, at: egui::Pos2, on: bool) {
     let visuals = ui.visuals();
     if on {

@@ -1,4 +1,4 @@
-//! What the next key would do, and the last word to the user.
+//! The status line: what the next key would do, and the last message.
 //!
 //! Where there is no room for all, what matters least is left out from the middle; nothing is cut
 //! off.
@@ -12,7 +12,7 @@ use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::short;
 use crate::scene::{
-    CameraMode, Frame, ItemId, LightKind, Observer, Projection, Subject, Transformation,
+    CameraMode, Frame, ItemId, LightKind, Observer, Projection, SpotOwner, Subject, Transformation,
 };
 
 /// What stands between the parts of the line.
@@ -21,7 +21,7 @@ const BETWEEN: &str = "  |  ";
 /// A longer name is written with dots in its middle.
 const LONGEST_NAME: usize = 28;
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
@@ -66,11 +66,12 @@ fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     response.on_hover_text(&message.text);
 }
 
-/// The parts of the line, in order: what is selected, what the keys do to it, who looks, what it
+/// The parts of the line, in order: the selection, what the keys do to it, the observer, what it
 /// cost.
 fn parts(state: &State) -> Vec<String> {
     let (scene, view) = (&state.scene, &state.view);
-    let mut parts = vec![selected(state), transformation(state).to_owned()];
+    let mut parts =
+        vec![selected(state), transformation(state).map_or_else(|why| why, verb).to_owned()];
     parts.extend(frame(state).map(str::to_owned));
     parts.extend(step(state));
     let projection = match view.projection {
@@ -128,21 +129,17 @@ fn selected(state: &State) -> String {
     }
 }
 
-/// What x, y and z do to what is selected.
-fn transformation(state: &State) -> &'static str {
+/// What x, y and z do to the selection, or why nothing.
+fn transformation(state: &State) -> Result<Transformation, &'static str> {
     let (scene, view) = (&state.scene, &state.view);
-    if let Some(ItemId::Light(id)) = state.selected() {
-        return match scene.lights.get(id).map(|light| &light.kind) {
-            Some(LightKind::Sun { .. }) => "rotate",
-            Some(LightKind::Bulb { .. }) => "move",
-            Some(LightKind::Spot { owner: crate::scene::SpotOwner::Fixed(_), .. }) => {
-                verb(view.transformation)
-            }
-            Some(LightKind::Spot { .. }) => "follows its owner",
-            Some(LightKind::Ambient) | None => "from everywhere",
-        };
+    let Some(ItemId::Light(id)) = state.selected() else { return Ok(view.transformation) };
+    match scene.lights.get(id).map(|light| &light.kind) {
+        Some(LightKind::Sun { .. }) => Ok(Transformation::Rotation),
+        Some(LightKind::Bulb { .. }) => Ok(Transformation::Translation),
+        Some(LightKind::Spot { owner: SpotOwner::Fixed(_), .. }) => Ok(view.transformation),
+        Some(LightKind::Spot { .. }) => Err("follows its owner"),
+        Some(LightKind::Ambient) | None => Err("from everywhere"),
     }
-    verb(view.transformation)
 }
 
 const fn verb(transformation: Transformation) -> &'static str {
@@ -174,13 +171,7 @@ fn frame(state: &State) -> Option<&'static str> {
 /// How far the next press of x, y or z goes.
 fn step(state: &State) -> Option<String> {
     let steps = &state.view.steps;
-    let does = match transformation(state) {
-        "move" => Transformation::Translation,
-        "rotate" => Transformation::Rotation,
-        "scale" => Transformation::Scaling,
-        _ => return None,
-    };
-    Some(match does {
+    Some(match transformation(state).ok()? {
         Transformation::Translation if steps.by_size => "step by size".to_owned(),
         Transformation::Translation => format!("step {}", short(steps.translation)),
         Transformation::Rotation => format!("step {} deg", short(steps.rotation)),
@@ -188,7 +179,7 @@ fn step(state: &State) -> Option<String> {
     })
 }
 
-/// The parts joined; where that does not fit, dots stand for those in the middle.
+/// The parts joined; if they do not fit, dots replace those in the middle.
 fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     let whole = parts.join(BETWEEN);
     // The first part and the last ones say most.
@@ -211,7 +202,7 @@ fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     parts.first().cloned().unwrap_or_default()
 }
 
-/// `name`, with dots in its middle where it has more than `longest` letters.
+/// `name`, with dots in its middle if it has more than `longest` letters.
 pub(crate) fn middle_elided(name: &str, longest: usize) -> String {
     let letters: Vec<char> = name.chars().collect();
     if letters.len() <= longest {

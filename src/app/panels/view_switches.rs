@@ -1,9 +1,9 @@
-//! Every switch of the view, with its key, and how exactly pictures are drawn.
+//! The switches of the view, with their keys, and the settings of accuracy.
 
 use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
 use crate::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis};
-use crate::app::actions::{Action, Request, change};
+use crate::app::actions::{Action, Group, Request, change};
 use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::State;
 use crate::app::theme;
@@ -13,7 +13,7 @@ use crate::scene::{
     CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation,
 };
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let area = ScrollArea::vertical().id_salt("view switches").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
@@ -29,19 +29,9 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         section(ui, "Display", true, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            for action in [
-                Action::ToggleEdges,
-                Action::ToggleEdgesOverFill,
-                Action::TogglePolygons,
-                Action::ToggleOthers,
-                Action::ToggleBackFaces,
-                Action::ToggleFaceNormals,
-                Action::ToggleVertexNormals,
-                Action::ToggleNormalLength,
-                Action::ToggleMarks,
-                Action::ToggleLeaveOut,
-                Action::ToggleCoarse,
-            ] {
+            // Flat shading is a choice in the section below.
+            let choice = Action::ToggleLightNormals;
+            for action in Group::Show.actions().filter(|action| *action != choice) {
                 action_switch(ui, state, requests, action);
             }
         });
@@ -144,7 +134,7 @@ fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     row(ui, "Background", |ui| {
         let color = state.scene.background;
-        let changed = swatch(ui, "Background", "What is seen where nothing is", color);
+        let changed = swatch(ui, "Background", "Colour of the background", color);
         if let Some((color, gesture)) = changed {
             change(requests, "Set the background", gesture, Ok(Command::Background(color)));
         }

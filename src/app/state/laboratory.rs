@@ -1,4 +1,4 @@
-//! What the panel of the laboratory shows, and how the picture is compared with the exact one.
+//! The state of the laboratory panel and of the comparison with the exact picture.
 
 use super::State;
 use crate::accuracy::{AXES, Axis, Settings};
@@ -30,7 +30,7 @@ pub struct Laboratory {
     pub attribution: Option<Vec<String>>,
     /// The axis whose lesson is shown.
     pub lesson: &'static Axis,
-    /// What is shown beside the scatter.
+    /// The panel beside the scatter.
     pub side: Side,
     /// The scene, the view and the size that were measured.
     pub(crate) measured: Option<(Scene, View, Size)>,
@@ -55,7 +55,7 @@ impl Default for Laboratory {
     }
 }
 
-/// What is shown beside the scatter.
+/// The panel beside the scatter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// Every choice with its figures.
@@ -66,7 +66,7 @@ pub enum Side {
 }
 
 impl Laboratory {
-    /// Whether what was measured is no longer what is shown.
+    /// Whether the measurement is not of the picture in the viewport any more.
     #[must_use]
     pub fn is_stale(&self, state: &State) -> bool {
         self.measured.as_ref().is_some_and(|(scene, view, size)| {
@@ -85,7 +85,7 @@ pub enum Compare {
     Off,
     /// The exact picture at the left of this part of the width.
     Split(f32),
-    /// The error in place of the picture, so many times as large.
+    /// The error instead of the picture, amplified by this factor.
     Error(u16),
 }
 

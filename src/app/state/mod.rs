@@ -12,7 +12,7 @@ use crate::accuracy::Settings;
 pub use crate::app::drawing::adaptive_quality::Reduction;
 use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
-use crate::edit::{Gesture, GesturePhase, History, Refusal, frame, items, selection};
+use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
 use crate::lab::cost::{Costs, Explained};
 use crate::render::Changes;
 use crate::scene::{
@@ -20,7 +20,7 @@ use crate::scene::{
 };
 use laboratory::Laboratory;
 
-/// What is edited and shown.
+/// The scene being edited, and everything shown about it.
 #[derive(Debug)]
 pub struct State {
     /// What there is to draw.
@@ -31,11 +31,11 @@ pub struct State {
     pub settings: Settings,
     /// What was done to the scene.
     pub history: History,
-    /// The scene's file, where it has one.
+    /// The scene's file, if it has one.
     pub path: Option<PathBuf>,
     /// The last word to the user, for the status line.
     pub message: Option<Message>,
-    /// What is to be told until the user puts it away.
+    /// Notices that stay until the user dismisses them.
     pub notices: Vec<Notice>,
     /// What the last picture took.
     pub statistics: Statistics,
@@ -78,7 +78,7 @@ pub struct Notice {
     pub text: String,
     /// More, one line each, for those who want to see it.
     pub details: Vec<String>,
-    /// What is offered with it, as a button.
+    /// An offer shown with it as a button.
     pub offer: Option<Offer>,
 }
 
@@ -109,7 +109,7 @@ impl Offer {
         let (Self::Frame(id) | Self::TwoSides(id)) = self;
         let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
         Ok(match self {
-            Self::Frame(_) => (frame::objects(scene, view, &[id])?, format!("Frame {name}")),
+            Self::Frame(_) => (framing::objects(scene, view, &[id])?, format!("Frame {name}")),
             Self::TwoSides(_) => {
                 let two = |object: &mut Object| object.sides = Sides::Two;
                 (items::change_object(scene, id, two)?, format!("Draw both sides of {name}"))
@@ -219,7 +219,7 @@ impl State {
         selection::selected(&self.view)
     }
 
-    /// Its name; empty where there is none.
+    /// Its name; empty if nothing is selected.
     #[must_use]
     pub fn selected_name(&self) -> &str {
         self.selected().and_then(|id| self.name(id)).unwrap_or_default()
@@ -251,10 +251,8 @@ impl State {
     /// Whether anything in the scene moves by itself.
     #[must_use]
     pub fn is_animated(&self) -> bool {
-        let circles = |light: &Light| match &light.kind {
-            LightKind::Bulb { orbit, .. } => orbit.on,
-            _ => false,
-        };
+        let circles =
+            |light: &Light| matches!(&light.kind, LightKind::Bulb { orbit, .. } if orbit.on);
         self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
             || self.scene.lights.iter().any(|(_, light)| circles(light))
     }

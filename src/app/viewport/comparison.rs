@@ -1,4 +1,4 @@
-//! The picture beside the exact one: a slider that splits the viewport, or the error, amplified.
+//! Compares the picture with the exact one: a split viewport, or the amplified error.
 //!
 //! Both pictures are drawn on a thread of its own whenever what is shown has changed, so that the
 //! two always show the same moment.
@@ -71,7 +71,7 @@ impl Comparison {
         self.drawn = Some(drawn);
     }
 
-    /// Shows what is to be compared over the picture in `rect`.
+    /// Shows the comparison over the picture in `rect`.
     pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
         match state.lab.compare {
             Compare::Off => {}
@@ -89,7 +89,7 @@ impl Comparison {
         let (dark, light) = (egui::Color32::from_black_alpha(160), egui::Color32::WHITE);
         ui.painter().vline(x, rect.y_range(), Stroke::new(3.0, dark));
         ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, light));
-        // At the lower end, where it covers nothing that is looked at.
+        // At the lower end, so that it does not cover the picture.
         let low = pos2(x, rect.bottom() - HANDLE.y);
         let handle = Rect::from_center_size(low, HANDLE);
         let response = ui.interact(grip_at(rect, part), Id::unique("split"), Sense::drag());
@@ -124,7 +124,7 @@ impl Comparison {
 /// The size of what the slider shows to be held by.
 const HANDLE: egui::Vec2 = vec2(12.0, 34.0);
 
-/// Where the slider between the two pictures is held; a press there is none on the picture.
+/// The grip of the slider between the two pictures; a press there is not a press on the picture.
 pub(crate) fn grip(state: &State, rect: Rect) -> Option<Rect> {
     match state.lab.compare {
         Compare::Split(part) => Some(grip_at(rect, part)),

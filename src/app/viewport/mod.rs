@@ -1,4 +1,4 @@
-//! The picture, and the mouse and the keyboard over it.
+//! The viewport: the picture, with mouse and keyboard input over it.
 //!
 //! The picture has as many pixels as the screen has there, stands on a whole pixel and is shown
 //! unfiltered, so that what the renderer drew is what is seen.
@@ -27,7 +27,7 @@ use crate::render::Hit;
 use crate::scene::ItemId;
 use mouse::{Mouse, Under};
 
-/// What a question to the picture is asked for.
+/// The purpose of a pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Purpose {
     /// What the pointer is over.
@@ -48,14 +48,14 @@ pub(crate) struct Viewport {
     /// Where in the window it is, and how many pixels it has.
     place: Option<(Rect, Size)>,
     mouse: Mouse,
-    /// The pixel that the pointer is over, and what is seen there where that is known.
+    /// The pixel under the pointer, and the hit there if known.
     hovered: Option<([usize; 2], Option<Hit>)>,
     menu: Option<Menu>,
-    /// Where the visible part of what the pointer is over ends.
+    /// The border of the item under the pointer.
     border: Option<Border>,
     /// Whether the picture has changed since the pointer was asked about.
     stale: bool,
-    /// Whose border was asked for in this picture.
+    /// The item whose border was requested for this picture.
     asked: Option<ItemId>,
     /// The pixel of the last click, and from where it was seen: a click on it again goes deeper.
     clicked: Option<([usize; 2], DMat4)>,
@@ -152,7 +152,7 @@ impl Viewport {
         self.menu_ui(ui, state, requests);
     }
 
-    /// Asks what is seen under the pointer, once for every pixel it comes to.
+    /// Picks the pixel under the pointer, once for each pixel it enters.
     fn hover(&mut self, response: &Response, worker: &Worker<Purpose>) {
         let Some(pointer) = response.hover_pos().filter(|_| !self.mouse.is_dragging()) else {
             self.hovered = None;
@@ -355,7 +355,7 @@ fn menu_id() -> Id {
     Id::unique("viewport menu")
 }
 
-/// What is left of `ui`, moved to whole pixels, and how many of them there are.
+/// The rest of `ui`, moved to whole pixels, and its size in pixels.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -373,7 +373,7 @@ fn whole_pixels(ui: &Ui) -> (Rect, Size) {
     (Rect::from_min_size(min, points), size)
 }
 
-/// Gives the viewport the keyboard when it is clicked, and whenever nobody else wants it.
+/// Gives the viewport keyboard focus if it is clicked or no other widget has it.
 fn keep_focus(ctx: &Context, response: &Response) {
     let pressed = ctx.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
     let free =

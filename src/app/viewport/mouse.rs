@@ -1,4 +1,4 @@
-//! What the mouse asks for over the picture.
+//! Turns mouse input over the picture into requests.
 //!
 //! | input | does |
 //! |---|---|
@@ -23,7 +23,7 @@ use crate::edit::{Gesture, Refusal, navigation};
 use crate::render::Hit;
 use crate::scene::{CameraMode, Command, Projection};
 
-/// Within so many points from where it began, a drag is a click.
+/// A drag that stays within this distance of its start, in points, is a click.
 const CLICK: f32 = 4.0;
 
 /// Points that a touchpad scrolls for one notch of a wheel.
@@ -38,14 +38,14 @@ pub(crate) struct Mouse {
     count: u64,
 }
 
-/// What is under the mouse.
+/// The picture under the mouse.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Under {
     /// Where in the window the picture is.
     pub(crate) rect: Rect,
     /// How many pixels it has.
     pub(crate) size: Size,
-    /// What is seen under the pointer, where that is known.
+    /// The hit under the pointer, if known.
     pub(crate) hit: Option<Hit>,
 }
 
@@ -58,7 +58,7 @@ struct Drag {
     /// How far it was acted on, and how far it has come.
     at: Pos2,
     to: Pos2,
-    /// Whether it has left the place where a click would stay.
+    /// Whether it has moved farther than a click may.
     moved: bool,
     /// Taken back: it does nothing more until the button is let go.
     over: bool,
@@ -106,7 +106,7 @@ impl Mouse {
         }
     }
 
-    /// What is asked for in this frame; what is to be asked of the picture is given back.
+    /// Adds the requests of this frame; returns the points of the picture to pick.
     pub(crate) fn ui(
         &mut self,
         ui: &Ui,
@@ -135,7 +135,7 @@ impl Mouse {
         }
         self.go_on(ui, state, under.size, requests);
         if self.drag.is_some_and(|drag| !ui.input(|input| input.pointer.button_down(drag.button))) {
-            // It was let go where the window does not hear of it.
+            // It was released outside the window.
             self.drag = None;
         }
         if response.double_clicked_by(PointerButton::Primary) {
@@ -297,7 +297,7 @@ impl Mouse {
     }
 }
 
-/// What moving the pointer by so many pixels means.
+/// The command for a movement of the pointer, in pixels.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command, Refusal> {
     let (scene, view) = (&state.scene, &state.view);

@@ -1,4 +1,4 @@
-//! What stands over the picture: words, numbers, the outline of what the pointer is over.
+//! Draws over the picture: statistics, and the border of the item under the pointer.
 
 use egui::{Align2, Color32, Mesh, Rect, Ui, vec2};
 
@@ -101,7 +101,7 @@ mod tests {
         let names = ["teapot", "cube", "ball"];
         let name = |item| match item {
             ItemId::Object(ObjectId(id)) => names.get(id as usize).copied(),
-            _ => None,
+            ItemId::Camera(_) | ItemId::Light(_) => None,
         };
         let items = |changes: &[Change]| -> Vec<(ItemId, Change)> {
             (0..).map(object).zip(changes.iter().copied()).collect()

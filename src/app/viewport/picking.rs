@@ -1,4 +1,4 @@
-//! Which objects lie one behind the other under the pointer: the picture knows only the nearest.
+//! Finds all objects under the pointer, nearest first; the picture holds only the nearest.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 

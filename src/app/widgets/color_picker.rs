@@ -196,7 +196,7 @@ fn gradient(rect: Rect, cells: [u16; 2], color: impl Fn(f64, f64) -> Color32) ->
     Shape::mesh(mesh)
 }
 
-/// What is picked, in a ring that is seen on light and on dark.
+/// The picked colour, in a ring that is visible on light and on dark.
 fn ring(ui: &Ui, at: Pos2, color: Color32) {
     let at = pos2(at.x.round(), at.y.round());
     ui.painter().circle(at, 6.0, color, Stroke::new(2.0, Color32::WHITE));

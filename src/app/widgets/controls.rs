@@ -1,4 +1,4 @@
-//! What panels are made of: sections, rows, switches, choices, small buttons.
+//! The controls of panels: sections, rows, switches, choices, icon buttons.
 //!
 //! Each control has a name for screen readers, a ring while it has the keyboard, a tooltip, and
 //! tells what is on by a shape as well as by a colour.
@@ -14,7 +14,7 @@ use egui::{
 use super::icons::Icon;
 use crate::app::theme;
 
-/// A line of text that ends in dots where it does not fit.
+/// A line of text, truncated with dots if it does not fit.
 pub(crate) fn text(
     ui: &Ui,
     text: impl Into<WidgetText>,
@@ -80,7 +80,7 @@ pub(crate) fn fact(ui: &mut Ui, label: &str, value: &str) {
 /// A switch with a tick, as wide as there is room. Says whether it was clicked.
 #[derive(Clone, Debug)]
 pub(crate) struct Switch<'a> {
-    /// What is on or off.
+    /// Its label.
     pub(crate) label: &'a str,
     /// The key that does the same.
     pub(crate) key: Option<String>,
@@ -166,13 +166,13 @@ pub(crate) fn key_cap(ui: &Ui, at: egui::Pos2, key: &str, enabled: bool) -> f32 
 pub(crate) struct Choice<'a> {
     /// Its name.
     pub(crate) label: &'a str,
-    /// For screen readers, where the name alone says too little.
+    /// Its name for screen readers.
     pub(crate) name: String,
     /// The key that chooses it.
     pub(crate) key: Option<String>,
     /// Whether it is the one.
     pub(crate) on: bool,
-    /// Why it cannot be chosen, where it cannot.
+    /// Why it cannot be chosen, if so.
     pub(crate) refused: Option<String>,
     /// What it means.
     pub(crate) hint: &'a str,

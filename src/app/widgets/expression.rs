@@ -1,4 +1,4 @@
-//! Numbers as they are typed: plain, or as an expression: `12.5`, `360/7`, `2*(3+4)`, `sqrt(2)`.
+//! Evaluates typed numbers and expressions: `12.5`, `360/7`, `2*(3+4)`, `sqrt(2)`.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -9,9 +9,9 @@
 /// How deep brackets and signs may be nested: more is no number that a person typed.
 const DEEPEST: usize = 50;
 
-/// The value of what was typed; `None` where it has none that is finite.
+/// The value of an expression; `None` if it has none or is not finite.
 pub(crate) fn value(text: &str) -> Option<f64> {
-    // egui's own fields show the mathematical minus where they show one.
+    // egui's own fields show the mathematical minus sign.
     let plain = text.replace('\u{2212}', "-");
     let letters: Vec<char> = plain.chars().filter(|c| !c.is_whitespace()).collect();
     let mut reader = Reader { rest: &letters, depth: 0 };

@@ -1,4 +1,4 @@
-//! Fields for numbers: they can be dragged, typed, or given as an expression.
+//! Number fields: the value can be dragged, typed, or given as an expression.
 //!
 //! At rest a field shows as many digits as it has room for; while it is edited, all of them. A
 //! field that is left without another number typed into it asks for nothing, so that walking
@@ -76,7 +76,7 @@ impl<'a> Number<'a> {
         Self { speed, ..self }
     }
 
-    /// What is outside is brought to the border.
+    /// Values outside are clamped.
     pub(crate) fn range(self, range: RangeInclusive<f64>) -> Self {
         Self { range, ..self }
     }

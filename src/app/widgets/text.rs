@@ -1,4 +1,4 @@
-//! How numbers and files read in the window.
+//! Formats numbers and file names.
 
 use std::path::Path;
 

@@ -12,7 +12,7 @@ use marraztu::edit::lights::{self, Channel};
 use marraztu::edit::navigation::{self, Pointer};
 use marraztu::edit::transform::{self, Sign};
 use marraztu::edit::{
-    Gesture, GesturePhase, History, Refusal, frame, items, motion, placement, selection,
+    Gesture, GesturePhase, History, Refusal, framing, items, motion, placement, selection,
 };
 use marraztu::io;
 use marraztu::scene::{
@@ -221,7 +221,7 @@ fn looking(
         0 => navigation::orbit(scene, view, amount.x, amount.y, stroke),
         1 => navigation::pan(scene, view, at, size, stroke),
         2 => navigation::zoom(scene, view, amount.z, Pointer { at, depth: None }, size, stroke),
-        _ => frame::selection(scene, view),
+        _ => framing::selection(scene, view),
     }
 }
 

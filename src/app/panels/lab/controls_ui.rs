@@ -1,4 +1,4 @@
-//! What the laboratory is asked: to measure, to judge, to keep to a budget, to compare, to explain.
+//! The controls of the laboratory: measuring, error metric, budgets, comparison, attribution.
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui};
 
@@ -12,7 +12,7 @@ use crate::lab::candidates::Thoroughness;
 use crate::lab::error::Measure;
 use crate::lab::report::{Budgets, Report, brief, tabs};
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let area = ScrollArea::vertical().id_salt("what the laboratory is asked").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
@@ -35,7 +35,7 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         Some(fraction) => {
             let width = ui.available_width() - 70.0;
             ui.add(ProgressBar::new(fraction as f32).desired_width(width).show_percentage());
-            if ui.button("Cancel").on_hover_text("Gives up measuring").clicked() {
+            if ui.button("Cancel").on_hover_text("Cancels measuring").clicked() {
                 requests.push(Request::Lab(LabRequest::Cancel));
             }
         }
@@ -113,7 +113,7 @@ struct Budget {
     hint: &'static str,
     suffix: &'static str,
     value: Option<f64>,
-    /// The point that keeps to it; none where there is no budget, or nothing keeps to it.
+    /// The point within the budget; `None` without a budget, or if no point is within it.
     found: Option<Option<usize>>,
 }
 
@@ -138,7 +138,7 @@ fn budget_ui(
                 let point = &report.findings.points[point];
                 let text = format!("{}, {} ms", point.name, brief(point.ms));
                 let button = egui::Button::new(text).truncate();
-                if ui.add(button).on_hover_text("Draws the picture so").clicked() {
+                if ui.add(button).on_hover_text("Draws the picture with these settings").clicked() {
                     requests.push(Request::Settings(point.settings));
                 }
             }
@@ -175,8 +175,7 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let switch = Switch::new("Explain a pixel: click on it", state.lab.picking).ui(ui);
-    let switch =
-        switch.on_hover_text("Says for one pixel how far it is off, and which axis is to blame");
+    let switch = switch.on_hover_text("Shows the error of one pixel and attributes it to an axis");
     if switch.clicked() {
         requests.push(Request::Lab(LabRequest::Pick(!state.lab.picking)));
     }
@@ -187,11 +186,14 @@ fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 fn command_ui(ui: &mut Ui, report: &Report) {
     ui.horizontal(|ui| {
-        if ui.button("Copy command").on_hover_text("What measures this without a window").clicked()
+        if ui
+            .button("Copy command")
+            .on_hover_text("Copies the command that measures this without a window")
+            .clicked()
         {
             ui.ctx().copy_text(report.command.clone());
         }
-        let hint = "The whole table, with tabs between its fields, as spreadsheets take it";
+        let hint = "Copies the whole table as tab-separated text for spreadsheets";
         if ui.button("Copy table").on_hover_text(hint).clicked() {
             ui.ctx().copy_text(tabs(report));
         }

@@ -1,4 +1,4 @@
-//! What each axis of accuracy teaches: three sentences, its choices, and a scene that shows it.
+//! The lesson of each axis of accuracy: three sentences, its choices, and a scene that shows it.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -8,7 +8,7 @@ use crate::app::panels::view_switches::axis_ui;
 use crate::app::state::State;
 use crate::app::theme;
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let area = ScrollArea::vertical().id_salt("lessons").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {

@@ -1,4 +1,4 @@
-//! The laboratory: time against error, the table behind it, and what each axis teaches.
+//! The laboratory: time against error, the table behind it, and the lesson of each axis.
 //!
 //! At the left what is asked, in the middle the scatter, at the right the table or the lessons. A
 //! click on a mark or on a row of the table draws the picture so.
@@ -15,10 +15,10 @@ use crate::app::state::State;
 use crate::app::widgets::controls::{Choice, choices};
 use crate::app::{actions::LabRequest, state::laboratory::Side, theme};
 
-/// How wide what is asked is.
+/// The width of the controls.
 const ASKED: f32 = 264.0;
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let whole = ui.available_rect_before_wrap();
     let all = whole.shrink2(vec2(0.0, 2.0));

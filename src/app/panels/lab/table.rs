@@ -1,4 +1,4 @@
-//! The table: every choice with its figures; a click on a row draws the picture so.
+//! The table of the laboratory: every choice with its figures; a click applies it.
 
 use egui::{Color32, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
@@ -68,7 +68,7 @@ const COLUMNS: [Column; 7] = [
     },
 ];
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(report) = &state.lab.report else {
         ui.weak("Nothing is measured yet.");
@@ -93,7 +93,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// Where a column is in a row.
+/// The place of a column in a row.
 fn cell(row: Rect, column: usize) -> Rect {
     let before: f32 = COLUMNS[..column].iter().map(|column| column.share).sum();
     let left = row.left() + (NAMES + before) * row.width();
@@ -135,7 +135,7 @@ fn row_ui(
         (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
     };
     ui.painter().rect_filled(rect, 3.0, fill);
-    // What is worth choosing has a bar, as it has a line in the scatter.
+    // Choices on the front have a bar, as they have a line in the scatter.
     if on_front {
         let bar = Rect::from_min_size(rect.min + vec2(1.0, 3.0), vec2(2.0, rect.height() - 6.0));
         ui.painter().rect_filled(bar, 1.0, theme::accent(ui.visuals()));

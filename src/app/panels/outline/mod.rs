@@ -1,7 +1,7 @@
-//! The list of objects, cameras and lights.
+//! The outline: the list of objects, cameras and lights.
 //!
 //! All its lines are of one height, so that only those in sight are made, however many parts a
-//! model has. What is selected here is what the keys select.
+//! model has. The selection here is that of the keys.
 
 mod order;
 mod row;
@@ -30,7 +30,7 @@ enum Line {
     Part(ObjectId, u32),
 }
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     egui::Panel::bottom("outline tools")
         .show_separator_line(false)
@@ -208,7 +208,7 @@ fn move_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, icon: Icon, 
         (to < count).then_some((id, to))
     });
     let response = icon_button(ui, icon, name, to.is_some());
-    let response = response.on_hover_text(format!("{name}; dragging its line does the same"));
+    let response = response.on_hover_text(format!("{name}; dragging the line does the same"));
     if let Some((id, to)) = to.filter(|_| response.clicked()) {
         reorder(state, requests, id, to);
     }

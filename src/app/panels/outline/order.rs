@@ -8,7 +8,7 @@ use crate::app::theme;
 use crate::edit::{Gesture, items, selection};
 use crate::scene::ItemId;
 
-/// Where an item stands in its list, and how many there are.
+/// The place of an item in its list, and the length of the list.
 pub(super) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {
     let scene = &state.scene;
     Some(match id {

@@ -115,7 +115,7 @@ fn shown_ui(
     icon_at(ui, rect, &response, icon, &label, true);
     let key = match item {
         ItemId::Light(id) => state.scene.lights.get(id).map(|light| light.slot),
-        _ => None,
+        ItemId::Object(_) | ItemId::Camera(_) => None,
     };
     let clicked = response.clicked();
     response.on_hover_ui(|ui| {
@@ -141,12 +141,12 @@ fn light_ui(ui: &Ui, color: [u8; 4], slot: u32, at: Pos2) -> f32 {
     rect.left()
 }
 
-/// Where the name is kept that is being typed.
+/// The id of the name that is being typed.
 fn new_name() -> Id {
     Id::unique("new name")
 }
 
-/// Forgets what was typed as a name that is no longer asked for.
+/// Forgets a name that was typed but not confirmed.
 pub(crate) fn forget_new_name(ui: &Ui) {
     ui.data_mut(|data| data.remove_temp::<String>(new_name()));
 }
@@ -216,7 +216,7 @@ fn fold_ui(
     let icon = if unfolded { Icon::Down } else { Icon::Right };
     icon.paint(ui.painter(), rect, 8.0, color);
     controls::focus_ring(ui, rect, &response);
-    response.on_hover_text("The parts of the model, each of which can be hidden").clicked()
+    response.on_hover_text("Shows the parts of the model, which can be hidden one by one").clicked()
 }
 
 /// Shows a part of an object in `rect`.

@@ -28,7 +28,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
 fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let (scene, view) = (&state.scene, &state.view);
     let pose = camera.pose.now();
-    let hint = "Where the camera's eye is";
+    let hint = "Position of the camera's eye";
     let eye = row(ui, "Position", |ui| vector(ui, &Number::new("Position", hint), pose.eye));
     if let Some((to, gesture)) = eye {
         let command = placement::camera_eye(scene, view, id, to, state.phase(gesture));
@@ -73,21 +73,26 @@ fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
     let number = Number::new("Field of view", hint).speed(0.2).range(0.02..=179.8).suffix(" deg");
     let angle = number_row(ui, "Field of view", number, 2.0 * lens.half_angle);
     set(angle, &|angle| Lens { half_angle: angle / 2.0, ..lens });
-    let number = Number::new("Near", "Where the view begins: more than 0").speed(0.1);
+    let number = Number::new("Near", "Distance of the near plane: more than 0").speed(0.1);
     let near = number_row(ui, "Near", number, lens.near);
     set(near, &|near| Lens { near, ..lens });
-    let number = Number::new("Far", "Where the view ends: more than Near").speed(5.0);
+    let number = Number::new("Far", "Distance of the far plane: more than Near").speed(5.0);
     let far = number_row(ui, "Far", number, lens.far);
     set(far, &|far| Lens { far, ..lens });
     ui.weak("Orthographic");
-    let hint = "Units to each side of the axis, across the shorter side of the picture";
+    let hint = "Units from the axis to the border across the shorter side of the picture";
     let number = Number::new("Half-size", hint).range(1e-9..=1e12);
     let half_size = number_row(ui, "Half-size", number, lens.half_size);
     set(half_size, &|half_size| Lens { half_size, ..lens });
-    let number = Number::new("Orthographic near", "Where the orthographic view begins");
+    let number =
+        Number::new("Orthographic near", "Distance of the near plane of the orthographic view");
     let near = number_row(ui, "Near", number, lens.parallel_near);
     set(near, &|parallel_near| Lens { parallel_near, ..lens });
-    let number = Number::new("Orthographic far", "Where it ends: more than Near").speed(5.0);
+    let number = Number::new(
+        "Orthographic far",
+        "Distance of the far plane of the orthographic view: more than Near",
+    )
+    .speed(5.0);
     let far = number_row(ui, "Far", number, lens.parallel_far);
     set(far, &|parallel_far| Lens { parallel_far, ..lens });
 }
@@ -95,7 +100,7 @@ fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
 /// What other observers see of the camera.
 fn mark_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let scene = &state.scene;
-    let hint = "Other cameras see it as a small pyramid";
+    let hint = "Shows the camera to other observers as a small pyramid";
     if Switch::new("Visible", camera.visible).ui(ui).on_hover_text(hint).clicked() {
         let command = items::change_camera(scene, id, |camera| camera.visible ^= true);
         change(requests, format!("Show or hide {}", camera.name), Gesture::Whole, command);

@@ -58,7 +58,7 @@ impl Waiting {
         ui.scope_id().with("crease angle")
     }
 
-    /// What is left of a change while a drag goes on: nothing, until the button is let go.
+    /// A change that is held back until the button is released.
     fn until_let_go(
         ui: &Ui,
         waiting: Option<Self>,

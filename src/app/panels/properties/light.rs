@@ -88,7 +88,7 @@ impl Shown<'_> {
                 set(color, gesture);
             }
         });
-        let hint = "0 to 9 is the key that switches the light; no two lights have the same";
+        let hint = "The key from 0 to 9 that switches the light; each key belongs to one light";
         let number = Number::new("Key", hint).speed(0.05).range(0.0..=9999.0).whole();
         if let Some((to, gesture)) = number_row(ui, "Key", number, f64::from(light.slot)) {
             let command = lights::set_slot(scene, id, whole(to));
@@ -104,7 +104,7 @@ impl Shown<'_> {
     }
 
     fn position_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, position: DVec3) {
-        let hint = "Where the light is";
+        let hint = "Position of the light";
         let changed =
             row(ui, "Position", |ui| vector(ui, &Number::new("Position", hint), position));
         if let Some((to, gesture)) = changed {
@@ -115,7 +115,7 @@ impl Shown<'_> {
     }
 
     fn direction_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, direction: DVec3) {
-        let hint = "The way its light goes; brought to length 1";
+        let hint = "Direction of the light; normalised";
         let field = Number::new("Direction", hint).speed(0.01).range(-1.0..=1.0);
         let changed = row(ui, "Direction", |ui| vector(ui, &field, direction));
         if let Some((to, gesture)) = changed {
@@ -150,7 +150,7 @@ impl Shown<'_> {
             let command = lights::set_aperture(scene, self.id, to);
             change(requests, self.label("Aperture of"), gesture, command);
         }
-        let hint = "How much the light is gathered along the axis";
+        let hint = "Concentration of the light along the axis";
         let number = Number::new("Concentration", hint).speed(0.1).range(0.0..=1000.0);
         if let Some((to, gesture)) = number_row(ui, "Exponent", number, exponent) {
             let command = lights::set_exponent(scene, self.id, to);
@@ -164,10 +164,8 @@ impl Shown<'_> {
         let mut owners = vec![SpotOwner::SelectedObject, SpotOwner::SelectedCamera];
         owners.extend(scene.objects.ids().map(SpotOwner::Object));
         owners.extend(scene.cameras.ids().map(SpotOwner::Camera));
-        owners.push(match owner {
-            SpotOwner::Fixed(_) => owner.clone(),
-            _ => SpotOwner::Fixed(Tracked::new(self.aim(owner))),
-        });
+        let fixed = matches!(owner, SpotOwner::Fixed(_)).then(|| owner.clone());
+        owners.push(fixed.unwrap_or_else(|| SpotOwner::Fixed(Tracked::new(self.aim(owner)))));
         row(ui, "Shines from", |ui| {
             let combo = ComboBox::from_id_salt("owner")
                 .selected_text(owner_name(scene, owner))
@@ -188,14 +186,13 @@ impl Shown<'_> {
                     }
                 }
             });
-            shown
-                .response
-                .accessible_name("Shines from")
-                .on_hover_text("What the spot is fixed to: it shines from there along -Z");
+            shown.response.accessible_name("Shines from").on_hover_text(
+                "The item that the spot is attached to; it shines from there along -Z",
+            );
         });
     }
 
-    /// Where the spot is now, as a place and a direction of its own.
+    /// The current position and direction of the spot.
     fn aim(&self, owner: &SpotOwner) -> Aim {
         let nowhere = Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z };
         self.state.scene.aim(&self.state.view, owner).unwrap_or(nowhere)
@@ -250,7 +247,7 @@ fn owner_name(scene: &Scene, owner: &SpotOwner) -> String {
     }
 }
 
-/// A field's whole number as one.
+/// The value of a field that holds a whole number.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "kept from 0 to 9999")]
 fn whole(number: f64) -> u32 {
     number.clamp(0.0, 9999.0) as u32

@@ -17,7 +17,7 @@ use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::Number;
 use crate::scene::{ItemId, Transformation};
 
-/// Shows it; what is asked for is added to `asks`.
+/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(item) = state.selected().filter(|item| state.scene.contains(*item)) else {
         ui.add_space(theme::GAP);

@@ -44,7 +44,7 @@ fn placement_ui(
     let (scene, view) = (&state.scene, &state.view);
     let placement = object.placement.now();
     let speed = (object.largest_extent() / 200.0).clamp(1e-3, 10.0);
-    let hint = "Where the object's origin is";
+    let hint = "Position of the object's origin";
     let field = Number::new("Position", hint).speed(speed);
     let now = placement::translation(placement);
     let position = row(ui, "Position", |ui| vector(ui, &field, now));
@@ -64,7 +64,7 @@ fn placement_ui(
         let command = placement::object_turn(scene, view, id, to, state.phase(gesture));
         change(requests, format!("Rotate {}", object.name), gesture, command);
     }
-    let hint = "How much longer the object's own axes are than in its file; negative mirrors";
+    let hint = "Scale along the object's own axes relative to its file; negative mirrors";
     let field = Number::new("Scale", hint).speed(0.01);
     let scale = row(ui, "Scale", |ui| vector(ui, &field, placement::scale(placement)));
     if let Some((to, gesture)) = scale {
@@ -78,7 +78,7 @@ fn placement_ui(
 fn stretch_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, object: &Object) {
     let id = ui.scope_id().with("stretch");
     let kept: [f64; 3] = ui.data(|data| data.get_temp(id)).unwrap_or([1.0; 3]);
-    let hint = "A factor along each axis of the frame that is chosen";
+    let hint = "Factor along each axis of the chosen frame";
     let field = Number::new("Stretch", hint).speed(0.01);
     let factors = row(ui, "Stretch", |ui| vector(ui, &field, DVec3::from_array(kept)));
     if let Some((to, _)) = factors {
@@ -121,7 +121,7 @@ fn spin_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId
         let letter = LETTERS[axis.index()];
         let label = format!("About own {letter}");
         let response = Switch::new(&label, spin.axes[axis.index()]).ui(ui);
-        let hint = "Turns by itself; what it has turned stays when it is switched off";
+        let hint = "Spins by itself; switching it off keeps the rotation so far";
         if response.on_hover_text(hint).clicked() {
             let command = motion::toggle_spin(scene, id, axis, time);
             change(requests, format!("Spin {}", object.name), Gesture::Whole, command);
@@ -135,7 +135,7 @@ fn spin_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId
     }
     row(ui, "", |ui| {
         let response = ui.add_enabled(spin.is_on(), Button::new("Apply the turn"));
-        let hint = "Makes what it has turned so far its placement";
+        let hint = "Applies the rotation so far to the placement";
         if response.on_hover_text(hint).on_disabled_hover_text("It does not turn").clicked() {
             let command = motion::apply_spin(scene, id, time);
             change(requests, format!("Apply the spin of {}", object.name), Gesture::Whole, command);
@@ -182,7 +182,7 @@ fn drawing_ui(
     }
     crease::show(ui, state, requests, id, object);
     row(ui, "Edges", |ui| {
-        let hint = "Edges and normals are drawn in it";
+        let hint = "The colour of edges and normals";
         if let Some((color, gesture)) = swatch(ui, "Edge colour", hint, object.edge_color) {
             let command = items::change_object(scene, id, |object| object.edge_color = color);
             set(requests, "Colour the edges of", gesture, command);

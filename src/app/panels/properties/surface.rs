@@ -1,4 +1,4 @@
-//! What an object's surface shows: its material, its texture, a tint.
+//! The surface of an object: material, texture, tint.
 
 use egui::Ui;
 
@@ -63,11 +63,11 @@ fn texture_ui(
     });
     row(ui, "", |ui| {
         let choose = ui.button("Choose...");
-        if choose.on_hover_text("Lays a picture over the object").clicked() {
+        if choose.on_hover_text("Chooses a picture as the texture of the object").clicked() {
             requests.push(Request::ChooseTexture(id));
         }
         let remove = ui.add_enabled(by_hand.is_some(), egui::Button::new("Remove"));
-        let hint = "Takes the picture away that was chosen by hand";
+        let hint = "Removes the chosen texture";
         if remove.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
             let command = items::change_object(&state.scene, id, |object| object.texture = None);
             let label = format!("Remove the texture of {}", object.name);

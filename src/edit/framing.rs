@@ -1,4 +1,4 @@
-//! Where the selected camera has to be to see things whole, whatever their size.
+//! Framing: the camera position from which things fill the picture.
 //!
 //! ```text
 //! distance = r / sin(a)                                 r the bounding radius, a the half-angle
@@ -18,7 +18,7 @@ use crate::scene::{
     CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, Scene, View, dvec3,
 };
 
-/// A sphere about what is to be seen.
+/// The bounding sphere to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Its middle.
@@ -27,7 +27,7 @@ pub struct Sphere {
     pub radius: f64,
 }
 
-/// From where the axes of the world are looked along.
+/// A view along an axis of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Along -Z.
@@ -59,7 +59,7 @@ const MARGIN: f64 = 1.0 / 20.0;
 /// The key `.`: the selected camera sees the selected object whole.
 ///
 /// # Errors
-/// Where there is no object, or it has no vertices.
+/// If there is no object, or it has no vertices.
 pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let (id, _) = set_transform::selected_object(scene, view)?;
     objects(scene, view, &[id])
@@ -68,7 +68,7 @@ pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 /// The key Home: the selected camera sees everything that is shown.
 ///
 /// # Errors
-/// Where nothing is shown.
+/// If nothing is visible.
 pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     objects(scene, view, &shown(scene, view))
 }
@@ -94,7 +94,7 @@ pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, 
 /// above.
 ///
 /// # Errors
-/// Where nothing is shown.
+/// If nothing is visible.
 pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Command, Refusal> {
     let axes =
         math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
@@ -104,7 +104,7 @@ pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Comma
 /// Ctrl+1, 3 and 7: the selected camera sees the selected object whole from a side.
 ///
 /// # Errors
-/// Where there is no object, or it has no vertices.
+/// If there is no object, or it has no vertices.
 pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
     let (id, _) = set_transform::selected_object(scene, view)?;
     framed(scene, view, &[id], side.axes(), 0.0)
@@ -162,7 +162,7 @@ fn framed(
     let mode = camera.pose.now().mode_with(view.object);
     let analysed = match (mode, ids) {
         (CameraMode::Analysis { target }, [id]) if target == *id => scene.objects.get(*id),
-        _ => None,
+        (CameraMode::Analysis { .. } | CameraMode::Fly, _) => None,
     };
     let (sphere, mode) = match analysed {
         Some(object) => (Some(about_the_mean(object, view.time)), mode),
