@@ -151,7 +151,8 @@ impl App {
             let details = findings.iter().map(ToString::to_string).collect();
             state.notices.push(Notice { text, details, offer: None });
         }
-        state.path = Some(path);
+        // An example is saved under a name of its own.
+        state.path = (!io::is_example(&path)).then_some(path);
         self.replace(state);
         self.state.shown = shown;
         let objects = self.state.scene.objects.ids().collect();

@@ -6,6 +6,7 @@ use crate::app::action::{Action, Group};
 use crate::app::ask::Ask;
 use crate::app::laboratory::LabAsk;
 use crate::app::state::State;
+use crate::io::EXAMPLES;
 use crate::scene::AXES;
 
 /// The actions of [`Group::Window`] that have a menu of their own.
@@ -18,7 +19,11 @@ const HELP: [Action; 2] = [Action::CheatSheet, Action::ToPanels];
 pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     MenuBar::new().ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
-        menu(ui, "File", |ui| group_ui(ui, state, asks, Group::File));
+        menu(ui, "File", |ui| {
+            group_ui(ui, state, asks, Group::File);
+            ui.separator();
+            submenu(ui, "Examples", |ui| examples_ui(ui, asks));
+        });
         menu(ui, "Edit", |ui| {
             group_ui(ui, state, asks, Group::Edit);
             ui.separator();
@@ -74,6 +79,18 @@ fn items(
 ) {
     for action in actions {
         asks.extend(action.menu_item(ui, state).map(Ask::from));
+    }
+}
+
+/// The scenes that the program carries; a click opens one in place of this scene.
+fn examples_ui(ui: &mut Ui, asks: &mut Vec<Ask>) {
+    for example in EXAMPLES {
+        let response = ui.button(example.title);
+        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, example.title));
+        if response.clicked() {
+            asks.push(Ask::LoadFiles(vec![example.path.into()]));
+            ui.close();
+        }
     }
 }
 
