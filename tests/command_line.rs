@@ -526,27 +526,3 @@ fn models_alone_are_seen_from_the_side_that_is_asked_for() {
     let (_, err) = ends_with(2, folder.path(), &["render", "--out", "x.png", "--from", "0,9"]);
     assert!(err.contains("models alone"), "{err}");
 }
-
-#[test]
-fn the_readme_has_the_table_of_keys_that_the_program_prints() {
-    let folder = folder();
-    let (table, _) = ends_with(0, folder.path(), &["keys", "--markdown"]);
-    let table = table.replace("Cmd+", "Ctrl+");
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let readme = std::fs::read_to_string(readme).unwrap().replace("\r\n", "\n");
-    let found = readme.contains(&table);
-    assert!(found, "README.md lacks the output of `marraztu keys --markdown`:\n{table}");
-}
-
-#[test]
-fn the_scene_that_the_readme_shows_can_be_drawn() {
-    let folder = folder();
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let readme = std::fs::read_to_string(readme).unwrap();
-    let scene = readme.split("```ron").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
-    std::fs::write(folder.path().join("pot.marraztu"), scene).unwrap();
-    let square = "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 0\nf 1 2 3 4\n";
-    std::fs::write(folder.path().join("teapot.obj"), square).unwrap();
-    let picture = drawn(folder.path(), &["pot.marraztu"]);
-    assert!(picture.pixels().iter().any(|pixel| *pixel != picture.pixel(0, 0)));
-}

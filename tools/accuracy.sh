@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Measures the first scene in the laboratory, and puts plot and table into the README:
-# docs/accuracy.sh [PROGRAM]
+# Measures the first scene in the laboratory, and puts plot and table into docs/accuracy.md:
+# tools/accuracy.sh [PROGRAM]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || cargo build --release --locked
@@ -19,7 +19,7 @@ def front(row):
     return "among samples" if row["against"] == "apart" else "yes"
 
 
-lines = ["| choice | time | half of the pairs | largest error | RMSE | bytes that differ | pixels covered otherwise | on the front |",
+lines = ["| choice | time | interquartile range | largest error | RMSE | differing bytes | pixels whose coverage differs | on the front |",
          "|---|--:|--:|--:|--:|--:|--:|---|"]
 seen = set()
 for row in rows:
@@ -33,10 +33,10 @@ for row in rows:
     lines.append(f"| {name} | {time} | {float(row['ratio_lower']):.2f} to {float(row['ratio_upper']):.2f} "
                  f"| {row['largest']} | {float(row['rmse']):.2g} | {100 * float(row['differing']):.2g}% "
                  f"| {row['coverage']} | {front(row)} |")
-readme = pathlib.Path("README.md")
-text = readme.read_text()
-begin, end = "<!-- laboratory: made by docs/accuracy.sh -->\n", "<!-- laboratory: end -->"
+page = pathlib.Path("docs/accuracy.md")
+text = page.read_text()
+begin, end = "<!-- laboratory: made by tools/accuracy.sh -->\n", "<!-- laboratory: end -->"
 before, rest = text.split(begin)
 _, after = rest.split(end)
-readme.write_text(before + begin + "\n" + "\n".join(lines) + "\n\n" + end + after)
+page.write_text(before + begin + "\n" + "\n".join(lines) + "\n\n" + end + after)
 PYTHON

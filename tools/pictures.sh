@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Makes the pictures of the README again: docs/pictures.sh [PROGRAM]
+# Makes the pictures of the README again: tools/pictures.sh [PROGRAM]
 #
 # The models lie beside the project, in ../shared. The window is shown on a virtual display.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 models=../shared/models
-[ -d $models ] || { echo "docs/pictures.sh: there are no models at $models" >&2; exit 1; }
+[ -d $models ] || { echo "tools/pictures.sh: there are no models at $models" >&2; exit 1; }
 DEBIAN_FRONTEND=noninteractive .ci/install xvfb xdotool imagemagick pngquant libgl1-mesa-dri
 program=${1:-target/release/marraztu}
 [ $# -gt 0 ] || cargo build --release --locked
@@ -45,7 +45,7 @@ window() {
   xdotool mousemove 620 760
   import -window root "$work/now.png"
   while [ $quiet -lt 6 ]; do
-    [ $SECONDS -lt $end ] || { echo "docs/pictures.sh: no still picture of $name" >&2; exit 1; }
+    [ $SECONDS -lt $end ] || { echo "tools/pictures.sh: no still picture of $name" >&2; exit 1; }
     kill -0 $editor || { cat "$work/editor" >&2; exit 1; }
     mv "$work/now.png" "$work/last.png"
     sleep 0.5

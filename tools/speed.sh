@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes docs/speed.md and its plots again: docs/speed.sh [PEERS.csv]
+# Makes docs/speed.md and its plots again: tools/speed.sh [PEERS.csv]
 #
 # The benchmarks take some minutes. PEERS.csv is the table that a run of the comparison with other
 # renderers has left; without it the last one stays.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes docs/stability.md again, of what tests and proofs measure: docs/stability.sh [PROGRAM [FOLDER]]
+# Makes docs/stability.md again, of what tests and proofs measure: tools/stability.sh [PROGRAM [FOLDER]]
 #
 # The proofs run in the numbers that the page promises, which takes some minutes. What FOLDER has of an
 # earlier run is not measured again: `figures`, filled by the hard cases with MARRAZTU_FIGURES and by
@@ -53,7 +53,7 @@ group() {
 cat <<TEXT
 # Hard cases, in numbers
 
-<!-- Made by docs/stability.sh: change that, or the tests, and run it again. -->
+<!-- Made by tools/stability.sh: change that, or the tests, and run it again. -->
 
 What a renderer promises is worth what it was measured by. This page lists the cases in which
 programs of this kind go wrong, what a naive program does in each, what this one does, and the bound
