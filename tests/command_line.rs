@@ -139,7 +139,7 @@ fn every_option_of_looking_changes_the_picture() {
         &["--vertex-normals"],
     ];
     for change in changes {
-        // Not `assert_ne`: nobody wants to read two pictures in numbers.
+        // Not `assert_ne`: it would print two pictures in numbers.
         assert!(drawn(folder.path(), change) != plain, "{change:?} changes nothing");
     }
     let settings = Settings { arithmetic: marraztu::scene::Arithmetic::F64, ..Settings::default() };
@@ -347,7 +347,7 @@ fn a_job_is_drawn_with_the_instructions_that_are_asked_for_or_says_that_it_is_no
 #[test]
 fn a_job_of_edges_has_one_colour_whichever_way_faces_look() {
     let folder = folder();
-    // Two sides of a tent, one of which is turned away.
+    // Two sides of a tent; one is turned away.
     let tent = "v -1 0 -1\nv 1 0 -1\nv 0 1 0\nv 0 -1 1\nf 1 3 2\nf 1 4 2\nf 4 3 1\n";
     std::fs::write(folder.path().join("tent.obj"), tent).unwrap();
     let job = ["job", "--mesh", "tent.obj", "--mode", "wire", "--size", "96x64", "--frames", "1"];
@@ -409,7 +409,7 @@ fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
 }
 
 #[test]
-fn nobody_listening_is_no_error() {
+fn a_closed_pipe_is_no_error() {
     let folder = folder();
     let mut child = Command::new(env!("CARGO_BIN_EXE_marraztu"))
         .args(["info", "square.obj"])

@@ -88,7 +88,7 @@ fn plates() -> Shared<Model> {
     )
 }
 
-/// Two by two texels, one of which may be a hole.
+/// Two by two texels, one perhaps a hole.
 fn texture(dice: &mut Dice) -> Shared<Texture> {
     let hole = dice.one_of(&[255, 255, 20]);
     let texel = |dice: &mut Dice, alpha| {

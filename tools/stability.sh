@@ -74,7 +74,7 @@ A letter after each case says what judges it: Z whole numbers or fractions; D tw
 along another way; I something that always holds; R two runs that have to agree.
 
 **What is not claimed.** The oracles share with the program the scene (places of corners as f32) and
-glam's vectors. Where a way of drawing is not in the program (16 and 24 bits of depth, f32 coverage,
+glam's vectors. If a way of drawing is not in the program (16 and 24 bits of depth, f32 coverage,
 snapping to other grids, rsqrt, points every 0.1 unit), its column is **by number**: that arithmetic
 alone was done in the test, not a picture drawn by it.
 
@@ -90,7 +90,7 @@ alone was done in the test, not a picture drawn by it.
 | light of the editor within 0.25 byte step before rounding, Ns up to 128 | **$(ours 42 "before rounding, against a table")** | Vulkan's pow is unbounded in byte steps |
 | a million key presses: 1e-9 radians | $(counted presses) | none states one |
 | 100,000 commands undone and redone, bit for bit | $(counted undo): **0 bits differ**, in the files saved on the way neither | none states one |
-| no panic, no NaN in hostile scenes | $(number scenes scenes) scenes, $(number scenes pictures) pictures, $(number scenes refusals) refusals: **0 panics, 0 pixels lost to a number that is none** ($(number scenes "pixels on a border of light") stood on a border of light, and went dark in 64 bits too when lamps and objects moved by 2^-20; $(number scenes "scenes too bright") scenes with light beyond ten thousand times white were not judged) | D3D discards NaN only |
+| no panic, no NaN in hostile scenes | $(number scenes scenes) scenes, $(number scenes pictures) pictures, $(number scenes refusals) refusals: **0 panics, 0 pixels lost to a NaN** ($(number scenes "pixels on a border of light") stood on a border of light, and went dark in 64 bits too when lamps and objects moved by 2^-20; $(number scenes "scenes too bright") scenes with light beyond ten thousand times white were not judged) | D3D discards NaN only |
 | what a plan leaves out changes no bit | $(number plan scenes) scenes drawn by a plan that leaves out nothing: **the same**; of what is too faint a byte is one step off at most in $(number faint scenes) scenes; $(number rules breakages) rules made wrong: **all caught** | none found |
 | one picture on every processor | the list \`tests/pictures.sums\`, on every level of instructions of this processor, 1 to 16 threads: **the same** | FLIP's and egui's tests allow differences |
 

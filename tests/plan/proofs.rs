@@ -5,7 +5,7 @@ use marraztu::lab::prove::plan::{absent, samples};
 use marraztu::lab::prove::{Proof, Tally};
 use marraztu::render::FramePlan;
 
-/// What is seen in so many cases of a proof.
+/// What is seen in a number of cases of a proof.
 fn prove(name: &str, cases: u64) -> Tally {
     let proof = Proof::named(name).unwrap();
     let seen = proof.run(0..proof.lots(cases), &|_| {});
