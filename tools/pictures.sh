@@ -1,24 +1,17 @@
 #!/usr/bin/env bash
 # Makes the pictures of the README again: tools/pictures.sh [PROGRAM]
 #
-# The models lie beside the project, in ../shared. The window is shown on a virtual display.
+# The three examples are drawn without a window; the window is shown on a virtual display.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-models=../shared/models
-[ -d $models ] || { echo "tools/pictures.sh: there are no models at $models" >&2; exit 1; }
 DEBIAN_FRONTEND=noninteractive .ci/install xvfb xdotool imagemagick pngquant libgl1-mesa-dri
 program=${1:-target/release/marraztu}
 [ $# -gt 0 ] || cargo build --release --locked
 pictures=docs/pictures
 mkdir -p $pictures
-
-# Without a window. The lines are those of the README.
-"$program" render $models/nefertiti/nefertiti-lowres.obj --out $pictures/nefertiti.png \
-  --size 400x400 --from 30,5 --material bronze --background 24,26,34
-"$program" render $models/suzanne/suzanne.obj --out $pictures/suzanne.png \
-  --size 400x400 --from -30,10 --material turquoise --edges-over --background 90,100,120
-"$program" render $models/crane_control/spot_control_mesh.obj --out $pictures/wire.png \
-  --size 400x400 --from 145,14 --edges --background 0,0,0
+for example in still-life chess harbour; do
+  "$program" render --quiet assets/examples/$example.marraztu --size 640x400 --out $pictures/$example.png
+done
 
 work=$(mktemp -d)
 export LIBGL_ALWAYS_SOFTWARE=1 XDG_CONFIG_HOME="$work/config" XDG_DATA_HOME="$work/data"
@@ -31,7 +24,7 @@ xvfb=$!
 read -r -t 60 number <"$work/number" || { cat "$work/xvfb" >&2; exit 1; }
 export DISPLAY=":$number"
 
-# How many pixels differ between the last two shots; large numbers are written as 1.2e+06.
+# The number of pixels that differ between the last two shots; large numbers are written as 1.2e+06.
 moving() {
   { compare -metric AE "$work/last.png" "$work/now.png" null: 2>&1 || true; } | awk '{ printf "%d\n", $1 }'
 }
@@ -42,7 +35,7 @@ window() {
   shift
   "$program" "$@" 2>"$work/editor" &
   editor=$!
-  xdotool mousemove 620 760
+  xdotool mousemove 1150 740
   import -window root "$work/now.png"
   while [ $quiet -lt 6 ]; do
     [ $SECONDS -lt $end ] || { echo "tools/pictures.sh: no still picture of $name" >&2; exit 1; }
@@ -58,15 +51,12 @@ window() {
   editor=
   cp "$work/now.png" "$pictures/$name.png"
 }
-window editor
-window cow docs/scenes/cow.marraztu
-window room docs/scenes/room.marraztu
-window pots docs/scenes/pots.marraztu
+window editor assets/examples/harbour.marraztu
 
-# Fine textures do not fit into the limit but with fewer colours.
+# All colours are kept if the file is small enough, else a palette.
 for picture in $pictures/*.png; do
   convert "$picture" -strip -define png:compression-level=9 -define png:exclude-chunk=all "$work/small.png"
-  [ "$(stat -c %s "$work/small.png")" -lt 400000 ] ||
+  [ "$(stat -c %s "$work/small.png")" -lt 250000 ] ||
     pngquant --force --speed 1 --output "$work/small.png" 256 "$picture"
   [ "$(stat -c %s "$work/small.png")" -lt 400000 ] || { echo "$picture is too large" >&2; exit 1; }
   mv "$work/small.png" "$picture"

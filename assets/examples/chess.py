@@ -172,7 +172,7 @@ def scene():
     scene.light("lamp", spot(LAMP, (2, 0, 0), 50.0, 2.0), (244, 222, 186))
     scene.light("moon", sun((0.75, -0.45, 0.65)), (84, 104, 158))
     scene.light("fire", bulb((54, 16, 20)), (236, 124, 58), (1.0, 0.0, 0.0001))
-    scene.write("A game of chess under a lamp: Anderssen against Kieseritzky, 1851", (-20.0, 19.5, 44.0), (2.0, 0.6, -1.2), 15.0, 4.0, 600.0, king)
+    scene.write("A game of chess under a lamp: Anderssen against Kieseritzky, 1851", (-17.0, 22.5, 45.0), (0.4, 0.9, 0.0), 20.5, 4.0, 600.0, king)
 
 
 def make():

@@ -9,10 +9,10 @@ from kit import *
 FOLDER = "harbour"
 SUN = unit((-0.30, 0.115, -1.0))  # towards the sun
 EYE = (2.0, 4.6, 30.0)
-LIGHTHOUSE = (34.0, 2.6, -62.0)
-JETTY = (-9.5, 1.1)  # its x and the height of its planks
-LANTERNS = [(-8.3, 3.5, 6.0), (-8.3, 3.5, -2.0), (-8.3, 3.5, -10.0)]
-BOATS = [("red boat", (5.6, 0, 4.0), 28.0, 1.0, (150, 34, 34)), ("blue boat", (13.5, 0, -12.0), 62.0, 1.1, (30, 62, 120)), ("green boat", (-2.6, 0, -22.0), -36.0, 1.0, (38, 92, 66))]
+LIGHTHOUSE = (26.5, 2.6, -62.0)
+JETTY = (-8.2, 1.1)  # its x and the height of its planks
+LANTERNS = [(-7.0, 3.5, 3.0), (-7.0, 3.5, -4.0), (-7.0, 3.5, -11.0)]
+BOATS = [("red boat", (5.0, 0, 4.0), 28.0, 1.0, (150, 34, 34)), ("blue boat", (11.6, 0, -12.0), 62.0, 1.1, (30, 62, 120)), ("green boat", (-2.6, 0, -22.0), -36.0, 1.0, (38, 92, 66))]
 
 
 def sky_color(direction):
@@ -363,7 +363,7 @@ def scene():
         scene.light(f"lantern {k + 1}", bulb(at), (255, 178, 92), (1.0, 0.0, 0.12))
     top = add(LIGHTHOUSE, (0, 16.6, 0))
     scene.light("lighthouse", spot(top, (-6, 0.5, -6), 9.0, 4.0), (120, 112, 84))
-    scene.write("A harbour at sunset", EYE, (1.6, 4.9, 0.0), 19.0, 1.0, 1500.0, selected)
+    scene.write("A harbour at sunset", EYE, (1.3, 4.9, 0.0), 20.0, 1.0, 1500.0, selected)
 
 
 def make():

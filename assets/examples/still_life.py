@@ -10,11 +10,11 @@ FOLDER = "still-life"
 WINDOW = unit((-0.72, 0.62, 0.42))  # towards the window's light
 TABLE = (64.0, 34.0)  # half of its length and depth
 BOWL = (-9.0, 0.35, -5.0)
-BOTTLE = (21.0, 0.0, -13.0)
-CANDLE = (-37.0, 0.0, -10.0)
-PEAR = (17.5, 0.35, 8.5)
-LEMON = (10.5, 3.3, 15.5)
-HALF = (28.5, 0.0, 9.0)
+BOTTLE = (18.5, 0.0, -13.0)
+CANDLE = (-32.0, 0.0, -9.0)
+PEAR = (15.5, 0.35, 10.5)
+LEMON = (7.5, 3.3, 17.5)
+HALF = (24.0, 0.35, 4.5)
 FLAME = add(CANDLE, (0, 23.2, 0))
 
 BOWL_PROFILE = [(0, 0), (6.2, 0), (6.5, 0.5), (5.6, 1.3), (9.0, 2.6), (12.6, 4.9), (15.2, 7.6), (16.8, 10.2)]
@@ -427,7 +427,7 @@ def scene():
     scene.light("window", sun(add((0, 0, 0), WINDOW, -1)), (255, 240, 214))
     scene.light("candle", bulb(FLAME), (255, 150, 66), (1.0, 0.0, 0.0016))
     scene.light("reading lamp", spot((46, 62, 44), (4, 4, 2), 30.0, 14.0), (92, 78, 66))
-    scene.write("A still life: fruit in a bowl, by a window and a candle", (3, 34, 96), (-4.5, 11.0, 0), 15.8, 10.0, 600.0, bowl)
+    scene.write("A still life: fruit in a bowl, by a window and a candle", (3, 34, 96), (-4.6, 11.0, 0), 17.8, 10.0, 600.0, bowl)
 
 
 if __name__ == "__main__":
