@@ -1,7 +1,7 @@
 //! The pages are true: what they list is in the program's tables, what they link to is there, and
 //! every command that they show runs in a plain clone.
 //!
-//! `tools/pages.sh` runs this test with `MARRAZTU_WRITE_PAGES=1`: then the lists are written instead.
+//! `tools/pages.sh` runs this test with `MARRAZTU_WRITE_PAGES=1`: then the lists are written.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

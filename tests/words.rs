@@ -1,8 +1,8 @@
-//! The words and the form of sources and pages: no phrase that reads as translated, no name that has
-//! been given up, no line over 100 columns, and no file that rustfmt does not see.
+//! The words and the form of sources and pages: no phrase that reads as translated, no name that
+//! has been given up, no line over 100 columns, and no file that rustfmt does not see.
 //!
-//! `docs/glossary.md` and CONTRIBUTING.md say how to write instead. A phrase is searched for as people
-//! read it: across line ends, and in the names of tests.
+//! `docs/glossary.md` and CONTRIBUTING.md say how to write instead. A phrase is searched for as
+//! people read it: across line ends, and in the names of tests.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -19,8 +19,8 @@ const PHRASES: &[(&str, &str)] = &[
     ("by chance", "random, at random"),
 ];
 
-/// The beginning of a sentence that is a condition if a comma follows: "If" is for conditions, "Where"
-/// for places.
+/// The beginning of a sentence that is a condition if a comma follows: "If" is for conditions,
+/// "Where" for places.
 const CONDITION: &str = "Where ..., ...";
 
 /// Names that have been given up, as whole words of code; `docs/glossary.md` has those in use.

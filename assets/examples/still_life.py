@@ -26,10 +26,10 @@ HOLDER_PROFILE += [(1.5, 6.1), (1.3, 7.2), (2.5, 8.4), (3.0, 9.2), (2.7, 9.3), (
 
 
 def fruit_places():
-    """(kind, centre, turn) of the fruit in the bowl: five below, three above."""
-    kinds = ["apple", "orange", "apple", "orange", "orange"]
+    """(kind, centre, turn) of the fruit in the bowl: four of five places below, three above."""
+    kinds = {0: "apple", 1: "orange", 3: "orange", 4: "orange"}
     places = []
-    for i, kind in enumerate(kinds):
+    for i, kind in kinds.items():
         angle = 2 * pi * (i + 0.15) / 5
         places.append((kind, add(BOWL, (7.6 * sin(angle), 8.0, 7.6 * cos(angle))), 70.0 * i))
     for i, kind in enumerate(["orange", "apple", "apple"]):

@@ -1,8 +1,8 @@
 //! The example scenes that the program carries, with their models and textures.
 //!
-//! They are ordinary scene files, `assets/examples/*.marraztu`. The program knows each of their files by
-//! a path that begins with [`FOLDER`], where a path on the disk would stand; a scene that uses them can
-//! therefore be saved anywhere, and opened again without them.
+//! They are ordinary scene files, `assets/examples/*.marraztu`. A path that begins with [`FOLDER`]
+//! names one of their files inside the program, so a scene that uses them can be saved anywhere and
+//! opened again without them.
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The menu of examples: each is opened whole, and saved under a name of its own.
 //!
-//! Catches: an example whose files the program does not carry, one that takes unsaved work away, one
-//! that Ctrl+S would write back to.
+//! Catches: an example whose files the program does not carry, one that takes unsaved work away,
+//! one that Ctrl+S would write back to.
 
 use std::time::Duration;
 
