@@ -1,6 +1,6 @@
 //! Every public model that was gathered, against the table that says what is in it.
 //!
-//! The models are the work of others and lie beside the project. Where they are missing the test is
+//! The models are the work of others and lie beside the project. If they are missing, the test is
 //! left out, loudly; `MARRAZTU_REQUIRE_SHARED=1` makes that a failure, `MARRAZTU_SHARED` says where
 //! they are.
 
@@ -188,7 +188,7 @@ fn what_tobj_reads_of_a_model_is_read_alike_bit_for_bit() {
         let statement = |word: &str| text.lines().any(|line| line.starts_with(word));
         let loaded = load(&path, &LoadOptions::default(), &Progress::new());
         let (Ok(loaded), false) = (loaded, statement("l ") || statement("p ")) else { continue };
-        // It gives the first place on the texture to faces of which none names any.
+        // It gives the first place on the texture to faces that name none.
         let named = text.lines().any(|line| line.starts_with('f') && line.contains('/'));
         let count = |kind| count(&loaded.findings, kind);
         let mixed = count(FindingKind::UvMixed) + count(FindingKind::NormalMixed);

@@ -58,7 +58,7 @@ fn every_way_of_lighting_is_the_same_to_a_step_in_both_arithmetics() {
     }
 }
 
-/// A mesh of which one corner is far beyond all others: what is seen of it is lit as if it were not there.
+/// A mesh with one corner far beyond all others: what is seen of it is lit as if it were not there.
 #[test]
 fn a_stray_corner_takes_no_light_from_the_rest_in_either_arithmetic() {
     let far = [1e15_f32, 1e15, -1e15];
@@ -214,7 +214,7 @@ fn what_is_nearer_hides_what_is_farther_whatever_the_order() {
 
 #[test]
 fn a_wall_looks_the_same_whether_or_not_there_is_something_behind_it() {
-    // Where a triangle is alone in a tile, nobody asks what is seen at its pixels.
+    // If a triangle is alone in a tile, what is seen at its pixels is known without asking.
     let wall = (square(), at(400.0, 3.0, -7.0, 0.0));
     let (alone, view) = scene(std::slice::from_ref(&wall));
     let (both, _) = scene(&[wall, (ball(6), at(100.0, 0.0, 0.0, -300.0))]);

@@ -68,7 +68,7 @@ fn plates() -> Shared<Model> {
     )
 }
 
-/// Two by two texels, one of which may be a hole.
+/// Two by two texels, one perhaps a hole.
 fn texture(rng: &mut Rng) -> Shared<Texture> {
     let hole = rng.one_of(&[255, 255, 20]);
     let texel = |rng: &mut Rng, alpha| {

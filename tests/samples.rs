@@ -235,7 +235,7 @@ fn each_sample_is_lit_where_it_lies() {
 }
 
 /// In perspective corners of the larger picture are snapped eight times as finely, so that samples next to
-/// an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the whole. Where one
+/// an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the whole. If one
 /// triangle is seen, at most one.
 #[test]
 fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {

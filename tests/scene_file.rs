@@ -566,7 +566,7 @@ fn the_file_that_was_there_is_kept_beside() {
 }
 
 #[test]
-fn a_number_that_is_none_is_refused_before_anything_is_written() {
+fn a_nan_is_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.marraztu");
     let (scene, mut view) = default_scene();

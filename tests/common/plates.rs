@@ -32,7 +32,7 @@ pub(crate) fn model() -> Shared<Model> {
 }
 
 /// A camera at (0, 0, 400); objects 3, 2 and 1 in this order, at (-100, 0, 0), (100, 0, 0) and
-/// (0, 0, -400), of which 3 is selected; the five lights as 4 to 8, of which the sun is selected.
+/// (0, 0, -400), with 3 selected; the five lights as 4 to 8, with the sun selected.
 pub(crate) fn three_objects() -> (Scene, View) {
     let camera = Camera {
         name: "camera 1".to_owned(),

@@ -75,7 +75,7 @@ impl Desk {
         self.pose().mode_with(self.view.object)
     }
 
-    /// Where the selected light is and where it shines to, as far as it has either.
+    /// The position and the direction of the selected light, as far as it has either.
     pub(crate) fn light(&self) -> (DVec3, DVec3) {
         match &self.scene.lights.get(self.view.light.unwrap()).unwrap().kind {
             LightKind::Sun { direction } => (DVec3::ZERO, *direction.now()),
@@ -95,7 +95,7 @@ impl Desk {
     }
 }
 
-/// The turn by so many degrees about an axis, written out for each axis by itself.
+/// The turn by a number of degrees about an axis, written out for each axis by itself.
 pub(crate) fn turned(axis: Axis, degrees: f64) -> DMat3 {
     let (s, c) = degrees.to_radians().sin_cos();
     let rows = match axis {

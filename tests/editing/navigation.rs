@@ -15,7 +15,7 @@ fn desk() -> Desk {
     Desk::new(Subject::Camera, Transformation::Translation)
 }
 
-/// Where a point of the world is seen, in pixels from the upper left.
+/// The position of a point of the world in the picture, in pixels from the upper left.
 fn pixel(desk: &Desk, point: DVec3) -> DVec2 {
     let lens = desk.scene.selected_camera(&desk.view).lens;
     let view_from_world = desk.pose().world_from_camera().inverse();

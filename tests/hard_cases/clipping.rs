@@ -91,7 +91,7 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
 }
 
 #[test]
-fn case_11_scenes_of_numbers_that_nobody_means_are_refused_or_drawn() {
+fn case_11_scenes_of_absurd_numbers_are_refused_or_drawn() {
     let tally = quick_round("scenes");
     assert!(tally.counts["refusals"] > 1000 && tally.counts["pictures"] > 10_000, "{tally}");
 }

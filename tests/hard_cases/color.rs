@@ -125,7 +125,7 @@ fn case_54_what_is_no_number_is_black_and_what_is_infinite_is_full() {
         .count();
     Figure {
         case: 54,
-        what: "wrong bytes of numbers that are none, infinite or huge",
+        what: "wrong bytes of numbers that are NaN, infinite or huge",
         naive: Some(("cast by way of i32, of 5", naive as f64)),
         ours: wrong as f64,
         bound: 0.0,

@@ -142,7 +142,7 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
         unit: "pixels",
     }
     .hold();
-    // Where it leans, the depth of each cut is rounded from its own corners, once; so either may be a
+    // If it leans, the depth of each cut is rounded from its own corners, once; so either may be a
     // last place nearer. It is a share of pixels that is stated, not hidden.
     Figure {
         case: 32,

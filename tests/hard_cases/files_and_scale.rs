@@ -96,7 +96,7 @@ fn case_65_faces_are_kept_mended_or_left_out_and_concave_ones_are_filled_rightly
         wrong += usize::from(loaded.findings.iter().all(|finding| finding.kind != kind));
         wrong += usize::from(loaded.model.mesh.polygon_count() != kept);
     }
-    assert!(read(&format!("{three}f 0 1 2\n")).is_err(), "a file of which nothing is left");
+    assert!(read(&format!("{three}f 0 1 2\n")).is_err(), "a file without a usable face");
     assert_eq!(wrong, 0);
     // A star of many points: what its triangles cover is the outline's own area.
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);

@@ -444,7 +444,7 @@ fn case_10_normals_that_cancel_out_give_way_to_the_faces() {
         let corners = [0, 1, 2].map(|_| rng.vector(1.0).as_vec3().to_array());
         let one = picture(model("side", &corners, &[&[0, 1, 2]]));
         let two = picture(model("leaf", &corners, &[&[0, 1, 2], &[2, 1, 0]]));
-        // Where the one side is seen from behind, the leaf shows its other one.
+        // If one side is seen from behind, the leaf shows its other one.
         let background = Scene::BACKGROUND.opaque();
         let both = one.pixels().iter().zip(two.pixels());
         differ += both.filter(|(one, two)| **one != background && one != two).count();

@@ -1,4 +1,4 @@
-//! The presets keep their promises, on the first scene and on ten by chance.
+//! The presets keep their promises, on the first scene and on ten random ones.
 //!
 //! Exact is held to the laboratory's reference, Default to Exact. The reference takes textures from smaller
 //! pictures of them, too, which no preset promises: here it takes them as the presets do.
@@ -36,11 +36,11 @@ fn reference() -> Settings {
 fn studios() -> Vec<(String, Studio)> {
     let (scene, view) = io::default_scene();
     let first = Studio::new(Shot::new(&scene, &view, &Settings::default(), SIZE));
-    let by_chance = SEEDS.map(|seed| {
+    let random = SEEDS.map(|seed| {
         let it = random_scene(seed);
         (format!("scene {seed}"), Studio::new(Shot::new(&it.scene, &it.view, &it.settings, SIZE)))
     });
-    std::iter::once(("the first scene".to_owned(), first)).chain(by_chance).collect()
+    std::iter::once(("the first scene".to_owned(), first)).chain(random).collect()
 }
 
 /// How far the pictures of some settings are from those of others: scene by scene, and the part of all

@@ -123,7 +123,7 @@ impl Editor {
         self.hold(chord, 0);
     }
 
-    /// Presses a key, holds it until it has repeated so many times, and lets it go.
+    /// Presses a key, holds it until it has repeated `repeats` times, and lets it go.
     pub(crate) fn hold(&mut self, chord: Chord, repeats: usize) {
         let (key, modifiers, text) = events_of(chord);
         self.set_modifiers(modifiers);

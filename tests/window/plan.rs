@@ -24,7 +24,7 @@ fn effects(editor: &Editor) -> Vec<Effect> {
 #[test]
 fn the_plan_follows_the_scene_while_it_is_shown() {
     let mut editor = Editor::of_size(1400.0, 1400.0);
-    assert!(editor.state().plan.explained.is_none(), "nobody has asked");
+    assert!(editor.state().plan.explained.is_none(), "no one has asked");
     editor.perform(Action::TogglePlan);
     assert!(editor.shows("sun on, all 3"));
     let lights = |editor: &Editor| {

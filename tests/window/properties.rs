@@ -69,7 +69,7 @@ fn type_into(editor: &mut Editor, field: &str, text: &str) {
     editor.press(Named(Key::Enter));
 }
 
-/// Drags a control by so many points to the right.
+/// Drags a control by a number of points to the right.
 fn drag(editor: &mut Editor, role: Role, label: &str, by: f32) {
     let at = control(editor, role, label).rect().center();
     let places: Vec<Pos2> = (0..=4_u8).map(|i| at + vec2(by * f32::from(i) / 4.0, 0.0)).collect();

@@ -131,7 +131,8 @@ impl App {
             let details = findings.iter().map(ToString::to_string).collect();
             state.notices.push(Notice { text, details, offer: None });
         }
-        state.path = Some(path);
+        // An example is saved under a name of its own.
+        state.path = (!io::is_example(&path)).then_some(path);
         self.replace(state);
         self.state.panels = panels;
         let objects = self.state.scene.objects.ids().collect();

@@ -5,6 +5,7 @@ use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
 use crate::app::state::State;
+use crate::io::EXAMPLES;
 
 /// The actions of [`Group::Window`] that have a menu of their own.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
@@ -16,7 +17,11 @@ const HELP: [Action; 2] = [Action::CheatSheet, Action::ToPanels];
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     MenuBar::new().ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
-        menu(ui, "File", |ui| group_ui(ui, state, requests, Group::File));
+        menu(ui, "File", |ui| {
+            group_ui(ui, state, requests, Group::File);
+            ui.separator();
+            submenu(ui, "Examples", |ui| examples_ui(ui, requests));
+        });
         menu(ui, "Edit", |ui| {
             group_ui(ui, state, requests, Group::Edit);
             ui.separator();
@@ -72,6 +77,18 @@ fn items(
 ) {
     for action in actions {
         requests.extend(action.menu_item(ui, state).map(Request::from));
+    }
+}
+
+/// The scenes that the program carries; a click opens one in place of this scene.
+fn examples_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
+    for example in EXAMPLES {
+        let response = ui.button(example.title);
+        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, example.title));
+        if response.clicked() {
+            requests.push(Request::LoadFiles(vec![example.path.into()]));
+            ui.close();
+        }
     }
 }
 
