@@ -19,7 +19,7 @@ def front(row):
     return "among samples" if row["against"] == "apart" else "yes"
 
 
-lines = ["| choice | time | half of the pairs | largest error | RMSE | bytes that differ | pixels covered otherwise | on the front |",
+lines = ["| choice | time | interquartile range | largest error | RMSE | bytes that differ | pixels whose coverage differs | on the front |",
          "|---|--:|--:|--:|--:|--:|--:|---|"]
 seen = set()
 for row in rows:

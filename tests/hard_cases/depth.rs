@@ -140,8 +140,8 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
         unit: "pixels",
     }
     .hold();
-    // Where it leans, the depth of each cut is rounded from its own corners, once; so either may be a
-    // last place nearer. It is a share of pixels that is stated, not hidden.
+    // Where it leans, the depth of each cut is rounded from its own corners, once; so either may be
+    // a last place nearer. It is a share of pixels that is stated, not hidden.
     Figure {
         case: 32,
         what: "pixels of a leaning plane that show the younger, by the last place of depth",
@@ -153,7 +153,8 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
     .hold();
 }
 
-/// A depth at a pixel's middle with twice the digits: edge functions of whole numbers over their sum.
+/// A depth at a pixel's middle with twice the digits: edge functions of whole numbers over their
+/// sum.
 fn exact_depth(flat: &Flat, x: i32, y: i32) -> f64 {
     let [p, q, r] = flat.corners;
     let edge = |p: Snapped, q: Snapped| {
