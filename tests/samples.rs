@@ -202,7 +202,7 @@ fn each_sample_is_lit_where_it_lies() {
     let each = Settings { light: LightAt::Sample, ..pixels };
     for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
         for (round, view) in views.into_iter().enumerate() {
-            let triangles = scattered(60, 11 + round as u64);
+            let triangles = scattered(60, 38 + round as u64);
             let stage = |triangles: &[Flat], side| {
                 let (scene, own) = shiny(triangles, side);
                 (scene, view(own))
