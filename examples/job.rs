@@ -1,8 +1,8 @@
 //! One drawing job that other renderers do too, so that they can be compared: a mesh orbited by a
 //! camera, lit by five lights, in one of several modes.
 //!
-//! A frame is measured from the setting of its camera to bytes in memory, planning included, and no two
-//! frames have the same camera. Reading the mesh is not measured.
+//! A frame is measured from the setting of its camera to bytes in memory, planning included, and no
+//! two frames have the same camera. Reading the mesh is not measured.
 //!
 //! ```text
 //! cargo run --release --example job -- --mesh bunny.obj --mode phong
@@ -174,9 +174,8 @@ fn run(job: &Job) -> Result<String, Failure> {
     let (Size { width, height }, frames) = (job.size, measured.frames.len());
     let Job { label, msaa, .. } = job;
     let (mesh, mode) = (job.mesh.display(), &job.mode);
-    Ok(format!(
-        "R,{label},{mesh},{triangles},{mode},{width}x{height},{msaa},{frames},{times},{times},{covered}"
-    ))
+    let drawn = format!("{label},{mesh},{triangles},{mode},{width}x{height},{msaa}");
+    Ok(format!("R,{drawn},{frames},{times},{times},{covered}"))
 }
 
 /// How a job is drawn; an error says what is not supported.
@@ -245,8 +244,8 @@ fn measure(
     Ok(Measured { frames, processor, picture: renderer.picture().clone() })
 }
 
-/// The job's mesh: its bounding box centred at the origin, its farthest vertex 100 away, with normals
-/// that are the sums of the face normals around a vertex, weighted by area.
+/// The job's mesh: its bounding box centred at the origin, its farthest vertex 100 away, with
+/// normals that are the sums of the face normals around a vertex, weighted by area.
 fn prepared(model: &Model, raw: bool) -> Model {
     let mesh = &model.mesh;
     let positions: Vec<DVec3> = mesh.positions().iter().map(|p| dvec3(*p)).collect();

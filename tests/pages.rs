@@ -9,8 +9,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use marraztu::io;
 use marraztu::accuracy::AXES;
+use marraztu::io;
 use tempfile::TempDir;
 
 /// Pages for people who use the program or work on it.

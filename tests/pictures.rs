@@ -124,8 +124,8 @@ fn a_square_that_faces_the_camera_covers_the_pixels_that_the_lens_says() {
 #[test]
 fn what_is_lit_by_the_sun_alone_has_the_colour_of_the_equation() {
     let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0))]);
-    // The ground, seen from above by a camera at (0, 0, 400): the square lies in y = 0 and is turned
-    // to face up and towards the camera by 45 degrees.
+    // The ground, seen from above by a camera at (0, 0, 400): the square lies in y = 0 and is
+    // turned to face up and towards the camera by 45 degrees.
     edit(&mut scene, FIRST, |object| {
         let turn =
             DMat4::from_rotation_x(-45_f64.to_radians()) * DMat4::from_scale(DVec3::splat(50.0));
@@ -136,7 +136,8 @@ fn what_is_lit_by_the_sun_alone_has_the_colour_of_the_equation() {
         switch(&mut scene, slot, false);
     }
     let picture = draw(&scene, &without_marks(view), &Settings::default(), 99);
-    // N.L = cos 45, L straight up; V along +Z at the middle: R = 2 (N.L) N - L = (0, 0, 1), R.V = 1.
+    // N.L = cos 45, L straight up; V along +Z at the middle: R = 2 (N.L) N - L = (0, 0, 1), R.V =
+    // 1.
     let half = 0.5_f64.sqrt();
     let expected =
         [0.54, 0.89, 0.63].map(|kd: f64| ((kd * half + 0.316_228).min(1.0) * 255.0).round());
@@ -299,7 +300,8 @@ fn among_equal_depths_the_older_object_wins() {
 
 #[test]
 fn a_ground_that_runs_through_the_camera_is_cut_at_the_near_plane() {
-    // A floor of 1000 units, 10 below the camera: without clipping its rear corners would fold over.
+    // A floor of 1000 units, 10 below the camera: without clipping its rear corners would fold
+    // over.
     let floor = at(1000.0, 0.0, -10.0, 400.0) * DMat4::from_rotation_x(-90_f64.to_radians());
     let (scene, view) = scene(&[(square(), floor)]);
     let picture = draw(&scene, &without_marks(view), &Settings::default(), 101);

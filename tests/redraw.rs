@@ -1,10 +1,11 @@
-//! What has changed is drawn again, to the same bytes as if all were drawn: accuracy's second proof.
+//! What has changed is drawn again, to the same bytes as if all were drawn: accuracy's second
+//! proof.
 //!
-//! Left out or broken once each, to see it bite: the old place of what moved or went, reaches that are
-//! too small, that reach behind the camera or that normals stand out of; of the comparison the lamps,
-//! the material, the tint, the choice of normals, the polygons, the parts with holes, the width of
-//! lines, the normals that are drawn, the order; vertices and bins kept that are no longer true; a
-//! picture taken for finished that was given up.
+//! Left out or broken once each, to see it bite: the old place of what moved or went, reaches that
+//! are too small, that reach behind the camera or that normals stand out of; of the comparison the
+//! lamps, the material, the tint, the choice of normals, the polygons, the parts with holes, the
+//! width of lines, the normals that are drawn, the order; vertices and bins kept that are no longer
+//! true; a picture taken for finished that was given up.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

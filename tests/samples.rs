@@ -1,5 +1,5 @@
-//! Pictures with several samples a pixel, held to pictures with one that are drawn from each place, and
-//! to pictures that are eight times as large.
+//! Pictures with several samples a pixel, held to pictures with one that are drawn from each place,
+//! and to pictures that are eight times as large.
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
@@ -132,8 +132,8 @@ fn a_pixel_is_the_mean_of_what_is_seen_from_its_places() {
     }
 }
 
-/// Triangles with a normal and a place on a texture at each corner, lit by a sun alone: what is seen of
-/// them depends on where in them it is looked, and on nothing else.
+/// Triangles with a normal and a place on a texture at each corner, lit by a sun alone: what is
+/// seen of them depends on where in them it is looked, and on nothing else.
 fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
     let (mut scene, view) = flat::scene(&[triangles.to_vec()], side);
     let mut rng = Rng::new(5);
@@ -205,7 +205,7 @@ fn each_sample_is_lit_where_it_lies() {
     let each = Settings { light: LightAt::Sample, ..pixels };
     for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
         for (round, view) in views.into_iter().enumerate() {
-            let triangles = scattered(60, 11 + round as u64);
+            let triangles = scattered(60, 38 + round as u64);
             let stage = |triangles: &[Flat], side| {
                 let (scene, own) = shiny(triangles, side);
                 (scene, view(own))
@@ -277,8 +277,8 @@ fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     }
 }
 
-/// A cone without falloff ends at once: a pixel on its border is as bright as the part of its samples that
-/// lie in it. Two of 64 may be rounded to the other side.
+/// A cone without falloff ends at once: a pixel on its border is as bright as the part of its
+/// samples that lie in it. Two of 64 may be rounded to the other side.
 #[test]
 fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
     const SMALL: usize = 48;
@@ -319,8 +319,8 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
     }
 }
 
-/// On a stage all of these put every corner where it belongs, so what is lit there is the same but for the
-/// rounding of numbers.
+/// On a stage all of these put every corner where it belongs, so what is lit there is the same but
+/// for the rounding of numbers.
 #[test]
 fn finer_and_coarser_corners_light_samples_alike_where_both_are_exact() {
     let (scene, view) = shiny(&scattered(40, 31), SIDE);
@@ -337,8 +337,8 @@ fn finer_and_coarser_corners_light_samples_alike_where_both_are_exact() {
     }
 }
 
-/// Where colours change with primitives alone, each sample shows the same whether it is lit or not: by every
-/// way of bringing things onto the screen, lines among them, and what is cut.
+/// Where colours change with primitives alone, each sample shows the same whether it is lit or not:
+/// by every way of bringing things onto the screen, lines among them, and what is cut.
 #[test]
 fn lit_samples_see_the_primitives_that_others_see() {
     let leaning = at(60.0, 20.0, 8.0, 20.0) * DMat4::from_rotation_y(0.7);

@@ -1,5 +1,5 @@
-//! How long a scene of many objects takes: `objects/N` a frame, `objects/insert/N` to put them into a
-//! scene, `objects/move/N` one command on one of them, with what the editor does after it.
+//! How long a scene of many objects takes: `objects/N` a frame, `objects/insert/N` to put them into
+//! a scene, `objects/move/N` one command on one of them, with what the editor does after it.
 
 use criterion::{BenchmarkId, Criterion};
 use glam::{DMat4, DVec3};

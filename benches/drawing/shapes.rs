@@ -12,8 +12,8 @@ pub(crate) struct Shape {
     pub(crate) model: Shared<Model>,
 }
 
-/// One triangle over the whole view; few triangles of a hundred pixels; many of some pixels; more than
-/// there are pixels; thin ones; and large ones, each before the last.
+/// One triangle over the whole view; few triangles of a hundred pixels; many of some pixels; more
+/// than there are pixels; thin ones; and large ones, each before the last.
 pub(crate) fn all() -> Vec<Shape> {
     let shape = |name, model| Shape { name, model };
     vec![

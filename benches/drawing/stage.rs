@@ -42,7 +42,8 @@ impl Stage {
         Self { scene, view, settings: Settings::default(), size }
     }
 
-    /// The plan of frame `i`: each from a place of its own, so that nothing of the last can be kept.
+    /// The plan of frame `i`: each from a place of its own, so that nothing of the last can be
+    /// kept.
     #[expect(clippy::cast_precision_loss, reason = "few frames")]
     pub(crate) fn plan(&self, i: u64) -> FramePlan {
         let mut scene = self.scene.clone();

@@ -1,10 +1,10 @@
 //! Random numbers that are the same on every machine.
 //!
 //! SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA
-//! 2014): every seed is as good as any other, so the number of a batch of test cases can be one. The
-//! sequence is part of what tests promise: pictures with listed sums and counterexamples that are named
-//! by their seeds are made from it. That is why it is written down here and not left to a library, whose
-//! distributions may change with its version.
+//! 2014): every seed is as good as any other, so the number of a batch of test cases can be one.
+//! The sequence is part of what tests promise: pictures with listed sums and counterexamples that
+//! are named by their seeds are made from it. That is why it is written down here and not left to a
+//! library, whose distributions may change with its version.
 
 use glam::DVec3;
 

@@ -1,10 +1,10 @@
-//! How exactly a picture is drawn: an option for each axis of accuracy, made from their table.
+//! The options of accuracy: one for each axis, made from the table of axes.
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use marraztu::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, Settings};
 
-/// What was chosen; everything else stays as it is.
+/// The choices that were made; other axes stay as they are.
 #[derive(Debug, Default)]
 pub(crate) struct Accuracy {
     preset: Option<&'static AccuracyPreset>,
@@ -14,7 +14,7 @@ pub(crate) struct Accuracy {
 const PRESET: &str = "preset";
 
 impl Accuracy {
-    /// The settings with these choices made: first the preset, then single axes.
+    /// The settings with these choices: first the preset, then single axes.
     pub(crate) fn of(&self, settings: &Settings) -> Settings {
         let settings = self.preset.map_or(*settings, |preset| preset.of(settings));
         self.choices.iter().fold(settings, |settings, choice| choice.of(&settings))

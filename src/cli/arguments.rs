@@ -24,7 +24,7 @@ use marraztu::scene::{
 
 /// Edits and draws 3D scenes of .obj models, on the CPU alone.
 ///
-/// Without a command the editor opens, with the models and the scene that are named, or with the
+/// Without a command, opens the editor with the models and the scene that are named, or with the
 /// first scene.
 #[derive(Debug, Parser)]
 #[command(
@@ -42,19 +42,19 @@ Examples:
 Exit status: 0 on success, 1 if something failed, 2 for invalid arguments."
 )]
 pub(crate) struct Arguments {
-    /// What to do without a window
+    /// The command to run without a window
     #[command(subcommand)]
     pub(crate) command: Option<Headless>,
     /// Models (.obj) and a scene (.marraztu) to open in the editor
     pub(crate) files: Vec<PathBuf>,
 }
 
-/// What can be done without a window.
+/// The commands that run without a window.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Headless {
     /// Draw a picture into a file: the same pixels that the editor shows
     Render(Box<Render>),
-    /// Explain which effects a picture uses, which are left out and why, and what they cost
+    /// Explain which effects a frame uses, which are left out and why, and what they cost
     Plan(Box<Plan>),
     /// Describe files: shape, parts, materials, and what is wrong with them
     Info(Info),
@@ -69,12 +69,12 @@ pub(crate) enum Headless {
 /// A picture, and the file that it goes to.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Without files the first scene is drawn. A scene is drawn through its own camera; models alone get the
-lights of the first scene and a camera that sees them whole. Options that are not given stay as the
-scene has them; a star marks the choice of the first scene.
+Without files, draws the first scene. A scene is drawn through its own camera; models without a
+scene get the lights of the first scene and a camera that shows all of them. Options that are not
+given stay as the scene has them; a star marks the choice of the first scene.
 
-\"-\" as a file reads a model or a scene from standard input. Models may be packed (.obj.gz). The
-picture never replaces a file that it is made of, or a file that is no picture.
+The file \"-\" is a model or a scene on standard input. Models may be compressed (.obj.gz). The
+picture never replaces a file that it is made from, or a file that is not a picture.
 
 Examples:
   marraztu render teapot.obj
@@ -87,7 +87,8 @@ Examples:
 pub(crate) struct Render {
     /// The picture to write: .png, .jpg, .webp or .ppm; "-" writes a PNG to standard output
     /// [default: the name of the scene or first model with .png, in the current folder]
-    #[arg(short, long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(picture))]
+    #[arg(short, long, value_name = "FILE")]
+    #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureArguments,
@@ -124,7 +125,8 @@ pub(crate) struct PictureArguments {
 #[command(next_help_heading = "Reading models")]
 pub(crate) struct Reading {
     /// The axis of the file that points up: x, y*, z, -x, -y, -z. The model is turned, not mirrored
-    #[arg(long, hide_possible_values = true, allow_hyphen_values = true, value_name = "AXIS", value_parser = choice(&UP_AXES))]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    #[arg(hide_possible_values = true, value_parser = choice(&UP_AXES))]
     up: Option<UpAxis>,
     /// The factor that the file's coordinates are multiplied by
     #[arg(long, value_name = "FACTOR", value_parser = scale)]
@@ -145,7 +147,7 @@ pub(crate) struct Surfaces {
     /// One of the 19 materials (brass, polished-gold, ruby ...), or "file" for the file's own
     #[arg(long, value_name = "NAME", value_parser = material)]
     pub(crate) material: Option<MaterialChoice>,
-    /// A picture laid over the objects: PNG, JPEG, WebP, TIFF, BMP, TGA or GIF
+    /// A texture for the objects: PNG, JPEG, WebP, TIFF, BMP, TGA or GIF
     #[arg(long, value_name = "FILE")]
     pub(crate) texture: Option<PathBuf>,
     /// What to show: material, texture (unlit), or both, lit (lit*)
@@ -155,7 +157,7 @@ pub(crate) struct Surfaces {
         ("lit", Surface::TextureAndLight),
     ]))]
     pub(crate) surface: Option<Surface>,
-    /// Which sides of faces are drawn and lit: one, two, auto* (two of an open surface, one of a closed)
+    /// The sides of faces to draw: one, two, auto* (two of open surfaces, one of closed ones)
     #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[
         ("one", Sides::One),
         ("two", Sides::Two),
@@ -171,11 +173,13 @@ pub(crate) struct Surfaces {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Looking at the scene")]
 pub(crate) struct Seeing {
-    /// The camera to look through, by its place in the scene's list, from 1
+    /// The camera to look through, by its number in the scene's list, from 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) camera: Option<u32>,
-    /// The side that models alone are seen from: degrees to the right, and up (30,20*); "0,0" is the front
-    #[arg(long, value_name = "RIGHT,UP", allow_hyphen_values = true, conflicts_with = "camera", value_parser = side)]
+    /// The view of models without a scene: degrees to the right, and up (30,20*); "0,0" is the
+    /// front
+    #[arg(long, value_name = "RIGHT,UP", allow_hyphen_values = true)]
+    #[arg(conflicts_with = "camera", value_parser = side)]
     pub(crate) from: Option<[f64; 2]>,
     /// The projection: perspective*, orthographic
     #[arg(long, hide_possible_values = true, value_name = "HOW", value_parser = choice(&[
@@ -189,7 +193,7 @@ pub(crate) struct Seeing {
     /// The slots of the lights that are on, as "0,2"; all others are off. "none" for darkness
     #[arg(long, value_name = "SLOTS", value_parser = slots)]
     pub(crate) lights: Option<Slots>,
-    /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name as "white"
+    /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name such as "white"
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     pub(crate) background: Option<Color>,
     /// The normals that light uses: face, vertex*
@@ -198,7 +202,7 @@ pub(crate) struct Seeing {
         ("vertex", Normals::Vertex),
     ]))]
     pub(crate) normals: Option<Normals>,
-    /// Draw edges only
+    /// Draw a wireframe
     #[arg(long)]
     pub(crate) edges: bool,
     /// Draw edges over filled polygons
@@ -213,8 +217,9 @@ pub(crate) struct Seeing {
     /// Draw the normals of vertices
     #[arg(long)]
     pub(crate) vertex_normals: bool,
-    /// The marks of cameras and bulbs: none (the default for models alone), all*
-    #[arg(long, hide_possible_values = true, value_name = "WHICH", value_parser = choice(&[("none", false), ("all", true)]))]
+    /// The marks of cameras and bulbs: none (the default without a scene), all*
+    #[arg(long, value_name = "WHICH", hide_possible_values = true)]
+    #[arg(value_parser = choice(&[("none", false), ("all", true)]))]
     pub(crate) helpers: Option<bool>,
 }
 
@@ -232,7 +237,7 @@ pub(crate) struct Info {
     pub(crate) reading: Reading,
 }
 
-/// The axes that may point up, by their words.
+/// The axes that may point up, by name.
 const UP_AXES: [(&str, UpAxis); 6] = {
     let mut axes = [("", UpAxis::Y); 6];
     let mut i = 0;
@@ -248,7 +253,7 @@ const UP_AXES: [(&str, UpAxis); 6] = {
 pub(crate) struct Slots(pub(crate) BTreeSet<u32>);
 
 impl Reading {
-    /// The options as the reader takes them.
+    /// The options of the reader.
     pub(crate) fn options(&self) -> LoadOptions {
         LoadOptions {
             up: self.up.unwrap_or_default(),
@@ -258,24 +263,24 @@ impl Reading {
         }
     }
 
-    /// Whether anything of it was said.
-    pub(crate) const fn is_said(&self) -> bool {
+    /// Whether any of the options was given.
+    pub(crate) const fn is_given(&self) -> bool {
         self.up.is_some() || self.scale.is_some() || self.flip_winding || self.crease.is_some()
     }
 }
 
-/// A parser that lets these words through, and gives what they stand for.
+/// A parser that accepts these words, and returns their values.
 fn choice<T: Copy + Send + Sync>(
     table: &'static [(&'static str, T)],
 ) -> impl TypedValueParser<Value = T> {
-    // The help names them in the sentence, with a star at the one that the first scene has.
+    // The help lists them in its sentence, with a star at the default.
     PossibleValuesParser::new(table.iter().map(|(word, _)| *word)).map(move |word| {
         let row = table.iter().find(|(other, _)| *other == word);
         row.expect("clap lets only words of the table through").1
     })
 }
 
-/// Refused before anything is drawn, which may take long.
+/// Checks the name before anything is drawn, which may take long.
 fn picture(path: PathBuf) -> Result<PathBuf, &'static str> {
     if is_standard(&path) { Ok(path) } else { PictureFormat::of(&path).map(|_| path) }
 }

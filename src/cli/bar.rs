@@ -1,5 +1,5 @@
-//! How far work has come, on standard error: a bar if that is a terminal, else nothing, or lines if
-//! they are asked for.
+//! Shows progress on standard error: a bar if that is a terminal, or else lines if they are asked
+//! for.
 
 use std::io::IsTerminal;
 use std::sync::Arc;
@@ -13,16 +13,16 @@ use marraztu::io::Progress;
 use super::say;
 use super::talk;
 
-/// Work that takes less is not worth a bar.
+/// Work that takes less time has no bar.
 const PATIENCE: Duration = Duration::from_millis(700);
 
-/// How often it is looked how far the work has come.
+/// The time between two updates.
 const PERIOD: Duration = Duration::from_millis(60);
 
-/// A line is printed for each of these steps, in per cent.
+/// The step in per cent between two lines.
 const STEP: u64 = 10;
 
-/// Shows how far work has come, for as long as it lives.
+/// Shows the progress of work as long as it lives.
 #[derive(Debug)]
 pub(crate) struct Bar {
     done: Arc<AtomicBool>,
@@ -30,14 +30,14 @@ pub(crate) struct Bar {
 }
 
 impl Bar {
-    /// Watches work whose progress is known.
+    /// Shows work with known progress.
     pub(crate) fn of(what: &str, progress: &Progress) -> Self {
         let style = ProgressStyle::with_template("{msg} [{bar:30}] {percent}%");
         let progress = progress.clone();
         Self::start(what, style.ok(), move || Some(thousandths(&progress)))
     }
 
-    /// Watches work of which only the end is known.
+    /// Shows work with unknown progress.
     pub(crate) fn unmeasured(what: &str) -> Self {
         let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
         Self::start(what, style.ok(), || None)
@@ -51,7 +51,7 @@ impl Bar {
         let done = Arc::new(AtomicBool::new(false));
         let (watched, what) = (Arc::clone(&done), what.to_owned());
         let builder = || Builder::new().name("bar".to_owned());
-        // Without a thread there is no bar, and the work is done all the same.
+        // If no thread can be started, there is no bar.
         let thread = if talk::is_quiet() {
             None
         } else if std::io::stderr().is_terminal() {
@@ -91,7 +91,7 @@ fn show(
     bar.finish_and_clear();
 }
 
-/// Lines, from the first step that is reached to the end: "drawing: 40%".
+/// Prints lines, from the first step that is reached to the end: "drawing: 40%".
 fn tell(what: &str, thousandths: &dyn Fn() -> Option<u64>, done: &AtomicBool) {
     let mut told = 0;
     while !done.load(Ordering::Relaxed) {
@@ -110,7 +110,7 @@ impl Drop for Bar {
         self.done.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
             thread.thread().unpark();
-            // A bar that broke down takes nothing with it.
+            // A panic of the bar does not concern the work.
             let _ = thread.join();
         }
     }

@@ -15,10 +15,10 @@ pub(crate) enum Failure {
     /// Invalid arguments.
     #[error(transparent)]
     Usage(Box<clap::Error>),
-    /// What failed has been said already.
+    /// The error has been printed already.
     #[error("some of it failed")]
     Told,
-    /// Nothing of that number or key is in the scene.
+    /// Something that the arguments name does not exist.
     #[error("{0}")]
     Absent(String),
     /// A model or a texture.
@@ -47,7 +47,8 @@ pub(crate) enum Failure {
     Plot(#[from] PlotError),
     /// The window.
     #[error(
-        "{0}\nWithout a window, `marraztu render --out picture.png` draws the same pictures to files"
+        "{0}\nWithout a window, `marraztu render --out picture.png` draws the same pictures into \
+         files"
     )]
     Start(#[from] StartError),
 }

@@ -1,4 +1,4 @@
-//! `marraztu info`: what files hold, as plain text.
+//! `marraztu info`: describes files as plain text.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::say;
 use super::stage::{Stage, input, is_scene, is_standard, load};
 
-/// Describes each file; one that cannot be read does not keep the others from it.
+/// Describes each file; the others are described even if one cannot be read.
 pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
     let options = arguments.reading.options();
     let input = input(&arguments.files)?;
@@ -28,7 +28,7 @@ pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
         };
         let blank = if i == 0 { "" } else { "\n" };
         match write!(io::stdout().lock(), "{blank}{described}") {
-            // Whoever read it has had enough, as `head` does.
+            // The reader has closed the pipe, as `head` does.
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
             written => written.map_err(Failure::Output)?,
         }
@@ -58,7 +58,7 @@ fn description(
     Ok(text)
 }
 
-/// The objects, cameras and lights of a scene, a line each; an asterisk before what is selected.
+/// The objects, cameras and lights of a scene, one in each line; an asterisk marks the selection.
 fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
     let mut lines = vec![format!("{:16}{}", "scene", file.display())];
     let head = |what: &str, count: usize| format!("{what:16}{count}");

@@ -1,4 +1,4 @@
-//! `marraztu keys`: every key of the editor, from the table that the editor itself reads.
+//! `marraztu keys`: lists every key of the editor, from the table that the editor itself reads.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -20,13 +20,13 @@ pub(crate) struct Keys {
 pub(crate) fn keys(arguments: &Keys) -> Result<(), Failure> {
     let text = if arguments.markdown { markdown() } else { plain() };
     match io::stdout().lock().write_all(text.as_bytes()) {
-        // Whoever read it has had enough, as `head` does.
+        // The reader has closed the pipe, as `head` does.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(Failure::Output),
     }
 }
 
-/// The groups, each with those of its actions that have a key.
+/// The groups, each with its actions that have keys.
 fn groups() -> impl Iterator<Item = (Group, Vec<ActionInfo>)> {
     Group::ALL.into_iter().filter_map(|group| {
         let looks = group.actions().map(|action| action.info());

@@ -1,4 +1,4 @@
-//! `marraztu lab`: what accuracy costs in time, without a window.
+//! `marraztu lab`: measures what accuracy costs in time.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -26,12 +26,12 @@ use super::render::staged;
 use super::talk::Talk;
 use super::values::{size, threads};
 
-/// What is measured, and what is told.
+/// What to measure, and what to report.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Times each choice of each axis in turn with the default, and compares its picture with the most exact
-one. --out gets table.txt, table.csv, report.json, scatter.svg, scatter.png, the exact picture, and
-pictures of the error of the chosen settings, amplified 1, 16 and 256 times.
+Times each choice of each axis in turn with the default, and compares its picture with the most
+exact one. The folder of --out gets table.txt, table.csv, report.json, scatter.svg, scatter.png,
+the exact picture, and pictures of the error of the chosen settings, amplified 1, 16 and 256 times.
 
 Examples:
   marraztu lab --quick
@@ -55,7 +55,8 @@ pub(crate) struct Lab {
     #[arg(long)]
     quick: bool,
     /// The error metric of budgets and plot: rmse*, largest, differing, flip
-    #[arg(long, value_name = "MEASURE", default_value = "rmse", hide_default_value = true, hide_possible_values = true, value_parser = measure_words())]
+    #[arg(long, value_name = "MEASURE", default_value = "rmse", hide_default_value = true)]
+    #[arg(hide_possible_values = true, value_parser = measure_words())]
     measure: String,
     /// Name the fastest choice whose error is at most this
     #[arg(long, value_name = "ERROR", value_parser = above_zero)]
@@ -64,7 +65,8 @@ pub(crate) struct Lab {
     #[arg(long, value_name = "MILLISECONDS", value_parser = above_zero)]
     budget_ms: Option<f64>,
     /// Only explain one pixel: which axis its error comes from
-    #[arg(long, value_name = "X,Y", conflicts_with_all = ["quick", "axes", "max_error", "budget_ms", "out"], value_parser = pixel)]
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    #[arg(conflicts_with_all = ["quick", "axes", "max_error", "budget_ms", "out"])]
     pixel: Option<Pixel>,
     /// Threads that draw [default: one for each core]
     #[arg(long, value_name = "N", value_parser = threads)]
@@ -86,7 +88,7 @@ pub(crate) struct Lab {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Pixel([usize; 2]);
 
-/// Measures, and tells what was found.
+/// Measures, and prints the report.
 pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     arguments.talk.apply();
     draw_along(arguments.threads);
@@ -127,7 +129,7 @@ fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<R
     })
 }
 
-/// What the files are called: "bunny.obj, pot.obj".
+/// The names of the files: "bunny.obj, pot.obj".
 fn scene_name(files: &[PathBuf]) -> String {
     let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     match files {
@@ -136,7 +138,7 @@ fn scene_name(files: &[PathBuf]) -> String {
     }
 }
 
-/// The arguments of this process, as they are typed.
+/// The arguments of this process, as they would be typed.
 fn command() -> String {
     let quoted = |word: String| {
         let plain = |c: char| c.is_alphanumeric() || "-_./,=:+".contains(c);
@@ -169,13 +171,13 @@ fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Re
 
 fn print(text: &str) -> Result<(), Failure> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
-        // Whoever read it has had enough, as `head` does.
+        // The reader has closed the pipe, as `head` does.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(Failure::Output),
     }
 }
 
-/// Writes everything into the folder.
+/// Writes tables, plots and pictures into the folder.
 fn save(
     folder: &Path,
     report: &Report,

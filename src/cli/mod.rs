@@ -1,7 +1,7 @@
-//! From arguments to the editor, a picture or a description, and back with an exit status.
+//! The command line: one file for each command.
 //!
-//! 0 on success, 1 if something failed, 2 for invalid arguments. What was asked for goes to standard
-//! output, everything said about it to standard error.
+//! The exit status is 0 on success, 1 if something failed, and 2 for invalid arguments. Results go
+//! to standard output, notes and errors to standard error.
 
 mod accuracy;
 mod arguments;
@@ -27,7 +27,7 @@ use clap::Parser;
 use self::arguments::{Arguments, Headless};
 use self::failure::Failure;
 
-/// Does what the arguments of this process ask for.
+/// Runs the command that the arguments of this process name.
 pub(crate) fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -53,22 +53,22 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// Has this thread draw, together with others: so many in all, or as many as there are cores. It has nothing
-/// else to do, and no time is lost with waking it when they are done.
+/// Makes this thread draw together with others: `threads` in all, or one for each core. It has
+/// nothing else to do, and would only have to be woken when the others are done.
 fn draw_along(threads: Option<usize>) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
-    // Fails only where the threads are there already, and this comes first.
+    // Fails only if the threads exist already, and nothing has started them.
     let _ = pool.use_current_thread().build_global();
 }
 
-/// Shows clap's message: help and version too come this way, with exit status 0.
+/// Prints clap's message. Help and version come this way too, with exit status 0.
 fn usage(wrong: &clap::Error) -> ExitCode {
-    // Nobody is left to be told where this fails.
+    // If standard error is closed, nothing can be told.
     let _ = wrong.print();
     ExitCode::from(u8::try_from(wrong.exit_code()).unwrap_or(2))
 }
 
-/// A line on standard error, in the form that clap's own errors have.
+/// Prints a line on standard error, in the form of clap's own errors.
 fn say(kind: &str, what: &dyn std::fmt::Display) {
     let _ = writeln!(std::io::stderr().lock(), "{kind}: {what}");
 }

@@ -1,4 +1,4 @@
-//! `marraztu FILES`: the editor, if there is something to open.
+//! `marraztu FILES`: opens the editor.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::arguments::Arguments;
 use super::failure::Failure;
 use super::stage::{is_standard, usage};
 
-/// Opens the editor with these files, all of which have to be there.
+/// Opens the editor with these files, which have to exist.
 pub(crate) fn open(files: Vec<PathBuf>) -> Result<(), Failure> {
     if let Some(wrong) = misspelt() {
         return Err(Failure::Usage(Box::new(wrong)));
@@ -25,7 +25,7 @@ pub(crate) fn open(files: Vec<PathBuf>) -> Result<(), Failure> {
     Ok(marraztu::app::run(files)?)
 }
 
-/// What is to be said if the first argument is no file, but nearly the name of a command.
+/// The error if the first argument is not a file, but nearly the name of a command.
 pub(super) fn misspelt() -> Option<clap::Error> {
     misspelt_in(std::env::args_os().nth(1)?)
 }
@@ -37,11 +37,11 @@ fn misspelt_in(word: OsString) -> Option<clap::Error> {
     }
     let command = Arguments::command();
     let names = command.get_subcommands().map(clap::Command::get_name);
-    // Letters that are wrong, missing, too many or swapped; in a short name few words are near.
+    // Counts wrong, missing, additional and swapped letters. Short names allow only one.
     let slips = |name: &&str| strsim::osa_distance(name, &word);
     let most = |name: &str| if name.len() <= 4 { 1 } else { 2 };
     let nearest = names.min_by_key(slips).filter(|name| slips(name) <= most(name))?;
-    // The command itself, which clap has taken.
+    // clap has handled the command itself.
     if *nearest == *word {
         return None;
     }

@@ -1,4 +1,4 @@
-//! `marraztu plan`: what a picture takes, effect by effect.
+//! `marraztu plan`: explains which effects a frame uses.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -16,8 +16,8 @@ use super::render;
 /// A picture whose effects are listed.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Takes the files and options of `render`. Lists each effect of the renderer as on or left out, with the
-reason; what is on is counted in pixels and, with --measure, in milliseconds.
+Takes the files and options of `render`. Lists each effect of the renderer as on or left out, with
+the reason. Effects that are on are counted in pixels and, with --measure, in milliseconds.
 
 Examples:
   marraztu plan
@@ -109,7 +109,7 @@ fn row(name: &str, of: &str, group: &Group<'_>, time: String) -> [String; 6] {
     [name.to_owned(), of.to_owned(), state.to_owned(), why, pixels, time]
 }
 
-/// Rows with their columns under one another; the last two to the right.
+/// Aligns the columns of rows, the last two to the right.
 fn columns(rows: &[[String; 6]]) -> String {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
     let widths: [usize; 6] = std::array::from_fn(|column| width(column).unwrap_or(0));
@@ -128,7 +128,7 @@ fn columns(rows: &[[String; 6]]) -> String {
     text
 }
 
-/// The cells of one effect on one thing, as every machine's format has them.
+/// The cells of one effect on one item, as CSV and JSON have them.
 fn cells(one: &EffectUse, costs: Option<&Costs>) -> [(&'static str, Cell); 9] {
     let bound = match one.state {
         State::LeftOut { class: Class::Bounded(steps), .. } => steps,
@@ -151,7 +151,7 @@ fn cells(one: &EffectUse, costs: Option<&Costs>) -> [(&'static str, Cell); 9] {
     ]
 }
 
-/// What stands in a cell.
+/// The content of a cell.
 enum Cell {
     Text(String),
     Number(Option<f64>),

@@ -1,4 +1,4 @@
-//! `marraztu render`: a picture into a file.
+//! `marraztu render`: draws a picture into a file.
 
 use std::path::PathBuf;
 
@@ -41,12 +41,12 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     if let (None, Target::File(path)) = (&arguments.out, &target) {
         note(&format_args!("the picture is in {}", path.display()));
     }
-    // With this the process ends: to take a million vertices out of memory before only takes time.
+    // The process ends here: freeing a million vertices first would only take time.
     std::mem::forget((stage, plan, renderer));
     Ok(())
 }
 
-/// Notes why nothing of some objects is seen: a line for each reason.
+/// Notes why some objects are invisible: a line for each reason.
 fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
     let mut reasons: Vec<(Unseen, Vec<&str>)> = Vec::new();
     for (id, reason) in unseen(renderer, shot) {
@@ -70,12 +70,12 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
     }
 }
 
-/// All files that are named as something to read.
+/// All files that the arguments name for reading.
 fn inputs(picture: &PictureArguments) -> Vec<PathBuf> {
     picture.files.iter().chain(&picture.surfaces.texture).cloned().collect()
 }
 
-/// Reads the files and arranges everything as it is asked for. What was found in the files is told.
+/// Reads the files, applies the options, and reports the findings in the files.
 pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
     let PictureArguments { files, reading, surfaces, seeing, accuracy, talk, threads, .. } =
         picture;
@@ -86,7 +86,7 @@ pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
     staged(files, reading, surfaces, seeing, accuracy)
 }
 
-/// The scene of these files, as it is to be seen and drawn.
+/// The scene of these files with the options applied.
 pub(crate) fn staged(
     files: &[PathBuf],
     reading: &Reading,
@@ -104,7 +104,7 @@ pub(crate) fn staged(
     Ok(stage)
 }
 
-/// Gives all objects the surface that is asked for.
+/// Applies the options for surfaces to all objects.
 fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
     let mut load = |path| io::load_texture_with(path, &mut stage.findings);
     let texture = surfaces.texture.as_deref().map(&mut load).transpose()?;
@@ -122,7 +122,7 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
     stage.change(items::change_all_objects(&stage.scene, change))
 }
 
-/// Looks at the scene as it is asked for.
+/// Applies the options for the view.
 fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if let Some(Slots(slots)) = &seeing.lights {
         light(stage, slots)?;
@@ -159,7 +159,7 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Puts the lights in these slots on, and all others out.
+/// Switches the lights in these slots on, and all others off.
 fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(), Failure> {
     let lights: Vec<_> =
         stage.scene.lights.iter().map(|(id, light)| (id, light.slot, light.on)).collect();
@@ -175,7 +175,7 @@ fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(
     Ok(())
 }
 
-/// The camera at this place of the list, counted from 1.
+/// The camera with this number in the list, from 1.
 fn camera(stage: &Stage, number: u32) -> Result<CameraId, Failure> {
     let index = usize::try_from(number).unwrap_or(usize::MAX) - 1;
     stage.scene.cameras.ids().nth(index).ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! The scene that files make: a scene file or the first scene, with models put into it.
+//! Builds the scene from files: a scene file or the first scene, with models put into it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,14 +18,14 @@ use super::arguments::{Arguments, Reading};
 use super::bar::Bar;
 use super::failure::Failure;
 
-/// A scene, how it is looked at, and what was found on the way.
+/// A scene with its view and settings, and the findings of its files.
 #[derive(Debug)]
 pub(crate) struct Stage {
     pub(crate) scene: Scene,
     pub(crate) view: View,
     pub(crate) settings: Settings,
     pub(crate) findings: Vec<Finding>,
-    /// Whether there are models and nothing else: no scene says how they are seen.
+    /// Whether there are models only, without a scene file that says how they are seen.
     pub(crate) models_alone: bool,
 }
 
@@ -38,7 +38,7 @@ impl Stage {
     /// Reads the files.
     pub(crate) fn of(files: &[PathBuf], reading: &Reading) -> Result<Self, Failure> {
         let input = input(files)?;
-        // Before any of them is read, which may take long.
+        // Checked before any of them is read, which may take long.
         for file in files.iter().filter(|file| !is_standard(file)) {
             io::check_file(file)?;
         }
@@ -50,7 +50,7 @@ impl Stage {
         if scenes.len() > 1 {
             return Err(usage("only one scene can be drawn at a time"));
         }
-        if models.is_empty() && reading.is_said() {
+        if models.is_empty() && reading.is_given() {
             return Err(usage(
                 "--up, --scale, --flip-winding and --crease say how models are read: name one",
             ));
@@ -94,8 +94,8 @@ impl Stage {
         })
     }
 
-    /// Puts models into the scene as the editor does, with their files' own materials. A file that is
-    /// named several times is read once.
+    /// Puts models into the scene as the editor does, with their files' own materials. A file that
+    /// is named several times is read once.
     fn add(
         &mut self,
         files: &[&PathBuf],
@@ -112,7 +112,7 @@ impl Stage {
         let place =
             |file: &Path| std::path::absolute(file).unwrap_or_else(|_empty| file.to_owned());
         let places: Vec<PathBuf> = files.iter().map(|file| place(file)).collect();
-        // Each once, in the order in which they are named.
+        // Each once, in the order of the arguments.
         let mut numbers: BTreeMap<&Path, usize> = BTreeMap::new();
         let mut once: Vec<&PathBuf> = Vec::new();
         for (file, place) in files.iter().zip(&places) {
@@ -129,14 +129,14 @@ impl Stage {
         }
         let object = |place: &PathBuf| {
             let model = models[numbers[place.as_path()]].clone();
-            // Also a model from standard input, which has no file's name.
+            // This also applies to a model from standard input, which has no file name.
             Object { sides: Sides::Auto, ..Object::new(model, MaterialChoice::File) }
         };
         let objects = places.iter().map(object).collect();
         self.change(items::insert_objects(&self.scene, objects))
     }
 
-    /// Changes the scene, and makes the view fit it.
+    /// Changes the scene, and adapts the view to it.
     pub(crate) fn change(&mut self, command: Command) -> Result<(), Failure> {
         let before = self.scene.clone();
         command.apply(&mut self.scene)?;
@@ -145,14 +145,14 @@ impl Stage {
     }
 }
 
-/// Reads a model, with a bar where it takes long.
+/// Reads a model, with a progress bar if it takes long.
 pub(crate) fn load(file: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
     let progress = Progress::new();
     let _bar = Bar::of(&format!("reading {}", file.display()), &progress);
     Ok(io::load(file, options, &progress)?)
 }
 
-/// What standard input holds, if it is among the files.
+/// The content of standard input, if it is among the files.
 pub(crate) fn input(files: &[PathBuf]) -> Result<Option<Input>, Failure> {
     match files.iter().filter(|file| is_standard(file)).count() {
         0 => Ok(None),
@@ -166,7 +166,7 @@ pub(crate) fn is_standard(file: &Path) -> bool {
     file == Path::new("-")
 }
 
-/// Reads models, several at a time: of many small files one alone leaves most threads idle.
+/// Reads several models at a time, since one small file leaves most threads idle.
 fn load_all(
     files: &[&PathBuf],
     input: Option<&Input>,
@@ -186,7 +186,7 @@ fn load_all(
     files.par_iter().map(load).collect()
 }
 
-/// Whether a file's name says that it is a scene.
+/// Whether a file's name is that of a scene.
 pub(crate) fn is_scene(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(io::SCENE_ENDING))
 }

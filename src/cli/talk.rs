@@ -1,4 +1,4 @@
-//! What is said on standard error beside errors: notes, and how far the work has come.
+//! Messages on standard error besides errors: notes and progress.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,7 +9,7 @@ use super::say;
 static QUIET: AtomicBool = AtomicBool::new(false);
 static PROGRESS: AtomicBool = AtomicBool::new(false);
 
-/// How much is said.
+/// The options for messages.
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Messages")]
 pub(crate) struct Talk {
@@ -22,26 +22,26 @@ pub(crate) struct Talk {
 }
 
 impl Talk {
-    /// From here on as much is said.
+    /// Applies the options from now on.
     pub(crate) fn apply(&self) {
         QUIET.store(self.quiet, Ordering::Relaxed);
         PROGRESS.store(self.progress, Ordering::Relaxed);
     }
 }
 
-/// Says something that is not an error, unless nothing of the kind is wanted.
+/// Prints a note, unless only errors are wanted.
 pub(crate) fn note(what: &dyn std::fmt::Display) {
     if !is_quiet() {
         say("note", what);
     }
 }
 
-/// Whether only errors are said.
+/// Whether only errors are printed.
 pub(super) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Whether progress is told in lines, wherever they go.
+/// Whether progress is printed in lines.
 pub(super) fn tells_progress() -> bool {
     PROGRESS.load(Ordering::Relaxed)
 }

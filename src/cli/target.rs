@@ -1,5 +1,5 @@
-//! Where a picture goes: a file, whose name may follow from the files that are drawn, or standard
-//! output.
+//! Where a picture goes: standard output, or a file whose name may follow from the files that are
+//! drawn.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use super::arguments::Render;
 use super::failure::Failure;
 use super::stage::{Stage, is_scene, is_standard, usage};
 
-/// What the picture is called if no file gives it a name.
+/// The picture's name if no file gives it one.
 const UNNAMED: &str = "scene";
 
 /// Where a picture goes.
@@ -25,7 +25,7 @@ pub(super) enum Target {
 }
 
 impl Target {
-    /// What the arguments ask for, checked before anything is read or drawn.
+    /// The target that the arguments name, checked before anything is read or drawn.
     pub(super) fn of(arguments: &Render) -> Result<Self, Failure> {
         let target = match &arguments.out {
             Some(out) if is_standard(out) => Self::Output,
@@ -45,10 +45,10 @@ impl Target {
         }
     }
 
-    /// Refuses to replace a file that the picture is made of.
+    /// Refuses to replace a file that the picture is made from.
     pub(super) fn spare_inputs(&self, files: &[PathBuf], stage: &Stage) -> Result<(), Failure> {
         let Self::File(target) = self else { return Ok(()) };
-        // A file that is not there yet was not read.
+        // A file that does not exist was not read.
         let Ok(place) = target.canonicalize() else { return Ok(()) };
         let is_target = |input: &Path| input.canonicalize().is_ok_and(|input| input == place);
         let textures = textures(&stage.scene);
@@ -69,7 +69,7 @@ impl Target {
             Self::Output => {
                 let bytes = PictureFormat::Png.encode(picture).map_err(Failure::Absent)?;
                 match std::io::stdout().lock().write_all(&bytes) {
-                    // Whoever read it has had enough, as `head` does.
+                    // The reader has closed the pipe, as `head` does.
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
                     written => written.map_err(Failure::Output),
                 }
@@ -78,7 +78,7 @@ impl Target {
     }
 }
 
-/// Of the scene, or of the first model, the name with .png, in the current folder.
+/// The name of the scene or first model with .png, in the current folder.
 fn default_name(files: &[PathBuf]) -> PathBuf {
     let named = || files.iter().filter(|file| !is_standard(file));
     let file = named().find(|file| is_scene(file)).or_else(|| named().next());
@@ -94,7 +94,7 @@ fn default_name(files: &[PathBuf]) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// The files of all textures of a scene, each once for each object that shows it.
+/// The files of all textures of a scene, once for each object that shows them.
 fn textures(scene: &Scene) -> impl Iterator<Item = &Path> {
     scene.objects.iter().flat_map(|(_, object)| {
         let own = object.model.materials.iter().filter_map(|material| material.texture.as_ref());

@@ -1,4 +1,4 @@
-//! Values of options, from text.
+//! Parses values of options.
 
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
@@ -52,7 +52,7 @@ fn decimal(text: &str) -> Option<[u8; 3]> {
     channels?.try_into().ok()
 }
 
-/// Six digits, two a channel, or three, each of which stands for two of itself.
+/// Six digits, two for each channel, or three, each of which stands for two equal ones.
 fn hexadecimal(digits: &str) -> Option<[u8; 3]> {
     let digits: Option<Vec<u8>> =
         digits.chars().map(|digit| u8::try_from(digit.to_digit(16)?).ok()).collect();
@@ -63,7 +63,7 @@ fn hexadecimal(digits: &str) -> Option<[u8; 3]> {
     }
 }
 
-/// How many threads draw.
+/// A number of threads.
 pub(super) fn threads(text: &str) -> Result<usize, String> {
     let count = text.parse().ok().filter(|count| (1..=1024).contains(count));
     count.ok_or_else(|| "write a whole number from 1 to 1024".to_owned())

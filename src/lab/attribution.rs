@@ -1,8 +1,8 @@
-//! Whose share the error of one pixel is.
+//! Attributes the error of one pixel to the axes of accuracy.
 //!
-//! The picture is drawn again with one axis at a time at its most exact, all others as they are chosen:
-//! what that takes off the error is the axis's share. Shares need not add up to the whole, for errors may
-//! cancel or need each other.
+//! The picture is drawn again with one axis at a time at its most exact choice. What that takes off
+//! the error is the share of the axis. Shares need not add up to the error, since errors may cancel
+//! or depend on each other.
 
 use serde::Serialize;
 
@@ -18,29 +18,28 @@ pub struct Attribution {
     pub exact: [u8; 3],
     /// Those of the settings that are judged.
     pub ours: [u8; 3],
-    /// Whether another primitive is seen there in the reference.
+    /// Whether the reference shows another primitive there.
     pub coverage_differs: bool,
-    /// The axes that are not at their most exact, the largest share first.
+    /// The axes that are not at their most exact choice, the largest share first.
     pub shares: Vec<Share>,
 }
 
-/// What of a pixel's error one axis answers for.
+/// The share of one axis in the error of a pixel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Share {
     /// The axis's key.
     pub axis: &'static str,
-    /// What is chosen there.
+    /// The current choice.
     pub chosen: &'static str,
-    /// What was put in its place.
+    /// The most exact choice.
     pub exact: &'static str,
-    /// The pixel with that alone made exact.
+    /// The pixel with that axis alone made exact.
     pub value: [u8; 3],
-    /// By how many byte steps that brings the pixel nearer, over all channels; below 0 it takes it
-    /// farther away.
+    /// The byte steps of all channels together by which that reduces the error; below 0 it grows.
     pub steps: i32,
 }
 
-/// Judges a pixel of the picture that these settings draw; `None` where it is outside.
+/// Judges a pixel of the picture that these settings draw; `None` if it is outside.
 #[must_use]
 pub fn attribute(
     source: &mut dyn PictureSource,
@@ -79,19 +78,19 @@ pub fn attribute(
     Some(Attribution { at, exact, ours, coverage_differs, shares })
 }
 
-/// Byte steps between two colours, all channels together.
+/// The byte steps between two colours, all channels together.
 fn distance(a: [u8; 3], b: [u8; 3]) -> i32 {
     (0..3).map(|i| i32::from(a[i].abs_diff(b[i]))).sum()
 }
 
 impl Attribution {
-    /// Byte steps between exact and ours, all channels together.
+    /// The byte steps between exact and ours, all channels together.
     #[must_use]
     pub fn steps(&self) -> i32 {
         distance(self.ours, self.exact)
     }
 
-    /// In words, a line each.
+    /// A description, line by line.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let [x, y] = self.at;
@@ -102,7 +101,7 @@ impl Attribution {
             format!("  ours   {}: {} byte steps off", color(self.ours), self.steps()),
         ];
         if self.coverage_differs {
-            lines.push("  another triangle is seen there in the exact picture".to_owned());
+            lines.push("  the exact picture shows another triangle there".to_owned());
         }
         for Share { axis, chosen, exact, value, steps } in &self.shares {
             let how = match steps {

@@ -1,4 +1,4 @@
-//! Which settings are measured: each axis by itself, the presets, and a fair number of combinations.
+//! Chooses which settings are measured: each axis by itself, the presets, and some combinations.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -10,13 +10,13 @@ use crate::scene::{Scene, View};
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thoroughness {
-    /// Its word.
+    /// Its name on the command line and in reports.
     pub word: &'static str,
     /// How long each choice is measured.
     pub limits: Limits,
-    /// How many combinations are measured at most.
+    /// The largest number of combinations that are measured.
     pub combinations: usize,
-    /// No further combination is begun after so long.
+    /// No combination is begun after this time.
     pub time: Duration,
 }
 
@@ -37,12 +37,12 @@ impl Thoroughness {
     };
 }
 
-/// Settings that are measured, and what they are called in a table.
+/// Settings to measure, with their name in the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// Why they are measured.
     pub group: Group,
-    /// What they are called there.
+    /// Their name in the table.
     pub name: String,
     /// The settings.
     pub settings: Settings,
@@ -52,35 +52,35 @@ pub struct Candidate {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(tag = "group", content = "axis", rename_all = "lowercase")]
 pub enum Group {
-    /// They are a preset.
+    /// A preset.
     Preset,
-    /// They are the default but for one axis, which has this key.
+    /// The default with another choice of one axis, which has this key.
     Axis(&'static str),
-    /// They are what the picture is drawn with now.
+    /// The settings that the picture is drawn with now.
     Current,
-    /// They differ from the default in several axes.
+    /// Other choices of several axes.
     Combination,
 }
 
-/// Something that is not measured, and why.
+/// Something that is not measured, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct LeftOut {
-    /// What.
+    /// What it is.
     pub what: String,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
-/// What is to be measured, and what is not.
+/// What is measured, and what is not.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
-    /// In the order in which they are measured; the first is the default.
+    /// In the order of measurement; the first is the default.
     pub all: Vec<Candidate>,
-    /// What makes no sense in this scene, and what there are too many of.
+    /// What makes no difference in this scene, and combinations beyond the limit.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Which settings are measured of these axes, in this scene.
+/// The settings to measure for these axes in this scene.
 #[must_use]
 pub fn candidates(
     scene: &Scene,
@@ -133,7 +133,8 @@ pub fn candidates(
     found
 }
 
-/// The choices of an axis that are something of their own in a scene, the rest as in these settings.
+/// The choices of an axis that differ from all others in this scene, with these settings of the
+/// other axes.
 fn offered<'a>(
     axis: &'static Axis,
     (scene, view): (&'a Scene, &'a View),
@@ -142,14 +143,15 @@ fn offered<'a>(
     axis.choices.iter().filter(|choice| choice.is_of_its_own(scene, view, settings).is_ok())
 }
 
-/// A choice that combinations are made of, with the place of its axis.
+/// A choice that is combined with others, and the index of its axis.
 type Pick = (usize, &'static Choice);
 
-/// Settings that differ from `base` in two or more axes but models, at most so many, and how many there
-/// are of those that were listed: first all that differ in two, then in three, and so on.
+/// Settings that differ from `base` in two or more axes, models excepted: at most `most` of them,
+/// and the number of those that were listed. All that differ in two axes come first, then those
+/// that differ in three, and so on.
 ///
-/// Of those that differ in as many the next is the one whose axes were taken least often before, so that
-/// few are spread over all axes, too.
+/// Among those that differ in the same number of axes, the next is the one whose axes were chosen
+/// least often before, so that even a few are spread over all axes.
 fn combinations(
     base: &Settings,
     axes: &[&'static Axis],
@@ -188,8 +190,8 @@ fn combinations(
     (chosen, count)
 }
 
-/// Whether combinations have this choice: not what is no choice of its own, models, the samples that all
-/// others are judged against, and what is history.
+/// Whether the choice is combined with others. Choices without an effect, models, historical
+/// choices, and the samples that all others are judged against are not.
 fn is_combined(
     axis: &Axis,
     choice: &Choice,
@@ -204,7 +206,7 @@ fn is_combined(
         && (choice.sense)(scene, view).is_ok()
 }
 
-/// Ways that are offered for what they teach.
+/// Choices that are offered for teaching only.
 const HISTORICAL: [(&str, &str); 6] = [
     ("coverage", "points"),
     ("coverage", "scan-lines"),
@@ -214,7 +216,7 @@ const HISTORICAL: [(&str, &str); 6] = [
     ("rounding", "truncated"),
 ];
 
-/// How often axes, sets of them, and choices were taken.
+/// How often each axis, set of axes and choice was chosen.
 #[derive(Default)]
 struct Spread {
     axes: BTreeMap<usize, usize>,
@@ -223,7 +225,7 @@ struct Spread {
 }
 
 impl Spread {
-    /// How often what a combination is made of was taken: that of its axes counts first.
+    /// How often the parts of a combination were chosen, axes first.
     fn weight(&self, combination: &[Pick]) -> [usize; 3] {
         let axes = combination.iter().filter_map(|(axis, _)| self.axes.get(axis));
         let choices = combination.iter().filter_map(|(i, it)| self.choices.get(&(*i, it.word)));
@@ -245,20 +247,10 @@ fn set(combination: &[Pick]) -> Vec<usize> {
     combination.iter().map(|(axis, _)| *axis).collect()
 }
 
-/// With many axes there are more combinations than can be listed.
+/// The largest number of combinations that are listed: many axes have more.
 const MOST: usize = 4096;
 
-/// The axes of these keys, or all.
-///
-/// # Errors
-/// The first word that is the key of no axis.
-pub fn axes_named<'a>(
-    keys: impl IntoIterator<Item = &'a str>,
-) -> Result<Vec<&'static Axis>, &'a str> {
-    keys.into_iter().map(|key| Axis::named(key).ok_or(key)).collect()
-}
-
-/// Every axis of the table.
+/// All axes.
 #[must_use]
 pub fn all_axes() -> Vec<&'static Axis> {
     AXES.iter().collect()
@@ -268,7 +260,7 @@ pub fn all_axes() -> Vec<&'static Axis> {
 mod tests {
     use super::*;
 
-    /// In the first scene, with so many combinations.
+    /// The combinations in the first scene, at most `most`.
     fn combined(most: usize) -> Vec<Settings> {
         let (scene, view) = crate::io::default_scene();
         let found = candidates(&scene, &view, &Settings::default(), &all_axes(), most);
@@ -276,7 +268,7 @@ mod tests {
         all.map(|it| it.settings).collect()
     }
 
-    /// The words of these settings that are not the default's, by their axes.
+    /// The choices of these settings that are not the default's, by axis.
     fn words(settings: &Settings) -> Vec<(&'static str, &'static str)> {
         let words = AXES.iter().map(|axis| (axis, axis.chosen(settings).word));
         let own = words.filter(|(axis, word)| *word != axis.default_choice().word);
@@ -288,7 +280,8 @@ mod tests {
         let all = combined(Thoroughness::QUICK.combinations);
         assert_eq!(all.len(), Thoroughness::QUICK.combinations);
         let words: Vec<_> = all.iter().map(words).collect();
-        // What is not made of ways of history alone, means something in the first scene, and is no model.
+        // Axes that have choices beyond historical ones, make a difference in the first scene, and
+        // are not models.
         let of_axes = |key: &str| words.iter().flatten().filter(|(axis, _)| *axis == key).count();
         for key in [
             "shading",

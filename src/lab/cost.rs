@@ -1,9 +1,8 @@
-//! What each effect of a frame costs: pixels counted, milliseconds measured.
+//! Explains which effects a frame uses, and measures what each costs in pixels and milliseconds.
 //!
-//! A time is measured in pairs of frames, one with the effect and one without, in turn, after some that
-//! are not measured; what is given is the median of the differences, and half of their interquartile
-//! range as how sure that is. The same is done with pairs of equal frames first: what comes out of
-//! those is noise, and a time inside it is none.
+//! A time is measured by pairs of frames in turn, one with the effect and one without it. The
+//! result is the median of the differences, with half of their interquartile range as its spread.
+//! Pairs of equal frames, measured first, give the noise: a time within it means nothing.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -16,29 +15,29 @@ use crate::render::explain_frame;
 use crate::render::plan_frame;
 use crate::render::{Effect, EffectUse, FramePlan, Renderer};
 
-/// Pairs that are measured of each effect at the least, where there is time.
+/// The smallest number of pairs that are measured for each effect.
 const PAIRS: usize = 7;
 
-/// And at the most.
+/// The largest number.
 const MOST_PAIRS: usize = 31;
 
 /// A frame, explained.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explained {
-    /// What it uses and what it does without, sorted by effect.
+    /// The effects that are used and those that are left out, sorted by effect.
     pub uses: Vec<EffectUse>,
-    /// By how many steps of a byte a channel may be off, before rounding, by what was left out.
+    /// The largest error of a channel before rounding, in byte steps, that leaving out causes.
     pub off_by: f64,
     /// The picture's.
     pub size: Size,
 }
 
-/// The uses of one effect, of which there is one at least.
+/// The uses of one effect; there is at least one.
 #[derive(Clone, Copy, Debug)]
 pub struct Group<'a> {
     /// The effect.
     pub effect: Effect,
-    /// What it is on, and what it is left out of.
+    /// The uses and the omissions.
     pub uses: &'a [EffectUse],
 }
 
@@ -51,26 +50,26 @@ impl Explained {
 }
 
 impl Group<'_> {
-    /// On how many things it is on.
+    /// The number of items that the effect is on for.
     #[must_use]
     pub fn on(&self) -> usize {
         self.uses.iter().filter(|one| one.state.is_on()).count()
     }
 
-    /// Whether all that is to be said of one is to be said of all.
+    /// Whether all uses are in the same state, for the same reason.
     #[must_use]
     pub fn is_alike(&self) -> bool {
         self.uses.iter().all(|one| one.state == self.uses[0].state)
     }
 
-    /// How many pixels all of them take part in.
+    /// The number of pixels of all uses together.
     #[must_use]
     pub fn pixels(&self) -> Option<u64> {
         let counted = self.uses.iter().filter_map(|one| one.pixels);
         counted.reduce(|sum, pixels| sum + pixels)
     }
 
-    /// What it is on, in words.
+    /// The items that it is on for, in words.
     #[must_use]
     pub fn of(&self) -> String {
         let (on, all) = (self.on(), self.uses.len());
@@ -88,25 +87,25 @@ impl Group<'_> {
 pub struct Cost {
     /// The effect.
     pub effect: Effect,
-    /// Milliseconds that a frame is longer with it.
+    /// The milliseconds that it adds to a frame.
     pub milliseconds: f64,
     /// Half of the interquartile range of that.
     pub spread: f64,
 }
 
-/// What was measured of a frame.
+/// The measurements of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Costs {
-    /// The frame, in milliseconds.
+    /// The time of the frame in milliseconds.
     pub frame: f64,
-    /// What two equal frames seem to differ by, in milliseconds.
+    /// The apparent difference of two equal frames in milliseconds.
     pub noise: f64,
-    /// Of each effect that is on and can be taken out.
+    /// The cost of each effect that is on and can be taken out.
     pub effects: Vec<Cost>,
 }
 
 impl Costs {
-    /// What an effect costs, where it was measured.
+    /// The cost of an effect, if it was measured.
     #[must_use]
     pub fn of(&self, effect: Effect) -> Option<&Cost> {
         self.effects.iter().find(|cost| cost.effect == effect)
@@ -127,7 +126,7 @@ pub fn explain(shot: &Shot) -> Explained {
     explain_with(&mut renderer, shot)
 }
 
-/// The same of the picture that `renderer` drew last.
+/// The same for the picture that `renderer` drew last.
 #[must_use]
 pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
     let (_, mut uses) = explain_frame(shot);
@@ -135,8 +134,8 @@ pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
     Explained { uses, off_by, size: shot.size }
 }
 
-/// Measures what the effects of a picture cost, within some `budget` of time. Stops where `stopped` says
-/// so, and gives what was measured till then.
+/// Measures what the effects of a picture cost, within about `budget` of time. When `stopped`
+/// returns true, returns what was measured so far.
 #[must_use]
 pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Costs {
     let (plan, uses) = explain_frame(shot);
@@ -184,7 +183,7 @@ impl Bench {
         time(render).as_secs_f64() * 1e3
     }
 
-    /// In turn: with, without, without, with.
+    /// Frames in turn: with, without, without, with.
     fn pairs(
         &mut self,
         with: &FramePlan,

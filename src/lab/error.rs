@@ -1,44 +1,44 @@
-//! How far a picture is from the reference.
+//! The error of a picture against its reference.
 //!
-//! Colour is judged where both pictures show the same primitive. Where they do not, a colour says
-//! nothing of how light was computed: those pixels are counted apart, as coverage. Where the reference
-//! has several samples a pixel may show several primitives, and how they are mixed is what is judged: then
-//! every pixel is.
+//! Colours are compared at pixels that show the same primitive in both pictures. At the others,
+//! colours say nothing about how light was computed: these pixels are counted as coverage. If the
+//! reference has several samples per pixel, a pixel may show several primitives, and every pixel is
+//! compared.
 
 use serde::Serialize;
 
 use super::flip::Perceived;
 use crate::base::image::Picture;
 
-/// A picture with what is needed to judge it.
+/// A picture with the primitives that it shows.
 #[derive(Debug)]
 pub struct Rendering {
     picture: Picture,
-    /// Which primitive each pixel shows.
+    /// The primitive that each pixel shows.
     primitives: Vec<u32>,
     /// Whether a pixel may show several.
     mixed: bool,
     seen: Perceived,
 }
 
-/// How far a picture is from the reference.
+/// The error of a picture against its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Error {
     /// The largest difference of a byte.
     pub largest: u8,
     /// The root of the mean square of the differences of bytes.
     pub rmse: f64,
-    /// 20 log10(255 / rmse), in decibels; none where no byte differs.
+    /// 20 log10(255 / rmse), in decibels; `None` if no byte differs.
     pub psnr: Option<f64>,
     /// The part of the bytes that differ.
     pub differing: f64,
-    /// How many pixels show another triangle or line, or background in its place.
+    /// The number of pixels whose coverage differs: they show another triangle, line or background.
     pub coverage: usize,
     /// How different the pictures look, from 0 to 1, over all pixels.
     pub flip: f64,
 }
 
-/// A number that stands for an error where one has to.
+/// An error metric: one number for an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Measure {
@@ -49,12 +49,12 @@ pub enum Measure {
     Largest,
     /// The part of the bytes that differ.
     Differing,
-    /// How different it looks.
+    /// FLIP: how different it looks.
     Flip,
 }
 
 impl Measure {
-    /// All of them.
+    /// All metrics.
     pub const ALL: [Self; 4] = [Self::Rmse, Self::Largest, Self::Differing, Self::Flip];
 
     /// Its word on the command line.
@@ -68,7 +68,7 @@ impl Measure {
         }
     }
 
-    /// What it is, at an axis of a plot.
+    /// Its label at an axis of a plot.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -79,7 +79,7 @@ impl Measure {
         }
     }
 
-    /// That number of an error.
+    /// The metric's value for an error.
     #[must_use]
     pub fn of(self, error: &Error) -> f64 {
         match self {
@@ -92,7 +92,7 @@ impl Measure {
 }
 
 impl Rendering {
-    /// A picture, and which primitive each of its pixels shows.
+    /// A picture with the primitive that each of its pixels shows.
     #[must_use]
     pub fn new(picture: Picture, primitives: Vec<u32>) -> Self {
         assert_eq!(picture.pixels().len(), primitives.len(), "every pixel shows something");
@@ -100,7 +100,7 @@ impl Rendering {
         Self { picture, primitives, mixed: false, seen }
     }
 
-    /// The same where pixels have several samples, so that each may show several primitives.
+    /// The same with several samples per pixel, so that each pixel may show several primitives.
     #[must_use]
     pub fn mixed(self) -> Self {
         Self { mixed: true, ..self }
@@ -112,7 +112,7 @@ impl Rendering {
         &self.picture
     }
 
-    /// How far this picture is from the reference.
+    /// The error of this picture against a reference.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 bytes")]
     pub fn error(&self, reference: &Self) -> Error {
@@ -165,8 +165,8 @@ mod tests {
     const PIXELS: [[u8; 4]; 4] =
         [[10, 20, 30, 255], [0, 0, 0, 255], [255, 255, 255, 255], [7, 7, 7, 255]];
 
-    /// By hand: of the three pixels that show the same primitive, two bytes of nine differ, by 3 and by
-    /// 4, so the mean square is 25/9.
+    /// By hand: of the three pixels that show the same primitive, two bytes of nine differ, by 3
+    /// and by 4, so the mean square is 25/9.
     #[test]
     fn an_error_is_counted_by_hand_and_coverage_apart_from_it() {
         let reference = rendering(PIXELS, [1, 0, 2, 2]);

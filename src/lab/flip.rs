@@ -1,12 +1,12 @@
-//! How different two pictures look to an eye that flips between them.
+//! FLIP: how different two pictures look to an observer who flips between them.
 //!
-//! The measure is for display values on a screen that is 0.7 m wide, has 3840 pixels across and is
-//! looked at from 0.7 m: 67 pixels to a degree. 0 is alike, 1 as different as can be.
+//! The metric is for display values on a screen 0.7 m and 3840 pixels wide, seen from 0.7 m: 67
+//! pixels per degree. 0 is equal, 1 the largest difference.
 //!
 //! Source: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, "FLIP: A Difference
 //! Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020, for low
-//! dynamic range. Every filter in it is a sum of products of two functions of one coordinate each, and
-//! is run as such, along rows and then along columns; at a border the last pixel goes on.
+//! dynamic range. Every filter in it is a sum of products of two functions of one coordinate each,
+//! and is run as such, along rows and then along columns; at a border the last pixel goes on.
 
 use libm::{ceil, exp, pow, sqrt};
 use rayon::prelude::*;
@@ -33,18 +33,18 @@ const RGB_FROM_XYZ: [[f64; 3]; 3] = [
     [0.055_639_423, -0.204_011_202, 1.057_148_933],
 ];
 
-/// What of a picture does not depend on the picture it is compared with.
+/// The part of the metric that does not depend on the other picture.
 #[derive(Debug)]
 pub struct Perceived {
     size: Size,
-    /// As the eye's contrast sensitivity leaves it, in CIELAB with Hunt's adjustment.
+    /// The picture filtered by the eye's contrast sensitivity, in CIELAB with Hunt's adjustment.
     color: Vec<[f64; 3]>,
     /// The strength of edges and of points.
     features: Vec<[f64; 2]>,
 }
 
 impl Perceived {
-    /// What an eye makes of a picture.
+    /// Filters a picture.
     #[must_use]
     pub fn new(picture: &Picture) -> Self {
         let size = picture.size();
@@ -68,7 +68,7 @@ impl Perceived {
         assert_eq!(self.size, other.size, "pictures of one size are compared");
         let most = most_color_error();
         let rows = self.size.width.max(1);
-        // Summed row by row, so that the number does not depend on how many threads there are.
+        // Summed row by row, so that the result does not depend on the number of threads.
         let sums: Vec<f64> = (0..self.size.height)
             .into_par_iter()
             .map(|y| (y * rows..(y + 1) * rows).map(|i| self.at(other, i, most)).sum())
@@ -88,7 +88,8 @@ impl Perceived {
 /// q_c: differences of colour are raised to it.
 const COLOR_EXPONENT: f64 = 0.7;
 
-/// The sensitivity of the eye to contrast, as a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees.
+/// The sensitivity of the eye to contrast, as a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in
+/// degrees.
 const SENSITIVITY: [[[f64; 2]; 2]; 3] =
     [[[1.0, 0.0047], [0.0, 1e-5]], [[1.0, 0.0053], [0.0, 1e-5]], [[34.1, 0.04], [13.5, 0.025]]];
 
@@ -269,8 +270,8 @@ mod tests {
         }
     }
 
-    /// The numbers are those of the authors' own program, `flip_evaluator` 1.7 (LDR), which computes in
-    /// 32 bits.
+    /// The numbers are those of the authors' own program, `flip_evaluator` 1.7 (LDR), which
+    /// computes in 32 bits.
     #[test]
     fn differences_are_those_of_the_authors_program() {
         let (a, b) = (picture(32, pattern), picture(32, changed));

@@ -1,18 +1,18 @@
-//! What is worth choosing: the points that no other beats in both time and error.
+//! The Pareto front: the points that no other beats in both time and error.
 //!
-//! A point is on the front (Pareto's) where no other is at least as good in both and better in one.
+//! A point is on the front if no other is at least as good in both and better in one.
 
-/// A choice, as what it costs and what it loses.
+/// A choice as time and error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Of any unit.
+    /// In any unit.
     pub time: f64,
-    /// Of any unit; 0 is exact.
+    /// In any unit; 0 is exact.
     pub error: f64,
 }
 
-/// The places of the points on the front, from the fastest to the most exact. Of points that are the
-/// same in both, all are on it.
+/// The indices of the points on the front, from the fastest to the most exact. Points that are
+/// equal in both are all on it.
 #[must_use]
 pub fn front(points: &[Point]) -> Vec<usize> {
     let beats = |a: &Point, b: &Point| {

@@ -14,8 +14,8 @@ pub fn levels() -> Vec<Level> {
     levels
 }
 
-/// The set with a name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, which every processor of this kind
-/// has. `None` if this processor lacks it, or if the name is unknown.
+/// The set with a name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, which every processor of
+/// this kind has. `None` if this processor lacks it, or if the name is unknown.
 #[must_use]
 pub fn named(name: &str) -> Option<Level> {
     let best = Level::new();

@@ -1,9 +1,10 @@
-//! Four small pieces of arithmetic, written plainly and with SIMD: equal results, time alone.
+//! Measures four small pieces of arithmetic, written plainly and with SIMD: equal results,
+//! different times.
 //!
-//! They are the ones that an earlier program of this kind timed in C against assembler: the dot product,
-//! interpolation, a vector times a matrix, and the clearing of a depth buffer. Both ways add in the same
-//! order and fuse nothing, so that every bit is the same. The plain way is what the compiler makes of a
-//! loop for the oldest processor that the program runs on, which is not always one number at a time.
+//! An ancestor of this program timed them in C against assembler: the dot product, interpolation, a
+//! vector times a matrix, and the clearing of a depth buffer. Both versions add in the same order
+//! and fuse nothing, so every bit is the same. The plain version is what the compiler makes of a
+//! loop for the oldest processor that the program runs on; it may vectorise that.
 
 use fearless_simd::{Level, Simd, SimdBase as _, dispatch, f32x4, f32x16};
 use serde::Serialize;
@@ -11,18 +12,18 @@ use serde::Serialize;
 use super::pairs::{Limits, Ratio, Unmeasured, Watch, abba};
 use super::timing::{Clock, Work};
 
-/// Vectors that a kernel works through: what 800 x 800 pixels hold, for the depth buffer.
+/// The number of vectors that a kernel processes: 800 x 800 depths.
 const VECTORS: usize = 160_000;
 
-/// How many kernels there are.
+/// The number of kernels.
 pub const COUNT: usize = KERNELS.len();
 
-/// What was measured of a piece of arithmetic.
+/// The measurement of a kernel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Kernel {
     /// What it computes.
     pub name: &'static str,
-    /// How many times as long SIMD takes as the plain way.
+    /// How many times as long SIMD takes as the plain version.
     pub ratio: Ratio,
     /// Whether every bit of the results is equal.
     pub equal: bool,
@@ -78,10 +79,10 @@ impl Rows {
     }
 }
 
-/// Measures a kernel, by its number.
+/// Measures the kernel with this index.
 ///
 /// # Errors
-/// Where it was cancelled or disturbed all the time.
+/// If it was cancelled, or disturbed all the time.
 pub fn measure(
     number: usize,
     clock: &mut dyn Clock,
@@ -102,9 +103,9 @@ fn bits(numbers: &[f32]) -> Vec<u32> {
     numbers.iter().map(|number| number.to_bits()).collect()
 }
 
-/// How far along the way from `a` to `b` is mixed.
+/// The weight of `b` in the interpolation.
 const PART: f32 = 0.3;
-/// What a cleared depth buffer holds.
+/// The depth that a buffer is cleared to.
 const FAR: f32 = 1.0;
 /// The rows of the matrix that row vectors are multiplied with.
 const MATRIX: [[f32; 4]; 4] =
@@ -118,8 +119,8 @@ fn plain_dot(rows: &mut Rows) {
     }
 }
 
-/// Sixteen vectors as rows of their first, second, third and fourth numbers. A function, for a closure
-/// would not be compiled for the instructions that `S` stands for.
+/// Transposes sixteen vectors into rows of their first, second, third and fourth numbers. It is a
+/// function because a closure would not be compiled for the instructions of `S`.
 #[inline(always)]
 fn turned<S: Simd>(simd: S, flat: &[f32]) -> [f32x16<S>; 4] {
     let first = f32x16::from_slice(simd, &flat[..16]);
@@ -201,8 +202,8 @@ fn simd_clear<S: Simd>(simd: S, rows: &mut Rows) {
 mod tests {
     use super::*;
 
-    /// By hand: (1, 2, 3, 4) . (5, 6, 7, 8) = 70; mixed by 0.3 it begins with 2.2; times the matrix its
-    /// first number is 0.8 - 0.4 + 0.9 + 20 = 21.3.
+    /// By hand: (1, 2, 3, 4) . (5, 6, 7, 8) = 70; mixed by 0.3 it begins with 2.2; times the matrix
+    /// its first number is 0.8 - 0.4 + 0.9 + 20 = 21.3.
     #[test]
     fn kernels_compute_what_their_names_say_both_ways_with_the_same_bits() {
         let expected: [f32; COUNT] = [70.0, 2.2, 21.3, FAR];

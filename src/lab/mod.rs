@@ -1,5 +1,5 @@
-//! What drawing costs in time and what accuracy costs, measured, never guessed; and whether this processor
-//! draws the listed pictures.
+//! What drawing costs in time and what accuracy costs, measured, never guessed; and whether this
+//! processor draws the listed pictures.
 
 pub mod attribution;
 pub mod candidates;

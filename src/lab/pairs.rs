@@ -1,9 +1,9 @@
-//! How much longer one way of drawing takes than another, measured so that the machine's moods cancel.
+//! Measures how much longer one way of drawing takes than another, so that disturbances cancel.
 //!
-//! A pair is four pictures, A B B A: what grows or shrinks steadily meanwhile falls on both alike. What
-//! counts is the ratio of each pair; their median and quartiles are told, and how many there were. Every
-//! picture is hashed after it was timed, so that none of the work can be left out, and the same settings
-//! are held to give the same bytes.
+//! A pair is four pictures, A B B A, so that a steady drift of the machine's speed affects both
+//! alike. The result is the median and the quartiles of the ratios of all pairs. Every picture is
+//! hashed after it is timed: the compiler cannot leave out work, and the same settings have to give
+//! the same bytes.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,58 +17,57 @@ use super::timing::{Clock, Work};
 use crate::accuracy::Settings;
 use crate::io::{Cancelled, Progress};
 
-/// How long is measured.
+/// How long to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// At most so many pairs of a choice.
+    /// The largest number of pairs for each choice.
     pub pairs: usize,
-    /// At least so many.
+    /// The smallest number.
     pub least: usize,
-    /// No further pair is begun when a choice has taken so long, once there are enough.
+    /// Once there are enough pairs, none is begun after this time.
     pub time: Duration,
 }
 
-/// The one who waits for measurements, and may disturb them.
+/// Connects measurements with the user who waits for them, and may disturb them.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
-    /// How far they are, and whether they should end.
+    /// Reports progress, and cancels.
     pub progress: Progress,
     touches: Arc<Touches>,
 }
 
 #[derive(Debug, Default)]
 struct Touches {
-    /// Odd while the machine is used for something else.
+    /// Odd while the machine does something else.
     count: AtomicU64,
     last: Mutex<Option<Instant>>,
-    /// How long the last pair took, in milliseconds.
+    /// The time of the last pair in milliseconds.
     pair: AtomicU64,
 }
 
-/// The machine is used for something else as long as this lives.
+/// The machine does something else as long as this lives.
 #[derive(Debug)]
 pub struct Touch(Arc<Touches>);
 
-/// What goes on for a little after a touch, like the showing of what was drawn, is waited for.
+/// Time for what follows a touch, such as showing the window.
 const AFTERMATH: Duration = Duration::from_millis(40);
 
 impl Watch {
-    /// Watches with the progress of other work.
+    /// The same with the progress of other work.
     #[must_use]
     pub fn with(self, progress: &Progress) -> Self {
         Self { progress: progress.clone(), ..self }
     }
 
-    /// Says that the machine is used for something else from now on: the pair that is measured meanwhile
-    /// is thrown away.
+    /// Marks the machine as used for something else from now on: the pair that is being measured is
+    /// thrown away.
     #[must_use]
     pub fn touch(&self) -> Touch {
         self.touches.count.fetch_add(1, Ordering::Relaxed);
         Touch(Arc::clone(&self.touches))
     }
 
-    /// How long the pairs that are measured now take: whoever touches more often than that disturbs
-    /// all of them.
+    /// The time that a pair takes now. Touches that are more frequent disturb all pairs.
     #[must_use]
     pub fn pair(&self) -> Duration {
         Duration::from_millis(self.touches.pair.load(Ordering::Relaxed))
@@ -78,8 +77,8 @@ impl Watch {
         self.touches.count.load(Ordering::Relaxed)
     }
 
-    /// Waits for the aftermath of the last touch; but only once, for whoever touches without pause shall
-    /// see that the work goes on.
+    /// Waits for the aftermath of the last touch, but only once: touches without pause must not
+    /// stop the work.
     fn settle(&self) {
         let last = *self.touches.last.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(rest) = last.and_then(|last| AFTERMATH.checked_sub(last.elapsed())) {
@@ -95,29 +94,29 @@ impl Drop for Touch {
     }
 }
 
-/// What was measured of a choice, B, against another, A.
+/// The measurement of a choice, B, against another, A.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ratio {
     /// How many times as long B takes.
     pub quartiles: Quartiles,
-    /// How many pairs were measured.
+    /// The number of pairs that count.
     pub pairs: usize,
-    /// How many more were thrown away.
+    /// The number of pairs that were thrown away.
     pub thrown: usize,
-    /// Milliseconds of a picture of A, the median.
+    /// The median time of a picture of A in milliseconds.
     pub a_ms: f64,
 }
 
-/// Why something is not measured.
+/// Why a measurement fails.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unmeasured {
-    /// The one who waits wanted the end.
+    /// It was cancelled.
     #[error("cancelled")]
     Cancelled,
-    /// The interface was at work all the time.
+    /// The interface was busy all the time.
     #[error("no pair was left undisturbed")]
     Disturbed,
-    /// The same settings gave other bytes than before.
+    /// The same settings gave different bytes.
     #[error("{0}: the same settings gave two different pictures")]
     Unsteady(String),
 }
@@ -131,7 +130,7 @@ impl From<Cancelled> for Unmeasured {
 /// Measures how many times as long B takes as A.
 ///
 /// # Errors
-/// Where it was cancelled, or disturbed all the time, or a picture came out otherwise than before.
+/// If it was cancelled, or disturbed all the time, or if a picture differs from the one before.
 pub fn measure(
     clock: &mut dyn Clock,
     source: &mut dyn PictureSource,
@@ -152,16 +151,16 @@ pub fn measure(
     abba(limits, watch, &mut draw)
 }
 
-/// Measures two pieces of work in pairs; `run` does number 0 or 1 and gives its milliseconds.
+/// Measures two pieces of work in pairs; `run` does number 0 or 1 and returns its milliseconds.
 ///
 /// # Errors
-/// Where it was cancelled or disturbed all the time, or `run` fails.
+/// If it was cancelled, or disturbed all the time, or if `run` fails.
 pub fn abba(
     limits: &Limits,
     watch: &Watch,
     run: &mut dyn FnMut(usize) -> Result<f64, Unmeasured>,
 ) -> Result<Ratio, Unmeasured> {
-    // The first runs fill caches and queues, and are not counted.
+    // The first runs fill caches and are not counted.
     run(0)?;
     run(1)?;
     let (mut ratios, mut of_a, mut thrown, mut spent) = (Vec::new(), Vec::new(), 0, 0.0);
@@ -191,7 +190,7 @@ pub fn abba(
     Ok(Ratio { quartiles, pairs: ratios.len(), thrown, a_ms })
 }
 
-/// So many pairs may be thrown away for each that is wanted.
+/// The number of pairs that may be thrown away for each that is wanted.
 const MOST_THROWN: usize = 3;
 
 #[cfg(test)]
@@ -222,7 +221,7 @@ mod tests {
         let (watch, mut runs) = (Watch::default(), 0);
         let ratio = abba(&LIMITS, &watch, &mut |which| {
             runs += 1;
-            // The second pair, behind two runs that are not counted.
+            // The second pair, after two runs that are not counted.
             if runs == 8 {
                 drop(watch.touch());
                 return Ok(1000.0);

@@ -1,4 +1,4 @@
-//! What pictures are drawn on, so that they can be timed and judged.
+//! Draws the pictures that the laboratory times and judges.
 
 use super::error::Rendering;
 use super::hash::fnv1a;
@@ -8,16 +8,16 @@ use crate::base::image::Picture;
 use crate::render::Renderer;
 use crate::render::plan_frame;
 
-/// Draws one scene, seen one way, in one size, with any settings.
+/// Draws one scene, from one view and in one size, with any settings.
 pub trait PictureSource {
-    /// Draws the picture, as wholly as if it were the first.
+    /// Draws the whole picture, reusing nothing of the last one.
     fn draw(&mut self, settings: &Settings);
     /// The picture that was drawn last.
     fn picture(&self) -> &Picture;
-    /// Which primitive each pixel of it shows.
+    /// The primitive that each of its pixels shows.
     fn primitives(&mut self) -> Vec<u32>;
 
-    /// The picture of these settings, with what is needed to judge it.
+    /// Draws the picture of these settings, to be judged.
     fn rendering(&mut self, settings: &Settings) -> Rendering {
         self.draw(settings);
         let primitives = self.primitives();
@@ -26,7 +26,7 @@ pub trait PictureSource {
     }
 }
 
-/// The renderer, with what it draws.
+/// The renderer with a scene.
 #[derive(Debug)]
 pub struct Studio {
     shot: Shot,
@@ -40,13 +40,13 @@ impl Studio {
         Self { shot, renderer: Renderer::default() }
     }
 
-    /// What is drawn.
+    /// The scene.
     #[must_use]
     pub const fn shot(&self) -> &Shot {
         &self.shot
     }
 
-    /// What is seen at a pixel of the last picture: the name of the item, and the polygon.
+    /// The name of the item that a pixel of the last picture shows, and the polygon.
     #[must_use]
     pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<(String, u32)> {
         use crate::scene::ItemId;
@@ -75,7 +75,7 @@ impl PictureSource for Studio {
     }
 }
 
-/// A number for a picture, the same for the same bytes on every machine: FNV-1a over its pixels.
+/// A hash of a picture, the same on every machine: FNV-1a over its pixels.
 #[must_use]
 pub fn hash(picture: &Picture) -> u64 {
     fnv1a(picture.pixels().iter().map(|pixel| u64::from(u32::from_le_bytes(*pixel))))

@@ -1,7 +1,7 @@
 //! Medians and quartiles of a few measurements.
 //!
-//! A quantile is that of type 7 in Hyndman and Fan, "Sample Quantiles in Statistical Packages", 1996:
-//! interpolated linearly between the two neighbours of (n - 1) p.
+//! A quantile is that of type 7 in Hyndman and Fan, "Sample Quantiles in Statistical Packages",
+//! 1996: interpolated linearly between the two neighbours of (n - 1) p.
 
 use serde::Serialize;
 

@@ -1,8 +1,9 @@
-//! What accuracy costs in time: every choice of every axis against the default.
+//! Measures what accuracy costs: every choice of every axis against the default.
 //!
 //! The reference is drawn once and all errors are taken against it. The default is first measured
-//! against itself; the spread of that control is the floor under which no difference means anything.
-//! Then every candidate is measured against the default, in the same process, in turn with it.
+//! against itself; the spread of that control is the floor under which no difference means
+//! anything. Then every candidate is measured against the default, in the same process, in turn
+//! with it.
 
 use fearless_simd::Level;
 use serde::Serialize;
@@ -19,48 +20,48 @@ use crate::accuracy::Shot;
 use crate::accuracy::{Axis, Settings};
 use crate::base::image::Size;
 
-/// What is to be found out.
+/// What to measure.
 #[derive(Clone, Debug)]
 pub struct Question {
-    /// What the picture is drawn with now.
+    /// The settings that the picture is drawn with now.
     pub current: Settings,
-    /// Which axes are looked at.
+    /// The axes to measure.
     pub axes: Vec<&'static Axis>,
     /// How thoroughly.
     pub thoroughness: Thoroughness,
 }
 
-/// What was found out.
+/// The results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Findings {
     /// The picture's width and height.
     pub size: [usize; 2],
-    /// How many threads drew it.
+    /// The number of threads that drew it.
     pub threads: usize,
-    /// With which set of instructions.
+    /// The set of instructions that it was drawn with.
     pub instructions: String,
-    /// How thoroughly was measured.
+    /// The name of the thoroughness.
     pub thoroughness: &'static str,
     /// The default against itself.
     pub control: Ratio,
-    /// Within so much of 1 a ratio means nothing.
+    /// A ratio that is closer to 1 than this means nothing.
     pub floor: f64,
-    /// What the picture is drawn with now.
+    /// The settings that the picture is drawn with now.
     pub current: Settings,
-    /// Every settings that was measured, once; the first is the default.
+    /// All settings that were measured, each once; the first is the default.
     pub points: Vec<Measured>,
-    /// What the points are in the table.
+    /// The rows of the table, each of a point.
     pub rows: Vec<Row>,
-    /// What was not measured, and why.
+    /// What was not measured, with the reason.
     pub left_out: Vec<LeftOut>,
     /// Small pieces of arithmetic, plain and with SIMD.
     pub kernels: Vec<Kernel>,
 }
 
-/// Settings with what they cost and what they lose.
+/// Settings with their time and their error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// What they are called: the first name under which they were measured.
+    /// The first name under which they were measured.
     pub name: String,
     /// The settings.
     pub settings: Settings,
@@ -68,11 +69,11 @@ pub struct Measured {
     pub ms: f64,
     /// How many times as long as the default they take.
     pub ratio: Ratio,
-    /// Whether that means anything.
+    /// Whether the ratio means anything.
     pub verdict: Verdict,
-    /// What the picture is judged against: only points judged alike can stand in for one another.
+    /// What the picture is judged against; only points with the same judge compare.
     pub against: Against,
-    /// How far it is from that.
+    /// The error against that.
     pub error: Error,
     /// The settings of that reference.
     #[serde(skip)]
@@ -87,14 +88,14 @@ pub struct Measured {
 pub enum Against {
     /// The reference of the default.
     Default,
-    /// That of an axis that is scored apart: most samples a pixel, each lit.
+    /// The reference of an axis that is scored apart: the most samples per pixel, each lit.
     Apart,
     /// The reference of another model than the one that is drawn now.
     Model,
 }
 
 impl Against {
-    /// In a word.
+    /// Its word in tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -104,7 +105,7 @@ impl Against {
         }
     }
 
-    /// Which of them a reference is; the default's is given.
+    /// The kind of a reference, given the default's.
     fn of(reference: &Settings, default: &Settings) -> Self {
         if reference == default {
             Self::Default
@@ -124,25 +125,25 @@ pub enum Verdict {
     Faster,
     /// Than the default, beyond the noise.
     Slower,
-    /// Within the noise: nothing can be said.
+    /// Within the noise.
     Alike,
 }
 
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Under which heading it stands.
+    /// The group that it stands in.
     #[serde(flatten)]
     pub group: Group,
-    /// What it is called there.
+    /// Its name in the group.
     pub name: String,
-    /// Its place among the points.
+    /// The index of its point.
     pub point: usize,
 }
 
 impl Verdict {
-    /// What a ratio means where differences up to `floor` mean nothing: the median has to be beyond it,
-    /// and so has the half of the pairs that lies towards 1.
+    /// Judges a ratio, if differences up to `floor` mean nothing: the median has to be beyond it,
+    /// and the quartile towards 1 on the same side of 1.
     #[must_use]
     pub fn of(ratio: &Quartiles, floor: f64) -> Self {
         if ratio.median < 1.0 - floor && ratio.upper < 1.0 {
@@ -154,7 +155,7 @@ impl Verdict {
         }
     }
 
-    /// In a word.
+    /// Its word in tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -165,10 +166,10 @@ impl Verdict {
     }
 }
 
-/// Measures a scene with the machine's own clock. `tell` is shown what there is after every choice.
+/// Measures a scene. `tell` is called with the results so far after every choice.
 ///
 /// # Errors
-/// Where it was cancelled or disturbed, or a picture could not be repeated.
+/// If it was cancelled or disturbed, or if a picture could not be repeated.
 pub fn sweep(
     studio: &mut Studio,
     question: &Question,
@@ -185,13 +186,13 @@ pub fn sweep(
 
 /// Everything that a sweep works with.
 pub struct Bench<'a> {
-    /// What tells the time.
+    /// Measures time.
     pub clock: &'a mut dyn Clock,
-    /// What draws.
+    /// Draws the pictures.
     pub source: &'a mut dyn PictureSource,
-    /// Who waits for it.
+    /// Connects the sweep with the user who waits for it.
     pub watch: &'a Watch,
-    /// What is to be found out.
+    /// What to measure.
     pub question: &'a Question,
     /// The picture's size.
     pub size: Size,
@@ -294,14 +295,14 @@ impl Bench<'_> {
                 if let Group::Axis(key) = group
                     && reference != settings.reference()
                 {
-                    // The same settings may stand elsewhere, judged against another picture.
+                    // The same settings may have another row, judged against another picture.
                     point.name = format!("{key} {}", name.to_lowercase());
                 }
                 findings.points.push(point);
                 findings.points.len() - 1
             }
         };
-        // What is drawn now has a row of its own only where no other row shows it.
+        // The current settings have a row of their own only if no other row shows them.
         if group != Group::Current || known.is_none() {
             findings.rows.push(Row { group, name, point });
         }
@@ -316,7 +317,7 @@ impl Bench<'_> {
         references: &mut Vec<(Settings, Rendering)>,
     ) -> Result<Measured, Unmeasured> {
         let a_ms = findings.control.a_ms;
-        // The default is what all times are told in, and its ratio is the control's.
+        // All times are relative to the default, and its ratio is the control's.
         let (ratio, ms) = if settings == *base {
             (findings.control.clone(), a_ms)
         } else {

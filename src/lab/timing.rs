@@ -1,7 +1,7 @@
 //! Measures how long work takes.
 //!
-//! The laboratory hands its work to a [`Clock`], together with what it is: a test can replace the clock by
-//! one that makes one choice slow, and expects that choice to be named and no other.
+//! The laboratory hands its work to a [`Clock`], together with what it is: a test can replace the
+//! clock by one that makes one choice slow, and expects that choice to be named and no other.
 
 use std::time::{Duration, Instant};
 

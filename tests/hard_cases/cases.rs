@@ -83,7 +83,7 @@ pub(crate) static CASES: &[Case] = &[
     case(40, INTERPOLATION, "I", "one colour at all corners comes out as another"),
     case(41, INTERPOLATION, "Z", "nothing says along which diagonal a quad is cut"),
     case(42, LIGHT, "D", "a reciprocal root of 12 bits spoils highlights"),
-    case(43, LIGHT, "I", "a unit vector's product with itself is above 1, and acos gives no number"),
+    case(43, LIGHT, "I", "a unit vector's product with itself is above 1, and acos gives NaN"),
     case(44, LIGHT, "D", "acos of almost 1 has lost the angle"),
     case(45, LIGHT, "I", "a negative number to a broken power is none; 0 to 0 is anything"),
     case(46, LIGHT, "I", "subnormal powers cost four times the time and show nothing"),

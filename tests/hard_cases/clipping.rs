@@ -23,7 +23,8 @@ use super::oracle::{Eye, inside_by, meet};
 
 const SIDE: usize = 128;
 
-/// A triangle of the world as the only thing to be seen, from both sides, by the eye at (0, 0, 400).
+/// A triangle of the world as the only thing to be seen, from both sides, by the eye at (0, 0,
+/// 400).
 fn alone(corners: [DVec3; 3]) -> (marraztu::scene::Scene, View) {
     let positions = corners.map(|corner| corner.as_vec3().to_array());
     let (mut scene, view) =
@@ -32,9 +33,9 @@ fn alone(corners: [DVec3; 3]) -> (marraztu::scene::Scene, View) {
     (scene, View { marks: false, ..view })
 }
 
-/// How many pixels of a picture of one triangle are not as rays say: those that meet it between 1 and
-/// 2000 before the eye. Pixels whose ray passes within a hundredth of a pixel of its border are left
-/// out: they are other cases.
+/// How many pixels of a picture of one triangle are not as rays say: those that meet it between 1
+/// and 2000 before the eye. Pixels whose ray passes within a hundredth of a pixel of its border are
+/// left out: they are other cases.
 fn wrong_pixels(corners: [DVec3; 3], picture: &Picture, seen: &[bool]) -> usize {
     let eye = Eye::first(picture.size().width);
     let mut wrong = 0;
@@ -98,8 +99,8 @@ fn case_11_scenes_of_absurd_numbers_are_refused_or_drawn() {
 
 #[test]
 fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
-    // The line of ancestor A's fault, seen from the origin: one end is 2 behind the eye, the other 1
-    // in front of it. At the near plane, 1/2 in front, it is at y = -0.3: 1/6 of the way.
+    // The line of ancestor A's fault, seen from the origin: one end is 2 behind the eye, the other
+    // 1 in front of it. At the near plane, 1/2 in front, it is at y = -0.3: 1/6 of the way.
     let (behind, front) = (DVec3::new(0.5, 0.2, 2.0), DVec3::new(0.5, -0.4, -1.0));
     let third = DVec3::new(0.5, -2.0, -1.0);
     // Whichever end comes first.

@@ -36,7 +36,8 @@ fn shown(ambient: [f64; 3], lights: &[Color], arithmetic: Arithmetic) -> [u8; 3]
 
 #[test]
 fn case_52_light_is_rounded_to_the_nearest_byte() {
-    // A little below and above the middle between two bytes, and on a byte: whole numbers say which.
+    // A little below and above the middle between two bytes, and on a byte: whole numbers say
+    // which.
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
     let mut bias = 0.0;
     for k in 0..=254_u8 {

@@ -492,8 +492,9 @@ fn case_27_threads_and_instructions_do_not_show_in_a_dozen_pictures() {
 
 #[test]
 fn case_28_each_four_bits_of_the_subpixel_grid_leave_a_sixteenth_of_the_wrong_pixels() {
-    // By number: the grid is the renderer's own, 8 bits. A ball of 4600 triangles across 400 pixels,
-    // by exact crossings of corners snapped to each grid against those of a grid of 20 bits.
+    // By number: the grid is the renderer's own, 8 bits. A ball of 4600 triangles across 400
+    // pixels, by exact crossings of corners snapped to each grid against those of a grid of 20
+    // bits.
     const SIDE: usize = 512;
     let body = ball(48);
     let eye = Eye::first(SIDE);
@@ -504,7 +505,8 @@ fn case_28_each_four_bits_of_the_subpixel_grid_leave_a_sixteenth_of_the_wrong_pi
         .iter()
         .map(|p| eye.pixel(turn.transform_point3(DVec3::from_array(p.map(f64::from)))))
         .collect();
-    // Which triangle that faces the eye is seen where: with no depth, fronts of a ball lie side by side.
+    // Which triangle that faces the eye is seen where: with no depth, fronts of a ball lie side by
+    // side.
     let seen = |bits: i32| {
         let mut seen = vec![usize::MAX; SIDE * SIDE];
         let grid = f64::from(1 << bits);
@@ -562,7 +564,8 @@ fn case_28_each_four_bits_of_the_subpixel_grid_leave_a_sixteenth_of_the_wrong_pi
 
 #[test]
 fn case_29_points_every_tenth_of_a_unit_are_too_few_near_by_and_too_many_far_off() {
-    // By number: ancestor A's way of filling, points in the observer's space, 800 pixels for 45 degrees.
+    // By number: ancestor A's way of filling, points in the observer's space, 800 pixels for 45
+    // degrees.
     let tangent = 2.0_f64.sqrt() - 1.0;
     let pixel = |distance: f64| 2.0 * tangent * distance / 800.0;
     let counted = |distance: f64| {

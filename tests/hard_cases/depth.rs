@@ -155,7 +155,8 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
     .hold();
 }
 
-/// A depth at a pixel's middle with twice the digits: edge functions of whole numbers over their sum.
+/// A depth at a pixel's middle with twice the digits: edge functions of whole numbers over their
+/// sum.
 fn exact_depth(flat: &Flat, x: i32, y: i32) -> f64 {
     let [p, q, r] = flat.corners;
     let edge = |p: Snapped, q: Snapped| {

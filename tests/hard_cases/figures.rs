@@ -11,8 +11,8 @@ pub(crate) struct Figure {
     pub(crate) case: u8,
     /// What is measured.
     pub(crate) what: &'static str,
-    /// A way in which it is done elsewhere, and what comes of it. It has to be worse than the bound:
-    /// else the case would be an easy one.
+    /// A way in which it is done elsewhere, and what comes of it. It has to be worse than the
+    /// bound: else the case would be an easy one.
     pub(crate) naive: Option<(&'static str, f64)>,
     /// What comes of our way.
     pub(crate) ours: f64,

@@ -38,7 +38,8 @@ fn case_64_numbers_are_read_to_the_nearest_f32_or_refused() {
         // Half-way between 1 and the next, and a hair more: twenty digits decide.
         ("1.00000005960464477539", 0x3f80_0000),
         ("1.00000005960464477540", 0x3f80_0001),
-        // The same in few enough digits for the quick way: the nearest number of 64 bits is half-way.
+        // The same in few enough digits for the quick way: the nearest number of 64 bits is
+        // half-way.
         ("1.0000000596046448", 0x3f80_0001),
         ("1.00000005960464477", 0x3f80_0000),
         ("16777217", 0x4b80_0000),
@@ -214,7 +215,7 @@ fn case_66_a_scene_of_another_size_is_the_same_picture() {
     let tiny = 2.0_f32.powi(-80);
     Figure {
         case: 66,
-        what: "pixels that differ in scenes of 2^-90 to 2^90 times the size, and with a far plane at 1e39",
+        what: "pixels that differ at 2^-90 to 2^90 times the size, or with a far plane at 1e39",
         naive: Some((
             "a normal of length 2^-80 by its length in f32",
             f64::from(tiny / (tiny * tiny).sqrt()),
@@ -242,7 +243,8 @@ fn case_67_nothing_and_very_much_are_drawn() {
         let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), size));
         assert_eq!(Renderer::default().render(&plan).size(), size);
     }
-    // The sizes up to a picture of 2048 pixels a side and 50,000 faces; the rest by `cargo test --test proofs -- sizes --whole`.
+    // Sizes up to 2048 x 2048 pixels and 50,000 faces; `cargo test --test proofs -- sizes --whole`
+    // checks the others.
     assert_eq!(quick_round("sizes").counts["sizes"], 6);
     Figure {
         case: 67,

@@ -104,8 +104,8 @@ fn case_2_a_difference_of_products_keeps_its_digits() {
     .hold();
 }
 
-/// Strips one row high whose left sides stand about the middles of pixels, some to the left, some to
-/// the right, a ten-thousandth of a pixel apart: a vernier that shows where the screen is.
+/// Strips one row high whose left sides stand about the middles of pixels, some to the left, some
+/// to the right, a ten-thousandth of a pixel apart: a vernier that shows where the screen is.
 struct Vernier {
     corners: Vec<[f32; 3]>,
     /// How far to the right of the pixel's middle each strip begins.

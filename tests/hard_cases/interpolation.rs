@@ -332,8 +332,8 @@ fn case_41_a_quad_is_cut_from_its_first_corner_to_its_third() {
 
 #[test]
 fn case_33_what_is_painted_on_slivers_is_right_to_two_last_places() {
-    // Seen in parallel and by the lens; the place on the texture is read off a ruler whose texels are
-    // a last place of 1 wide.
+    // Seen in parallel and by the lens; the place on the texture is read off a ruler whose texels
+    // are a last place of 1 wide.
     const SIDE: usize = 512;
     let mut rng = Rng::new(330);
     let scale = f64::from(1 << 15);

@@ -141,8 +141,8 @@ impl Bent {
 
 #[test]
 fn case_42_a_reciprocal_root_of_twelve_bits_is_what_highlights_are_spared() {
-    // The editor's own light, before it is rounded, and that of a table of 256 powers and of normals
-    // brought to length 1 by a root of 12 bits.
+    // The editor's own light, before it is rounded, and that of a table of 256 powers and of
+    // normals brought to length 1 by a root of 12 bits.
     let mut rng = Rng::new(42);
     let table = |x: f64, n: f64| ((x * 255.0).floor() / 255.0).powf(n);
     // A relative error of 1.5 2^-12, as rsqrtps may have, squares in N.L and N.V of R.V.
@@ -218,7 +218,8 @@ fn case_43_a_cosine_above_one_does_no_harm() {
         edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
         with_lamps(&mut scene, &[Lamp::Spot(eye.at, ray, 1.0, 1000.0)]);
         let view = View { marks: false, light: None, ..view };
-        // With an exponent of 10^7 a cosine of a last place above 1 is light three times too bright.
+        // With an exponent of 10^7 a cosine of a last place above 1 is light three times too
+        // bright.
         let mut piercing = scene.clone();
         let sharp = stuff(&Matter { exponent: 1e7, ..matter });
         edit(&mut piercing, ObjectId(10), |object| object.material = sharp.clone());
@@ -295,8 +296,8 @@ fn case_45_powers_of_what_has_none_are_nothing() {
             wrong += usize::from(f64::from(x).power(&Power::new(exponent, -24.0)).max(0.0) != 0.0);
         }
     }
-    // In a picture: Ns of 0 is a highlight of one strength wherever R.V is above 0, and none where a
-    // lamp is behind.
+    // In a picture: Ns of 0 is a highlight of one strength wherever R.V is above 0, and none where
+    // a lamp is behind.
     let (mut scene, view) = scene(&[(square(), at(90.0, 0.0, 0.0, 0.0))]);
     let matter = Matter { ambient: 0.0, diffuse: 0.0, specular: 0.5, exponent: 0.0 };
     edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));

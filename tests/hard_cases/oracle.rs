@@ -71,8 +71,8 @@ pub(crate) struct Matter {
     pub(crate) exponent: f64,
 }
 
-/// The light of white lamps from a place with the normal `n` towards `v`, not clamped; `power` raises
-/// cosines, so that ways of doing it can be compared.
+/// The light of white lamps from a place with the normal `n` towards `v`, not clamped; `power`
+/// raises cosines, so that ways of doing it can be compared.
 pub(crate) fn light(
     lamps: &[Lamp],
     matter: &Matter,

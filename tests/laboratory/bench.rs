@@ -1,4 +1,4 @@
-//! A false clock and a false source, in which slowdowns and errors are planted.
+//! A fake clock and a fake source, in which slowdowns and errors are planted.
 
 use std::time::Duration;
 
@@ -24,18 +24,18 @@ pub(crate) fn plantable() -> impl Iterator<Item = (&'static Axis, &'static Choic
 }
 
 /// A clock that takes a millisecond for every picture, and three where the planted choice is made.
-pub(crate) struct FalseClock {
+pub(crate) struct FakeClock {
     pub(crate) slow: Planted,
     now: Duration,
 }
 
-impl FalseClock {
+impl FakeClock {
     pub(crate) fn new(slow: Planted) -> Self {
         Self { slow, now: Duration::ZERO }
     }
 }
 
-impl Clock for FalseClock {
+impl Clock for FakeClock {
     fn time(&mut self, work: Work<'_>, todo: &mut dyn FnMut()) -> Duration {
         todo();
         let slow = match work {
@@ -52,9 +52,9 @@ impl Clock for FalseClock {
     }
 }
 
-/// An source whose picture is grey, but for a pixel that is 9 steps lighter where the planted choice is
-/// made, and covered by another triangle where `coverage` is.
-pub(crate) struct FalseSource {
+/// A source whose picture is grey, but for a pixel that is 9 steps lighter where the planted choice
+/// is made, and covered by another triangle where `coverage` is.
+pub(crate) struct FakeSource {
     pub(crate) wrong: Planted,
     pub(crate) coverage: Planted,
     picture: Picture,
@@ -63,14 +63,14 @@ pub(crate) struct FalseSource {
 
 pub(crate) const SIZE: Size = Size::new(8, 8);
 
-impl FalseSource {
+impl FakeSource {
     pub(crate) fn new(wrong: Planted, coverage: Planted) -> Self {
         let picture = Picture::filled(SIZE, [100, 100, 100, 255]);
         Self { wrong, coverage, picture, primitives: vec![1; SIZE.area()] }
     }
 }
 
-impl PictureSource for FalseSource {
+impl PictureSource for FakeSource {
     fn draw(&mut self, settings: &Settings) {
         let made = |planted: Planted| planted.is_some_and(|(_, choice)| choice.is(settings));
         let light = if made(self.wrong) { 109 } else { 100 };
@@ -88,7 +88,7 @@ impl PictureSource for FalseSource {
 }
 
 /// What a sweep over all axes finds; all of them make sense.
-pub(crate) fn found(clock: &mut FalseClock, source: &mut FalseSource) -> Findings {
+pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings {
     let limits = Limits { pairs: 3, least: 3, time: Duration::from_secs(1) };
     let thoroughness =
         Thoroughness { word: "test", limits, combinations: 20, time: Duration::from_secs(9) };

@@ -1,7 +1,8 @@
 //! The laboratory: is what it says of time and error true?
 //!
-//! Catches: a slowdown or an error that is attributed to the wrong axis, or on none; an axis that the scene
-//! file or the command line does not know; a table, a plot or a file of results that lacks a choice.
+//! Catches: a slowdown or an error that is attributed to the wrong axis, or on none; an axis that
+//! the scene file or the command line does not know; a table, a plot or a file of results that
+//! lacks a choice.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 

@@ -5,7 +5,7 @@ use marraztu::lab::attribution::attribute;
 use marraztu::lab::candidates::Group;
 use marraztu::lab::sweep::{Findings, Measured, Verdict};
 
-use crate::bench::{FalseClock, FalseSource, Planted, found, plantable};
+use crate::bench::{FakeClock, FakeSource, Planted, found, plantable};
 
 /// The rows of single axes, with whether the planted choice is theirs.
 fn rows<'a>(
@@ -27,8 +27,7 @@ fn rows<'a>(
 #[test]
 fn a_planted_slowdown_shows_in_its_own_row_and_in_no_other() {
     for planted in plantable() {
-        let findings =
-            found(&mut FalseClock::new(Some(planted)), &mut FalseSource::new(None, None));
+        let findings = found(&mut FakeClock::new(Some(planted)), &mut FakeSource::new(None, None));
         assert_eq!(findings.floor, 0.0);
         for (name, point, here) in rows(&findings, &planted) {
             let (ratio, verdict) =
@@ -49,8 +48,8 @@ fn a_planted_error_shows_in_its_own_row_and_in_no_other() {
         axis.kind == AxisKind::Scored && choice.word != axis.most_exact(&Settings::default()).word
     };
     for planted in plantable().filter(not_exact) {
-        let mut source = FalseSource::new(Some(planted), None);
-        let findings = found(&mut FalseClock::new(None), &mut source);
+        let mut source = FakeSource::new(Some(planted), None);
+        let findings = found(&mut FakeClock::new(None), &mut source);
         for (name, point, here) in rows(&findings, &planted) {
             let error = &point.error;
             assert_eq!(error.largest, if here { 9 } else { 0 }, "{name}");
@@ -60,8 +59,8 @@ fn a_planted_error_shows_in_its_own_row_and_in_no_other() {
             assert_eq!((error.coverage, error.flip > 0.0), (0, here), "{name}");
             assert_eq!(point.verdict, Verdict::Alike, "{name}");
         }
-        let mut source = FalseSource::new(None, Some(planted));
-        let findings = found(&mut FalseClock::new(None), &mut source);
+        let mut source = FakeSource::new(None, Some(planted));
+        let findings = found(&mut FakeClock::new(None), &mut source);
         for (name, point, here) in rows(&findings, &planted) {
             assert_eq!(
                 (point.error.coverage, point.error.largest),
@@ -77,12 +76,12 @@ fn the_error_of_a_pixel_is_attributed_to_the_axis_that_causes_it() {
     let face: Planted = plantable().find(|(_, choice)| choice.word == "face");
     let coarse = Settings { light: LightAt::Face, ..Settings::default() };
     // Column 3 of row 3 is the pixel in which the error is planted.
-    let attribution_at = |at| attribute(&mut FalseSource::new(face, None), &coarse, at).unwrap();
+    let attribution_at = |at| attribute(&mut FakeSource::new(face, None), &coarse, at).unwrap();
     let found = attribution_at([3, 3]);
     assert_eq!((found.exact, found.ours, found.steps()), ([100; 3], [109, 100, 100], 9));
     let steps: Vec<(&str, i32)> = found.shares.iter().map(|s| (s.axis, s.steps)).collect();
     assert_eq!(steps[0], ("shading", 9));
     assert!(steps[1..].iter().all(|(_, steps)| *steps == 0), "{steps:?}");
     assert_eq!(attribution_at([4, 3]).steps(), 0);
-    assert_eq!(attribute(&mut FalseSource::new(face, None), &coarse, [8, 0]), None);
+    assert_eq!(attribute(&mut FakeSource::new(face, None), &coarse, [8, 0]), None);
 }

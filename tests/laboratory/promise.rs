@@ -1,10 +1,10 @@
 //! The presets keep their promises, on the first scene and on ten random ones.
 //!
-//! Exact is held to the laboratory's reference, Default to Exact. The reference takes textures from smaller
-//! pictures of them, too, which no preset promises: here it takes them as the presets do.
+//! Exact is held to the laboratory's reference, Default to Exact. The reference takes textures from
+//! smaller pictures of them, too, which no preset promises: here it takes them as the presets do.
 //!
-//! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is promised;
-//! a reference that is not where the presets lead.
+//! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is
+//! promised; a reference that is not where the presets lead.
 
 use marraztu::accuracy::Shot;
 use marraztu::accuracy::{AccuracyPreset, Filter, Settings};
@@ -18,9 +18,10 @@ use marraztu::scene::{Command, Item, MaterialChoice, Scene, View};
 
 use crate::random_scenes::random_scene;
 
-/// Scenes of the plan's proof: of the first 140 those that show most colours. Left out are scenes in which a
-/// lamp stands in the very surface that it lights, or a cone ends without fading (scene 6): on which side of
-/// such a border a pixel lies is a matter of rounding, and its light is all or nothing.
+/// Scenes of the plan's proof: of the first 140 those that show most colours. Left out are scenes
+/// in which a lamp stands in the very surface that it lights, or a cone ends without fading (scene
+/// 6): on which side of such a border a pixel lies is a matter of rounding, and its light is all or
+/// nothing.
 const SEEDS: [u64; 10] = [13, 28, 43, 48, 78, 88, 104, 107, 113, 134];
 
 const SIZE: Size = Size::new(256, 192);
@@ -43,8 +44,8 @@ fn studios() -> Vec<(String, Studio)> {
     std::iter::once(("the first scene".to_owned(), first)).chain(random).collect()
 }
 
-/// How far the pictures of some settings are from those of others: scene by scene, and the part of all
-/// bytes that differ.
+/// How far the pictures of some settings are from those of others: scene by scene, and the part of
+/// all bytes that differ.
 fn apart(ours: &Settings, exact: &Settings) -> (Vec<(String, Error)>, f64) {
     let (mut errors, mut differing, mut bytes) = (Vec::new(), 0.0, 0.0);
     for (name, mut studio) in studios() {
@@ -79,8 +80,8 @@ fn the_default_is_a_byte_step_off_exact_at_most_and_hardly_ever_that() {
 /// Parts of a byte step to which light is known before it is rounded.
 const PARTS: u32 = 64;
 
-/// Light before it is rounded at every byte, in steps: read off pictures that are each a little brighter
-/// than the one before, as hard case 42 does.
+/// Light before it is rounded at every byte, in steps: read off pictures that are each a little
+/// brighter than the one before, as hard case 42 does.
 fn before_rounding(scene: &Scene, view: &View, settings: &Settings) -> Vec<f64> {
     let mut renderer = Renderer::default();
     let mut picture = |part: u32| -> Picture {

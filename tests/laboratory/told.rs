@@ -7,14 +7,14 @@ use marraztu::lab::report::{Budgets, Chart, MarkKind, Report, csv, png, svg, tab
 use marraztu::lab::sweep::Against;
 use marraztu::lab::sweep::Row;
 
-use crate::bench::{FalseClock, FalseSource, found};
+use crate::bench::{FakeClock, FakeSource, found};
 
 /// A report in which 32 bits are wrong and 64 bits are slow.
 fn report() -> Report {
     let arithmetic = Axis::named("arithmetic").unwrap();
     let planted = |word: &str| arithmetic.choice(word).map(|choice| (arithmetic, choice));
-    let mut source = FalseSource::new(planted("f32"), None);
-    let findings = found(&mut FalseClock::new(planted("f64")), &mut source);
+    let mut source = FakeSource::new(planted("f32"), None);
+    let findings = found(&mut FakeClock::new(planted("f64")), &mut source);
     Report {
         scene: "a scene".to_owned(),
         command: "marraztu lab".to_owned(),
@@ -134,7 +134,7 @@ fn what_covers_other_pixels_is_on_no_front_but_that_of_flip() {
     let subpixels = Axis::named("subpixels").unwrap();
     let coarse = subpixels.choice("bits-0").map(|choice| (subpixels, choice));
     // All take as long and look the same.
-    let findings = found(&mut FalseClock::new(None), &mut FalseSource::new(None, coarse));
+    let findings = found(&mut FakeClock::new(None), &mut FakeSource::new(None, coarse));
     let mut report = Report { findings, ..report() };
     let coarse = point(&report, "subpixels", "0");
     assert_eq!(report.findings.points[coarse].error.coverage, 1);
@@ -158,7 +158,8 @@ fn the_plot_names_every_point_in_svg_and_draws_them_in_png() {
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
     let png = png(&report).unwrap();
     let of = |color: [u8; 4]| png.pixels().iter().filter(|pixel| **pixel == color).count();
-    // The front's green, a preset's blue, and letters. The marks of the axes all lie under others here.
+    // The front's green, a preset's blue, and letters. The marks of the axes all lie under others
+    // here.
     for color in [[0, 158, 115, 255], [0, 114, 178, 255], [34, 34, 40, 255]] {
         assert!(of(color) > 10, "{color:?} is seen {} times", of(color));
     }

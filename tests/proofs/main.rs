@@ -1,11 +1,11 @@
-//! Checks the program's guarantees on randomly generated cases: a quick round of each proof in every
-//! run of the tests, and any number of cases on request.
+//! Checks the program's guarantees on randomly generated cases: a quick round of each proof in
+//! every run of the tests, and any number of cases on request.
 //!
 //! ```text
-//! cargo test --test proofs                                        a quick round of each
-//! cargo test --release --test proofs -- fans --count 1000000      a million cases of one
-//! cargo test --release --test proofs -- --whole                   the numbers of docs/stability.md
-//! cargo test --release --test proofs -- instructions              count instructions with callgrind
+//! cargo test --test proofs                                      a quick round of each
+//! cargo test --release --test proofs -- fans --count 1000000    a million cases of one
+//! cargo test --release --test proofs -- --whole                 the numbers of docs/stability.md
+//! cargo test --release --test proofs -- instructions            count by callgrind
 //! ```
 
 mod claims;
@@ -23,8 +23,8 @@ use self::claims::{PROOFS, Proof, Tally};
 /// Checks the program's guarantees on randomly generated cases.
 #[derive(Debug, Parser)]
 #[command(after_help = "\
-Cases come in batches; the number of a batch alone decides what is in it. A counterexample is named by
-its batch, and --from BATCH --count 1 checks it again.")]
+Cases come in batches; the number of a batch alone decides what is in it. A counterexample is named
+by its batch, and --from BATCH --count 1 checks it again.")]
 struct Arguments {
     /// The proofs whose names contain this, or \"instructions\" [default: all proofs]
     name: Option<String>,
@@ -114,11 +114,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Wrong(format!("no proof is named \"{name}\"; --list lists them")));
     }
     for proof in &chosen {
-        if at_length {
-            let quick = if arguments.whole { proof.whole } else { proof.quick };
-            check(proof, arguments.from.unwrap_or(0), arguments.count.unwrap_or(quick), arguments)?;
-        } else {
-            quick_round(proof, arguments)?;
+        let cases = if arguments.whole { proof.whole } else { proof.quick };
+        let tally = check(proof, arguments.from.unwrap_or(0), arguments.count.unwrap_or(cases))?;
+        if let Some(folder) = &arguments.figures {
+            write(folder, proof, &tally)?;
+        }
+        if !at_length {
+            proof.regressions.iter().try_for_each(|batch| check(proof, *batch, 1).map(drop))?;
         }
     }
     if arguments.name.is_none() && !at_length {
@@ -135,17 +137,8 @@ fn list() -> Result<(), Failure> {
     tell("instructions  two frames: 100 lights that are off cost no instruction of drawing")
 }
 
-/// Checks the first batches, and those in which the claim once failed.
-fn quick_round(proof: &Proof, arguments: &Arguments) -> Result<(), Failure> {
-    check(proof, 0, proof.quick, arguments)?;
-    for batch in proof.regressions {
-        check(proof, *batch, 1, arguments)?;
-    }
-    Ok(())
-}
-
 /// Checks cases of one proof, and prints what was counted.
-fn check(proof: &Proof, from: u64, cases: u64, arguments: &Arguments) -> Result<(), Failure> {
+fn check(proof: &Proof, from: u64, cases: u64) -> Result<Tally, Failure> {
     let batches = proof.batches(cases);
     let bar = indicatif::ProgressBar::new(batches);
     bar.set_message(proof.name);
@@ -166,10 +159,7 @@ fn check(proof: &Proof, from: u64, cases: u64, arguments: &Arguments) -> Result<
         return Err(Failure::Wrong(format!("{}: {missing}: {tally}", proof.name)));
     }
     tell(&format!("{}: {tally}; holds ({:.0} s)", proof.name, begun.elapsed().as_secs_f64()))?;
-    match &arguments.figures {
-        Some(folder) => write(folder, proof, &tally),
-        None => Ok(()),
-    }
+    Ok(tally)
 }
 
 /// Writes what was counted as a line of a table.
@@ -188,8 +178,8 @@ const PROCESSES: usize = 100;
 /// A process that takes longer than this hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Runs a few cases in new processes: what is computed once in a process is asked for by many threads at
-/// the same time.
+/// Runs a few cases in new processes: what is computed once in a process is asked for by many
+/// threads at the same time.
 fn begins_on_many_threads() -> Result<(), Failure> {
     for process in 0..PROCESSES {
         let mut child = Command::new(std::env::current_exe()?)
@@ -217,8 +207,8 @@ fn succeeded(child: &mut Child) -> Result<bool, Failure> {
     Ok(child.wait()?.success())
 }
 
-/// How often each frame is counted: memory lies elsewhere in every process, and copying from there takes
-/// a few instructions more or less.
+/// How often each frame is counted: memory lies elsewhere in every process, and copying from there
+/// takes a few instructions more or less.
 const COUNTS: usize = 5;
 
 /// The number of instructions that this makes at most: less than one in a hundred pixels.

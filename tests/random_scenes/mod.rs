@@ -1,6 +1,6 @@
-//! Small randomly generated scenes that prefer borders: a lamp on a surface, a cone that touches a box,
-//! a face that ends at the border of a tile, coefficients of 0, -0 and the smallest number, apertures of
-//! 0 and 90 degrees.
+//! Small randomly generated scenes that prefer borders: a lamp on a surface, a cone that touches a
+//! box, a face that ends at the border of a tile, coefficients of 0, -0 and the smallest number,
+//! apertures of 0 and 90 degrees.
 
 #![allow(dead_code, reason = "each test uses its own part of it")]
 
@@ -71,7 +71,7 @@ pub(crate) fn random_scene(seed: u64) -> RandomScene {
     RandomScene { seed, view, settings: settings(rng), scene, size }
 }
 
-/// In pixels of a picture 32 high, where one unit is one pixel in parallel projection.
+/// One unit is one pixel in orthographic projection.
 fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
     #[expect(clippy::cast_precision_loss, reason = "a small picture")]
     let half_size = size.width.min(size.height) as f64 / 2.0;
@@ -101,7 +101,7 @@ fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
     all.into_iter().take(count).collect()
 }
 
-/// Units of the world; on whole ones faces end at pixels, and at tiles.
+/// A position in the world. At integers, faces end at borders of pixels and tiles.
 fn place(rng: &mut Rng) -> DVec3 {
     if rng.percent(40) {
         let whole = |rng: &mut Rng| rng.real(-40.0, 40.0).round();
@@ -143,7 +143,7 @@ fn object(rng: &mut Rng) -> Object {
     };
     let model = rng.one_of(shapes());
     let scale = match rng.index(10) {
-        // Around the camera: its faces are cut.
+        // Around the camera: its faces are clipped.
         0 => DVec3::splat(400.0),
         1 => DVec3::new(-6.0, 9.0, 3.0),
         2..5 => DVec3::splat(rng.one_of(&[1.0, 4.0, 16.0, 32.0])),
@@ -200,7 +200,7 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
     (10..).zip((0..count).map(|_| ())).map(|(id, ())| (LightId(id), light(rng, id))).collect()
 }
 
-/// Where a lamp stands: anywhere, or in the very surface of an object.
+/// The position of a lamp: anywhere, or exactly on the surface of an object.
 fn lamp_place(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> DVec3 {
     match rng.index(3) {
         0 => {
@@ -234,7 +234,7 @@ fn spot(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> LightKind {
     let (position, direction) = (lamp_place(rng, objects), direction(rng));
     let mut half_aperture = aperture(rng);
     if rng.percent(40) {
-        // It touches a corner of an object's box, or all but.
+        // It touches, or nearly touches, a corner of an object's box.
         let (_, object) = &objects[rng.index(objects.len())];
         let corners = object.model.mesh.bounds().map(|bounds| bounds.corners());
         let corner = corners.map_or(DVec3::ZERO, |corners| rng.one_of(&corners));
@@ -272,7 +272,7 @@ fn view(rng: &mut Rng, scene: &Scene) -> View {
     }
 }
 
-/// Mostly one, for many take longer.
+/// Mostly one, since more take longer.
 fn samples(rng: &mut Rng) -> Samples {
     match rng.percent(25) {
         true if rng.percent(10) => rng.one_of(&[Samples::Sixteen, Samples::SixtyFour]),
@@ -292,7 +292,7 @@ fn settings(rng: &mut Rng) -> Settings {
         leave_out: LeaveOut::Unseen,
         ..Settings::default()
     };
-    // As many pictures as samples: now and then.
+    // Rarely, since it shades every sample.
     let several = [Samples::Four, Samples::Sixteen].contains(&settings.samples);
     let each = several && settings.light == LightAt::Pixel && rng.percent(30);
     if each { Settings { light: LightAt::Sample, ..settings } } else { settings }

@@ -58,7 +58,7 @@ fn triangle() -> Shared<Model> {
     model("triangle", source, Vec::new())
 }
 
-/// A square that faces +Z, with places on a texture.
+/// A square that faces +Z, with texture coordinates.
 fn square_source() -> MeshSource {
     let textured = |i| SourceCorner { position: i, uv: i, normal: NONE };
     MeshSource {
@@ -122,7 +122,7 @@ fn ball(rings: u32) -> Shared<Model> {
     model("ball", source, Vec::new())
 }
 
-/// Two squares, one before the other, of two materials: one dull, one that half lets light through.
+/// Two squares, one in front of the other, of two materials: one dull, one half transparent.
 fn two_parts() -> Shared<Model> {
     let one = square_source();
     let behind = one.positions.iter().map(|[x, y, z]| [x + 0.5, y + 0.25, z - 0.5]);
@@ -164,7 +164,7 @@ fn colored() -> Shared<Model> {
     model("tetrahedron", source, Vec::new())
 }
 
-/// A material, often with nothing in some of its coefficients.
+/// A material; often some of its coefficients are 0.
 pub(crate) fn material(rng: &mut Rng) -> Material {
     let mut row = || match rng.index(4) {
         0 => [0.0; 3],

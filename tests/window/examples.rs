@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use egui::accesskit::Role;
-use marraztu::app::action::Action;
+use marraztu::app::actions::Action;
 use marraztu::io::{self, EXAMPLES, Progress};
 
 use crate::editor::Editor;

@@ -1,8 +1,8 @@
 //! Scenes in units of pixels, whose pictures tell which triangle each pixel shows.
 //!
-//! In orthographic projection, with a side that is a power of two, a corner in parts of a pixel reaches
-//! the screen without any rounding. The colour of each triangle, which no light changes, is its number:
-//! coverage, depth and order can be read off a picture, pixel by pixel.
+//! In orthographic projection, with a side that is a power of two, a corner in parts of a pixel
+//! reaches the screen without any rounding. The colour of each triangle, which no light changes, is
+//! its number: coverage, depth and order can be read off a picture, pixel by pixel.
 
 use glam::{DMat4, DVec3};
 
@@ -53,8 +53,8 @@ pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
     (usize::from(r) | usize::from(g) << 8 | usize::from(b) << 16).checked_sub(1)
 }
 
-/// A scene of one object for each list of triangles, the oldest first, for a picture with a side that is
-/// a power of two. Triangles are numbered through all lists.
+/// A scene of one object for each list of triangles, the oldest first, for a picture with a side
+/// that is a power of two. Triangles are numbered through all lists.
 ///
 /// # Panics
 /// If a coordinate has more than 24 bits, which a mesh cannot hold.

@@ -1,8 +1,8 @@
 //! The listed pictures: the same bytes on every processor.
 //!
-//! Some show one thing each, and one is drawn for each choice of each axis of accuracy. Their sums are
-//! listed in `tests/pictures.sums`, and that list is part of the program: `marraztu verify` draws the
-//! pictures and compares.
+//! Some show one thing each, and one is drawn for each choice of each axis of accuracy. Their sums
+//! are listed in `tests/pictures.sums`, and that list is part of the program: `marraztu verify`
+//! draws the pictures and compares.
 
 pub mod flat;
 

@@ -1,23 +1,23 @@
-//! Time against error, as places of a plot, whoever draws it.
+//! Lays out a scatter plot of time against error, for the window and for files.
 //!
-//! Both scales are logarithmic, since choices lie factors apart. An error of 0 has no logarithm: its
-//! place is a decade under the smallest that is above 0, and is labelled so.
+//! Both scales are logarithmic, since choices differ by factors. An error of 0 has no logarithm: it
+//! is drawn one decade below the smallest error above 0, and labelled 0.
 
 use super::{Report, brief};
 use crate::lab::error::Measure;
 
-/// What a mark stands for.
+/// The kind of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkKind {
-    /// The default, that all are measured against.
+    /// The default, which all are measured against.
     Default,
     /// A preset.
     Preset,
-    /// The default but for one axis.
+    /// Another choice of one axis.
     Axis,
-    /// Several axes.
+    /// Other choices of several axes.
     Combination,
-    /// Judged against the most samples a pixel, each lit.
+    /// Judged against the most samples per pixel, each lit.
     Apart,
     /// Another model, which cannot stand in for this one.
     Model,
@@ -26,28 +26,28 @@ pub enum MarkKind {
 /// A point of the plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// Its place among the report's points.
+    /// The index of the report's point.
     pub point: usize,
-    /// Where it stands, on the scales.
+    /// Its position on the scales.
     pub at: [f64; 2],
-    /// What it stands for.
+    /// Its kind.
     pub kind: MarkKind,
-    /// Whether no other that is judged against the same picture beats it.
+    /// Whether it is on the front.
     pub on_front: bool,
-    /// Whether the picture is drawn so now.
+    /// Whether the picture is drawn with it now.
     pub current: bool,
-    /// What it is called.
+    /// Its name.
     pub name: String,
 }
 
 /// One side of the plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// What is counted.
+    /// Its label.
     pub label: String,
-    /// The first and the last place.
+    /// Its ends.
     pub range: [f64; 2],
-    /// Places with what they stand for.
+    /// The positions and labels of its ticks.
     pub ticks: Vec<(f64, String)>,
 }
 
@@ -60,11 +60,11 @@ pub struct Chart {
     pub y: Scale,
     /// All points.
     pub marks: Vec<Mark>,
-    /// The places of the front in `marks`, from left to right.
+    /// The indices of the front in `marks`, from left to right.
     pub front: Vec<usize>,
-    /// The same of what is judged against the most samples.
+    /// The same for the points that are judged against the most samples.
     pub front_apart: Vec<usize>,
-    /// From where to where on `x` nothing differs from the default but by noise.
+    /// The interval of `x` within the noise of the default.
     pub floor: [f64; 2],
 }
 
@@ -96,7 +96,7 @@ impl Chart {
     }
 }
 
-/// A scale of milliseconds, with ticks at 1, 2 and 5 of each decade; at more digits where it is short.
+/// A scale of milliseconds with ticks at 1, 2 and 5 of each decade, and more if it is short.
 fn time_scale(logarithms: impl Iterator<Item = f64>) -> Scale {
     let range = padded(logarithms);
     let at = |digits: &[f64]| -> Vec<(f64, String)> {
@@ -113,7 +113,7 @@ fn time_scale(logarithms: impl Iterator<Item = f64>) -> Scale {
     Scale { label: "milliseconds a picture".to_owned(), range, ticks }
 }
 
-/// A scale of errors with a tick at each decade and one at 0; and where 0 stands.
+/// A scale of errors with a tick at each decade and one at 0, and the position of 0.
 fn error_scale(measure: Measure, errors: impl Iterator<Item = f64> + Clone) -> (Scale, f64) {
     let above = errors.filter(|error| *error > 0.0).map(libm::log10);
     let [least, most] = bounds(above);
@@ -129,7 +129,7 @@ fn error_scale(measure: Measure, errors: impl Iterator<Item = f64> + Clone) -> (
     (Scale { label: measure.label().to_owned(), range, ticks }, zero)
 }
 
-/// The least and the most; 0 and 1 where there is none.
+/// The smallest and the largest; 0 and 1 if there are none.
 fn bounds(places: impl Iterator<Item = f64>) -> [f64; 2] {
     let all = places.fold(None, |all: Option<[f64; 2]>, place| {
         Some(all.map_or([place; 2], |[a, b]| [a.min(place), b.max(place)]))

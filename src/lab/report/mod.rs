@@ -1,4 +1,4 @@
-//! What a sweep found, told as a table, as data and as a plot.
+//! Reports the results of a sweep as a table, as data and as a plot.
 
 mod chart;
 mod plot;
@@ -14,33 +14,33 @@ use super::error::Measure;
 use super::front::{Point, fastest_within, front, most_exact_within};
 use super::sweep::{Against, Findings, Row};
 
-/// What is told, and of what.
+/// The results of a sweep, with how they are to be reported.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// What was drawn: "teapot.obj".
+    /// The name of what was drawn: "teapot.obj".
     pub scene: String,
     /// The command that measures it again.
     pub command: String,
-    /// What stands for an error in the plot, the front and the budgets.
+    /// The error metric of the plot, the front and the budgets.
     pub measure: Measure,
-    /// What the user can bear.
+    /// The limits that the user has set.
     pub budgets: Budgets,
-    /// What was found.
+    /// The results.
     #[serde(flatten)]
     pub findings: Findings,
 }
 
-/// What the user can bear.
+/// The limits that the user has set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Budgets {
-    /// The largest error, in the unit of the report's measure.
+    /// The largest error, in the unit of the report's metric.
     pub error: Option<f64>,
-    /// The longest time of a picture, in milliseconds.
+    /// The longest time of a picture in milliseconds.
     pub ms: Option<f64>,
 }
 
 impl Report {
-    /// The rows of the table. Presets were measured first and last, and stand together.
+    /// The rows of the table. Presets are measured first and last, but listed together.
     #[must_use]
     pub fn rows(&self) -> Vec<&Row> {
         let mut rows: Vec<&Row> = self.findings.rows.iter().collect();
@@ -55,8 +55,8 @@ impl Report {
         points.map(|p| Point { time: p.ms, error: self.measure.of(&p.error) }).collect()
     }
 
-    /// Whether the error of a point says all that it is off by. Where it shows other triangles at more
-    /// pixels than the default does, all errors but that of FLIP pass over these.
+    /// Whether the metric covers the whole error of a point. All metrics but FLIP ignore pixels
+    /// whose coverage differs, so a point with more of these than the default is not scored.
     #[must_use]
     pub fn is_scored(&self, point: usize) -> bool {
         let points = &self.findings.points;
@@ -67,65 +67,64 @@ impl Report {
         self.measure == Measure::Flip || points[point].error.coverage <= passed_over
     }
 
-    /// The points that can stand in for one another, with their places among all.
+    /// The points that can be compared with one another, with their indices.
     fn scored(&self, against: Against) -> (Vec<usize>, Vec<Point>) {
         let all = self.points().into_iter().enumerate();
         let is_one = |i: usize| self.findings.points[i].against == against && self.is_scored(i);
         all.filter(|(i, _)| is_one(*i)).unzip()
     }
 
-    /// The places of the points that are worth choosing of those that are judged against the same picture,
-    /// the fastest first.
+    /// The indices of the front of the points with the same judge, the fastest first.
     fn front_of(&self, against: Against) -> Vec<usize> {
         let (places, points) = self.scored(against);
         front(&points).into_iter().map(|i| places[i]).collect()
     }
 
-    /// The places of the points that are worth choosing, the fastest first.
+    /// The indices of the points on the front, the fastest first.
     #[must_use]
     pub fn front(&self) -> Vec<usize> {
         self.front_of(Against::Default)
     }
 
-    /// The same of those that are judged against the most samples, each lit.
+    /// The same for the points that are judged against the most samples, each lit.
     #[must_use]
     pub fn front_apart(&self) -> Vec<usize> {
         self.front_of(Against::Apart)
     }
 
-    /// The places of both.
+    /// The indices of both.
     #[must_use]
     pub fn fronts(&self) -> Vec<usize> {
         [self.front(), self.front_apart()].concat()
     }
 
-    /// The fastest point whose error is at most the budget's; `None` where there is no such budget.
+    /// The fastest point whose error is within the budget; `None` without such a budget.
     #[must_use]
     pub fn fastest(&self) -> Option<Option<usize>> {
         let (places, points) = self.scored(Against::Default);
         self.budgets.error.map(|most| fastest_within(&points, most).map(|i| places[i]))
     }
 
-    /// The most exact point within the budget of time; `None` where there is no such budget.
+    /// The most exact point within the budget of time; `None` without such a budget.
     #[must_use]
     pub fn most_exact(&self) -> Option<Option<usize>> {
         let (places, points) = self.scored(Against::Default);
         self.budgets.ms.map(|most| most_exact_within(&points, most).map(|i| places[i]))
     }
 
-    /// The place of the point that the picture is drawn with now.
+    /// The index of the point that the picture is drawn with now.
     #[must_use]
     pub fn current(&self) -> Option<usize> {
         self.findings.points.iter().position(|point| point.settings == self.findings.current)
     }
 
-    /// All of it as JSON.
+    /// The report as JSON.
     #[must_use]
     pub fn json(&self) -> String {
         serde_json::to_string_pretty(self).expect("a report is plain data")
     }
 
-    /// What the budgets come to, a sentence each.
+    /// The answer to each budget, as a sentence.
     #[must_use]
     pub fn answers(&self) -> Vec<String> {
         let named = |found: Option<usize>| match found {
@@ -146,7 +145,7 @@ impl Report {
         fastest.into_iter().chain(exact).collect()
     }
 
-    /// What a point stands for, where it has several rows: a preset before a choice of an axis, that
+    /// The kind of a point. Of several rows, a preset counts before a choice of an axis, and that
     /// before a combination.
     fn kind(&self, point: usize) -> MarkKind {
         let rows = || self.findings.rows.iter().filter(|row| row.point == point);

@@ -1,7 +1,6 @@
-//! The scatter of a report as a picture: SVG and PNG.
+//! Draws the scatter plot of a report as SVG and PNG.
 //!
-//! Drawn by `plotters`; its letters come from the fonts that the window uses too, so that a plot needs
-//! nothing of the machine it is drawn on.
+//! `plotters` draws it with the fonts of the window, so that a plot does not depend on the machine.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -17,9 +16,9 @@ use crate::base::image::{Picture, Size};
 pub struct PlotError(String);
 
 const WIDTH: u32 = 1060;
-/// Where in the picture the scales are.
+/// The rectangle of the scales in the picture.
 const PLOT: [i32; 4] = [80, 56, 640, 560];
-/// Where the names begin.
+/// The left edge of the names.
 const LEGEND: i32 = 668;
 const LINE: i32 = 17;
 
@@ -27,7 +26,7 @@ const INK: RGBColor = RGBColor(34, 34, 40);
 const GREY: RGBColor = RGBColor(104, 104, 112);
 const GRID: RGBColor = RGBColor(226, 226, 230);
 const FLOOR: RGBColor = RGBColor(236, 236, 240);
-// Colours that are told apart without seeing red or green: Okabe and Ito.
+// Colours of Okabe and Ito, which people with colour blindness can tell apart.
 const FRONT: RGBColor = RGBColor(0, 158, 115);
 const PRESET: RGBColor = RGBColor(0, 114, 178);
 const AXIS: RGBColor = RGBColor(213, 94, 0);
@@ -36,7 +35,7 @@ const NOW: RGBColor = RGBColor(204, 121, 167);
 /// The plot as SVG.
 ///
 /// # Errors
-/// Where the plotting library refuses.
+/// If the plotting library fails.
 pub fn svg(report: &Report) -> Result<String, PlotError> {
     let mut text = String::new();
     let size = (WIDTH, height(report));
@@ -49,7 +48,7 @@ pub fn svg(report: &Report) -> Result<String, PlotError> {
 /// The plot as a picture.
 ///
 /// # Errors
-/// Where the plotting library refuses.
+/// If the plotting library fails.
 pub fn png(report: &Report) -> Result<Picture, PlotError> {
     let height = height(report);
     let size = Size::new(WIDTH as usize, height as usize);
@@ -61,7 +60,7 @@ pub fn png(report: &Report) -> Result<Picture, PlotError> {
     Picture::from_pixels(size, pixels).ok_or_else(|| PlotError("its size is wrong".to_owned()))
 }
 
-/// High enough for the plot, and for all names beside it.
+/// The height that the plot and the names beside it need.
 fn height(report: &Report) -> u32 {
     let names = u32::try_from(report.findings.points.len()).unwrap_or(0);
     620.max(90 + 17 * names)
@@ -71,7 +70,7 @@ type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorTy
 
 /// A font of the window, under the name that SVG knows.
 fn font(size: u32) -> TextStyle<'static> {
-    // Registering it again changes nothing, and it is a font: there is nothing to tell.
+    // Registering a valid font cannot fail, and registering it again changes nothing.
     let _ = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     ("sans-serif", size).into_font().color(&INK)
 }
@@ -103,7 +102,7 @@ fn draw<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, report: &Report) -> D
     area.present()
 }
 
-/// The front as steps: between two points nothing is measured.
+/// The front as steps, since nothing is measured between two points.
 fn steps(front: &[(i32, i32)]) -> Vec<(i32, i32)> {
     let mut line: Vec<(i32, i32)> = Vec::new();
     for (x, y) in front {
@@ -115,7 +114,7 @@ fn steps(front: &[(i32, i32)]) -> Vec<(i32, i32)> {
     line
 }
 
-/// The pixel of a place on the scales.
+/// The pixel of a position on the scales.
 fn place(chart: &Chart, [x, y]: [f64; 2]) -> (i32, i32) {
     let [left, top, right, bottom] = PLOT;
     (along(&chart.x, x, left, right), along(&chart.y, y, bottom, top))
@@ -192,7 +191,7 @@ const fn color(kind: MarkKind) -> RGBColor {
     }
 }
 
-/// The number of each mark, beside it, where none is yet.
+/// Draws the number of each mark beside it, if there is room.
 fn numbers<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, chart: &Chart) -> Drawn<DB> {
     let style = at(HPos::Center, VPos::Center, &font(12));
     let places: Vec<(i32, i32)> = chart.marks.iter().map(|mark| place(chart, mark.at)).collect();
@@ -215,7 +214,7 @@ fn numbers<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, chart: &Chart) -> 
     Ok(())
 }
 
-/// What the numbers stand for.
+/// Lists the names of the numbers.
 fn legend<DB: DrawingBackend>(
     area: &DrawingArea<DB, Shift>,
     chart: &Chart,

@@ -1,4 +1,4 @@
-//! The table of a sweep, for the eye and for other programs.
+//! Writes the table of a sweep for people and for other programs.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use crate::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
 use crate::lab::candidates::Group;
 use crate::lab::sweep::{Measured, Row};
 
-/// A number with three digits that count: "0", "0.0123", "4.57", "137", "1.2e-5".
+/// A number with three significant digits: "0", "0.0123", "4.57", "137", "1.2e-5".
 #[must_use]
 pub fn brief(number: f64) -> String {
     let size = number.abs();
@@ -31,7 +31,7 @@ pub fn brief(number: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The heading under which a row stands.
+/// The heading of a row's group.
 #[must_use]
 pub fn heading(row: &Row) -> String {
     match row.group {
@@ -50,7 +50,7 @@ pub fn heading(row: &Row) -> String {
     }
 }
 
-/// The table as text, with what was measured above it and what the marks mean below.
+/// The table as text, with a summary above it and the meaning of the marks below.
 #[must_use]
 pub fn text(report: &Report) -> String {
     let mut text = head(report);
@@ -59,7 +59,7 @@ pub fn text(report: &Report) -> String {
         "\n  {:30} {:>8} {:>15} {:>8} {:>5} {:7} {:>7} {:>8} {:>7} {:>7} {:>8} {:>8}",
         "",
         "time",
-        "middle half",
+        "IQR",
         "ms",
         "pairs",
         "",
@@ -89,9 +89,10 @@ pub fn text(report: &Report) -> String {
     }
     let _ = writeln!(
         text,
-        "\n* the default  > now  + no other choice that is judged against the same picture is both faster\n\
-         and more exact. Several samples are judged against 64, each lit; what shows other triangles at more\n\
-         pixels than the default (coverage) is on no front but that of FLIP, which alone sees them."
+        "\n* the default  > now  + no choice with the same reference is both faster and more\n\
+         exact. Several samples are compared with 64, each lit. Choices with more pixels whose\n\
+         coverage differs than the default are on no front but that of FLIP, which alone counts\n\
+         them."
     );
     foot(&mut text, report);
     text
@@ -108,8 +109,9 @@ fn head(report: &Report) -> String {
     );
     let _ = writeln!(
         text,
-        "The default takes {} ms. Against itself it took {:.3} times as long, half of {} pairs\nbetween \
-         {:.3} and {:.3}: a difference of less than {:.1} % means nothing.",
+        "The default takes {} ms. Against itself it took {:.3} times as long, with an\n\
+         interquartile range (IQR) of {} pairs from {:.3} to {:.3}: a difference of less than\n\
+         {:.1} % means nothing.",
         brief(findings.control.a_ms),
         quartiles.median,
         findings.control.pairs,
@@ -160,7 +162,7 @@ fn foot(text: &mut String, report: &Report) {
             quartiles.median,
             brief(kernel.ratio.a_ms * quartiles.median),
             kernel.ratio.pairs,
-            if kernel.equal { "equal results" } else { "OTHER RESULTS" }
+            if kernel.equal { "equal results" } else { "DIFFERENT RESULTS" }
         );
     }
     let answers = report.answers();
@@ -173,13 +175,13 @@ fn foot(text: &mut String, report: &Report) {
     let _ = writeln!(text, "\nagain: {}", report.command);
 }
 
-/// The table as comma-separated values: a row each, with what every axis is set to.
+/// The table as comma-separated values, with the choice of every axis in each row.
 #[must_use]
 pub fn csv(report: &Report) -> String {
     joined(report, ",", quoted)
 }
 
-/// The same with tabs between, as tables are pasted into a spreadsheet.
+/// The same separated by tabs, for pasting into a spreadsheet.
 #[must_use]
 pub fn tabs(report: &Report) -> String {
     joined(report, "\t", |field| field.replace(['\t', '\n'], " "))
@@ -193,7 +195,7 @@ fn joined(report: &Report, separator: &str, field: fn(&str) -> String) -> String
     cells(report).into_iter().map(line).collect()
 }
 
-/// The table field by field; the first row says what they are.
+/// The cells of the table; the first row has the names of the columns.
 fn cells(report: &Report) -> Vec<Vec<String>> {
     const FIGURES: [&str; 17] = [
         "ms",

@@ -1,5 +1,5 @@
-//! What is invisible changes nothing: a light that is off, a hidden object and an unused material change
-//! no byte, wherever they are inserted.
+//! What is invisible changes nothing: a light that is off, a hidden object and an unused material
+//! change no byte, wherever they are inserted.
 
 use marraztu::base::Shared;
 use marraztu::base::rng::Rng;
@@ -26,8 +26,8 @@ pub(super) const PROOF: Proof = Proof {
     check,
 };
 
-/// Draws the scenes of a batch as they are and with what is invisible, and expects the same bytes and
-/// the same pipelines.
+/// Draws the scenes of a batch as they are and with what is invisible, and expects the same bytes
+/// and the same pipelines.
 fn check(batch: u64) -> Result<Tally, String> {
     let mut tally = Tally::default();
     for it in seeds(batch).map(random_scene) {
@@ -76,7 +76,7 @@ pub(super) fn with_lights_off(it: &RandomScene, count: u32, rng: &mut Rng) -> Ra
 /// The scene with a light, an object and a material that are invisible.
 fn with_absent(it: &RandomScene, rng: &mut Rng) -> RandomScene {
     let mut more = with_lights_off(it, 1, rng);
-    // Older than all, or younger.
+    // Older than all others, or younger.
     let id = ObjectId(rng.one_of(&[20, 700]));
     let material = MaterialChoice::Own(shapes::material(rng));
     let mut hidden = Object::new(rng.one_of(shapes::shapes()), material);

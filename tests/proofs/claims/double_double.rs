@@ -1,20 +1,19 @@
-//! Numbers of twice the digits of f64: about 32 decimal places.
+//! Numbers with twice the digits of f64, about 32 decimal places: the oracle of arithmetic.
 //!
-//! A number is the sum of two f64 of which the second is at most half a last place of the first.
-//! Dekker, "A Floating-Point Technique for Extending the Available Precision", Numerische Mathematik
-//! 1971; Knuth, "The Art of Computer Programming", volume 2, section 4.2.2. An oracle: never used for
-//! pictures.
+//! A number is the sum of two f64; the second is at most half a last place of the first.
+//! Dekker, "A Floating-Point Technique for Extending the Available Precision", Numerische
+//! Mathematik 1971; Knuth, "The Art of Computer Programming", volume 2, section 4.2.2.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number of twice the digits of f64.
+/// A number with twice the digits of f64.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Double {
     high: f64,
     low: f64,
 }
 
-/// a + b exactly, as the nearest f64 and what that leaves.
+/// a + b exactly, as the nearest f64 and the rest.
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let part = high - a;
@@ -36,7 +35,7 @@ fn two_product(a: f64, b: f64) -> Double {
 impl Double {
     /// One.
     pub(crate) const ONE: Self = Self { high: 1.0, low: 0.0 };
-    /// The circle's circumference by its diameter.
+    /// Pi.
     pub(crate) const PI: Self =
         Self { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
 
@@ -46,7 +45,7 @@ impl Double {
         self.high
     }
 
-    /// Its distance from 0.
+    /// The absolute value.
     #[must_use]
     pub(crate) fn abs(self) -> Self {
         if self.high < 0.0 { -self } else { self }

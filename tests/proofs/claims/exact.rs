@@ -1,17 +1,17 @@
-//! Which pixels a triangle covers, without any edge function: the oracle of coverage.
+//! Computes which pixels a triangle covers, without edge functions: the oracle of coverage.
 //!
-//! The rule for pixels on an edge says nothing else than that every centre is moved to the right by
-//! less than anything, and down by less than that: then none lies on an edge. So the centres of a row
-//! that a triangle covers are those between the two places where its outline crosses the row, and
-//! these are fractions, compared as whole numbers of 128 bits. What a closed outline winds about is
-//! counted by the same crossings.
+//! The rule for pixels on an edge moves every centre to the right by an infinitesimal amount, and
+//! down by an even smaller one, so that none lies on an edge. The centres of a row that a triangle
+//! covers are those between the two points where its outline crosses the row. These are fractions,
+//! compared as integers of 128 bits. The winding number of a closed outline is counted by the same
+//! crossings.
 
 use std::ops::Range;
 
 use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 
 /// The first column of row `y` whose centre lies to the right of where the side from `p` to `q`
-/// crosses the row; `None` where it does not.
+/// crosses the row; `None` if it does not.
 fn crossing(p: Snapped, q: Snapped, y: i32) -> Option<i64> {
     let part = i128::from(SUBPIXELS);
     let centre = i128::from(y) * part + part / 2;
@@ -21,7 +21,8 @@ fn crossing(p: Snapped, q: Snapped, y: i32) -> Option<i64> {
         return None;
     }
     let (px, qx) = (i128::from(p.x), i128::from(q.x));
-    // x = px + (centre - py) (qx - px) / (qy - py), from the middle of the first column, in columns.
+    // x = px + (centre - py) (qx - px) / (qy - py), from the middle of the first column, in
+    // columns.
     let (above, below) =
         ((px - part / 2) * (qy - py) + (centre - py) * (qx - px), (qy - py) * part);
     let (above, below) = (above * below.signum(), below.abs());
@@ -39,8 +40,8 @@ pub(crate) fn span([p, q, r]: [Snapped; 3], y: i32) -> Range<i64> {
     }
 }
 
-/// How often a closed outline winds about the centre of every pixel of a row, clockwise on the screen
-/// being positive: `windings[x]` for column x.
+/// The winding numbers of a closed outline about the centres of the pixels of a row, positive for
+/// clockwise on the screen: `windings[x]` for column x.
 pub(crate) fn wind(outline: &[Snapped], y: i32, windings: &mut [i32]) {
     windings.fill(0);
     let columns = i64::try_from(windings.len()).expect("rows are short");

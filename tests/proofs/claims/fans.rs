@@ -1,9 +1,9 @@
-//! No crack and no double: closed fans of triangles about a hub, drawn and counted.
+//! No crack and no pixel covered twice: closed fans of triangles about a hub.
 //!
-//! Three things are held against the crossings of [`super::exact`]: what each triangle covers, how
-//! often all of a fan cover a pixel, counted with the sign of their area (which is how often the
-//! snapped outline winds about it, whatever snapping did to the slivers), and which triangle the
-//! renderer shows at each pixel of a picture of many fans.
+//! Three things are compared with the crossings of [`super::exact`]: the pixels that each triangle
+//! covers; how often the triangles of a fan cover a pixel, counted with the sign of their area,
+//! which is the winding number of the snapped outline, whatever snapping did to slivers; and the
+//! triangle that the renderer shows at each pixel of a picture of many fans.
 
 use super::exact::{span, wind};
 use super::{Proof, Tally};
@@ -14,7 +14,7 @@ use marraztu::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle,
 
 pub(crate) const PROOF: Proof = Proof {
     name: "fans",
-    claim: "closed fans are covered as whole-number crossings say: no crack, no double, \
+    claim: "closed fans cover the pixels that integer crossings say: no crack, no pixel twice, \
             and the picture shows the right triangle everywhere",
     unit: "fans",
     batch: FANS,
@@ -25,11 +25,11 @@ pub(crate) const PROOF: Proof = Proof {
     check,
 };
 
-/// Fans in a picture: `ROW` in a row, as many rows.
+/// The number of fans in a picture of `ROW` rows of `ROW`.
 const FANS: u64 = (ROW * ROW) as u64;
 const ROW: usize = 8;
 
-/// Sides of the square that a fan has, in pixels; small ones are the more frequent.
+/// The sides of the squares of fans in pixels; small ones are more frequent.
 const SIDES: [i32; 20] = [8, 8, 8, 8, 8, 8, 8, 8, 16, 16, 16, 16, 16, 16, 32, 32, 32, 32, 64, 128];
 
 fn check(batch: u64) -> Result<Tally, String> {
@@ -55,8 +55,8 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// A hub and an outline about it inside a square, with coordinates from the hard places: half of them
-/// on centres and borders of pixels, some corners twice, some beside another by one part of a pixel.
+/// A hub and an outline in a square. Half of the coordinates are on centres and borders of pixels,
+/// and some corners are equal, or a subpixel apart.
 fn fan(rng: &mut Rng, side: i32) -> (Snapped, Vec<Snapped>) {
     let far = side * SUBPIXELS;
     let coordinate = |rng: &mut Rng| {
@@ -89,7 +89,7 @@ fn triangles_of(hub: Snapped, outline: &[Snapped]) -> Vec<[Snapped; 3]> {
     (0..outline.len()).map(side).collect()
 }
 
-/// What the triangles of a fan cover, one by one and all together.
+/// Compares what the triangles of a fan cover, one by one and all together.
 fn count(fan: &[[Snapped; 3]], outline: &[Snapped], side: i32) -> Result<(), String> {
     let square = PixelBox { left: 0, top: 0, right: side, bottom: side };
     let width = usize::try_from(side).expect("positive");
@@ -130,7 +130,7 @@ fn count(fan: &[[Snapped; 3]], outline: &[Snapped], side: i32) -> Result<(), Str
     Ok(())
 }
 
-/// Whether the renderer shows at every pixel the first of the triangles that cover it.
+/// Checks that the renderer shows the first triangle that covers each pixel.
 pub(crate) fn compare(triangles: &[Flat], side: usize) -> Result<(), String> {
     let picture = flat::draw_triangles(triangles, side, &mut Renderer::default());
     let expected = seen(triangles, side);

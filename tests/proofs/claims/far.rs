@@ -1,4 +1,4 @@
-//! Triangles of every size, with corners up to a million pixels off: each pixel of each picture.
+//! Triangles of every size, with corners up to a million pixels off, pixel by pixel.
 
 use super::fans::compare;
 use super::{Proof, Tally};
@@ -9,7 +9,7 @@ use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 pub(crate) const PROOF: Proof = Proof {
     name: "samples",
     claim: "triangles of every size, with corners up to a million pixels off, cover exactly the \
-            pixels that whole-number crossings say",
+            pixels that integer crossings say",
     unit: "samples",
     batch: (SIDE * SIDE) as u64,
     quick: 10_000_000,
@@ -21,8 +21,8 @@ pub(crate) const PROOF: Proof = Proof {
 
 const SIDE: usize = 256;
 
-/// How far off corners are, in pixels, and to what part of a pixel they are whole: a mesh has 24
-/// bits, and the guard band of the renderer 2^20 pixels.
+/// How far off corners are in pixels, and the step of their coordinates in subpixels: a mesh has 24
+/// bits, and the renderer's guard band is 2^20 pixels wide.
 const REACH: [(i32, i32); 5] = [(300, 1), (300, 1), (2000, 1), (30_000, 1), (1_000_000, 16)];
 
 fn check(batch: u64) -> Result<Tally, String> {

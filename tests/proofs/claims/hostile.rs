@@ -1,8 +1,8 @@
-//! Makes scenes of numbers that nobody means: not a number, infinite, subnormal, huge; flat
-//! placements, lamps on surfaces, cameras inside of things.
+//! Generates scenes of hostile numbers: NaN, infinite, subnormal and huge ones; flat placements,
+//! lamps on surfaces, cameras inside objects.
 //!
-//! They come in as a person's would, by meshes and commands, which may refuse them and then leave all
-//! as it was.
+//! They enter the scene as a user's do, by meshes and commands, which may refuse them and then
+//! change nothing.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -21,18 +21,18 @@ use marraztu::scene::{
     SourceCorner, Spin, SpotOwner, Subject, Surface, Texture, Tracked, Transformation, View, Wrap,
 };
 
-/// A command is done, or refused with nothing changed.
+/// Applies a command, or checks that a refused one changes nothing.
 fn try_out(scene: &mut Scene, command: Command, tally: &mut Tally) {
     let before = scene.clone();
     if command.apply(scene).is_err() {
-        // In letters, for a number that is none is not equal to itself.
+        // Compared as text, since NaN is not equal to itself.
         let unchanged = format!("{scene:?}") == format!("{before:?}");
         assert!(unchanged, "a command that is refused changes nothing");
         tally.count("refusals", 1);
     }
 }
 
-/// Magnitudes from the hard places.
+/// Magnitudes of hard cases.
 const HARD: [f64; 26] = [
     0.0,
     5e-324,
@@ -62,12 +62,12 @@ const HARD: [f64; 26] = [
     f64::MAX,
 ];
 
-/// Makes hostile things.
+/// Generates hostile items.
 pub(crate) struct Hostile {
     pub(crate) rng: Rng,
-    /// One of so many numbers is from the hard places.
+    /// One in this many numbers is hostile.
     rarity: u64,
-    /// Places of vertices in the world: lamps like to stand there.
+    /// Positions on surfaces, where some lamps are placed.
     surfaces: Vec<DVec3>,
 }
 

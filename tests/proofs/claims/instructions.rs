@@ -1,7 +1,7 @@
-//! A frame whose instructions are counted: the same however many lights are off.
+//! Counts the instructions of a frame: lights that are off add none.
 //!
-//! `callgrind` counts what runs inside `counted_frame` and nothing else. Every process that is counted
-//! does the same before: it plans and draws both frames, so that memory is laid out alike.
+//! `callgrind` counts what runs inside `counted_frame` only. Every process that is counted does the
+//! same before: it plans and draws both frames, so that memory is laid out the same way.
 
 use std::hint::black_box;
 
@@ -16,13 +16,13 @@ use marraztu::render::{FramePlan, Renderer};
 use super::absent::with_lights_off;
 use super::random_scenes::RandomScene;
 
-/// The function that counting is switched on in, as callgrind's patterns have it.
+/// A pattern of callgrind for the function that is counted.
 pub(crate) const COUNTED: &str = "*counted_frame*";
 
-/// How many lights are off in the second frame.
+/// The number of lights that are off in the second frame.
 pub(crate) const LIGHTS_OFF: u32 = 100;
 
-/// Which of the two frames is counted.
+/// The frame that is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Frame {
     /// The first scene.
@@ -31,12 +31,12 @@ pub(crate) enum Frame {
     LightsOff,
 }
 
-/// Draws both frames, and the one that is wanted once more to be counted.
+/// Draws both frames, and then the one that is counted.
 ///
 /// # Errors
-/// Where this thread draws already together with others.
+/// If this thread draws together with others already.
 pub(crate) fn draw(frame: Frame) -> Result<(), rayon::ThreadPoolBuildError> {
-    // All on this thread, for counting is switched on for the thread that comes by.
+    // All on this thread, since callgrind counts one thread.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()?;
     let (scene, view) = io::default_scene();
     let (settings, size) = (Settings::default(), Size::new(128, 128));
@@ -62,7 +62,7 @@ fn counted_frame(renderer: &mut Renderer, plan: &FramePlan) {
     black_box(renderer.render(black_box(plan)));
 }
 
-/// The best instructions that callgrind knows.
+/// The best instructions that callgrind supports.
 fn level() -> Level {
     let best = Level::new();
     #[cfg(target_arch = "x86_64")]

@@ -1,8 +1,8 @@
 //! The program's guarantees, each checked on randomly generated cases.
 //!
-//! A proof generates cases and checks each against an oracle that shares no code with what it judges.
-//! Cases come in batches, and the number of a batch alone decides what is in it: a counterexample is
-//! named by its batch, and found again by that number.
+//! A proof generates cases and checks each against an oracle that shares no code with what it
+//! judges. Cases come in batches, and the number of a batch alone decides what is in it: a
+//! counterexample is named by its batch, and found again by that number.
 
 #![allow(dead_code, reason = "the hard cases use a part of it")]
 

@@ -1,5 +1,6 @@
-//! What a plan leaves out changes nothing: pictures of randomly generated scenes against pictures by
-//! plans that leave out nothing. `tests/breakages` breaks the rules one by one and sees this fail.
+//! What a plan leaves out changes nothing: pictures of randomly generated scenes against pictures
+//! by plans that leave out nothing. `tests/breakages` breaks the rules one by one and sees this
+//! fail.
 
 use marraztu::accuracy::Shot;
 use marraztu::base::image::Picture;
@@ -53,7 +54,7 @@ fn is_complete(batch: u64) -> Result<Tally, String> {
     let (mut renderer, mut reference) = (Renderer::default(), Renderer::default());
     let mut tally = Tally::default();
     for seed in seeds(batch) {
-        // One scene of four is the one before once more: then nothing has changed.
+        // One scene in four repeats the one before, so that nothing has changed.
         let it = random_scene(if seed % 4 == 3 { seed - 1 } else { seed });
         let expected = reference.render(&complete(&it));
         let drawn = renderer.redraw(&it.plan(), &|| true);
@@ -64,8 +65,8 @@ fn is_complete(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// Draws the scenes of a batch without what is too faint, and expects bytes within a step of those with
-/// nothing visible left out.
+/// Draws the scenes of a batch without what is too faint, and expects bytes within a step of those
+/// with nothing visible left out.
 fn is_within_a_step(batch: u64) -> Result<Tally, String> {
     let (mut thinned, mut exact) = (Renderer::default(), Renderer::default());
     let mut tally = Tally::default();

@@ -1,7 +1,7 @@
-//! What is left of accuracy after a million presses of the keys.
+//! The accuracy that is left after a million key presses.
 //!
-//! Random turns of an object, about its own axes and the world's, and of a camera, are done by the
-//! keys' own commands and again with twice the digits.
+//! An object is turned about its own axes and the world's, and a camera about its own, by the
+//! commands of the keys and again with twice the digits.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ pub(crate) const PROOF: Proof = Proof {
     name: "presses",
     claim: "after a million presses of the turning keys objects and cameras stand within 1e-9 \
             radians of where numbers of twice the digits have them, and moved objects within 1e-9 \
-            of the way that they went",
+            of their way",
     unit: "presses",
     batch: PRESSES,
     quick: PRESSES,
@@ -32,7 +32,7 @@ pub(crate) const PROOF: Proof = Proof {
 
 const PRESSES: u64 = 1_000_000;
 
-/// The largest angle, in radians, and the largest share of a way, by which a placement may be off.
+/// The largest error of an angle in radians, and of a translation relative to its length.
 const BOUND: f64 = 1e-9;
 
 type Turn = [[Double; 3]; 3];
@@ -91,7 +91,7 @@ fn object_turned(rng: &mut Rng, frame: Frame, presses: u64) -> (f64, f64) {
     compare(DMat3::from_mat4(*object.placement.now()), &exact)
 }
 
-/// The same of a camera in fly: x turns it about its own Y, y about its own X, z about its own Z.
+/// The same for a camera: x turns it about its own Y, y about its own X, z about its own Z.
 fn camera_turned(rng: &mut Rng, presses: u64) -> (f64, f64) {
     let (mut scene, view) = desk(Subject::Camera, Transformation::Rotation, Frame::Local);
     let mut exact = identity();
@@ -108,7 +108,7 @@ fn camera_turned(rng: &mut Rng, presses: u64) -> (f64, f64) {
     compare(scene.selected_camera(&view).pose.now().axes, &exact)
 }
 
-/// How far an object is from where its steps lead, as a share of the way.
+/// How far an object is from where its steps lead, relative to their length.
 fn object_moved(rng: &mut Rng, presses: u64) -> f64 {
     let (mut scene, mut view) = desk(Subject::Object, Transformation::Translation, Frame::Global);
     view.steps.translation = 0.1;
@@ -133,7 +133,7 @@ fn object_moved(rng: &mut Rng, presses: u64) -> f64 {
     off(0).max(off(1)).max(off(2)) / way
 }
 
-/// The turn of one press: ten degrees.
+/// The rotation of one press: ten degrees.
 fn step((axis, sign): (Axis, Sign)) -> Turn {
     let angle = Double::PI / Double::from(18.0);
     let (s, c) = angle.sin_cos();

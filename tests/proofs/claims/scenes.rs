@@ -1,5 +1,5 @@
-//! Scenes of numbers that nobody means, drawn: without a panic, the same on all instructions, with
-//! depths from 0 to 1, and never dark in f32 where f64 sees light.
+//! Scenes of hostile numbers are drawn without a panic, the same on all instructions, with depths
+//! from 0 to 1, and never dark in f32 where f64 shows light.
 
 use fearless_simd::Level;
 use glam::{DMat4, DVec3, DVec4};
@@ -70,7 +70,8 @@ fn check(batch: u64) -> Result<Tally, String> {
                 tally.count("scenes too bright to be judged", 1);
                 lost.clear();
             }
-            // On a border of light, where less than f32 can tell puts the light out in f64 as well.
+            // On a border of light, a change below the precision of f32 makes the pixel dark in f64
+            // too.
             tally.count("pixels on a border of light", lost.len() as u64);
             let rng = &mut hostile.rng;
             for _ in 0..NUDGES {
@@ -97,8 +98,7 @@ fn difference(a: &Picture, b: &Picture) -> Option<(usize, usize)> {
     Some((at % a.size().width, at / a.size().width))
 }
 
-/// The pixels that are dark in one picture and bright in the other: the trace of a number that was
-/// none.
+/// The pixels that are dark in one picture and bright in the other: the trace of a NaN.
 fn lost(fast: &Picture, exact: &Picture) -> Vec<usize> {
     let bright = |pixel: &[u8; 4]| pixel[..3].iter().any(|byte| *byte > 32);
     let both = fast.pixels().iter().zip(exact.pixels()).enumerate();
@@ -113,8 +113,7 @@ fn far(a: [u8; 4], b: [u8; 4]) -> bool {
     a.into_iter().zip(b).any(|(a, b)| a.abs_diff(b) > 1)
 }
 
-/// Whether nothing in a scene is so much brighter than white that a last place of 32 bits beside it is
-/// light.
+/// Whether nothing in a scene is so bright that its rounding error in f32 would be visible light.
 fn has_measure(scene: &Scene) -> bool {
     const BRIGHT: f64 = 1e4;
     let within = |numbers: &[f64]| numbers.iter().all(|k| k.abs() < BRIGHT);
@@ -127,12 +126,12 @@ fn has_measure(scene: &Scene) -> bool {
     })
 }
 
-/// How often lamps and objects are moved to see whether light is on a border.
+/// How often lamps and objects are moved to find out whether a pixel is on a border of light.
 const NUDGES: usize = 32;
 
-/// The scene with its lamps moved by a millionth part of how far things are from them and from the
-/// observer, and its objects turned and stretched by as much: some last places of 32 bits. Where placing
-/// makes an object almost flat, that is what is left of the direction of its normals.
+/// The scene with its lamps moved by a millionth of their distances, and its objects turned and
+/// stretched by as much: some last places of f32. For an almost flat placement this is the accuracy
+/// of its normals.
 fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {
     const PART: f64 = 1.0 / (1 << 20) as f64;
     let eye = scene.observer_frame(view).w_axis.truncate();
@@ -172,7 +171,7 @@ fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {
             LightKind::Ambient => continue,
         };
         let item = Item::Light(id, Box::new(Light { kind, ..light }));
-        // What is refused stays where it was.
+        // A refused change leaves it where it was.
         let _ = Command::Replace(item).apply(&mut scene);
     }
     scene

@@ -1,5 +1,5 @@
-//! The largest and the smallest: pictures of one pixel and of 16,384 x 16,384, meshes without a face
-//! and with ten million.
+//! The largest and the smallest: pictures of 1 x 1 and of 16,384 x 16,384 pixels, meshes without a
+//! face and with ten million.
 
 use super::fans::seen;
 use super::{Proof, Tally};
@@ -14,8 +14,8 @@ use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 
 pub(crate) const PROOF: Proof = Proof {
     name: "sizes",
-    claim: "pictures from 1 x 1 to 16,384 x 16,384 and meshes of up to ten million faces are drawn, \
-            each pixel as whole-number crossings say",
+    claim: "pictures from 1 x 1 to 16,384 x 16,384 and meshes of up to ten million faces are \
+            drawn, each pixel as integer crossings say",
     unit: "sizes",
     batch: 1,
     quick: 6,
@@ -25,7 +25,7 @@ pub(crate) const PROOF: Proof = Proof {
     check,
 };
 
-/// Side of the picture, and how many triangles; the first ones are looked at in every test.
+/// The side of the picture and the number of triangles; the quick round draws the first ones.
 const SIZES: [(usize, usize); 9] = [
     (1, 0),
     (1, 1),
@@ -73,7 +73,7 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// Pictures of one row and of one column, all of which a triangle covers.
+/// Pictures of one row and of one column, covered by one triangle.
 fn narrow(tally: &mut Tally) -> Result<(), String> {
     let at = |x: i32, y: i32| Snapped { x: x * SUBPIXELS, y: y * SUBPIXELS };
     let whole = [at(-20_000, -20_000), at(60_000, -20_000), at(-20_000, 60_000)];

@@ -1,4 +1,4 @@
-//! Whatever a person can do is undone and redone, bit for bit, through saving and loading too.
+//! Commands of every kind are undone and redone bit for bit, across saving and loading.
 
 use glam::{DVec2, DVec3};
 
@@ -35,7 +35,7 @@ pub(crate) const PROOF: Proof = Proof {
 
 const COMMANDS: u64 = 100_000;
 
-/// After how many commands the scene is saved.
+/// The number of commands between two saved scenes.
 const SAVED: u64 = 2500;
 
 fn check(batch: u64) -> Result<Tally, String> {
@@ -64,7 +64,7 @@ fn check(batch: u64) -> Result<Tally, String> {
         selection::follow(&before, &scene, &mut view);
         performed += 1;
         if performed % SAVED == 0 {
-            // A gesture that went on would change the step that was saved.
+            // A continued gesture would change the step that was saved.
             let mark = Command::Background(scene.background);
             let whole = Gesture::Whole;
             history.perform(&mut scene, mark, whole, "mark").map_err(|e| e.to_string())?;
@@ -85,7 +85,7 @@ fn check(batch: u64) -> Result<Tally, String> {
     Ok(tally)
 }
 
-/// To the beginning and to the end again, past everything that was saved.
+/// Undoes everything and redoes it, and compares the scene with each saved one on the way.
 fn walk(
     scene: &mut Scene,
     history: &mut History,
@@ -113,7 +113,7 @@ fn walk(
     if every_bit(scene) == end { Ok(()) } else { Err("redone to somewhere else".to_owned()) }
 }
 
-/// The scene's file. What is selected changes on the way and is no part of what is undone.
+/// The scene as a file, without the selection, which undo does not restore.
 fn text(scene: &Scene) -> Result<String, String> {
     let view = scene.first_view();
     let path = std::path::Path::new("/scene.marraztu");
@@ -132,8 +132,8 @@ fn reopen(file: &str, batch: u64) -> Result<(), String> {
     if text(&opened.scene)? == file { Ok(()) } else { Err("opened as something else".to_owned()) }
 }
 
-/// Every number of a scene, and of all the stacks in it, in letters: -0 and 0 differ, and no two
-/// numbers are written alike.
+/// Every number of a scene and of its stacks as text, in which different numbers differ, and so do
+/// -0 and 0.
 fn every_bit(scene: &Scene) -> String {
     use std::fmt::Write;
     let mut text = format!("{scene:?}");
@@ -155,7 +155,7 @@ fn every_bit(scene: &Scene) -> String {
     text
 }
 
-/// Anything that a person can do.
+/// A random command.
 fn anything(scene: &Scene, view: &mut View, rng: &mut Rng) -> Result<Command, Refusal> {
     let stroke = rng.one_of(&[GesturePhase::First, GesturePhase::First, GesturePhase::Continued]);
     view.time += 0.1;
@@ -179,7 +179,7 @@ fn anything(scene: &Scene, view: &mut View, rng: &mut Rng) -> Result<Command, Re
     }
 }
 
-/// Moves, turns, stretches, and takes back.
+/// A random transform, or taking one back.
 fn placing(
     scene: &Scene,
     view: &mut View,
@@ -192,7 +192,7 @@ fn placing(
             let all = [Subject::Camera, Subject::Object, Subject::Light];
             selection::set_subject(view, rng.one_of(&all));
             let kind = rng.one_of(&[Translation, Rotation, Scaling]);
-            // Refused where the subject cannot be scaled: then the old one stays.
+            // Refused if the subject cannot be scaled: then the old kind stays.
             let _ = selection::set_transformation(view, kind);
             view.frame = rng.one_of(&[Frame::Local, Frame::Global]);
             let sign = rng.one_of(&[Sign::Positive, Sign::Negative]);
@@ -225,7 +225,7 @@ fn looking(
     }
 }
 
-/// Changes lights, and adds lights and cameras.
+/// A random change of lights, or a new light or camera.
 fn lighting(scene: &Scene, view: &View, rng: &mut Rng) -> Result<Command, Refusal> {
     match rng.below(4) {
         0 => {
@@ -248,7 +248,7 @@ fn lighting(scene: &Scene, view: &View, rng: &mut Rng) -> Result<Command, Refusa
     }
 }
 
-/// A scene of a handful of things stays one.
+/// Keeps the scene small.
 fn few(scene: &Scene, command: Command) -> Result<Command, Refusal> {
     let all = scene.objects.len() + scene.cameras.len() + scene.lights.len();
     if all < 20 { Ok(command) } else { Err(Refusal::TooLarge) }

@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+mod models;
+
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
@@ -55,13 +57,13 @@ fn drawn(folder: &Path, arguments: &[&str]) -> Picture {
     io::load_picture(&folder.join("drawn.png")).unwrap()
 }
 
-fn in_the_house(settings: &Settings, size: Size) -> Picture {
+fn first_scene(settings: &Settings, size: Size) -> Picture {
     let (scene, view) = io::default_scene();
     Renderer::default().render(&plan_frame(&Shot::new(&scene, &view, settings, size))).clone()
 }
 
 #[test]
-fn help_says_what_there_is_and_version_which() {
+fn help_lists_the_commands_and_version_names_the_version() {
     let folder = folder();
     let (out, _) = ends_with(0, folder.path(), &["--help"]);
     for word in ["render", "info", "Examples:", "Exit status:", ".marraztu"] {
@@ -108,7 +110,7 @@ fn help_says_what_there_is_and_version_which() {
 #[test]
 fn the_first_scene_is_drawn_as_the_renderer_draws_it_in_both_formats() {
     let folder = folder();
-    let expected = in_the_house(&Settings::default(), Size::new(160, 120));
+    let expected = first_scene(&Settings::default(), Size::new(160, 120));
     assert!(drawn(folder.path(), &[]) == expected);
 
     ends_with(0, folder.path(), &["render", "--out", "a.ppm", "--size", "160x120"]);
@@ -122,7 +124,7 @@ fn the_first_scene_is_drawn_as_the_renderer_draws_it_in_both_formats() {
 }
 
 #[test]
-fn every_option_of_looking_changes_the_picture() {
+fn every_option_of_the_view_changes_the_picture() {
     let folder = folder();
     let plain = drawn(folder.path(), &[]);
     let changes: &[&[&str]] = &[
@@ -142,118 +144,13 @@ fn every_option_of_looking_changes_the_picture() {
         &["--vertex-normals"],
     ];
     for change in changes {
-        // Not `assert_ne`: it would print two pictures in numbers.
+        // Not `assert_ne`, which would print two pictures as numbers.
         assert!(drawn(folder.path(), change) != plain, "{change:?} changes nothing");
     }
     let settings =
         Settings { arithmetic: marraztu::accuracy::Arithmetic::F64, ..Settings::default() };
     let exact = drawn(folder.path(), &["--arithmetic", "f64"]);
-    assert!(exact == in_the_house(&settings, Size::new(160, 120)));
-}
-
-#[test]
-fn models_alone_are_seen_whole_and_in_the_middle() {
-    let folder = folder();
-    let blue = [0, 0, 179, 255];
-    for how in
-        [&["square.obj"][..], &["square.obj", "--scale", "1000"], &["square.obj", "square.obj"]]
-    {
-        let picture = drawn(folder.path(), how);
-        assert_ne!(picture.pixel(80, 60), blue, "{how:?}");
-        for x in 0..160 {
-            assert_eq!([picture.pixel(x, 0), picture.pixel(x, 119)], [blue, blue], "{how:?}");
-        }
-    }
-    let through_the_camera = drawn(folder.path(), &["square.obj", "--camera", "1"]);
-    assert_eq!(through_the_camera.pixel(80, 60), blue, "the square is at (5, 5), and small");
-    let marks = ["square.obj", "--camera", "1", "--helpers", "all"];
-    assert_eq!(drawn(folder.path(), &marks).pixel(80, 60), [255, 255, 0, 255], "the bulb");
-    let one = ["square.obj", "--flip-winding", "--sides", "one"];
-    assert_eq!(drawn(folder.path(), &one).pixel(80, 60), blue, "its back is not drawn");
-    let red = drawn(folder.path(), &[&one[..], &["--back-faces"]].concat());
-    assert_eq!(red.pixel(80, 60), [255, 0, 0, 255]);
-    let upright = drawn(folder.path(), &["square.obj", "--up", "z", "--from", "0,0"]);
-    assert_eq!(upright.pixel(80, 60), blue, "it lies, and is seen from its edge");
-    let upright = drawn(folder.path(), &["square.obj", "--up", "z"]);
-    assert_ne!(upright.pixel(80, 60), blue, "from above it is seen");
-}
-
-#[test]
-fn models_alone_are_seen_from_the_right_and_above() {
-    let folder = folder();
-    let picture = drawn(folder.path(), &["square.obj"]);
-    assert!(picture == drawn(folder.path(), &["square.obj", "--from", "30,20"]));
-    assert!(picture != drawn(folder.path(), &["square.obj", "--from", "0,0"]));
-}
-
-#[test]
-fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
-    let folder = folder();
-    let back = |sides| {
-        let all = ["square.obj", "--from", "180,0", "--lights", "0", "--sides", sides];
-        drawn(folder.path(), &all)
-    };
-    let blue = [0, 0, 179, 255];
-    assert_eq!(back("one").pixel(80, 60), blue);
-    assert_ne!(back("two").pixel(80, 60), blue);
-    assert!(back("auto") == back("two"));
-    assert!(
-        drawn(folder.path(), &["square.obj", "--from", "180,0", "--lights", "0"]) == back("two")
-    );
-    // A closed surface inside out shows its far inner side from one side, its outside from two.
-    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
-    std::fs::write(folder.path().join("inside_out.obj"), text).unwrap();
-    let closed = |sides| drawn(folder.path(), &["inside_out.obj", "--sides", sides]);
-    assert!(closed("auto") == closed("one"));
-    assert!(closed("two") != closed("one"));
-}
-
-/// What `render` notes on standard error.
-fn notes(folder: &Path, arguments: &[&str]) -> String {
-    let all = [&["render", "--out", "x.png", "--size", "160x120"], arguments].concat();
-    ends_with(0, folder, &all).1
-}
-
-#[test]
-fn a_picture_that_shows_nothing_of_an_object_says_why() {
-    let folder = folder();
-    let path = folder.path();
-    assert_eq!(notes(path, &["square.obj"]), "");
-    assert_eq!(notes(path, &[]), "", "all of the first scene is seen");
-    let err = notes(path, &["square.obj", "--from", "180,0", "--sides", "one"]);
-    assert!(
-        err.contains("nothing is seen of square: its only face is turned away: --sides two"),
-        "{err}"
-    );
-    let err = notes(path, &["square.obj", "--from", "90,0"]);
-    assert!(
-        err.contains("nothing is seen of square: it is smaller than a pixel, or seen edge-on"),
-        "{err}"
-    );
-    let err = notes(path, &["square.obj", "--camera", "1", "--scale", "1e9"]);
-    assert!(err.contains("nothing is seen of square: outside the view"), "{err}");
-
-    std::fs::write(path.join("two.obj"), format!("{SQUARE}f 2 3 4\n").replace(" 5\n", " 4\n"))
-        .unwrap();
-    let err = notes(path, &["square.obj", "two.obj", "--from", "180,0", "--sides", "one"]);
-    assert!(
-        err.contains("of square: its only face") && err.contains("of two: all 2 faces"),
-        "{err}"
-    );
-    let err = notes(path, &["square.obj", "two.obj", "--from", "180,0"]);
-    assert!(err.contains("nothing is seen of square: it is behind other objects"), "{err}");
-    let err = notes(path, &["square.obj", "square.obj", "--from", "180,0", "--sides", "one"]);
-    assert!(err.contains("and of 1 other object:"), "{err}");
-
-    std::fs::write(
-        path.join("clear.mtl"),
-        "newmtl clear\nKd 1 1 1\nd 0.2\nnewmtl solid\nKd 1 1 1\n",
-    )
-    .unwrap();
-    let clear = format!("mtllib clear.mtl\n{}", SQUARE.replace("f 1", "usemtl clear\nf 1"));
-    std::fs::write(path.join("clear.obj"), clear).unwrap();
-    let err = notes(path, &["clear.obj"]);
-    assert!(err.contains("nothing is seen of clear: it is transparent"), "{err}");
+    assert!(exact == first_scene(&settings, Size::new(160, 120)));
 }
 
 #[test]
@@ -310,7 +207,7 @@ fn the_named_lights_shine_and_no_others_whatever_the_scene_says() {
 }
 
 #[test]
-fn what_turns_by_itself_is_drawn_at_the_time_that_is_asked_for() {
+fn spinning_objects_are_drawn_at_the_time_that_is_given() {
     let folder = folder();
     let (mut scene, view) = io::default_scene();
     let id = view.object.unwrap();
@@ -321,41 +218,6 @@ fn what_turns_by_itself_is_drawn_at_the_time_that_is_asked_for() {
     assert!(at("3") != at("0"), "a quarter turn at 30 degrees a second");
     assert!(at("12") == at("0"), "a whole turn");
     assert!(at("-9") == at("3"), "the clock runs backwards too");
-}
-
-#[test]
-fn normals_of_the_file_can_be_passed_over() {
-    let folder = folder();
-    let text = SQUARE.replace("f 1 2 3 4", "vn 1 0 1\nf 1//1 2//1 3//1 4//1");
-    std::fs::write(folder.path().join("square.obj"), text).unwrap();
-    let plain = drawn(folder.path(), &["square.obj"]);
-    assert!(drawn(folder.path(), &["square.obj", "--no-file-normals"]) != plain);
-}
-
-/// Two squares that meet at an angle of 45 degrees.
-const ROOF: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 4 0 -2\nv 4 2 -2\nf 1 2 3 4\nf 2 5 6 3\n";
-
-#[test]
-fn edges_sharper_than_the_crease_angle_that_is_asked_for_are_sharp() {
-    let folder = folder();
-    std::fs::write(folder.path().join("roof.obj"), ROOF).unwrap();
-    let drawn = |crease: &[&str]| drawn(folder.path(), &[&["roof.obj"], crease].concat());
-    let smooth = drawn(&["--crease", "180"]);
-    let flat = drawn(&["--crease", "0"]);
-    assert!(flat != smooth);
-    assert!(drawn(&[]) == smooth, "60 degrees are more than 45");
-    assert!(drawn(&["--crease", "45"]) == smooth && drawn(&["--crease", "44.9"]) == flat);
-    assert!(drawn(&["--normals", "face"]) == flat);
-    for command in
-        [&["info", "--crease", "44.5"][..], &["plan", "--size", "8x8", "--crease", "44.5"]]
-    {
-        let (out, _) = ends_with(0, folder.path(), &[command, &["roof.obj"]].concat());
-        assert_eq!(
-            command[0] == "info",
-            out.contains("smoothing       crease 44.5 degrees"),
-            "{out}"
-        );
-    }
 }
 
 #[test]
@@ -372,7 +234,7 @@ fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
 }
 
 #[test]
-fn a_closed_pipe_is_no_error() {
+fn a_reader_that_closes_the_pipe_is_no_error() {
     let folder = folder();
     let mut child = Command::new(env!("CARGO_BIN_EXE_marraztu"))
         .args(["info", "square.obj"])
@@ -388,7 +250,7 @@ fn a_closed_pipe_is_no_error() {
 }
 
 #[test]
-fn arguments_that_cannot_be_meant_end_with_2_and_draw_nothing() {
+fn invalid_arguments_end_with_2_and_draw_nothing() {
     let folder = folder();
     let wrong: &[(&[&str], &str)] = &[
         (&["render", "-o", "a.gif"], "its name has to end in .png, .jpg, .webp or .ppm"),
@@ -417,7 +279,7 @@ fn arguments_that_cannot_be_meant_end_with_2_and_draw_nothing() {
 }
 
 #[test]
-fn what_fails_ends_with_1_and_says_why_in_one_sentence() {
+fn a_failure_ends_with_1_and_says_why_in_one_sentence() {
     let folder = folder();
     std::fs::write(folder.path().join("bad.obj"), "v 1 2 3\nv 1 two 3\n").unwrap();
     std::fs::write(folder.path().join("bad.marraztu"), "what is this").unwrap();
@@ -443,7 +305,7 @@ fn what_fails_ends_with_1_and_says_why_in_one_sentence() {
 }
 
 #[test]
-fn what_was_mended_is_said_and_the_picture_is_drawn() {
+fn mended_faults_are_reported_and_the_picture_is_drawn() {
     let folder = folder();
     let text = format!("{SQUARE}f 1 2 99\nmtllib absent.mtl\n");
     std::fs::write(folder.path().join("square.obj"), text).unwrap();
@@ -461,31 +323,4 @@ fn without_a_display_the_editor_says_so_and_what_to_do_instead() {
         assert!(err.contains("marraztu render"), "{err}");
         assert!(err.lines().count() <= 2, "{err}");
     }
-}
-
-#[test]
-fn models_alone_are_seen_from_the_side_that_is_asked_for() {
-    let folder = folder();
-    // A square that faces +Z, in a box so long that the camera is far from its plane.
-    let seen = |from: &str| {
-        let picture = drawn(
-            folder.path(),
-            &["square.obj", "--lights", "0", "--sides", "one", "--from", from],
-        );
-        let ground = picture.pixel(0, 0);
-        picture.pixels().iter().filter(|pixel| **pixel != ground).count()
-    };
-    let front = seen("0,0");
-    assert!(front > 1000, "{front}");
-    for side in ["60,0", "-60,0", "0,60", "0,-60"] {
-        let part = seen(side);
-        assert!(part > front / 3 && part < front * 2 / 3, "{side}: {part} of {front}");
-    }
-    for behind in ["120,0", "180,0", "180,45"] {
-        assert_eq!(seen(behind), 0, "{behind}: the square faces away");
-    }
-    let above = ["render", "--out", "x.png", "--from", "0,91", "square.obj"];
-    ends_with(2, folder.path(), &above);
-    let (_, err) = ends_with(2, folder.path(), &["render", "--out", "x.png", "--from", "0,9"]);
-    assert!(err.contains("models alone"), "{err}");
 }
