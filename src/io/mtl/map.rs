@@ -1,6 +1,6 @@
 //! The arguments of `map_Kd`: a file's name, with options before or after it.
 
-use super::finite;
+use super::statement;
 use crate::io::obj::lines::decode;
 use crate::scene::Wrap;
 
@@ -34,7 +34,7 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
         at += 1;
     }
     let (begin, end) = name?;
-    text[begin..end].clone_into(&mut map.name);
+    map.name = statement::texture(&text[begin..end])?;
     Some(map)
 }
 
@@ -44,7 +44,7 @@ impl Map {
     fn option(&mut self, word: &str, following: &[(usize, &str)]) -> Option<usize> {
         let numbers = |most: usize| -> Vec<f64> {
             let words = following.iter().take(most);
-            words.map_while(|(_, word)| finite(word.as_bytes())).collect()
+            words.map_while(|(_, word)| statement::single(word.as_bytes())).collect()
         };
         let set = |target: &mut [f64; 2], given: &[f64]| {
             for (target, given) in target.iter_mut().zip(given) {

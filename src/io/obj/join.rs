@@ -15,7 +15,8 @@ use super::chunks::{Chunks, Sizes};
 use super::faces::INHERITED;
 use super::lines::{Lines, unmarked};
 use super::parts::{PartNames, Parts};
-use super::scan::{Counts, NO_COLOR, Piece, Rows, Stop};
+use super::rows::{NO_COLOR, Rows};
+use super::scan::{Counts, Piece, Stop};
 use super::sound::{Before, SoundFaces, SoundPiece, Totals};
 use super::{EMPTY, no_obj};
 use crate::base::color::Color;
@@ -140,16 +141,17 @@ impl<'a, R: Read + Send> Reading<'a, R> {
 
     /// Reads one chunk, which so many statements are before.
     fn piece(&self, text: &[u8], before: Option<Counts>) -> Result<Piece, Cancelled> {
-        let mut piece = Piece::new(before);
         let mut told = 0;
         let mut reached = |now: usize| {
-            let before = self.done.fetch_add(now - told, Ordering::Relaxed);
-            self.progress.reached(before + now - told, self.size)?;
-            told = now;
+            // A chunk that is read twice counts once.
+            let new = now.saturating_sub(told);
+            let before = self.done.fetch_add(new, Ordering::Relaxed);
+            self.progress.reached(before + new, self.size)?;
+            told += new;
             Ok(())
         };
         reached(0)?;
-        piece.read(text, &mut reached)?;
+        let piece = Piece::read(text, before, &mut reached)?;
         reached(text.len())?;
         Ok(piece)
     }
@@ -276,24 +278,24 @@ fn all_rows<const N: usize>(
     let mut totals = Totals { count: 0, lost: Vec::new() };
     let mut kept = Vec::new();
     for piece in pieces {
-        let rows = std::mem::take(rows(piece));
+        let rows = rows(piece);
         totals.lost.extend(rows.lost.iter().map(|i| i.saturating_add(totals.count)));
         totals.count = totals.count.saturating_add(rows.count);
-        kept.push(rows.kept);
+        kept.push(std::mem::take(&mut rows.kept));
     }
     (concatenated(kept), totals)
 }
 
 /// The colours of all vertices: white for those without one, 0 to 1 for those of 0 to 255.
 fn complete_colors(pieces: &mut [Piece], findings: &mut Findings) -> Vec<[f32; 3]> {
-    if pieces.iter().all(|piece| piece.colors.is_empty()) {
+    if pieces.iter().all(|piece| piece.vertices.colors.is_empty()) {
         return Vec::new();
     }
     let mut colors = Vec::new();
     for piece in pieces {
         // A piece has colours for all of its vertices, or none.
         let all = colors.len() + piece.vertices.kept.len();
-        colors.append(&mut piece.colors);
+        colors.append(&mut piece.vertices.colors);
         colors.resize(all, NO_COLOR);
     }
     let largest = colors.iter().flatten().fold(0.0, |a: f32, b| a.max(*b));

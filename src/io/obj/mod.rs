@@ -13,12 +13,12 @@
 //! vertices that MeshLab and others write.
 
 mod chunks;
-mod decimal;
 mod faces;
 mod join;
 pub(super) mod lines;
 mod parts;
 mod quick;
+mod rows;
 mod scan;
 mod sound;
 
