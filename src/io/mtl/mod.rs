@@ -46,10 +46,10 @@ pub(super) struct Library<'a> {
     /// The files whose texels are counted in `texels`.
     counted: BTreeSet<PathBuf>,
     texels: usize,
-    /// Where the textures are that were looked for, by the folder of the file that names them and
+    /// The paths of textures that were looked for, by the folder of the file that names them and
     /// their name.
     found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
-    /// By path, wrapping, and the bits of offset and scale: what is the same is shared.
+    /// By path, wrapping, and the bits of offset and scale: equal textures are shared.
     textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
 }
 
@@ -96,8 +96,8 @@ impl<'a> Library<'a> {
         }
     }
 
-    /// Reads one file, if it was not read before; textures are looked for beside it, then beside the
-    /// model.
+    /// Reads one file, if it was not read before. Textures are looked for beside it, then beside
+    /// the model.
     pub(super) fn read(&mut self, path: &Path, model_folder: &Path) {
         if !self.read.insert(path.to_owned()) {
             return;
@@ -129,7 +129,7 @@ impl<'a> Library<'a> {
     /// The materials, and what was found in their files. `used` are the places of those that the
     /// model uses.
     ///
-    /// Some programs write `Tr 1` for what is opaque. It is taken so if it would hide all that is
+    /// Some programs write `Tr 1` for opaque materials. It is taken so if it would hide all that is
     /// used.
     pub(super) fn finish(mut self, used: &BTreeSet<u32>) -> (Vec<FileMaterial>, Vec<Finding>) {
         let hidden = |place: &u32| self.origins[*place as usize].hidden_by_tr;

@@ -1,8 +1,8 @@
 //! Single statements of an MTL file, read by tobj.
 //!
 //! A call gets one statement in the form that tobj reads rightly: a grey is spelled as three
-//! numbers, comments are cut off, keywords have their usual case. What tobj does not know goes to it
-//! under the keyword of a statement with the same argument.
+//! numbers, comments are cut off, keywords have their usual case. What tobj does not know goes to
+//! it under the keyword of a statement with the same argument.
 
 use std::panic::catch_unwind;
 

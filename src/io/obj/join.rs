@@ -1,9 +1,9 @@
 //! A file read in chunks, all at once, and put together as if it had been read from its beginning
 //! to its end.
 //!
-//! What is found, refused and numbered is the same however the file is cut. Most files name their
-//! vertices from the beginning, so chunks are read before anyone knows what is before them; those
-//! in which a face counts back are read again when all vertices are counted.
+//! Findings, refusals and numbers are the same however the file is cut. Most files count their
+//! vertices from the beginning, so a chunk is read before the statements in front of it are
+//! counted; if one of its faces counts back, it is read again when all vertices are counted.
 
 use std::io::Read;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -56,11 +56,11 @@ pub(super) struct Content {
     pub(super) edge_color: Option<Color>,
 }
 
-/// Reads all statements of a text of so many bytes, as far as that is known.
+/// Reads all statements of a text. `size` is how many bytes it has, as far as that is known.
 ///
 /// # Errors
-/// Where it cannot be read, is none of an OBJ file or too long, where a line cannot be taken for what
-/// it says it is, or the work should end.
+/// If it cannot be read, is not an OBJ file or is too long, if a line cannot be taken for what it
+/// says it is, or if the work should end.
 pub(super) fn content(
     text: impl Read + Send,
     size: usize,
@@ -139,7 +139,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         }
     }
 
-    /// Reads one chunk, which so many statements are before.
+    /// Reads one chunk. `before` is how many statements precede it, if that is known.
     fn piece(&self, text: &[u8], before: Option<Counts>) -> Result<Piece, Cancelled> {
         let mut told = 0;
         let mut reached = |now: usize| {
@@ -261,8 +261,7 @@ fn joined(
     })
 }
 
-/// Why so many of something are refused, where they are: with all that follows from it, a corner
-/// takes some fifty bytes.
+/// Why a count is refused, if it is: with everything made from it, a corner takes some fifty bytes.
 fn too_many(what: &str, count: usize) -> Option<String> {
     (count > MOST).then(|| {
         let [count, most] = [count, MOST].map(|n| n / 1_000_000);

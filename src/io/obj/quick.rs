@@ -1,8 +1,8 @@
-//! The quick way through lines as nearly all of them are written.
+//! Reads plain lines, as nearly all lines are written.
 //!
-//! It goes over a line once, from its keyword to its ending, and takes what it says only where the
-//! whole line is of the plain form; else it leaves the line as if it had not looked, to the way
-//! that knows comments, continued lines, odd numbers and every fault.
+//! A line is gone over once, from its keyword to its ending. A face is taken if the whole line is
+//! plain; a row of numbers is then left to tobj. Any other line is left untouched to the tolerant
+//! way, which knows comments, continued lines, odd numbers and every fault.
 
 use super::lines::Lines;
 use super::scan::{Counts, Piece, Trust};
@@ -179,7 +179,7 @@ fn ends_word(text: &[u8]) -> Option<()> {
     matches!(text, [] | [b' ' | b'\t' | b'\n' | b'\r', ..]).then_some(())
 }
 
-/// What follows the line's ending, where nothing but blanks is before it.
+/// What follows the line's ending, if nothing but blanks is before it.
 #[inline]
 fn line_end(text: &[u8]) -> Option<&[u8]> {
     match blanks(text) {
@@ -188,13 +188,13 @@ fn line_end(text: &[u8]) -> Option<&[u8]> {
     }
 }
 
-/// The number that the digits are with which eight signs begin, and how many they are.
+/// The number that the leading digits of eight bytes make, and how many digits there are.
 #[inline]
 fn leading_digits(text: [u8; 8]) -> (u32, usize) {
-    // Digits become their values, all else more than 9.
+    // Digits become their values, other bytes more than 9.
     let values = u64::from_le_bytes(text) ^ 0x3030_3030_3030_3030;
     let beyond = values | values.wrapping_add(0x0606_0606_0606_0606);
-    // A carry spoils only what follows the first sign that is no digit.
+    // A carry spoils only what follows the first byte that is not a digit.
     let count = (beyond & 0xf0f0_f0f0_f0f0_f0f0).trailing_zeros() / 8;
     if count == 0 {
         return (0, 0);

@@ -300,7 +300,9 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
         #[test]
-        fn every_number_is_the_nearest_one(text in "[-+]?[0-9]{1,12}(\\.[0-9]{0,12})?(e[-+]?[0-9]{1,2})?") {
+        fn every_number_is_the_nearest_one(
+            text in "[-+]?[0-9]{1,12}(\\.[0-9]{0,12})?(e[-+]?[0-9]{1,2})?",
+        ) {
             nearest(&text);
         }
 

@@ -1,11 +1,12 @@
-//! What the statements of a chunk of an OBJ file say.
+//! Reads the statements of a chunk of an OBJ file.
 //!
 //! Chunks are read apart from each other, so lines are counted from the chunk's own first one, and
 //! names of parts may be missing that earlier chunks give. A negative index counts back from where
-//! it stands, so it can be resolved only where it is known how much is before the chunk; whether a
+//! it stands, so it can be resolved only if the statements before the chunk are counted; whether a
 //! positive one is in range is known only at the end of the file.
 //!
-//! Most lines are read by the quick way (`quick`); what that leaves is read here.
+//! Most lines are read by the quick way (`quick`), and their numbers by tobj (`rows`). The other
+//! lines are read here, the tolerant way; their numbers reach tobj rewritten.
 
 use super::faces::{Faces, INHERITED};
 use super::lines::{Line, Lines, excerpt, number, words};
@@ -15,13 +16,13 @@ use crate::base::color::{Color, byte};
 use crate::io::findings::{FindingKind, Findings};
 use crate::io::progress::Cancelled;
 
-/// How many vertices, places on the texture and normals there are.
+/// How many vertices, texture coordinates and normals there are.
 pub(super) type Counts = [u32; 3];
 
 /// Everything that the statements of a chunk say.
 #[derive(Debug)]
 pub(super) struct Piece {
-    /// How many statements of each kind are before the chunk; `None` where that is not known.
+    /// How many statements of each kind are before the chunk, if that is known.
     pub(super) before: Option<Counts>,
     /// Which lines of numbers go to tobj as they are.
     pub(super) trust: Trust,
@@ -40,7 +41,7 @@ pub(super) struct Piece {
     pub(super) findings: Findings,
     /// Why the chunk was not read to its end.
     pub(super) stop: Option<Stop>,
-    /// The chunk, where it has to be read again.
+    /// The chunk, if it has to be read again.
     pub(super) text: Vec<u8>,
 }
 
@@ -64,7 +65,7 @@ pub(super) enum Stop {
 
 impl From<String> for Stop {
     fn from(reason: String) -> Self {
-        // The line is filled in where it is known.
+        // The line is filled in by the caller, who knows it.
         Self::Wrong(0, reason)
     }
 }
@@ -89,9 +90,9 @@ impl Piece {
         }
     }
 
-    /// Reads all statements of a chunk, or those up to the first that cannot be read. `before` is how
-    /// many statements of each kind are before the chunk, if that is known; `reached` is told now
-    /// and then how many bytes are behind.
+    /// Reads all statements of a chunk, or those up to the first that cannot be read. `before` is
+    /// how many statements of each kind are before the chunk, if that is known; `reached` is told
+    /// now and then how many bytes are behind.
     pub(super) fn read(
         chunk: &[u8],
         before: Option<Counts>,
@@ -256,7 +257,7 @@ impl Piece {
         }
     }
 
-    /// Takes `r g b`, 0 to 255, as the colour of edges, where it is that and the first.
+    /// Takes `r g b`, 0 to 255, as the colour of edges, if they are one and the first.
     fn edge_color(&mut self, rest: &[u8]) -> bool {
         match row::<3>(rest) {
             Ok(row) if row.count == 3 && row.values.iter().all(|x| x.is_finite()) => {
@@ -269,8 +270,7 @@ impl Piece {
     }
 }
 
-/// The numbers of a statement: at most `N` of them are kept, and 0 stands for those that are not
-/// there.
+/// The numbers of a statement: at most `N` of them are kept, and 0 stands for missing ones.
 struct Row<const N: usize> {
     values: [f32; N],
     /// How many there are.
