@@ -311,7 +311,8 @@ fn a_number_that_cannot_be_read_refuses_the_file_with_its_line() {
 fn a_file_without_a_usable_face_is_refused_by_its_first_bad_line() {
     assert_eq!(
         refusal(&triangle_and("f 1 2 9\nf 1 2\n")),
-        "a.obj:4: a face refers to vertex 9, but the file has 3 vertices; none of its faces can be used"
+        "a.obj:4: a face refers to vertex 9, but the file has 3 vertices; \
+         none of its faces can be used"
     );
     assert_eq!(
         refusal(&triangle_and("f 1 2\n")),
@@ -324,7 +325,8 @@ fn a_file_without_a_usable_face_is_refused_by_its_first_bad_line() {
     );
     assert_eq!(
         refusal(&triangle_and("f 0 1 2\n")),
-        "a.obj:4: a face refers to vertex 0, which the file does not have; none of its faces can be used"
+        "a.obj:4: a face refers to vertex 0, which the file does not have; \
+         none of its faces can be used"
     );
 }
 
@@ -659,7 +661,10 @@ proptest! {
     fn whatever_the_faces_use_everything_keeps_its_number(
         vertices in prop::collection::vec(prop::array::uniform3(-1e3..1e3_f32), 3..30),
         uvs in prop::collection::vec(prop::array::uniform2(-2.0..2.0_f32), 0..30),
-        faces in prop::collection::vec(prop::collection::vec((0..1000_usize, 0..1000_usize), 3..6), 1..30),
+        faces in prop::collection::vec(
+            prop::collection::vec((0..1000_usize, 0..1000_usize), 3..6),
+            1..30,
+        ),
     ) {
         let mut text = String::new();
         for [x, y, z] in &vertices {

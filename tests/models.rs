@@ -149,12 +149,13 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
 }
 
 /// What `tobj` reads of a file: positions, normals and places on the texture by corner, as bits.
+#[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
 fn by_tobj(path: &Path) -> Option<Vec<Vec<[Vec<u32>; 3]>>> {
     let (models, _) = tobj::load_obj(path, &tobj::LoadOptions::default()).ok()?;
-    let bits = |numbers: &[f32], size: usize, index: Option<&u32>| {
+    let bits = |numbers: &[f64], size: usize, index: Option<&u32>| {
         let begin = *index.unwrap_or(&u32::MAX) as usize * size;
         let row = numbers.get(begin..begin + size).unwrap_or_default();
-        row.iter().map(|x| x.to_bits()).collect::<Vec<u32>>()
+        row.iter().map(|x| (*x as f32).to_bits()).collect::<Vec<u32>>()
     };
     let mut faces = Vec::new();
     for mesh in models.into_iter().map(|model| model.mesh) {

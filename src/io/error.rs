@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::progress::Cancelled;
 
-/// What is said if memory for a file cannot be had.
+/// The message if memory for a file cannot be had.
 pub(super) const NO_MEMORY: &str = "there is not enough memory for it";
 
 /// Why a file could not be loaded. Nothing has been changed then.

@@ -1,6 +1,6 @@
 //! The small scenes that teach what accuracy is: each shows one fault as large as it can be.
 //!
-//! They are scene files like any other, carried by the program; what is on them the program carries too.
+//! They are ordinary scene files that are part of the program, as are their models.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ const LESSONS: &[(&str, &str)] = &[
 /// The scene of a lesson.
 ///
 /// # Errors
-/// Where there is none of this name.
+/// If there is no lesson of this name.
 pub fn lesson_scene(name: &str) -> Result<Opened, SceneFileError> {
     let found = LESSONS.iter().find(|(other, _)| *other == name);
     let Some((_, text)) = found else {

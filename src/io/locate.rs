@@ -1,4 +1,4 @@
-//! Where the file is that another file names.
+//! Finds the file that another file names.
 //!
 //! Names come from other machines: with back slashes, with the folders of whoever exported them, in
 //! another case. So a name is looked for where it says, then by its last part beside the file that
@@ -19,7 +19,7 @@ pub(super) struct Locator {
 }
 
 impl Locator {
-    /// The file that `name` means, seen from `folder`; `None` where there is none.
+    /// The file that `name` means, seen from `folder`, if there is one.
     pub(super) fn locate(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
         let name = plain(name);
         // No system has longer ones.
@@ -54,7 +54,7 @@ impl Locator {
         path.is_file().then_some(path)
     }
 
-    /// What is in a folder; of names that are the same without regard to case the first.
+    /// The names in a folder, by their lower case; if two differ only by case, the first.
     fn listing(&mut self, folder: &Path) -> &BTreeMap<String, OsString> {
         self.listings.entry(folder.to_owned()).or_insert_with(|| {
             let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -68,10 +68,10 @@ impl Locator {
         })
     }
 
-    /// The files that a line of names means: names are divided by blanks, and may have blanks inside.
+    /// The files that a line of names means: names are divided by blanks, and may contain blanks.
     ///
-    /// From each word on, the longest run of words that is a file is one name; where none is, a name
-    /// that is not there goes up to the first word with the ending that all of them have.
+    /// From each word on, the longest run of words that is a file is one name. If no run is a file,
+    /// a missing name goes up to the first word with the ending that all names have.
     pub(super) fn locate_all(
         &mut self,
         folder: &Path,

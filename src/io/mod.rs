@@ -1,12 +1,13 @@
 //! Models, textures, scene files and pictures, to and from the disk.
 //!
-//! What is read was written by others: nothing in it may stop the program. A file is either refused
-//! with one reason, or loaded with a list of what was mended in it.
+//! Files are written by others: nothing in them may stop the program. A file is either refused with
+//! one reason, or loaded with a list of everything that was mended in it.
 
 mod assets;
 mod describe;
 mod error;
 mod examples;
+mod finding_kinds;
 mod findings;
 mod input;
 mod lessons;

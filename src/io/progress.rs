@@ -21,7 +21,7 @@ struct State {
     cancelled: AtomicBool,
 }
 
-/// The work should end: nobody waits for it any more.
+/// The work should end: its result is no longer wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cancelled;
 
@@ -68,7 +68,7 @@ impl Progress {
     /// Says that `done` of `all` steps of this work are done.
     ///
     /// # Errors
-    /// Where the work should end.
+    /// If the work should end.
     #[expect(clippy::cast_precision_loss, reason = "for the eye")]
     pub fn reached(&self, done: usize, all: usize) -> Result<(), Cancelled> {
         let fraction = (done as f64 / all.max(1) as f64).min(1.0);

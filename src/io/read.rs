@@ -19,7 +19,7 @@ const PIECE: usize = 8 << 20;
 /// Finds out whether `path` is a file that can be read, without reading it.
 ///
 /// # Errors
-/// If there is nothing, or no file: a folder, a device, a pipe that this program does not have open.
+/// If there is nothing, or no file: a folder, a device, or a pipe that the program did not inherit.
 pub fn check_file(path: &Path) -> Result<(), LoadError> {
     readable(path).map(|_| ())
 }
@@ -38,7 +38,7 @@ pub(super) fn open(path: &Path, most: usize) -> Result<(File, usize), LoadError>
     Ok((handle, size))
 }
 
-/// Refuses what is not a regular file, before it is opened: opening a pipe waits until another
+/// Refuses anything but a regular file before it is opened: opening a pipe waits until another
 /// program writes to it. A pipe that this program was started with, as `<(...)` in a shell, is open
 /// already and can be read.
 fn readable(path: &Path) -> Result<Metadata, LoadError> {

@@ -1,7 +1,7 @@
 //! Writing a file so that nothing is lost, whatever happens on the way.
 //!
-//! The new content is written beside the old one and takes its name in one step: whoever looks finds
-//! the old file or the new one, whole. What is somebody's work is brought to the disk before, so that
+//! The new content is written beside the old one and takes its name in one step: a reader finds the
+//! old file or the new one, whole. A user's own work is brought to the disk before, so that
 //! not even a loss of power takes it.
 
 use std::fs::{self, File, OpenOptions};
@@ -27,10 +27,10 @@ impl SaveError {
     }
 }
 
-/// What a file is worth to whoever saves it.
+/// How much is lost with a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Worth {
-    /// It can be made again, and nobody waits until a disk has turned.
+    /// It can be made again, so saving it does not wait for the disk.
     Product,
     /// It is somebody's work: it is brought to the disk, and the file that was there is kept, with
     /// `~` after its name.
@@ -115,7 +115,7 @@ fn write(beside: &Path, target: &Path, content: &[u8], worth: Worth) -> std::io:
     let mut file = OpenOptions::new().write(true).create(true).truncate(true).open(beside)?;
     file.write_all(content)?;
     if let Ok(old) = fs::metadata(target) {
-        // Who may read it is as before, where the disk knows of such things.
+        // The permissions stay as they were, if the file system has any.
         let _ = file.set_permissions(old.permissions());
     }
     if worth == Worth::Product {
@@ -164,7 +164,7 @@ fn remove_left_over(target: &Path) {
     };
     let entries = fs::read_dir(folder(target)).into_iter().flatten().flatten();
     for entry in entries.filter(is_left_over) {
-        // Whoever may not remove it goes on without.
+        // If it may not be removed, it stays.
         let _ = fs::remove_file(entry.path());
     }
 }

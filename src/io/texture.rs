@@ -23,7 +23,7 @@ const MOST_MEMORY: u64 = 2 << 30;
 /// The most bytes of a file.
 const MOST_BYTES: usize = 2 << 30;
 
-/// What is said of a file of another kind.
+/// The message for a file of another kind.
 const UNKNOWN: &str = "this is not a PNG, JPEG, WebP, TIFF, BMP, TGA or GIF";
 
 /// Reads a texture that the user gives by hand: it repeats, and lies as the model's texture
@@ -178,7 +178,7 @@ fn picture(decoded: DynamicImage) -> Option<Picture> {
     Picture::from_pixels(size, texels)
 }
 
-/// Whether a JPEG ends before its marker of the end: the decoder fills up what is missing.
+/// Whether a JPEG ends before its marker of the end: the decoder fills up the missing part.
 fn jpeg_ends_early(bytes: &[u8]) -> bool {
     // Behind the marker of the beginning: FF, a kind, and for most kinds a length and its content.
     let mut rest = bytes.get(2..).unwrap_or_default();
@@ -298,7 +298,7 @@ mod tests {
         let again = pictures.read(&folder.path().join("./a.png"), 256).unwrap().picture;
         assert!(Shared::same(&first, &again));
         assert_eq!(pictures.read(&path, 255).unwrap_err(), too_many_texels(&path));
-        // A head without texels: that it is refused for their number shows that none were asked for.
+        // A head without texels: it is refused for their number, so no memory was asked for.
         let whole = std::fs::read(&path).unwrap();
         let headless = folder.path().join("b.png");
         std::fs::write(&headless, &whole[..50]).unwrap();

@@ -1,6 +1,6 @@
 //! The arguments of `map_Kd`: a file's name, with options before or after it.
 
-use super::finite;
+use super::statement;
 use crate::io::obj::lines::decode;
 use crate::scene::Wrap;
 
@@ -20,7 +20,7 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
         Map { name: String::new(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
     let text = decode(rest);
     let words = words_with_places(&text);
-    // Where the name begins and ends: blanks inside it are kept.
+    // The range of the name: blanks inside it are kept.
     let mut name: Option<(usize, usize)> = None;
     let mut at = 0;
     while let Some(&(begin, word)) = words.get(at) {
@@ -34,17 +34,17 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
         at += 1;
     }
     let (begin, end) = name?;
-    text[begin..end].clone_into(&mut map.name);
+    map.name = statement::texture(&text[begin..end])?;
     Some(map)
 }
 
 impl Map {
     /// Takes an option with the words that follow it; says how many of them are its arguments, or
-    /// `None` where the word is no option.
+    /// `None` if the word is no option.
     fn option(&mut self, word: &str, following: &[(usize, &str)]) -> Option<usize> {
         let numbers = |most: usize| -> Vec<f64> {
             let words = following.iter().take(most);
-            words.map_while(|(_, word)| finite(word.as_bytes())).collect()
+            words.map_while(|(_, word)| statement::single(word.as_bytes())).collect()
         };
         let set = |target: &mut [f64; 2], given: &[f64]| {
             for (target, given) in target.iter_mut().zip(given) {

@@ -9,7 +9,7 @@ use crate::io::findings::{FindingKind, Findings};
 use crate::scene::{FileMaterial, Material, Texture};
 
 impl Statements {
-    /// The material, with what is missing or nonsense replaced.
+    /// The material, with missing and invalid values replaced.
     pub(super) fn mended(
         self,
         texture: Option<Shared<Texture>>,
@@ -20,7 +20,7 @@ impl Statements {
         let ambient = self.mended_ambient(diffuse, &mut note);
         let specular = self.mended_specular(&mut note);
         let exponent = self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0);
-        // Without a highlight nobody misses its size.
+        // Without a highlight its size does not matter.
         let nonsense = self.exponent.is_some_and(|exponent| exponent < 1.0);
         if nonsense || (self.exponent.is_none() && specular != [0.0; 3]) {
             note(FindingKind::MendedExponent);

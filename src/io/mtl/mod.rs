@@ -1,10 +1,12 @@
 //! The materials of an MTL file, mended where exporters write nonsense.
 //!
 //! A file that cannot be understood is never a reason not to show the model: whatever is wrong is
-//! listed, and the rest is taken.
+//! listed, and the rest is taken. So tobj reads the statements one by one ([`statement`]), and a
+//! statement that it refuses costs no other.
 
 mod map;
 mod mend;
+mod statement;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -13,7 +15,7 @@ use self::map::{Map, map};
 use super::error::{LoadError, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
-use super::obj::lines::{Line, Lines, decode, number, words};
+use super::obj::lines::{Line, Lines, decode};
 use super::progress::Progress;
 use super::read::{MOST_WORDS, is_utf_16, read, utf_8};
 use super::texture::{Pictures, Read};
@@ -44,10 +46,10 @@ pub(super) struct Library<'a> {
     /// The files whose texels are counted in `texels`.
     counted: BTreeSet<PathBuf>,
     texels: usize,
-    /// Where the textures are that were looked for, by the folder of the file that names them and
+    /// The paths of textures that were looked for, by the folder of the file that names them and
     /// their name.
     found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
-    /// By path, wrapping, and the bits of offset and scale: what is the same is shared.
+    /// By path, wrapping, and the bits of offset and scale: equal textures are shared.
     textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
 }
 
@@ -94,8 +96,8 @@ impl<'a> Library<'a> {
         }
     }
 
-    /// Reads one file, if it was not read before; textures are looked for beside it, then beside the
-    /// model.
+    /// Reads one file, if it was not read before. Textures are looked for beside it, then beside
+    /// the model.
     pub(super) fn read(&mut self, path: &Path, model_folder: &Path) {
         if !self.read.insert(path.to_owned()) {
             return;
@@ -127,7 +129,7 @@ impl<'a> Library<'a> {
     /// The materials, and what was found in their files. `used` are the places of those that the
     /// model uses.
     ///
-    /// Some programs write `Tr 1` for what is opaque. It is taken so if it would hide all that is
+    /// Some programs write `Tr 1` for opaque materials. It is taken so if it would hide all that is
     /// used.
     pub(super) fn finish(mut self, used: &BTreeSet<u32>) -> (Vec<FileMaterial>, Vec<Finding>) {
         let hidden = |place: &u32| self.origins[*place as usize].hidden_by_tr;
@@ -251,20 +253,21 @@ impl Statements {
         let plain = keyword.to_ascii_lowercase();
         let mut read = true;
         match &plain[..] {
-            b"ka" => read = set(&mut self.ambient, color(rest)),
-            b"kd" => read = set(&mut self.diffuse, color(rest)),
-            b"ks" => read = set(&mut self.specular, color(rest)),
-            b"ns" => read = set(&mut self.exponent, single(rest)),
+            b"ka" => read = set(&mut self.ambient, statement::ambient(rest)),
+            b"kd" => read = set(&mut self.diffuse, statement::diffuse(rest)),
+            b"ks" => read = set(&mut self.specular, statement::specular(rest)),
+            b"ns" => read = set(&mut self.exponent, statement::exponent(rest)),
             b"d" => {
                 // `d -halo x` fades towards the middle; x alone is taken.
-                read = set(&mut self.opacity, single(rest.strip_prefix(b"-halo").unwrap_or(rest)));
+                let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
+                read = set(&mut self.opacity, statement::opacity(rest));
             }
-            b"tr" => read = set(&mut self.transparency, single(rest)),
-            b"illum" => read = set(&mut self.illumination, single(rest)),
-            b"map_kd" => match map(rest) {
-                Some(map) => self.map = Some((line.number, map)),
-                None => read = false,
-            },
+            b"tr" => read = set(&mut self.transparency, statement::opacity(rest)),
+            b"illum" => read = set(&mut self.illumination, statement::exponent(rest)),
+            b"map_kd" => {
+                let map = map(rest).map(|map| (line.number, map));
+                read = set(&mut self.map, map);
+            }
             b"bump" | b"disp" | b"decal" | b"refl" | b"norm" => {
                 findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
             }
@@ -290,26 +293,6 @@ fn set<T>(target: &mut Option<T>, value: Option<T>) -> bool {
         *target = value;
     }
     read
-}
-
-/// Three numbers, or one for all three.
-fn color(rest: &[u8]) -> Option<[f64; 3]> {
-    let numbers: Option<Vec<f64>> = words(rest).take(3).map(finite).collect();
-    match numbers?[..] {
-        [r, g, b] => Some([r, g, b]),
-        [grey] => Some([grey; 3]),
-        _ => None,
-    }
-}
-
-fn single(rest: &[u8]) -> Option<f64> {
-    words(rest).next().and_then(finite)
-}
-
-/// A number as its text says it, not by way of 32 bits.
-fn finite(word: &[u8]) -> Option<f64> {
-    let (_, text) = number(word).ok()?;
-    std::str::from_utf8(text).ok()?.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
 #[cfg(test)]

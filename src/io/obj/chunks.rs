@@ -17,7 +17,7 @@ pub(super) struct Chunks<'a, R> {
     /// The name of the file.
     file: &'a str,
     sizes: Sizes,
-    /// What was read and belongs to the next chunk.
+    /// Bytes that were read and belong to the next chunk.
     rest: Vec<u8>,
     /// How many chunks were taken.
     taken: usize,
@@ -46,7 +46,7 @@ impl<'a, R: Read> Chunks<'a, R> {
     /// Puts the next chunk in place of what `chunk` holds, and gives its number, counted from 0.
     ///
     /// # Errors
-    /// Where the text cannot be read or is too long, or a statement of it is.
+    /// If the text cannot be read or is too long, or a statement of it is.
     pub(super) fn take(&mut self, chunk: &mut Vec<u8>) -> Result<Option<usize>, LoadError> {
         chunk.clear();
         chunk.append(&mut self.rest);
@@ -81,7 +81,7 @@ impl<'a, R: Read> Chunks<'a, R> {
         self.ended
     }
 
-    /// Reads until there are so many bytes, or no more to be had.
+    /// Reads until there are `wanted` bytes, or the source ends.
     fn fill(&mut self, chunk: &mut Vec<u8>, wanted: usize) -> Result<(), LoadError> {
         let system = |error: std::io::Error| LoadError::system(self.file, &error);
         let missing = wanted.saturating_sub(chunk.len());
@@ -100,7 +100,7 @@ impl<'a, R: Read> Chunks<'a, R> {
     }
 }
 
-/// Where the last statement ends that is in a text as a whole.
+/// The end of the last statement that a text contains as a whole.
 fn end(text: &[u8]) -> Option<usize> {
     // Behind a CR there may yet come its LF.
     let mut end = text.len() - usize::from(text.last() == Some(&b'\r'));
@@ -112,8 +112,8 @@ fn end(text: &[u8]) -> Option<usize> {
     }
 }
 
-/// Whether the last sign of a text's last line that is no blank is a back slash. The text may end
-/// between CR and LF.
+/// Whether the last character of a text's last line, blanks apart, is a back slash. The text may
+/// end between CR and LF.
 fn ends_in_back_slash(text: &[u8]) -> bool {
     let text = text.strip_suffix(b"\r").unwrap_or(text);
     text.iter().rev().find(|sign| !matches!(sign, b' ' | b'\t' | b'\x0C')) == Some(&b'\\')

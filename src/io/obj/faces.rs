@@ -1,7 +1,7 @@
 //! Faces as a chunk names them.
 //!
-//! Millions of faces stand line after line and have as many corners each: what is the same from
-//! face to face is kept once.
+//! Millions of faces stand line after line with equal numbers of corners: what they have in common
+//! is kept once.
 
 use super::lines::{excerpt, words};
 use super::scan::{Counts, Piece, Stop};
@@ -37,7 +37,7 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Takes up another face, where it belongs to this run; says whether it does.
+    /// Takes up another face if it belongs to this run; says whether it does.
     #[inline]
     fn take(&mut self, face: Self) -> bool {
         let next = Self { faces: 1, line: self.line.wrapping_add(self.faces), ..*self };
@@ -88,7 +88,7 @@ impl Faces {
 }
 
 impl Piece {
-    /// Takes up a face of so many corners, which were pushed last.
+    /// Takes up a face of `corners` corners, which were pushed last.
     #[inline]
     pub(super) fn end_face(&mut self, corners: usize, line: u32) {
         let corners = u32::try_from(corners).unwrap_or(NONE);
@@ -146,7 +146,7 @@ impl Piece {
     }
 }
 
-/// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` where it is no such thing.
+/// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` if it is not one.
 fn corner(word: &[u8], counts: Counts) -> Option<SourceCorner> {
     let mut places = [NONE; 3];
     for (i, part) in word.split(|b| *b == b'/').enumerate() {
@@ -173,7 +173,7 @@ fn index(digits: &[u8], count: u32) -> Option<u32> {
     }
     let value = digits.iter().try_fold(0_u64, |value, digit| {
         let digit = digit.is_ascii_digit().then(|| digit - b'0')?;
-        // Whatever is beyond 32 bits is as wrong as anything else there.
+        // An index beyond 32 bits is as wrong as any other that is out of range.
         Some((value * 10 + u64::from(digit)).min(u64::from(u32::MAX)))
     })?;
     let value = u32::try_from(value).unwrap_or(u32::MAX);

@@ -1,9 +1,9 @@
 //! A file read in chunks, all at once, and put together as if it had been read from its beginning
 //! to its end.
 //!
-//! What is found, refused and numbered is the same however the file is cut. Most files name their
-//! vertices from the beginning, so chunks are read before anyone knows what is before them; those
-//! in which a face counts back are read again when all vertices are counted.
+//! Findings, refusals and numbers are the same however the file is cut. Most files count their
+//! vertices from the beginning, so a chunk is read before the statements in front of it are
+//! counted; if one of its faces counts back, it is read again when all vertices are counted.
 
 use std::io::Read;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -15,7 +15,8 @@ use super::chunks::{Chunks, Sizes};
 use super::faces::INHERITED;
 use super::lines::{Lines, unmarked};
 use super::parts::{PartNames, Parts};
-use super::scan::{Counts, NO_COLOR, Piece, Rows, Stop};
+use super::rows::{NO_COLOR, Rows};
+use super::scan::{Counts, Piece, Stop};
 use super::sound::{Before, SoundFaces, SoundPiece, Totals};
 use super::{EMPTY, no_obj};
 use crate::base::color::Color;
@@ -55,11 +56,11 @@ pub(super) struct Content {
     pub(super) edge_color: Option<Color>,
 }
 
-/// Reads all statements of a text of so many bytes, as far as that is known.
+/// Reads all statements of a text. `size` is how many bytes it has, as far as that is known.
 ///
 /// # Errors
-/// Where it cannot be read, is none of an OBJ file or too long, where a line cannot be taken for what
-/// it says it is, or the work should end.
+/// If it cannot be read, is not an OBJ file or is too long, if a line cannot be taken for what it
+/// says it is, or if the work should end.
 pub(super) fn content(
     text: impl Read + Send,
     size: usize,
@@ -138,18 +139,19 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         }
     }
 
-    /// Reads one chunk, which so many statements are before.
+    /// Reads one chunk. `before` is how many statements precede it, if that is known.
     fn piece(&self, text: &[u8], before: Option<Counts>) -> Result<Piece, Cancelled> {
-        let mut piece = Piece::new(before);
         let mut told = 0;
         let mut reached = |now: usize| {
-            let before = self.done.fetch_add(now - told, Ordering::Relaxed);
-            self.progress.reached(before + now - told, self.size)?;
-            told = now;
+            // A chunk that is read twice counts once.
+            let new = now.saturating_sub(told);
+            let before = self.done.fetch_add(new, Ordering::Relaxed);
+            self.progress.reached(before + new, self.size)?;
+            told += new;
             Ok(())
         };
         reached(0)?;
-        piece.read(text, &mut reached)?;
+        let piece = Piece::read(text, before, &mut reached)?;
         reached(text.len())?;
         Ok(piece)
     }
@@ -259,8 +261,7 @@ fn joined(
     })
 }
 
-/// Why so many of something are refused, where they are: with all that follows from it, a corner
-/// takes some fifty bytes.
+/// Why a count is refused, if it is: with everything made from it, a corner takes some fifty bytes.
 fn too_many(what: &str, count: usize) -> Option<String> {
     (count > MOST).then(|| {
         let [count, most] = [count, MOST].map(|n| n / 1_000_000);
@@ -276,24 +277,24 @@ fn all_rows<const N: usize>(
     let mut totals = Totals { count: 0, lost: Vec::new() };
     let mut kept = Vec::new();
     for piece in pieces {
-        let rows = std::mem::take(rows(piece));
+        let rows = rows(piece);
         totals.lost.extend(rows.lost.iter().map(|i| i.saturating_add(totals.count)));
         totals.count = totals.count.saturating_add(rows.count);
-        kept.push(rows.kept);
+        kept.push(std::mem::take(&mut rows.kept));
     }
     (concatenated(kept), totals)
 }
 
 /// The colours of all vertices: white for those without one, 0 to 1 for those of 0 to 255.
 fn complete_colors(pieces: &mut [Piece], findings: &mut Findings) -> Vec<[f32; 3]> {
-    if pieces.iter().all(|piece| piece.colors.is_empty()) {
+    if pieces.iter().all(|piece| piece.vertices.colors.is_empty()) {
         return Vec::new();
     }
     let mut colors = Vec::new();
     for piece in pieces {
         // A piece has colours for all of its vertices, or none.
         let all = colors.len() + piece.vertices.kept.len();
-        colors.append(&mut piece.colors);
+        colors.append(&mut piece.vertices.colors);
         colors.resize(all, NO_COLOR);
     }
     let largest = colors.iter().flatten().fold(0.0, |a: f32, b| a.max(*b));

@@ -1,7 +1,7 @@
-//! The lines of an OBJ or MTL file, whoever wrote it.
+//! The lines of an OBJ or MTL file, whichever program wrote it.
 //!
-//! A line ends with LF, CR LF or CR, and goes on with the next where its last sign is a back slash.
-//! Bytes that are no UTF-8 are taken as Latin-1; a mark of the byte order at the beginning is
+//! A line ends with LF, CR LF or CR, and goes on with the next if its last character is a back
+//! slash. Bytes that are not UTF-8 are taken as Latin-1; a byte-order mark at the beginning is
 //! skipped.
 
 use std::borrow::Cow;
@@ -15,7 +15,7 @@ pub(in crate::io) struct Line<'a> {
     pub(in crate::io) number: u32,
     /// Its text, without blanks at its ends; continuations are joined by a blank.
     text: Cow<'a, [u8]>,
-    /// The same, joined by nothing, where that is not the same: names go on without a blank.
+    /// The same, joined by nothing, if it differs: names go on without a blank.
     joined: Option<Vec<u8>>,
 }
 
@@ -53,7 +53,7 @@ impl<'a> Lines<'a> {
         &self.bytes[self.at..]
     }
 
-    /// Passes over a line of so many bytes, its ending among them.
+    /// Passes over a line of `length` bytes, its ending among them.
     pub(super) const fn pass(&mut self, length: usize) {
         self.at += length;
         self.number = self.number.saturating_add(1);
@@ -128,7 +128,7 @@ impl Line<'_> {
     }
 }
 
-/// A file without the mark of the byte order that it may begin with.
+/// A file without the byte-order mark that it may begin with.
 pub(super) fn unmarked(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
 }
@@ -147,7 +147,7 @@ pub(in crate::io) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
         .take_while(|word| word[0] != b'#')
 }
 
-/// Text of UTF-8 or, where it is none, of Latin-1.
+/// Text of UTF-8 or, if it is not UTF-8, of Latin-1.
 pub(in crate::io) fn decode(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
@@ -155,10 +155,10 @@ pub(in crate::io) fn decode(bytes: &[u8]) -> String {
     }
 }
 
-/// A word for a message: its beginning, where it is longer than anyone wants to read.
+/// A word for a message, cut off if it is long.
 pub(in crate::io) fn excerpt(word: &[u8]) -> String {
     const MOST: usize = 40;
-    // No sign of UTF-8 has more than four bytes.
+    // No character of UTF-8 has more than four bytes.
     let text = decode(&word[..word.len().min(4 * MOST)]);
     let is_cut = 4 * MOST < word.len() || text.chars().nth(MOST).is_some();
     let shown: String = text.chars().take(MOST).collect();
@@ -172,7 +172,7 @@ pub(in crate::io) struct NoNumber(pub(in crate::io) String);
 
 /// A number of 32 bits, with the part of the word that says it: a comment may follow at once.
 ///
-/// What the libraries of C write for infinities and NaN is read as such; the text
+/// The spellings of C libraries for infinities and NaN are read as such; the text
 /// is then of no use.
 pub(in crate::io) fn number(word: &[u8]) -> Result<(f32, &[u8]), NoNumber> {
     let parse = |word: &[u8]| std::str::from_utf8(word).ok()?.parse::<f32>().ok();

@@ -1,24 +1,25 @@
 //! A model from an OBJ file.
 //!
-//! The text is cut into chunks ([`chunks`]), which are read by all threads: the quick way where a
-//! line is plain ([`quick`]), else the way that knows everything ([`scan`], [`faces`]). What they say
-//! is put together as if one had read it all ([`join`]), the faces that can be used are picked
-//! ([`sound`]), and a [`Mesh`] is made of them. A vertex of the mesh is a `v` of the file, used or
-//! not.
+//! The text is cut into chunks ([`chunks`]), which are read by all threads: plain lines the quick
+//! way ([`quick`]), all others the tolerant way ([`scan`], [`faces`]). The numbers of `v`, `vt` and
+//! `vn` are read by tobj ([`rows`]). Faces are not: tobj reads them on one thread, forgets their
+//! lines, and refuses the file for one bad index. The chunks are put together as if they had been
+//! read in order ([`join`]), the faces that can be used are picked ([`sound`]), and a [`Mesh`] is
+//! made of them. A vertex of the mesh is a `v` of the file, used or not.
 //!
-//! A number that cannot be read refuses the file, for what follows would be guesswork. What can be
-//! left out or mended without guessing is, and each such thing is a [`Finding`].
+//! A number that cannot be read refuses the file, for the rest would be guesswork. Whatever can be
+//! left out or mended without guessing is, and each such case is a [`Finding`].
 //!
 //! The format is that of Wavefront's "Advanced Visualizer", Appendix B1, with the colours of
 //! vertices that MeshLab and others write.
 
 mod chunks;
-mod decimal;
 mod faces;
 mod join;
 pub(super) mod lines;
 mod parts;
 mod quick;
+mod rows;
 mod scan;
 mod sound;
 
@@ -60,17 +61,17 @@ pub struct Loaded {
     pub findings: Vec<Finding>,
 }
 
-/// Reads an OBJ file, with the MTL files and textures that it names. If its name ends in `.gz`, it is
-/// unpacked.
+/// Reads an OBJ file, with the MTL files and textures that it names. A file whose name ends in
+/// `.gz` is unpacked.
 ///
 /// # Errors
-/// If the file cannot be read, is not an OBJ file, has a number that cannot be read, or has faces of
-/// which none can be used; and if `progress` is cancelled.
+/// If the file cannot be read, is not an OBJ file, has a number that cannot be read, or has faces
+/// but none that can be used; and if `progress` is cancelled.
 pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
     load_with(path, options, &mut Pictures::default(), progress)
 }
 
-/// As [`load`]; what is among `pictures` already is not read again.
+/// As [`load`]; a picture that is among `pictures` already is not read again.
 pub(super) fn load_with(
     path: &Path,
     options: &LoadOptions,
@@ -82,7 +83,7 @@ pub(super) fn load_with(
     let mut findings = Findings::new(&file);
     let part = progress.part(0.0, 0.6);
     let content = match unpacked_name(&file) {
-        // How much it is when it is unpacked is not known; a text has about four times as much.
+        // Its size when unpacked is not known; text has about four times as much.
         Some(_) => content(Unpacked::new(text), 4 * size, &file, &mut findings, &part)?,
         None => content(text, size, &file, &mut findings, &part)?,
     };
@@ -198,7 +199,7 @@ fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
         .then(|| "this is not an OBJ file: it is not text".into())
 }
 
-/// Refuses a file of which nothing would be left.
+/// Refuses a file if nothing of it would be left.
 fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
     if !content.faces.runs.is_empty() {
         return Ok(());
@@ -264,7 +265,7 @@ fn named_parts(names: &[PartNames], library: &Library<'_>, findings: &mut Findin
     names.iter().enumerate().map(part).collect()
 }
 
-/// What the mesh is made of, turned and scaled as asked for; `None` where that is not finite.
+/// The lists of the mesh, turned and scaled as asked for; `None` if they are not finite.
 fn source(
     content: Content,
     faces: &FaceRuns,
@@ -308,7 +309,7 @@ fn source(
     finite.then_some((source, corners))
 }
 
-/// Turns and scales what a file has as it is asked for.
+/// Turns and scales the positions and normals of a file as asked for.
 fn place(positions: &mut [[f32; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
     let up = |row| options.up.upright(row);
     let scale = options.scale.get();

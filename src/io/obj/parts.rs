@@ -42,8 +42,8 @@ impl Parts {
         })
     }
 
-    /// Takes up the parts of the lines that follow, of which `lines` are before them; gives the
-    /// place here of each part there.
+    /// Takes up the parts of the lines that follow the first `lines` lines; gives the place here of
+    /// each part there.
     pub(super) fn append(&mut self, following: &Self, lines: u32) -> Vec<u32> {
         let before = self.now.clone();
         let mut place = |names: &PartNames| {
@@ -57,7 +57,7 @@ impl Parts {
 }
 
 impl PartNames {
-    /// The names as they are where others were given before; `lines` are before these.
+    /// The names with those that were given before; `lines` lines are before these.
     fn after(&self, before: &Self, lines: u32) -> Self {
         let given = |ours: &Option<String>, earlier: &Option<String>| {
             ours.as_ref().or(earlier.as_ref()).cloned()

@@ -1,59 +1,48 @@
-//! The quick way through lines as nearly all of them are written.
+//! Reads plain lines, as nearly all lines are written.
 //!
-//! It goes over a line once, from its keyword to its ending, and takes what it says only where the
-//! whole line is of the plain form; else it leaves the line as if it had not looked, to the way
-//! that knows comments, continued lines, odd numbers and every fault.
+//! A line is gone over once, from its keyword to its ending. A face is taken if the whole line is
+//! plain; a row of numbers is then left to tobj. Any other line is left untouched to the tolerant
+//! way, which knows comments, continued lines, odd numbers and every fault.
 
-use super::decimal::{decimal, leading_digits};
-use super::scan::{Counts, Piece};
+use super::lines::Lines;
+use super::scan::{Counts, Piece, Trust};
 use crate::scene::{NONE, SourceCorner};
 
 impl Piece {
-    /// Reads the line with which a text begins; says how many bytes it has, its ending among them,
-    /// or `None` where it is not of the plain form.
+    /// Reads the next line if it has the plain form; says how many bytes it has, with its ending.
     #[inline]
-    pub(super) fn quick(&mut self, text: &[u8], line: u32) -> Option<usize> {
-        let rest = match text {
-            [b'v', b' ', rest @ ..] => self.quick_vertex(rest),
-            [b'f', b' ', rest @ ..] => self.quick_face(rest, line),
-            [b'v', b'n', b' ', rest @ ..] => {
-                let (normal, rest) = numbers(rest)?;
-                let rest = line_end(rest)?;
-                self.normals.add(normal);
-                Some(rest)
+    pub(super) fn quick(&mut self, lines: &Lines<'_>) -> Option<usize> {
+        match lines.rest() {
+            text @ [b'f', b' ', rest @ ..] => {
+                let rest = self.quick_face(rest, lines.number().saturating_add(1))?;
+                Some(text.len() - rest.len())
             }
-            [b'v', b't', b' ', rest @ ..] => self.quick_uv(rest),
+            text @ [b'v', ..] if self.trust == Trust::Plain => {
+                self.quick_row(text, lines.position())
+            }
             _ => None,
-        }?;
-        Some(text.len() - rest.len())
+        }
     }
 
-    /// `x y z` and `x y z r g b`.
+    /// `v x y z`, `v x y z r g b`, `vt u v`, `vt u v w` and `vn x y z` go to tobj as they are.
     #[inline]
-    fn quick_vertex<'a>(&mut self, rest: &'a [u8]) -> Option<&'a [u8]> {
-        let (position, rest) = numbers(rest)?;
-        let (color, rest) = match line_end(rest) {
-            Some(rest) => (None, rest),
-            None => {
-                let (color, rest) = numbers(rest)?;
-                (Some(color), line_end(rest)?)
-            }
+    fn quick_row(&mut self, text: &[u8], begin: usize) -> Option<usize> {
+        let keyword = match text {
+            [_, b' ', ..] => 1,
+            [_, b'n' | b't', b' ', ..] => 2,
+            _ => return None,
         };
-        self.vertices.add(position);
-        self.color(color);
-        Some(rest)
-    }
-
-    /// `u v` and `u v w`.
-    #[inline]
-    fn quick_uv<'a>(&mut self, rest: &'a [u8]) -> Option<&'a [u8]> {
-        let (uv, rest) = numbers(rest)?;
-        let rest = match line_end(rest) {
-            Some(rest) => rest,
-            None => line_end(numbers::<1>(rest)?.1)?,
-        };
-        self.uvs.add(uv);
-        Some(rest)
+        let (words, length, ending) = plain(&text[keyword..])?;
+        let (length, end) = (keyword + length, begin + keyword + length);
+        match (&text[..keyword], words) {
+            (b"v", 3 | 6) => self.vertices.add_line(begin, end, words == 6),
+            (b"vn", 3) => self.normals.add_line(begin, end, false),
+            (b"vt", 2) => self.uvs.add_line(begin, end, false),
+            // tobj does not look at the third number.
+            (b"vt", 3) if is_number(&text[..length]) => self.uvs.add_line(begin, end, false),
+            _ => return None,
+        }
+        Some(length + ending)
     }
 
     /// Three corners or more.
@@ -79,15 +68,59 @@ impl Piece {
     }
 }
 
-/// `N` numbers with blanks before each.
+/// How many words a line has, how many bytes they take, and how many its ending; `None` if the line
+/// has anything but blanks and what numbers are written with. It begins with a blank.
 #[inline]
-fn numbers<const N: usize>(mut text: &[u8]) -> Option<([f32; N], &[u8])> {
-    let mut numbers = [0.0; N];
-    for number in &mut numbers {
-        (*number, text) = decimal(blanks(text))?;
-        ends_word(text)?;
+fn plain(text: &[u8]) -> Option<(u32, usize, usize)> {
+    let (mut words, mut before, mut length) = (0, BLANK, 0);
+    while let Some(byte) = text.get(length) {
+        let class = CLASSES[usize::from(*byte)];
+        if class > BLANK {
+            break;
+        }
+        words += u32::from(before & !class);
+        before = class;
+        length += 1;
     }
-    Some((numbers, text))
+    match text[length..] {
+        [b'\r', b'\n', ..] => Some((words, length, 2)),
+        [b'\n' | b'\r', ..] => Some((words, length, 1)),
+        [] => Some((words, length, 0)),
+        _ => None,
+    }
+}
+
+/// A byte of a number, for [`CLASSES`].
+const NUMBER: u8 = 0;
+
+/// A space or a tab.
+const BLANK: u8 = 1;
+
+/// Any other byte.
+const OTHER: u8 = 2;
+
+/// What each byte is in a line of numbers.
+const CLASSES: [u8; 256] = {
+    let mut classes = [OTHER; 256];
+    let (numbers, blanks) = (b"0123456789+-.eE", b" \t");
+    let mut i = 0;
+    while i < numbers.len() {
+        classes[numbers[i] as usize] = NUMBER;
+        i += 1;
+    }
+    i = 0;
+    while i < blanks.len() {
+        classes[blanks[i] as usize] = BLANK;
+        i += 1;
+    }
+    classes
+};
+
+/// Whether the last word of a line is a number.
+fn is_number(line: &[u8]) -> bool {
+    let mut words = line.trim_ascii_end().rsplit(|b| matches!(b, b' ' | b'\t'));
+    let word = std::str::from_utf8(words.next().unwrap_or_default());
+    word.is_ok_and(|word| word.parse::<f32>().is_ok())
 }
 
 /// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`.
@@ -146,11 +179,31 @@ fn ends_word(text: &[u8]) -> Option<()> {
     matches!(text, [] | [b' ' | b'\t' | b'\n' | b'\r', ..]).then_some(())
 }
 
-/// What follows the line's ending, where nothing but blanks is before it.
+/// What follows the line's ending, if nothing but blanks is before it.
 #[inline]
 fn line_end(text: &[u8]) -> Option<&[u8]> {
     match blanks(text) {
         [b'\r', b'\n', rest @ ..] | [b'\n' | b'\r', rest @ ..] | rest @ [] => Some(rest),
         _ => None,
     }
+}
+
+/// The number that the leading digits of eight bytes make, and how many digits there are.
+#[inline]
+fn leading_digits(text: [u8; 8]) -> (u32, usize) {
+    // Digits become their values, other bytes more than 9.
+    let values = u64::from_le_bytes(text) ^ 0x3030_3030_3030_3030;
+    let beyond = values | values.wrapping_add(0x0606_0606_0606_0606);
+    // A carry spoils only what follows the first byte that is not a digit.
+    let count = (beyond & 0xf0f0_f0f0_f0f0_f0f0).trailing_zeros() / 8;
+    if count == 0 {
+        return (0, 0);
+    }
+    // To the end, behind zeros; then neighbours are joined: to pairs, to fours, to eight.
+    let values = values << (64 - 8 * count);
+    let pairs = values.wrapping_mul(10).wrapping_add(values >> 8);
+    let even = (pairs & 0x0000_00ff_0000_00ff).wrapping_mul(0x000f_4240_0000_0064);
+    let odd = ((pairs >> 16) & 0x0000_00ff_0000_00ff).wrapping_mul(0x0000_2710_0000_0001);
+    let value = (even.wrapping_add(odd) >> 32) as u32;
+    (value, count as usize)
 }

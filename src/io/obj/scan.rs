@@ -1,35 +1,36 @@
-//! What the statements of a chunk of an OBJ file say.
+//! Reads the statements of a chunk of an OBJ file.
 //!
 //! Chunks are read apart from each other, so lines are counted from the chunk's own first one, and
 //! names of parts may be missing that earlier chunks give. A negative index counts back from where
-//! it stands, so it can be resolved only where it is known how much is before the chunk; whether a
+//! it stands, so it can be resolved only if the statements before the chunk are counted; whether a
 //! positive one is in range is known only at the end of the file.
 //!
-//! Most lines are read by the quick way (`quick`); what that leaves is read here.
+//! Most lines are read by the quick way (`quick`), and their numbers by tobj (`rows`). The other
+//! lines are read here, the tolerant way; their numbers reach tobj rewritten.
 
 use super::faces::{Faces, INHERITED};
 use super::lines::{Line, Lines, excerpt, number, words};
 use super::parts::Parts;
+use super::rows::{RowKind, Rows};
 use crate::base::color::{Color, byte};
 use crate::io::findings::{FindingKind, Findings};
 use crate::io::progress::Cancelled;
 
-/// How many vertices, places on the texture and normals there are.
+/// How many vertices, texture coordinates and normals there are.
 pub(super) type Counts = [u32; 3];
 
 /// Everything that the statements of a chunk say.
 #[derive(Debug)]
 pub(super) struct Piece {
-    /// How many statements of each kind are before the chunk; `None` where that is not known.
+    /// How many statements of each kind are before the chunk, if that is known.
     pub(super) before: Option<Counts>,
+    /// Which lines of numbers go to tobj as they are.
+    pub(super) trust: Trust,
     /// How many lines the chunk has, as far as it was read.
     pub(super) lines: u32,
     pub(super) vertices: Rows<3>,
     pub(super) uvs: Rows<2>,
     pub(super) normals: Rows<3>,
-    /// Red, green and blue of the vertices that are kept, from the first one that has a colour up
-    /// to the last one; NaN where a vertex has none. Empty where none has one.
-    pub(super) colors: Vec<[f32; 3]>,
     pub(super) faces: Faces,
     pub(super) parts: Parts,
     /// The smoothing group of the next face: 0 for none, or [`INHERITED`].
@@ -40,8 +41,17 @@ pub(super) struct Piece {
     pub(super) findings: Findings,
     /// Why the chunk was not read to its end.
     pub(super) stop: Option<Stop>,
-    /// The chunk, where it has to be read again.
+    /// The chunk, if it has to be read again.
     pub(super) text: Vec<u8>,
+}
+
+/// Which lines of numbers go to tobj as they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Trust {
+    /// Those that look like nothing but numbers.
+    Plain,
+    /// None: tobj refused such a line, or its rounding is in doubt.
+    Nothing,
 }
 
 /// Why a chunk was not read to its end.
@@ -55,47 +65,20 @@ pub(super) enum Stop {
 
 impl From<String> for Stop {
     fn from(reason: String) -> Self {
-        // The line is filled in where it is known.
+        // The line is filled in by the caller, who knows it.
         Self::Wrong(0, reason)
     }
 }
 
-/// Statements of numbers.
-#[derive(Debug, Default)]
-pub(super) struct Rows<const N: usize> {
-    /// The first `N` numbers of those that are finite.
-    pub(super) kept: Vec<[f32; N]>,
-    /// Statements, whether kept or not.
-    pub(super) count: u32,
-    /// Those that are not finite, and not kept; ascending.
-    pub(super) lost: Vec<u32>,
-}
-
-impl<const N: usize> Rows<N> {
-    /// Keeps a row where it is finite; says whether it is.
-    #[inline]
-    pub(super) fn add(&mut self, row: [f32; N]) -> bool {
-        // More than can be counted are more than a mesh can have: it will say so.
-        self.count = self.count.saturating_add(1);
-        let finite = row.iter().all(|x| x.is_finite());
-        if finite {
-            self.kept.push(row);
-        } else {
-            self.lost.push(self.count - 1);
-        }
-        finite
-    }
-}
-
 impl Piece {
-    pub(super) fn new(before: Option<Counts>) -> Self {
+    fn new(before: Option<Counts>, trust: Trust) -> Self {
         Self {
             before,
+            trust,
             lines: 0,
-            vertices: Rows::default(),
-            uvs: Rows::default(),
-            normals: Rows::default(),
-            colors: Vec::new(),
+            vertices: Rows::new(RowKind::Vertex),
+            uvs: Rows::new(RowKind::Uv),
+            normals: Rows::new(RowKind::Normal),
             faces: Faces::default(),
             parts: Parts::default(),
             smoothing: INHERITED,
@@ -107,12 +90,30 @@ impl Piece {
         }
     }
 
-    /// Reads all statements of a chunk, or those up to the first that cannot be read. `reached` is
-    /// told now and then how many bytes are behind.
+    /// Reads all statements of a chunk, or those up to the first that cannot be read. `before` is
+    /// how many statements of each kind are before the chunk, if that is known; `reached` is told
+    /// now and then how many bytes are behind.
     pub(super) fn read(
+        chunk: &[u8],
+        before: Option<Counts>,
+        mut reached: impl FnMut(usize) -> Result<(), Cancelled>,
+    ) -> Result<Self, Cancelled> {
+        let mut piece = Self::new(before, Trust::Plain);
+        piece.scan(chunk, &mut reached)?;
+        if !piece.read_rows(chunk) {
+            piece = Self::new(before, Trust::Nothing);
+            piece.scan(chunk, &mut reached)?;
+            if !piece.read_rows(chunk) && piece.stop.is_none() {
+                piece.stop = Some(Stop::Wrong(1, "tobj cannot read the numbers from here".into()));
+            }
+        }
+        Ok(piece)
+    }
+
+    fn scan(
         &mut self,
         chunk: &[u8],
-        mut reached: impl FnMut(usize) -> Result<(), Cancelled>,
+        reached: &mut impl FnMut(usize) -> Result<(), Cancelled>,
     ) -> Result<(), Cancelled> {
         let mut lines = Lines::within(chunk);
         let mut count = 0_u32;
@@ -121,7 +122,7 @@ impl Piece {
             if count.is_multiple_of(4096) {
                 reached(lines.position())?;
             }
-            if let Some(length) = self.quick(lines.rest(), lines.number().saturating_add(1)) {
+            if let Some(length) = self.quick(&lines) {
                 lines.pass(length);
                 continue;
             }
@@ -138,18 +139,17 @@ impl Piece {
         Ok(())
     }
 
+    /// Has tobj read the rows of numbers; says whether it could.
+    fn read_rows(&mut self, chunk: &[u8]) -> bool {
+        // A chunk that counts back is read again from its beginning.
+        matches!(self.stop, Some(Stop::CountsBack))
+            || self.vertices.read(chunk) && self.uvs.read(chunk) && self.normals.read(chunk)
+    }
+
     /// How many statements of each kind are before the next one.
     pub(super) fn counts(&self) -> Option<Counts> {
         let own = [self.vertices.count, self.uvs.count, self.normals.count];
         self.before.map(|before| std::array::from_fn(|i| before[i].saturating_add(own[i])))
-    }
-
-    /// Gives the vertex that was kept last a colour, or none.
-    pub(super) fn color(&mut self, color: Option<[f32; 3]>) {
-        if color.is_some() || !self.colors.is_empty() {
-            self.colors.resize(self.vertices.kept.len() - 1, NO_COLOR);
-            self.colors.push(color.unwrap_or(NO_COLOR));
-        }
     }
 
     fn statement(&mut self, line: &Line<'_>) -> Result<(), Stop> {
@@ -198,9 +198,8 @@ impl Piece {
             5 | 8.. => self.findings.note(FindingKind::ExtraNumbers, line),
             _ => {}
         }
-        if self.vertices.add([x, y, z]) {
-            self.color(matches!(count, 6 | 7).then_some([more[0], more[1], more[2]]));
-        } else {
+        let color = matches!(count, 6 | 7).then_some([more[0], more[1], more[2]]);
+        if !self.vertices.add([x, y, z], color) {
             self.findings.note(FindingKind::VertexNotFinite, line);
         }
         Ok(())
@@ -214,7 +213,7 @@ impl Piece {
             1 => self.findings.note(FindingKind::UvSingle, line),
             _ => {}
         }
-        if !self.uvs.add([u, v]) {
+        if !self.uvs.add([u, v], None) {
             self.findings.note(FindingKind::UvNotFinite, line);
         }
         Ok(())
@@ -226,7 +225,7 @@ impl Piece {
         if count < 3 {
             return Err(format!("a normal needs three numbers, but has {count}"));
         }
-        if !self.normals.add(values) {
+        if !self.normals.add(values, None) {
             self.findings.note(FindingKind::NormalNotFinite, line);
         }
         Ok(())
@@ -258,7 +257,7 @@ impl Piece {
         }
     }
 
-    /// Takes `r g b`, 0 to 255, as the colour of edges, where it is that and the first.
+    /// Takes `r g b`, 0 to 255, as the colour of edges, if they are one and the first.
     fn edge_color(&mut self, rest: &[u8]) -> bool {
         match row::<3>(rest) {
             Ok(row) if row.count == 3 && row.values.iter().all(|x| x.is_finite()) => {
@@ -271,11 +270,7 @@ impl Piece {
     }
 }
 
-/// What stands for a vertex without a colour among others.
-pub(super) const NO_COLOR: [f32; 3] = [f32::NAN; 3];
-
-/// The numbers of a statement: at most `N` of them are kept, and 0 stands for those that are not
-/// there.
+/// The numbers of a statement: at most `N` of them are kept, and 0 stands for missing ones.
 struct Row<const N: usize> {
     values: [f32; N],
     /// How many there are.

@@ -13,7 +13,7 @@ pub(super) struct Totals {
 }
 
 impl Totals {
-    /// Where statement `i` stands among those that are kept; `None` where it is lost.
+    /// Where statement `i` stands among those that are kept; `None` if it is lost.
     fn place(&self, i: u32) -> Option<u32> {
         match self.lost.binary_search(&i) {
             Ok(_) => None,
@@ -21,7 +21,7 @@ impl Totals {
         }
     }
 
-    /// Whether every index of a list names something, or is [`NONE`] where that is allowed.
+    /// Whether every index of a list names something, or is [`NONE`] if that is allowed.
     fn holds(&self, list: &[u32], none: bool) -> bool {
         // Counted, not searched: that is done for many at once.
         let wrong = |i: &&u32| **i >= self.count && !(none && **i == NONE);
@@ -29,7 +29,7 @@ impl Totals {
     }
 }
 
-/// Faces whose every index is in range or [`NONE`], counted among what is kept of the file.
+/// Faces whose every index is in range or [`NONE`], counted among the rows that are kept.
 #[derive(Debug)]
 pub(super) struct SoundFaces {
     pub(super) corners: CornerLists,
@@ -38,14 +38,14 @@ pub(super) struct SoundFaces {
     pub(super) refused: Option<(u32, String)>,
 }
 
-/// What of a chunk depends on those before it.
+/// The state at the beginning of a chunk.
 #[derive(Debug)]
 pub(super) struct Before {
     /// How many lines are before it.
     pub(super) lines: u32,
     /// The places of its parts in the file's list.
     pub(super) parts: Vec<u32>,
-    /// The smoothing group where it begins.
+    /// The smoothing group at its beginning.
     pub(super) smoothing: u32,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct Before {
 pub(super) struct SoundPiece {
     faces: Faces,
     findings: Findings,
-    /// Faces without places on the texture, and without normals.
+    /// Faces without texture coordinates, and without normals.
     without: [Without; 2],
 }
 
@@ -84,7 +84,8 @@ impl Without {
 }
 
 impl SoundPiece {
-    /// Leaves out faces whose vertices are not there, and takes from corners what is not there.
+    /// Leaves out faces whose vertices are missing, and takes missing texture coordinates and
+    /// normals from corners.
     pub(super) fn of(mut faces: Faces, totals: &[Totals; 3], before: &Before) -> Self {
         let Before { lines, ref parts, smoothing } = *before;
         for run in &mut faces.runs {
@@ -160,7 +161,8 @@ impl SoundPiece {
         }
     }
 
-    /// Takes up a face with its indices brought to what is kept, and notes what is odd about it.
+    /// Takes up a face with its indices counted among the rows that are kept, and notes what is
+    /// odd.
     fn add(
         &mut self,
         lists: &CornerLists,
@@ -221,7 +223,7 @@ impl SoundFaces {
             uvs: optional(uvs, &lengths),
             normals: optional(normals, &lengths),
         };
-        // What no face has is missed by none.
+        // What no face has is not missing.
         let kinds = [FindingKind::UvMixed, FindingKind::NormalMixed];
         for (without, kind) in without.into_iter().zip(kinds) {
             if without.corners < all.corners.positions.len() {
@@ -290,8 +292,8 @@ fn faces_of(runs: &[Run]) -> impl Iterator<Item = (usize, u32)> {
     runs.iter().flat_map(faces)
 }
 
-/// Lists one after the other, of which those are empty that have nothing but [`NONE`]; `lengths` is
-/// how long they would be.
+/// Lists one after the other. A list of nothing but [`NONE`] may be empty; `lengths` says how long
+/// each is.
 fn optional(mut lists: Vec<Vec<u32>>, lengths: &[usize]) -> Vec<u32> {
     if lists.iter().all(Vec::is_empty) {
         return Vec::new();
@@ -316,7 +318,7 @@ fn fault(face: &[u32], vertices: &Totals) -> Option<(FindingKind, String)> {
     })
 }
 
-/// Where an index stands among what is kept, or [`NONE`].
+/// The place of an index among the rows that are kept, or [`NONE`].
 fn settled(index: u32, totals: &Totals, wrong: &mut bool) -> u32 {
     let names = index < totals.count && index != WRONG;
     *wrong |= !names && index != NONE;

@@ -1,8 +1,8 @@
 //! The text of a scene file.
 //!
-//! These types are the file's and nobody else's: the scene may change its own, and old files still
-//! open. A field that is not there has the value that a new scene gives it; a field that is not known
-//! is an error, for it may be a slip of the hand that would be lost on saving.
+//! These types are the file's alone: the scene may change its own, and old files still open. A
+//! field that is not there has the value that a new scene gives it; a field that is not known is an
+//! error, for it may be a slip of the hand that would be lost on saving.
 
 use std::collections::BTreeSet;
 
@@ -251,7 +251,7 @@ pub(super) struct FilePolygons {
 
 /// Numbers as `0-7 9 12-20`: a hundred thousand shown polygons are no hundred thousand lines.
 ///
-/// They stay runs as long as nobody has said how many there can be.
+/// They stay runs until it is known how many there can be.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub(super) struct Numbers(Vec<(u32, u32)>);

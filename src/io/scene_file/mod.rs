@@ -72,7 +72,7 @@ pub enum SceneFileError {
     Missing {
         /// The scene file's path, as the user gave it.
         file: String,
-        /// Where the files should be; [`open_with`] is told by these where they are.
+        /// The paths that the files should have, for which [`open_with`] is told the real ones.
         missing: Vec<PathBuf>,
     },
     /// A model or a texture cannot be loaded.
@@ -88,7 +88,7 @@ fn listed(paths: &[PathBuf]) -> String {
 /// Saves a scene; the file that was there is kept, with `~` after its name.
 ///
 /// # Errors
-/// Where the file cannot be written, or something in the scene cannot. What was there before still
+/// If the file cannot be written, or something in the scene cannot. What was there before still
 /// is.
 pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
     let text = to_text(path, scene, view, settings)?;
@@ -109,7 +109,7 @@ pub fn to_text(
     let file = save::file_scene(scene, view, settings, &complete_folder(path)).map_err(fail)?;
     let config = ron::ser::PrettyConfig::new().new_line("\n");
     let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
-    // What is not finite could be written, and would not be read again.
+    // A number that is not finite could be written, but not be read again.
     let again = file_scene(&text, "").map_err(|error| fail(error.to_string()))?;
     open::check_counts(&again).map_err(fail)?;
     open::scene(&again, &StandIns, &mut Findings::default()).map_err(fail)?;
@@ -119,14 +119,14 @@ pub fn to_text(
 /// Opens a scene file.
 ///
 /// # Errors
-/// Where the file cannot be read or understood, or a model that it names cannot be loaded; and where
+/// If the file cannot be read or understood, or a model that it names cannot be loaded; and if
 /// `progress` is cancelled.
 pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> {
     open_with(path, &BTreeMap::new(), progress)
 }
 
-/// Opens a scene file of which some models or textures are elsewhere: `relocated` says for the paths
-/// of [`SceneFileError::Missing`] where they are.
+/// Opens a scene file of which some models or textures are elsewhere: `relocated` says for the
+/// paths of [`SceneFileError::Missing`] where they are.
 ///
 /// # Errors
 /// As [`open()`].
@@ -207,8 +207,8 @@ fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
     Err(SceneFileError::Line { file: name.to_owned(), line, column, reason })
 }
 
-/// What tells one model of a scene file from another: its name or path, and how it is read. The crease
-/// angle comes last: files that differ in it alone stand side by side.
+/// What tells one model of a scene file from another: its name or path, and how it is read. The
+/// crease angle comes last: files that differ in it alone stand side by side.
 type ModelKey = (String, Option<(UpAxis, u64, Winding, u64)>);
 
 fn key(model: &FileModel) -> ModelKey {
@@ -369,7 +369,7 @@ impl open::Needs for Files<'_> {
     }
 }
 
-/// Stands in for models and textures, where only the scene file itself is looked at.
+/// Stands in for models and textures if only the scene file itself is looked at.
 struct StandIns;
 
 impl open::Needs for StandIns {

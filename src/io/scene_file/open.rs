@@ -1,7 +1,7 @@
 //! From the text of a file to a scene.
 //!
-//! Items are put into the scene by the commands that put them there in the editor: what those refuse
-//! (an id used twice, a number that is NaN) is refused here.
+//! Items are put into the scene by the commands that put them there in the editor: what those
+//! refuse (an id used twice, a number that is NaN) is refused here.
 
 use std::collections::BTreeSet;
 
@@ -171,7 +171,8 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
     })
 }
 
-/// The sides that a scene file names; earlier ones name whether there are two. The program's own models
+/// The sides that a scene file names; earlier files name whether there are two. The program's own
+/// models
 /// have one if nothing is named.
 fn read_sides(object: &FileObject) -> Sides {
     let earlier = object.two_sided.map(|two| if two { Sides::Two } else { Sides::One });
@@ -265,7 +266,7 @@ fn read_view(file: &FileView, scene: &Scene, findings: &mut Findings) -> Result<
     if translation <= 0.0 || rotation <= 0.0 || scaling <= 1.0 {
         return Err("the steps of the view have to be above 0, and of scaling above 1".to_owned());
     }
-    // What is selected and is not there gives way to what a new scene selects.
+    // A selection of something missing gives way to the selection of a new scene.
     let first = scene.first_view();
     let mut check = |what: &str, id: u32, is_there: bool| {
         if !is_there {

@@ -1,7 +1,7 @@
-//! What is wrong with the text of a scene file, in the words of the person who reads it.
+//! Errors in the text of a scene file, worded for the person who reads it.
 //!
-//! The parser speaks of its own types and of Rust's. Its errors are told apart here, so that each has
-//! a sentence about the file.
+//! The parser speaks of its own types and of Rust's. Its errors are told apart here, so that each
+//! has a sentence about the file.
 
 use ron::Error;
 
@@ -88,7 +88,7 @@ const fn missing_value(error: &Error) -> Option<&'static str> {
     })
 }
 
-/// What is wrong with a name, if that is what it is.
+/// The fault of a name, if the error is about one.
 fn about_a_name(error: &Error) -> Option<String> {
     Some(match error {
         Error::MissingStructField { field: "version", outer } if is(outer.as_deref(), "Head") => {

@@ -1,0 +1,242 @@
+//! The kinds of findings, each with its sentence.
+//!
+//! A file that could be loaded may have thousands of equal faults, so each sentence is worded for one
+//! case and for many.
+
+/// Declares the kinds, each with its words for one case and for more.
+///
+/// `#` stands for the number of cases, `@` for the name that the first one is about.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $name:ident: $one:literal, $many:literal;)+) => {
+        /// What a [`Finding`](super::Finding) is about.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum FindingKind {
+            $($(#[$doc])* $name,)+
+        }
+
+        impl FindingKind {
+            fn words(self) -> [&'static str; 2] {
+                match self {
+                    $(Self::$name => [$one, $many],)+
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// A vertex with a coordinate that is infinite or NaN.
+    VertexNotFinite:
+        "a vertex is infinite or NaN and is skipped",
+        "# vertices are infinite or NaN and are skipped";
+    /// A face that refers to such a vertex.
+    FaceOnLostVertex:
+        "a face refers to a skipped vertex and is skipped too",
+        "# faces refer to skipped vertices and are skipped too";
+    /// A face that refers to a vertex that is not there.
+    FaceRange:
+        "a face refers to a vertex that the file does not have and is skipped",
+        "# faces refer to vertices that the file does not have and are skipped";
+    /// A face of one or two corners.
+    FaceShort:
+        "a face has fewer than three corners and is skipped",
+        "# faces have fewer than three corners and are skipped";
+    /// A face with a corner that is not a number.
+    FaceUnreadable:
+        "a face has a corner that is not a number (\"@\") and is skipped",
+        "# faces have corners that are not numbers (such as \"@\") and are skipped";
+    /// A smoothing group that is not a number.
+    SmoothingUnreadable:
+        "a smoothing group is neither a number nor \"off\" (\"@\") and is taken as off",
+        "# smoothing groups are neither numbers nor \"off\" (such as \"@\") and are taken as off";
+    /// Lines and points, which are not drawn.
+    LineOrPoint:
+        "a statement \"@\" is skipped: only faces are drawn",
+        "# statements \"@\" are skipped: only faces are drawn";
+    /// Curves and surfaces that are not polygons.
+    FreeForm:
+        "a statement of a free-form curve or surface is skipped: only polygons are drawn",
+        "# statements of free-form curves and surfaces are skipped: only polygons are drawn";
+    /// A statement that OBJ or MTL does not have.
+    Unknown: "an unknown statement \"@\" is ignored", "# unknown statements \"@\" are ignored";
+    /// A texture coordinate that is not there.
+    UvRange:
+        "a face refers to a texture coordinate that the file does not have; its corner has none",
+        "# faces refer to texture coordinates that the file does not have; their corners have none";
+    /// A normal that is not there.
+    NormalRange:
+        "a face refers to a normal that the file does not have; its normals are computed",
+        "# faces refer to normals that the file does not have; their normals are computed";
+    /// A texture coordinate of one number.
+    UvSingle:
+        "a texture coordinate has one number; 0 is taken for the other",
+        "# texture coordinates have one number; 0 is taken for the other";
+    /// A texture coordinate that is infinite or NaN.
+    UvNotFinite:
+        "a texture coordinate is infinite or NaN and is ignored",
+        "# texture coordinates are infinite or NaN and are ignored";
+    /// A normal that is infinite or NaN.
+    NormalNotFinite:
+        "a normal is infinite or NaN and is ignored",
+        "# normals are infinite or NaN and are ignored";
+    /// Only some faces have texture coordinates.
+    UvMixed:
+        "a face has no texture coordinates, while others have",
+        "# faces have no texture coordinates, while others have";
+    /// Only some faces have normals.
+    NormalMixed:
+        "a face has no normals, while others have; they are computed",
+        "# faces have no normals, while others have; they are computed";
+    /// Numbers after those that a statement has.
+    ExtraNumbers:
+        "a vertex has more numbers than x, y, z and a colour; the rest is ignored",
+        "# vertices have more numbers than x, y, z and a colour; the rest is ignored";
+    /// A weight that is not 1.
+    Weight:
+        "a vertex has a weight other than 1, which is ignored",
+        "# vertices have a weight other than 1, which is ignored";
+    /// Colours on some vertices only.
+    ColorPartly:
+        "a vertex has no colour, while others have: it is white",
+        "# vertices have no colour, while others have: they are white";
+    /// Colours from 0 to 255.
+    ColorBytes:
+        "vertex colours exceed 1 and are read as 0 to 255",
+        "vertex colours exceed 1 and are read as 0 to 255";
+    /// A face that refers to a vertex twice.
+    FaceRepeats: "a face refers to a vertex twice", "# faces refer to a vertex twice";
+    /// A face without area.
+    FaceNoArea:
+        "a face has no area and no normal of its own",
+        "# faces have no area and no normals of their own";
+    /// A polygon whose triangles leave it.
+    PolygonCrosses:
+        "a polygon of @ corners crosses itself; its triangles may lie outside of it",
+        "# polygons (the first of @ corners) cross themselves; their triangles may lie outside of \
+         them";
+    /// No face at all.
+    NoFaces:
+        "the file has vertices but no faces: it draws nothing",
+        "the file has vertices but no faces: it draws nothing";
+    /// An MTL file that is not there.
+    MtlMissing: "the material file \"@\" was not found", "the material file \"@\" was not found";
+    /// More MTL files than are read.
+    MtlMany:
+        "a statement \"mtllib\" is ignored: 1000 different ones are read at most",
+        "# statements \"mtllib\" are ignored: 1000 different ones are read at most";
+    /// An MTL file that cannot be read.
+    MtlUnreadable: "the material file cannot be read: @", "the material file cannot be read: @";
+    /// A `usemtl` of a name that no MTL file has.
+    MaterialUnknown:
+        "the material \"@\" is not defined: silver is used",
+        "the material \"@\" is not defined: silver is used";
+    /// Two materials of one name.
+    MaterialTwice:
+        "the material \"@\" is defined twice: the first is used",
+        "the material \"@\" is defined # times more: the first is used";
+    /// A statement before any `newmtl`.
+    MtlStray:
+        "a statement \"@\" stands before any newmtl and is ignored",
+        "# statements (the first: \"@\") stand before any newmtl and are ignored";
+    /// A number of a material that cannot be read.
+    MtlNumber:
+        "a statement \"@\" has a number that cannot be read and is ignored",
+        "# statements (the first: \"@\") have numbers that cannot be read and are ignored";
+    /// Ka := 0.2 Kd.
+    MendedAmbient:
+        "material \"@\": Ka is missing, white, above 1 or equal to Kd, and is taken as 0.2 Kd",
+        "# materials: Ka is missing, white, above 1 or equal to Kd, and is taken as 0.2 Kd";
+    /// Kd := 0.8, or 1 with a texture.
+    MendedDiffuse:
+        "material \"@\": Kd is missing and is taken as 0.8, or 1 with a texture",
+        "# materials: Kd is missing and is taken as 0.8, or 1 with a texture";
+    /// Ks := 0.
+    MendedSpecular:
+        "material \"@\": Ks is missing or switched off by illum, and is taken as 0",
+        "# materials: Ks is missing or switched off by illum, and is taken as 0";
+    /// Ns := 1.
+    MendedExponent:
+        "material \"@\": Ns is missing or below 1, and is taken as 1",
+        "# materials: Ns is missing or below 1, and is taken as 1";
+    /// A colour or an opacity outside 0 to 1.
+    MendedRange:
+        "material \"@\": a value is outside 0 to 1 and is clamped",
+        "# values of materials are outside 0 to 1 and are clamped";
+    /// `Tr 1` in all materials that are used.
+    MendedTransparency:
+        "material \"@\": Tr 1, which would hide the whole model, is taken as opaque",
+        "# materials: Tr 1, which would hide the whole model, is taken as opaque";
+    /// `d` below 0.5.
+    Transparent:
+        "material \"@\" is more than half transparent and draws nothing: there is no blending",
+        "# materials are more than half transparent and draw nothing: there is no blending";
+    /// `d` below 1.
+    Translucent:
+        "material \"@\" is partly transparent and is drawn opaque: there is no blending",
+        "# materials are partly transparent and are drawn opaque: there is no blending";
+    /// A map other than `map_Kd`.
+    MapUnused:
+        "a statement \"@\" is ignored: map_Kd is the only texture that is drawn",
+        "# statements \"@\" are ignored: map_Kd is the only texture that is drawn";
+    /// A texture that is not there.
+    TextureMissing: "the texture \"@\" was not found", "the texture \"@\" was not found";
+    /// More textures than are read.
+    TextureMany:
+        "a texture is ignored: 10,000 different ones are read at most",
+        "# textures are ignored: 10,000 different ones are read at most";
+    /// A texture that cannot be read.
+    TextureUnreadable: "the texture cannot be read: @", "the texture cannot be read: @";
+    /// A texture whose file ends before the picture does.
+    TextureCutOff:
+        "the texture is cut off: @ ends early, and the rest of the picture is grey",
+        "the texture is cut off: @ ends early, and the rest of the picture is grey";
+    /// A selection of something that the scene does not have.
+    SelectionMissing:
+        "the view selects @, which is not in the scene: the first one is selected",
+        "the view selects @, which is not in the scene: the first one is selected";
+    /// A spot or a camera that is bound to something that the scene does not have.
+    OwnerMissing: "@, which is not in the scene", "@, which is not in the scene";
+}
+
+/// How many characters of a name are shown.
+const LONGEST_NAME: usize = 200;
+
+impl FindingKind {
+    /// Whether cases about different names are one finding.
+    pub(super) const fn joins_names(self) -> bool {
+        matches!(
+            self,
+            Self::FaceUnreadable
+                | Self::SmoothingUnreadable
+                | Self::PolygonCrosses
+                | Self::MtlStray
+                | Self::MtlNumber
+                | Self::MendedAmbient
+                | Self::MendedDiffuse
+                | Self::MendedSpecular
+                | Self::MendedExponent
+                | Self::MendedRange
+                | Self::MendedTransparency
+                | Self::Transparent
+                | Self::Translucent
+        )
+    }
+
+    pub(super) fn text(self, count: usize, name: &str, line: Option<u32>, files: usize) -> String {
+        let [one, many] = self.words();
+        let words = if count == 1 { one } else { many };
+        let name = match name.char_indices().nth(LONGEST_NAME) {
+            Some((end, _)) => &format!("{}...", &name[..end]),
+            None => name,
+        };
+        let shown = name.replace(char::is_control, "\u{FFFD}");
+        let text = words.replace('#', &count.to_string()).replace('@', &shown);
+        match (line, files) {
+            (None, 1) => text,
+            (None, _) => format!("{text} ({files} files)"),
+            (Some(line), 1) if count == 1 => format!("{text} (line {line})"),
+            (Some(line), 1) => format!("{text} (first: line {line})"),
+            (Some(line), _) => format!("{text} (first: line {line}; {files} files)"),
+        }
+    }
+}

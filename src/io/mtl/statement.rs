@@ -1,0 +1,73 @@
+//! Single statements of an MTL file, read by tobj.
+//!
+//! A call gets one statement in the form that tobj reads rightly: a grey is spelled as three
+//! numbers, comments are cut off, keywords have their usual case. What tobj does not know goes to
+//! it under the keyword of a statement with the same argument.
+
+use std::panic::catch_unwind;
+
+use crate::io::obj::lines::{number, words};
+
+/// `Ka r g b`; one number stands for all three.
+pub(super) fn ambient(rest: &[u8]) -> Option<[f64; 3]> {
+    finite(material("Ka", &color(rest)?)?.ambient?)
+}
+
+/// `Kd r g b`; one number stands for all three.
+pub(super) fn diffuse(rest: &[u8]) -> Option<[f64; 3]> {
+    finite(material("Kd", &color(rest)?)?.diffuse?)
+}
+
+/// `Ks r g b`; one number stands for all three.
+pub(super) fn specular(rest: &[u8]) -> Option<[f64; 3]> {
+    finite(material("Ks", &color(rest)?)?.specular?)
+}
+
+/// `Ns x`, and `illum x`, of which tobj takes whole numbers alone.
+pub(super) fn exponent(rest: &[u8]) -> Option<f64> {
+    single(words(rest).next()?)
+}
+
+/// `d x`, and `Tr x`, which tobj does not know.
+pub(super) fn opacity(rest: &[u8]) -> Option<f64> {
+    let [opacity] = finite([material("d", plain(words(rest).next()?)?)?.dissolve?])?;
+    Some(opacity)
+}
+
+/// A number that is an argument of an option.
+pub(super) fn single(word: &[u8]) -> Option<f64> {
+    let [number] = finite([material("Ns", plain(word)?)?.shininess?])?;
+    Some(number)
+}
+
+/// The name of `map_Kd name`.
+pub(super) fn texture(name: &str) -> Option<String> {
+    material("map_Kd", name)?.diffuse_texture
+}
+
+/// What tobj makes of a statement; `None` if it refuses it.
+fn material(keyword: &str, arguments: &str) -> Option<tobj::Material> {
+    let text = format!("newmtl m\n{keyword} {arguments}\n");
+    let read = || tobj::load_mtl_buf(&mut text.as_bytes());
+    catch_unwind(read).ok()?.ok()?.0.pop()
+}
+
+/// The text of three numbers.
+fn color(rest: &[u8]) -> Option<String> {
+    let numbers: Option<Vec<&str>> = words(rest).take(3).map(plain).collect();
+    match numbers?[..] {
+        [r, g, b] => Some([r, g, b].join(" ")),
+        [grey] => Some([grey; 3].join(" ")),
+        _ => None,
+    }
+}
+
+/// The text of a number without the comment that may follow at once.
+fn plain(word: &[u8]) -> Option<&str> {
+    let (value, text) = number(word).ok()?;
+    std::str::from_utf8(text).ok().filter(|_| !value.is_nan())
+}
+
+fn finite<const N: usize>(numbers: [f64; N]) -> Option<[f64; N]> {
+    numbers.iter().all(|x| x.is_finite()).then_some(numbers)
+}

@@ -1,0 +1,341 @@
+//! The numbers of `v`, `vt` and `vn`, read by tobj.
+//!
+//! tobj gives a mesh what its faces name, in the order in which they name it. So the lines of a
+//! kind go to it with polygons between them, each of which names the lines since the last one:
+//! what comes back are all rows in the order of the file, used or not. tobj asks for its text line
+//! by line, and is given the lines where they stand in the chunk.
+//!
+//! tobj reads numbers in f64 here, so that materials keep their digits. Rounding a coordinate once
+//! more, to f32, gives the f32 that is nearest to its text unless the f64 lies halfway between two
+//! of them. Such a chunk is read again by the tolerant way, which rounds once.
+
+use std::fmt::Write;
+use std::io::{BufRead, ErrorKind, Read};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// How many rows a polygon names at most. tobj looks each of them up in a table: this many fill one
+/// of 512 places.
+const POLYGON: usize = 448;
+
+/// A statement with a row of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RowKind {
+    Vertex,
+    Uv,
+    Normal,
+}
+
+/// The statements of one kind in a chunk, each with `N` numbers that count.
+#[derive(Debug)]
+pub(super) struct Rows<const N: usize> {
+    kind: RowKind,
+    /// The lines for tobj.
+    lines: Vec<RowLine>,
+    /// The text of those that do not go to tobj as they stand in the chunk.
+    rewritten: String,
+    /// The rows that are finite, once tobj has read them.
+    pub(super) kept: Vec<[f32; N]>,
+    /// The colours of vertices; NaN if a vertex has none, and empty if no vertex has one.
+    pub(super) colors: Vec<[f32; 3]>,
+    /// How many statements there are, finite or not.
+    pub(super) count: u32,
+    /// The statements that are not finite, ascending.
+    pub(super) lost: Vec<u32>,
+}
+
+/// Where a line stands.
+#[derive(Clone, Copy, Debug)]
+struct RowLine {
+    begin: u32,
+    end: u32,
+    is_rewritten: bool,
+    is_colored: bool,
+}
+
+impl<const N: usize> Rows<N> {
+    pub(super) fn new(kind: RowKind) -> Self {
+        Self {
+            kind,
+            lines: Vec::new(),
+            rewritten: String::new(),
+            kept: Vec::new(),
+            colors: Vec::new(),
+            count: 0,
+            lost: Vec::new(),
+        }
+    }
+
+    /// Takes a line between two places of the chunk. tobj must read the same in it as the tolerant
+    /// way.
+    #[inline]
+    pub(super) fn add_line(&mut self, begin: usize, end: usize, is_colored: bool) {
+        self.push(begin, end, false, is_colored);
+    }
+
+    /// Takes a row that was read already, if it is finite; says whether it is.
+    pub(super) fn add(&mut self, row: [f32; N], color: Option<[f32; 3]>) -> bool {
+        if !row.iter().all(|x| x.is_finite()) {
+            self.lost.push(self.count);
+            self.count = self.count.saturating_add(1);
+            return false;
+        }
+        let begin = self.rewritten.len();
+        self.rewritten += match self.kind {
+            RowKind::Vertex => "v",
+            RowKind::Uv => "vt",
+            RowKind::Normal => "vn",
+        };
+        for number in row.iter().chain(color.iter().flatten()) {
+            // An f64 has the very value, and its text gives it back.
+            let _infallible = write!(self.rewritten, " {:e}", f64::from(*number));
+        }
+        self.push(begin, self.rewritten.len(), true, color.is_some());
+        true
+    }
+
+    #[inline]
+    fn push(&mut self, begin: usize, end: usize, is_rewritten: bool, is_colored: bool) {
+        // No chunk has more bytes than 32 bits can count.
+        let [begin, end] = [begin, end].map(|place| u32::try_from(place).unwrap_or(u32::MAX));
+        self.lines.push(RowLine { begin, end, is_rewritten, is_colored });
+        // More than can be counted are more than a mesh can have: it will say so.
+        self.count = self.count.saturating_add(1);
+    }
+
+    /// Has tobj read the lines; says whether it could, and whether every number is the `f32` that
+    /// is nearest to its text.
+    pub(super) fn read(&mut self, chunk: &[u8]) -> bool {
+        if self.lines.is_empty() {
+            return true;
+        }
+        let has_colors = self.lines.iter().any(|line| line.is_colored);
+        let mut polygon = "f".to_owned();
+        for back in (1..=self.lines.len().min(POLYGON)).rev() {
+            let _infallible = match self.kind {
+                RowKind::Vertex => write!(polygon, " -{back}"),
+                RowKind::Uv => write!(polygon, " 1/-{back}"),
+                RowKind::Normal => write!(polygon, " 1//-{back}"),
+            };
+        }
+        let mut text = RowText {
+            chunk,
+            rewritten: self.rewritten.as_bytes(),
+            lines: self.lines.iter(),
+            needs_vertex: self.kind != RowKind::Vertex,
+            has_colors,
+            polygon: &polygon,
+            unnamed: 0,
+            ends_group: false,
+        };
+        let options = tobj::LoadOptions::default();
+        let no_library = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
+        let read = || tobj::load_obj_buf(&mut text, &options, no_library);
+        let Ok(Ok((models, _))) = catch_unwind(AssertUnwindSafe(read)) else { return false };
+        self.kept.reserve(self.lines.len());
+        let mut sure = true;
+        for tobj::Model { mesh, .. } in &models {
+            let numbers = match self.kind {
+                RowKind::Vertex => &mesh.positions,
+                RowKind::Uv => &mesh.texcoords,
+                RowKind::Normal => &mesh.normals,
+            };
+            sure &= append(&mut self.kept, numbers) & append(&mut self.colors, &mesh.vertex_color);
+        }
+        let finite = self.kept.as_flattened().iter().all(|x| x.is_finite());
+        // tobj passes over colours that it cannot read.
+        let colors = if has_colors { self.lines.len() } else { 0 };
+        sure && finite && self.kept.len() == self.lines.len() && self.colors.len() == colors
+    }
+}
+
+/// The lines of one kind and the polygons that name them, as tobj asks for them.
+struct RowText<'a> {
+    chunk: &'a [u8],
+    rewritten: &'a [u8],
+    lines: std::slice::Iter<'a, RowLine>,
+    /// A face needs a vertex, whatever else it names.
+    needs_vertex: bool,
+    has_colors: bool,
+    /// What names as many rows as a polygon can.
+    polygon: &'a str,
+    /// How many lines no polygon names yet.
+    unnamed: usize,
+    ends_group: bool,
+}
+
+impl BufRead for RowText<'_> {
+    fn read_line(&mut self, text: &mut String) -> std::io::Result<usize> {
+        let before = text.len();
+        if std::mem::take(&mut self.needs_vertex) {
+            text.push_str("v 0 0 0");
+        } else if std::mem::take(&mut self.ends_group) {
+            // tobj makes a mesh of each group, and forgets its table.
+            text.push('g');
+        } else if let Some(line) = self.lines.as_slice().first().filter(|_| self.unnamed < POLYGON)
+        {
+            let RowLine { begin, end, is_rewritten, is_colored } = *line;
+            let source = if is_rewritten { self.rewritten } else { self.chunk };
+            let line = source.get(begin as usize..end as usize).unwrap_or_default();
+            let line = std::str::from_utf8(line);
+            text.push_str(
+                line.map_err(|error| std::io::Error::new(ErrorKind::InvalidData, error))?,
+            );
+            if self.has_colors && !is_colored {
+                // All vertices have colours, or none has: NaN stands for none.
+                text.push_str(" NaN NaN NaN");
+            }
+            self.lines.next();
+            self.unnamed += 1;
+        } else if self.unnamed > 0 {
+            // The last corners of the polygon name the last rows.
+            let corner = self.polygon.rmatch_indices(' ').nth(self.unnamed - 1);
+            text.push('f');
+            text.push_str(&self.polygon[corner.map_or(1, |(place, _)| place)..]);
+            self.unnamed = 0;
+            self.ends_group = true;
+        }
+        Ok(text.len() - before)
+    }
+
+    fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
+        Err(ErrorKind::Unsupported.into())
+    }
+
+    fn consume(&mut self, _: usize) {}
+}
+
+impl Read for RowText<'_> {
+    fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+        Err(ErrorKind::Unsupported.into())
+    }
+}
+
+/// What stands for a vertex without a colour among others.
+pub(super) const NO_COLOR: [f32; 3] = [f32::NAN; 3];
+
+/// Appends rows as `f32`; says whether each number is nearest to its text for certain.
+#[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
+fn append<const N: usize>(rows: &mut Vec<[f32; N]>, numbers: &[f64]) -> bool {
+    let (numbers, _) = numbers.as_chunks::<N>();
+    rows.extend(numbers.iter().map(|row| row.map(|x| x as f32)));
+    !numbers.as_flattened().iter().any(|x| is_halfway(*x))
+}
+
+/// Whether a number lies in the middle between two that an `f32` can have.
+#[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
+fn is_halfway(x: f64) -> bool {
+    let nearest = f64::from(x as f32);
+    let across = 2.0 * x - nearest;
+    x != nearest && across == f64::from(across as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// What tobj makes of lines as they stand in a file; `None` if it is not to be relied on.
+    fn read<const N: usize>(kind: RowKind, lines: &[String]) -> Option<Rows<N>> {
+        let mut rows = Rows::new(kind);
+        let mut chunk = String::new();
+        for line in lines {
+            let begin = chunk.len();
+            chunk += line;
+            rows.add_line(begin, chunk.len(), line.split_whitespace().count() > 4);
+        }
+        rows.read(chunk.as_bytes()).then_some(rows)
+    }
+
+    #[test]
+    fn rows_come_back_in_their_order_however_many_there_are() {
+        for count in [0, 1, 2, 3, 4, POLYGON - 1, POLYGON, POLYGON + 1, 3 * POLYGON + 5] {
+            let lines = |keyword| -> Vec<String> {
+                (0..count).map(|i| format!("{keyword} {i} {} 0.5", i % 2)).collect()
+            };
+            let right = |i: usize| [i as f32, (i % 2) as f32, 0.5];
+            let right: Vec<[f32; 3]> = (0..count).map(right).collect();
+            assert_eq!(read(RowKind::Vertex, &lines("v")).unwrap().kept, right);
+            assert_eq!(read(RowKind::Normal, &lines("vn")).unwrap().kept, right);
+            let right: Vec<[f32; 2]> = right.iter().map(|[u, v, _]| [*u, *v]).collect();
+            assert_eq!(read(RowKind::Uv, &lines("vt")).unwrap().kept, right);
+        }
+    }
+
+    #[test]
+    fn vertices_keep_their_own_colours_wherever_they_begin() {
+        for begin in [0, 1, POLYGON - 1, POLYGON, 2 * POLYGON + 7] {
+            let line = |i: usize| {
+                if i < begin || i % 3 == 1 {
+                    format!("v {i} 0 0")
+                } else {
+                    format!("v {i} 0 0 .5 0 {i}")
+                }
+            };
+            let lines: Vec<String> = (0..begin + 100).map(line).collect();
+            let rows = read::<3>(RowKind::Vertex, &lines).unwrap();
+            for (i, (position, color)) in rows.kept.iter().zip(&rows.colors).enumerate() {
+                assert_eq!(*position, [i as f32, 0.0, 0.0]);
+                if i < begin || i % 3 == 1 {
+                    assert!(color.iter().all(|x| x.is_nan()), "{i}");
+                } else {
+                    assert_eq!(*color, [0.5, 0.0, i as f32]);
+                }
+            }
+            assert_eq!([rows.kept.len(), rows.colors.len()], [lines.len(); 2]);
+        }
+    }
+
+    #[test]
+    fn lines_that_tobj_refuses_or_that_are_not_finite_are_left_to_the_tolerant_way() {
+        for bad in ["v 1 2 --3", "v 1 2 1e", "v 1 2 1e39", "v 1 2 3 .5 .5 1..", "v 1 2", "w 1 2 3"]
+        {
+            let lines = ["v 1 2 3 0 0 0".to_owned(), bad.to_owned()];
+            assert!(read::<3>(RowKind::Vertex, &lines).is_none(), "{bad}");
+        }
+        assert!(read::<3>(RowKind::Vertex, &["v 1 2 3 . 0 0".to_owned()]).is_none());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn every_number_is_the_nearest_one(
+            text in "[-+]?[0-9]{1,12}(\\.[0-9]{0,12})?(e[-+]?[0-9]{1,2})?",
+        ) {
+            nearest(&text);
+        }
+
+        /// Texts that lie as close to the middle between two numbers as their digits allow.
+        #[test]
+        fn middles_between_two_numbers_are_rounded_once(
+            bits in 0..0x7f7f_ffff_u32,
+            digits in 1..17_usize,
+            nudge in -3..4_i64,
+        ) {
+            let [low, high] = [bits, bits + 1].map(|bits| f64::from(f32::from_bits(bits)));
+            let middle = f64::from_bits((0.5 * (low + high)).to_bits().wrapping_add_signed(nudge));
+            nearest(&format!("{middle:.digits$e}"));
+            nearest(&format!("{middle:.digits$}"));
+        }
+    }
+
+    /// Holds what tobj reads against the standard library.
+    fn nearest(text: &str) {
+        let right: f32 = text.parse().unwrap();
+        match read::<3>(RowKind::Vertex, &[format!("v {text} 0 0")]) {
+            Some(rows) => assert_eq!(rows.kept[0][0].to_bits(), right.to_bits(), "{text}"),
+            None => assert!(is_halfway(text.parse().unwrap()) || right.is_infinite(), "{text}"),
+        }
+    }
+
+    #[test]
+    fn a_number_that_is_read_already_stays_itself() {
+        for bits in [0, 1, 0x8000_0001, 0x007f_ffff, 0x3dcc_cccd, 0x7f7f_ffff, 0x8000_0000] {
+            let mut rows = Rows::<3>::new(RowKind::Vertex);
+            assert!(rows.add([f32::from_bits(bits), 0.0, 1.0], None));
+            assert!(rows.read(b""));
+            assert_eq!(rows.kept[0][0].to_bits(), bits);
+        }
+    }
+}
