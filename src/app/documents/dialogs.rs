@@ -12,6 +12,7 @@ use super::browser::{Browser, Choice, Mode};
 use super::material_dialog::{self, MaterialChoices, MaterialDialog};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::take_focus;
+use crate::io;
 use crate::scene::ObjectId;
 
 /// A system's dialog that is gone within this time was never there.
@@ -143,7 +144,7 @@ impl Dialogs {
             let task = Task::start(ctx, title.to_owned(), move |_| {
                 let mut dialog = rfd::FileDialog::new()
                     .set_title(title)
-                    .add_filter(endings.join(", "), endings)
+                    .add_filter(endings.join(", "), &endings)
                     .set_directory(folder);
                 if !own_name.is_empty() {
                     dialog = dialog.set_file_name(own_name);
@@ -248,17 +249,19 @@ impl Dialogs {
 }
 
 impl Wanted {
-    fn description(&self) -> (&'static str, Mode, &'static [&'static str]) {
-        const MODELS: &[&str] = &["obj", "gz"];
-        const PICTURES: &[&str] =
-            &["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "gif"];
+    fn description(&self) -> (&'static str, Mode, Vec<&'static str>) {
+        let models = || vec!["obj", "gz"];
+        let scenes = || vec!["marraztu"];
+        let pictures = || io::PICTURE_FORMATS.iter().map(|format| format.endings[0]).collect();
         match self {
-            Self::Model => ("Load a model", Mode::Open, MODELS),
-            Self::Scene => ("Open a scene", Mode::Open, &["marraztu"]),
-            Self::SceneTo(_) => ("Save the scene", Mode::Save, &["marraztu"]),
-            Self::PictureTo => ("Save the picture", Mode::Save, &["png", "jpg", "webp", "ppm"]),
-            Self::Texture(_) | Self::TextureOfModel => ("Choose a texture", Mode::Open, PICTURES),
-            Self::Missing(_) => ("Where is the missing model?", Mode::Open, MODELS),
+            Self::Model => ("Load a model", Mode::Open, models()),
+            Self::Scene => ("Open a scene", Mode::Open, scenes()),
+            Self::SceneTo(_) => ("Save the scene", Mode::Save, scenes()),
+            Self::PictureTo => ("Save the picture", Mode::Save, pictures()),
+            Self::Texture(_) | Self::TextureOfModel => {
+                ("Choose a texture", Mode::Open, io::texture_endings())
+            }
+            Self::Missing(_) => ("Where is the missing model?", Mode::Open, models()),
         }
     }
 }
