@@ -17,18 +17,21 @@ use clap::Parser;
 use cpu_time::ProcessTime;
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{LightAt, Samples, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::{Shared, color::Color, math};
 use marraztu::io::{self, LoadError, Progress, SaveError};
 use marraztu::lab::instructions;
 use marraztu::lab::statistics::median;
 use marraztu::lab::timing::time;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
     Aim, Attenuation, Camera, CameraId, Command, CommandError, Crease, Fill, Item, Lens, Light,
-    LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model,
-    NONE, Normals, Object, ObjectId, Orbit, Part, Placed, Pose, Samples, Scene, Settings, Sides,
-    SourceCorner, SpotOwner, View, dvec3,
+    LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
+    Normals, Object, ObjectId, Orbit, Part, Pose, Scene, Sides, SourceCorner, SpotOwner, Tracked,
+    View, dvec3,
 };
 
 /// Measures one drawing job, in a form that other renderers share.
@@ -223,7 +226,7 @@ fn measure(
         let elapsed = time(|| {
             let camera = Item::Camera(CameraId(0), Box::new(camera(job, i, &scene)));
             changed = Command::Replace(camera).apply(&mut scene).map(drop);
-            renderer.render(&FramePlan::new(&scene, view, settings, job.size));
+            renderer.render(&plan_frame(&Shot::new(&scene, view, settings, job.size)));
         });
         changed.map(|()| elapsed.as_secs_f64() * 1e3)
     };
@@ -301,7 +304,7 @@ fn stage(
         visible: true,
         model: model.clone(),
         material: material.clone(),
-        pose: Placed::new(Pose::facing_minus_z(DVec3::Z * job.dist)),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::Z * job.dist)),
         lens: Lens::default(),
     });
     scene.background = BACKGROUND;
@@ -340,7 +343,7 @@ fn lights(mode: Mode) -> Vec<Light> {
     let steady = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 };
     let unfading = |slot, color, kind| Light { attenuation: steady, ..light(slot, color, kind) };
     let spot = |position: DVec3| LightKind::Spot {
-        owner: SpotOwner::Fixed(Placed::new(Aim {
+        owner: SpotOwner::Fixed(Tracked::new(Aim {
             position,
             direction: math::unit(-position).unwrap_or(DVec3::NEG_Z),
         })),
@@ -348,10 +351,10 @@ fn lights(mode: Mode) -> Vec<Light> {
         exponent: 5.0,
     };
     let sun = math::unit(-DVec3::new(0.5, 0.8, 0.6)).unwrap_or(DVec3::NEG_Y);
-    let bulb = Placed::new(DVec3::new(150.0, 120.0, 180.0));
+    let bulb = Tracked::new(DVec3::new(150.0, 120.0, 180.0));
     vec![
         light(0, ambient, LightKind::Ambient),
-        light(1, [0.45, 0.43, 0.40], LightKind::Sun { direction: Placed::new(sun) }),
+        light(1, [0.45, 0.43, 0.40], LightKind::Sun { direction: Tracked::new(sun) }),
         light(2, [0.50, 0.45, 0.40], LightKind::Bulb { position: bulb, orbit: Orbit::default() }),
         unfading(3, [0.50, 0.20, 0.20], spot(DVec3::new(-200.0, 150.0, 150.0))),
         unfading(4, [0.20, 0.30, 0.60], spot(DVec3::new(100.0, -180.0, 200.0))),
@@ -368,7 +371,7 @@ fn camera(job: &Job, i: usize, scene: &Scene) -> Camera {
     let mut camera = scene.cameras.get(CameraId(0)).expect("a scene always has a camera").clone();
     let last = camera.pose.now().axes;
     let axes = math::look_at(eye, DVec3::ZERO, DVec3::Y, last);
-    camera.pose = Placed::new(Pose { axes, ..Pose::facing_minus_z(eye) });
+    camera.pose = Tracked::new(Pose { axes, ..Pose::facing_minus_z(eye) });
     camera
 }
 

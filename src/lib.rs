@@ -1,20 +1,22 @@
 //! An editor for 3D scenes of `.obj` models whose pictures are drawn by the CPU alone.
 //!
 //! The folders are floors: a file uses its own floor and those below it, never one above
-//! (`tests/floors.rs` reads the sources and fails otherwise).
+//! (`tests/floors` reads the sources and fails otherwise).
 //!
 //! ```text
-//! base  <  scene  <  { io, edit, render }  <  lab  <  app
+//! base  <  scene  <  accuracy  <  { io, edit, render }  <  lab  <  app  <  cli
 //! ```
 //!
 //! * [`base`]: the conventions of the mathematics, colours, pictures.
 //! * [`scene`]: what there is to draw, how it is looked at, and the commands that change it.
+//! * [`accuracy`]: the axes along which pictures can be more or less exact, and settings on them.
 //! * [`io`]: models, textures, scene files and pictures, to and from the disk.
 //! * [`edit`]: which command a key means, and the history of commands.
 //! * [`render`]: from a scene to a picture: plan, geometry, visibility, shading.
 //! * [`lab`]: what drawing costs in time, and what accuracy costs.
 //! * [`app`]: the window. The only floor that knows of egui.
 
+pub mod accuracy;
 pub mod app;
 pub mod base;
 pub mod edit;

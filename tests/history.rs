@@ -7,7 +7,7 @@ mod common;
 
 use glam::DVec3;
 use marraztu::base::color::Color;
-use marraztu::edit::{Gesture, History, Stroke, transform};
+use marraztu::edit::{Gesture, GesturePhase, History, transform};
 use marraztu::scene::{Command, ItemId, ObjectId, Scene, Subject};
 use proptest::prelude::*;
 
@@ -30,7 +30,8 @@ fn command() -> impl Strategy<Value = Command> {
     let id = || 1_u32..4;
     prop_oneof![
         2 => id().prop_map(|id| Command::Remove(ItemId::Object(ObjectId(id)))),
-        2 => (0_usize..3, id()).prop_map(move |(at, id)| Command::Insert { at, item: shown(id, true) }),
+        2 => (0_usize..3, id())
+            .prop_map(move |(at, id)| Command::Insert { at, item: shown(id, true) }),
         4 => (id(), any::<bool>()).prop_map(move |(id, on)| Command::Replace(shown(id, on))),
         2 => any::<u8>().prop_map(|c| Command::Background(Color([c; 3]))),
         1 => (id(), id()).prop_map(move |(a, b)| Command::Batch(vec![
@@ -54,7 +55,8 @@ fn step() -> impl Strategy<Value = Step> {
     ]
 }
 
-/// The scenes before and after each step, where we are among them, and which of them is on the disk.
+/// The scenes before and after each step, where we are among them, and which of them is on the
+/// disk.
 struct Model {
     scenes: Vec<Scene>,
     now: usize,
@@ -81,7 +83,9 @@ impl Model {
 
 proptest! {
     #[test]
-    fn the_history_goes_where_a_list_of_scenes_goes(script in prop::collection::vec(step(), 0..60)) {
+    fn the_history_goes_where_a_list_of_scenes_goes(
+        script in prop::collection::vec(step(), 0..60),
+    ) {
         let mut scene = common::three_objects().0;
         let mut history = History::new();
         let mut model = Model {
@@ -164,8 +168,8 @@ fn one_undo_takes_back_a_whole_drag_and_says_what_it_was() {
     let start = scene.clone();
     let mut history = History::new();
     for i in 0..500 {
-        let stroke = if i == 0 { Stroke::First } else { Stroke::Continued };
-        let command = transform::translate(&scene, &view, DVec3::X, stroke).unwrap();
+        let phase = if i == 0 { GesturePhase::First } else { GesturePhase::Continued };
+        let command = transform::translate(&scene, &view, DVec3::X, phase).unwrap();
         history.perform(&mut scene, command, Gesture::Part(7), "Move").unwrap();
     }
     let end = scene.clone();

@@ -8,11 +8,14 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use glam::DMat4;
+use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::io::{Loaded, Progress, describe, load, load_picture, open, to_text};
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{LoadOptions, Settings};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::scene::LoadOptions;
 
 /// The files of a kind, each with its content.
 fn files(kind: &str) -> Vec<PathBuf> {
@@ -35,7 +38,7 @@ fn draw(loaded: Loaded) {
     }
     assert!(describe(&loaded).starts_with("name"));
     let (scene, view) = common::scene(&[(Shared::new(loaded.model), DMat4::IDENTITY)]);
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(16, 16));
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(16, 16)));
     assert_eq!(Renderer::default().render(&plan).pixels().len(), 256);
 }
 

@@ -308,7 +308,7 @@ fn a_number_that_cannot_be_read_refuses_the_file_with_its_line() {
 }
 
 #[test]
-fn a_file_of_which_no_face_can_be_used_is_refused_by_its_first_bad_line() {
+fn a_file_without_a_usable_face_is_refused_by_its_first_bad_line() {
     assert_eq!(
         refusal(&triangle_and("f 1 2 9\nf 1 2\n")),
         "a.obj:4: a face refers to vertex 9, but the file has 3 vertices; none of its faces can be used"
@@ -474,7 +474,7 @@ fn work_is_watched_and_cancelled() {
 
 // However a file is cut into chunks that are read apart, and whichever way its lines are read.
 
-/// A file of many chunks with something of everything: a strip of squares, of which some count
+/// A file of many chunks with something of everything: a strip of squares; some of them count
 /// back, with places on the texture and normals here and there, parts and faults.
 fn long(lines: u32) -> String {
     let mut text = String::new();
@@ -548,7 +548,7 @@ fn a_line_that_cannot_be_read_is_named_by_its_number_wherever_it_stands() {
     assert_eq!(refusal(&text), format!("a.obj:{}: \"x\" is not a number", lines + 1));
 }
 
-// What files claim, and nobody has the memory or the time for.
+// What files claim, and no machine has the memory or the time for.
 
 #[test]
 fn an_index_promises_nothing() {

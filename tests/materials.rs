@@ -103,7 +103,7 @@ fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
     assert_eq!(text, format!("the texture cannot be read: {path}: {reason}"));
 }
 
-/// What `Tr` says in each of a file's materials, two of which are used; the opacity of the first
+/// What `Tr` says in each of a file's materials, two of them used; the opacity of the first
 /// and what was found.
 fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
     let material = |(name, tr): (&str, &str)| format!("{}{tr}\n", RED.replace("red", name));

@@ -12,11 +12,14 @@ use std::fmt::Write as _;
 
 use dhat::{HeapStats, Profiler};
 use glam::DMat4;
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{LightAt, Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::io::{self, Progress};
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{LightAt, LoadOptions, Samples, Settings};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::scene::LoadOptions;
 
 #[global_allocator]
 static COUNTING: dhat::Alloc = dhat::Alloc;
@@ -64,7 +67,7 @@ fn measure(path: &std::path::Path, file: usize) {
     let size = Size::new(800, 600);
     let settings = Settings::default();
     // What drawing looks for in the mesh once, and keeps there, is the mesh's.
-    drop(FramePlan::new(&scene, &view, &settings, size));
+    drop(plan_frame(&Shot::new(&scene, &view, &settings, size)));
     scene.objects.iter().for_each(|(_, object)| assert!(!object.model.mesh.facets().is_empty()));
     let mesh = HeapStats::get().curr_bytes;
     println!("file {file} bytes, mesh {mesh}, most while loading {most}");
@@ -81,7 +84,7 @@ fn measure(path: &std::path::Path, file: usize) {
         let mut frame = |turn: i32| {
             let mut view = view.clone();
             view.time = f64::from(turn);
-            renderer.render(&FramePlan::new(&scene, &view, &settings, size));
+            renderer.render(&plan_frame(&Shot::new(&scene, &view, &settings, size)));
         };
         (0..3).for_each(&mut frame);
         let before = HeapStats::get();

@@ -1,6 +1,6 @@
 //! Every public model that was gathered, against the table that says what is in it.
 //!
-//! The models are the work of others and lie beside the project. Where they are missing the test is
+//! The models are the work of others and lie beside the project. If they are missing, the test is
 //! left out, loudly; `MARRAZTU_REQUIRE_SHARED=1` makes that a failure, `MARRAZTU_SHARED` says where
 //! they are.
 
@@ -9,15 +9,18 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Arithmetic, LightAt, Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math;
-use marraztu::edit::{frame, items, selection};
+use marraztu::edit::{framing, items, selection};
 use marraztu::io::{Finding, FindingKind, LoadError, Progress, default_scene, load};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
-    Arithmetic, Camera, Command, Corner, ItemId, LightAt, LoadOptions, MaterialChoice, Mesh, Model,
-    Object, Placed, Pose, Samples, Scene, Settings, View, dvec3, newell,
+    Camera, Command, Corner, ItemId, LoadOptions, MaterialChoice, Mesh, Model, Object, Pose, Scene,
+    Tracked, View, dvec3, newell,
 };
 
 /// The folder of the models, where it is there.
@@ -185,7 +188,7 @@ fn what_tobj_reads_of_a_model_is_read_alike_bit_for_bit() {
         let statement = |word: &str| text.lines().any(|line| line.starts_with(word));
         let loaded = load(&path, &LoadOptions::default(), &Progress::new());
         let (Ok(loaded), false) = (loaded, statement("l ") || statement("p ")) else { continue };
-        // It gives the first place on the texture to faces of which none names any.
+        // It gives the first place on the texture to faces that name none.
         let named = text.lines().any(|line| line.starts_with('f') && line.contains('/'));
         let count = |kind| count(&loaded.findings, kind);
         let mixed = count(FindingKind::UvMixed) + count(FindingKind::NormalMixed);
@@ -281,11 +284,11 @@ fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
     view.marks = false;
     let turned = |camera: &mut Camera| {
         let axes = math::frame(side, DVec3::Y, DMat3::IDENTITY);
-        camera.pose = Placed::new(Pose { axes, ..*camera.pose.now() });
+        camera.pose = Tracked::new(Pose { axes, ..*camera.pose.now() });
     };
     items::change_camera(&scene, view.camera, turned).unwrap().apply(&mut scene).unwrap();
     // A file without vertices has nothing to be framed.
-    if let Ok(framed) = frame::all(&scene, &view) {
+    if let Ok(framed) = framing::all(&scene, &view) {
         framed.apply(&mut scene).unwrap();
     }
     (scene, view)
@@ -302,7 +305,7 @@ fn every_model_is_seen_and_drawn_alike_to_a_step_in_both_arithmetics() {
     let Some(sweep) = sweep() else { return };
     let side = 128;
     let draw = |scene: &Scene, view: &View, settings: Settings| {
-        let plan = FramePlan::new(scene, view, &settings, Size::new(side, side));
+        let plan = plan_frame(&Shot::new(scene, view, &settings, Size::new(side, side)));
         Renderer::default().render(&plan).clone()
     };
     for (row, loaded) in sweep {
@@ -335,7 +338,7 @@ fn pictures_of(file: &Path) -> Vec<Picture> {
         let loaded = load(file, &LoadOptions::default(), &Progress::new()).ok()?;
         let (scene, view) = staged(&Shared::new(loaded.model), DVec3::new(3.0, 2.0, 5.0));
         let settings = Settings { light, samples: Samples::Four, ..Settings::default() };
-        let plan = FramePlan::new(&scene, &view, &settings, Size::new(96, 80));
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(96, 80)));
         Some(Renderer::default().render(&plan).clone())
     };
     shadings.into_iter().filter_map(draw).collect()

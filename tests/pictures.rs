@@ -8,15 +8,19 @@ mod common;
 use common::{at, ball, covered, cube, draw, edit, model, scene, square};
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Arithmetic, LightAt, Settings, SpecularForm};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::lab::instructions::levels;
-use marraztu::render::{EffectUse, FramePlan, Renderer};
+use marraztu::render::explain_frame;
+use marraztu::render::plan_frame;
+use marraztu::render::{EffectUse, Renderer};
 use marraztu::scene::{
-    Arithmetic, Command, Fill, ItemId, LightAt, MaterialChoice, Model, Normals, ObjectId,
-    PolygonMode, PresetId, Projection, Scene, Settings, Sides, SpecularForm, View,
+    Command, Fill, ItemId, MaterialChoice, Model, Normals, ObjectId, PolygonMode, PresetId,
+    Projection, Scene, Sides, View,
 };
 
 const FIRST: ObjectId = ObjectId(10);
@@ -54,8 +58,7 @@ fn every_way_of_lighting_is_the_same_to_a_step_in_both_arithmetics() {
     }
 }
 
-/// A mesh of which one corner is far beyond all others: what is seen of it is lit as if it were not
-/// there.
+/// A mesh with one corner far beyond all others: what is seen of it is lit as if it were not there.
 #[test]
 fn a_stray_corner_takes_no_light_from_the_rest_in_either_arithmetic() {
     let far = [1e15_f32, 1e15, -1e15];
@@ -96,7 +99,7 @@ fn the_first_scene_is_the_same_to_a_step_in_both_arithmetics_and_everywhere_at_i
 fn threads_and_instructions_do_not_show() {
     let (scene, view) = marraztu::io::default_scene();
     let view = View { edges_over_fill: true, ..view };
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(333, 257));
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(333, 257)));
     let picture = |level: Level, threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| Renderer::new(level).render(&plan).clone())
@@ -212,7 +215,7 @@ fn what_is_nearer_hides_what_is_farther_whatever_the_order() {
 
 #[test]
 fn a_wall_looks_the_same_whether_or_not_there_is_something_behind_it() {
-    // Where a triangle is alone in a tile, nobody asks what is seen at its pixels.
+    // If a triangle is alone in a tile, what is seen at its pixels is known without asking.
     let wall = (square(), at(400.0, 3.0, -7.0, 0.0));
     let (alone, view) = scene(std::slice::from_ref(&wall));
     let (both, _) = scene(&[wall, (ball(6), at(100.0, 0.0, 0.0, -300.0))]);
@@ -244,7 +247,7 @@ fn a_renderer_that_has_drawn_other_pictures_draws_the_same() {
         let light = [LightAt::Pixel, LightAt::Vertex, LightAt::Face][round as usize % 3];
         let settings = Settings { light, ..Settings::default() };
         let size = if round < 6 { Size::new(200, 150) } else { Size::new(150, 200) };
-        let plan = FramePlan::new(&scene, &without_marks(view), &settings, size);
+        let plan = plan_frame(&Shot::new(&scene, &without_marks(view), &settings, size));
         assert!(*renderer.render(&plan) == *Renderer::default().render(&plan), "{round}");
     }
 }
@@ -351,7 +354,7 @@ fn one_polygon_is_shown_alone_or_with_the_earlier_ones() {
 fn a_pixel_knows_whose_it_is() {
     let (scene, view) =
         scene(&[(cube(), at(40.0, -80.0, 0.0, 0.0)), (cube(), at(40.0, 80.0, 0.0, 0.0))]);
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(200, 200));
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(200, 200)));
     let mut renderer = Renderer::default();
     renderer.render(&plan);
     let mut item = |x: usize, y: usize| renderer.hit(x, y).map(|hit| (hit.item, hit.polygon));
@@ -397,7 +400,7 @@ fn what_is_left_out_is_named_with_its_reason() {
         object.material = MaterialChoice::Preset(rubber);
     });
     let explained = |scene: &Scene| {
-        FramePlan::explained(scene, &view, &Settings::default(), Size::new(64, 64)).1
+        explain_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(64, 64))).1
     };
     let reason = |uses: &[EffectUse], name: &str, on: Option<&str>| {
         let is_it = |one: &&EffectUse| {
@@ -422,8 +425,12 @@ fn what_is_left_out_is_named_with_its_reason() {
 fn triangles_that_face_away_or_lie_outside_are_not_counted_as_drawn() {
     let (scene, view) =
         scene(&[(cube(), at(40.0, 0.0, 0.0, 0.0)), (cube(), at(9.0, 9e3, 0.0, 0.0))]);
-    let plan =
-        FramePlan::new(&scene, &without_marks(view), &Settings::default(), Size::new(64, 64));
+    let plan = plan_frame(&Shot::new(
+        &scene,
+        &without_marks(view),
+        &Settings::default(),
+        Size::new(64, 64),
+    ));
     let mut renderer = Renderer::default();
     renderer.render(&plan);
     assert_eq!(renderer.triangles_drawn(), 2, "the front square of the near cube");

@@ -17,6 +17,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::{at, ball, cube, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -24,13 +26,15 @@ use marraztu::base::math::Axis;
 use marraztu::base::rng::Rng;
 use marraztu::edit::lights::{self, Channel};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Gesture, History, Refusal, Stroke, items, look, motion, selection};
+use marraztu::edit::{
+    Gesture, GesturePhase, History, Refusal, items, motion, navigation, selection,
+};
+use marraztu::render::plan_frame;
 use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer};
 use marraztu::scene::{
-    AXES, Arithmetic, Command, Fill, Filter, Frame, ItemId, LightAt, LightKind, MaterialChoice,
-    MeshSource, Model, Normals, Object, ObjectId, Observer, Part, PolygonMode, PresetId,
-    Projection, Samples, Scene, Settings, Sides, SourceCorner, SpecularForm, SpotOwner, Subject,
-    Surface, Texture, Transformation, View, Wrap,
+    Command, Fill, Frame, ItemId, LightKind, MaterialChoice, MeshSource, Model, Normals, Object,
+    ObjectId, Observer, Part, PolygonMode, PresetId, Projection, Scene, Sides, SourceCorner,
+    SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
 };
 
 fn random_color(rng: &mut Rng) -> Color {
@@ -65,7 +69,7 @@ fn plates() -> Shared<Model> {
     )
 }
 
-/// Two by two texels, one of which may be a hole.
+/// Two by two texels, one perhaps a hole.
 fn texture(rng: &mut Rng) -> Shared<Texture> {
     let hole = rng.one_of(&[255, 255, 20]);
     let texel = |rng: &mut Rng, alpha| {
@@ -109,7 +113,7 @@ impl Desk {
     }
 
     fn plan(&self) -> FramePlan {
-        FramePlan::new(&self.scene, &self.view, &self.settings, self.size)
+        plan_frame(&Shot::new(&self.scene, &self.view, &self.settings, self.size))
     }
 
     /// Changes anything: mostly the scene, now and then how it is looked at.
@@ -173,8 +177,8 @@ impl Desk {
             }
             _ => {
                 let turn = [0.2 * rng.real(-1.0, 1.0), 0.2 * rng.real(-1.0, 1.0)];
-                let first = Stroke::First;
-                self.perform(look::look(&self.scene, &self.view, turn[0], turn[1], first));
+                let first = GesturePhase::First;
+                self.perform(navigation::look(&self.scene, &self.view, turn[0], turn[1], first));
             }
         }
     }
@@ -272,7 +276,7 @@ impl Desk {
         );
         self.view.frame = rng.one_of(&[Frame::Local, Frame::Global]);
         let sign = rng.one_of(&[Sign::Positive, Sign::Negative]);
-        let first = Stroke::First;
+        let first = GesturePhase::First;
         transform::step(&self.scene, &self.view, rng.one_of(&Axis::ALL), sign, first)
     }
 }
@@ -394,8 +398,9 @@ fn marks_in_one_place_are_drawn_again_when_their_order_changes() {
         let material = MaterialChoice::Preset(PresetId::named(name).unwrap());
         items::insert_camera(&scene, cube(), material).apply(&mut scene).unwrap();
     }
-    let plan =
-        |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), Size::new(200, 200));
+    let plan = |scene: &Scene| {
+        plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(200, 200)))
+    };
     let mut renderer = Renderer::default();
     let before = renderer.render(&plan(&scene)).clone();
     let last = scene.cameras.ids().last().unwrap();
@@ -408,8 +413,9 @@ fn marks_in_one_place_are_drawn_again_when_their_order_changes() {
 fn drawn_normals_are_those_that_the_object_has_by_now() {
     let (mut scene, view) = scene(&[(plates(), at(60.0, 0.0, 0.0, 0.0))]);
     let view = View { vertex_normals: true, ..view };
-    let plan =
-        |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), Size::new(200, 200));
+    let plan = |scene: &Scene| {
+        plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(200, 200)))
+    };
     let mut renderer = Renderer::default();
     renderer.render(&plan(&scene));
     edit(&mut scene, ObjectId(10), |object| object.file_normals ^= true);
@@ -419,8 +425,9 @@ fn drawn_normals_are_those_that_the_object_has_by_now() {
 #[test]
 fn what_reaches_behind_the_camera_is_drawn_again_wherever_it_is_seen() {
     let (mut scene, view) = scene(&[(plates(), DMat4::IDENTITY)]);
-    let plan =
-        |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), Size::new(500, 500));
+    let plan = |scene: &Scene| {
+        plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(500, 500)))
+    };
     let mut renderer = Renderer::default();
     renderer.render(&plan(&scene));
     // A floor under the camera, from behind it to far before it.
@@ -440,7 +447,7 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
         scene(&[(square(), at(20.0, -125.0, 125.0, 0.0)), (square(), at(20.0, 125.0, 125.0, 0.0))]);
     let view = View { marks: false, ..view };
     let size = Size::new(640, 640);
-    let plan = |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), size);
+    let plan = |scene: &Scene| plan_frame(&Shot::new(scene, &view, &Settings::default(), size));
     // The spots of the selected object and camera follow it, and the diamond is a mark.
     for (id, light) in
         scene.lights.iter().map(|(id, light)| (id, light.clone())).collect::<Vec<_>>()
@@ -465,8 +472,9 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
 #[test]
 fn what_shows_nowhere_paints_no_tile() {
     let (mut scene, view) = scene(&[(square(), at(20.0, 0.0, 0.0, 0.0))]);
-    let plan =
-        |scene: &Scene| FramePlan::new(scene, &view, &Settings::default(), Size::new(100, 100));
+    let plan = |scene: &Scene| {
+        plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(100, 100)))
+    };
     let mut renderer = Renderer::default();
     renderer.render(&plan(&scene));
     edit(&mut scene, ObjectId(10), |object| object.name = "another name".to_owned());
@@ -485,7 +493,7 @@ fn edges_that_stand_over_the_border_of_a_tile_are_drawn_again_on_both_sides() {
             let projection = Projection::Orthographic;
             let view = View { projection, wide_lines, edges_over_fill: true, ..view };
             let plan = |scene: &Scene| {
-                FramePlan::new(scene, &view, &Settings::default(), Size::new(128, 128))
+                plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(128, 128)))
             };
             let mut renderer = Renderer::default();
             renderer.render(&plan(&scene));

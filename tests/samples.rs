@@ -8,17 +8,20 @@ mod common;
 
 use common::{at, ball, draw, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Arithmetic, Axis, LightAt, Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::geometry::coverage::Snapped;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::render::screen::coverage::Snapped;
 use marraztu::scene::{
-    Aim, Arithmetic, Axis, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,
-    MeshSource, NONE, NormalLength, ObjectId, Part, Placed, Projection, Samples, Scene, Settings,
-    Sides, SourceCorner, SpotOwner, Surface, Texture, View, Wrap,
+    Aim, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
+    NormalLength, ObjectId, Part, Projection, Scene, Sides, SourceCorner, SpotOwner, Surface,
+    Texture, Tracked, View, Wrap,
 };
 
 const SIDE: usize = 128;
@@ -89,7 +92,7 @@ fn seen_from(triangles: &[Flat], [x, y]: [f64; 2]) -> Vec<Flat> {
 fn drawn(triangles: &[Flat], view: impl Fn(View) -> View, settings: &Settings) -> Picture {
     let (mut scene, own) = flat::scene(&[triangles.to_vec()], SIDE);
     scene.background = Color([9, 99, 199]);
-    let plan = FramePlan::new(&scene, &view(own), settings, Size::new(SIDE, SIDE));
+    let plan = plan_frame(&Shot::new(&scene, &view(own), settings, Size::new(SIDE, SIDE)));
     Renderer::default().render(&plan).clone()
 }
 
@@ -231,9 +234,9 @@ fn each_sample_is_lit_where_it_lies() {
     wants_means(&small, &in_boxes(&large, SIDE), "eight times as large");
 }
 
-/// In perspective corners of the larger picture are snapped eight times as finely, so that samples
-/// next to an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the
-/// whole. Where one triangle is seen, at most one.
+/// In perspective corners of the larger picture are snapped eight times as finely, so that samples next to
+/// an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the whole. If one
+/// triangle is seen, at most one.
 #[test]
 fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     const SMALL: usize = 48;
@@ -246,12 +249,13 @@ fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     let mut renderer = Renderer::default();
     for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
         let settings = Settings { arithmetic, ..Settings::default() };
-        let plan = FramePlan::new(&scene, &view, &settings, Size::new(8 * SMALL, 8 * SMALL));
+        let plan =
+            plan_frame(&Shot::new(&scene, &view, &settings, Size::new(8 * SMALL, 8 * SMALL)));
         let large = in_boxes(renderer.render(&plan), SMALL);
         let shown = renderer.primitives();
         let samples = Samples::SixtyFour;
         let settings = Settings { samples, light: LightAt::Sample, ..settings };
-        let plan = FramePlan::new(&scene, &view, &settings, Size::new(SMALL, SMALL));
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(SMALL, SMALL)));
         let small = renderer.render(&plan);
         let (mut squares, mut inside) = (0.0, 0);
         for (i, (pixel, all)) in small.pixels().iter().zip(&large).enumerate() {
@@ -282,7 +286,7 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
         scene(&[(square(), at(90.0, 3.0, 2.0, 0.0) * DMat4::from_rotation_y(0.3))]);
     let view = View { marks: false, ..view };
     let aim = Aim { position: DVec3::new(5.0, 1.0, 120.0), direction: DVec3::NEG_Z };
-    let owner = SpotOwner::Fixed(Placed::new(aim));
+    let owner = SpotOwner::Fixed(Tracked::new(aim));
     let kind = LightKind::Spot { owner, half_aperture: 25.0, exponent: 0.0 };
     scene.lights = [(LightId(900), Light::new("spot", 1, kind))].into_iter().collect();
     edit(&mut scene, ObjectId(10), |object| {
@@ -375,7 +379,7 @@ fn the_only_sample_of_a_pixel_is_its_middle() {
     let (scene, view) = marraztu::io::default_scene();
     let plan = |light| {
         let settings = Settings { light, ..Settings::default() };
-        FramePlan::new(&scene, &view, &settings, Size::new(50, 50))
+        plan_frame(&Shot::new(&scene, &view, &settings, Size::new(50, 50)))
     };
     assert_eq!(plan(LightAt::Sample), plan(LightAt::Pixel));
 }
@@ -386,7 +390,7 @@ fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
     let size = Size::new(150, 100);
     let planned = |scene: &Scene, light| {
         let settings = Settings { samples: Samples::Four, light, ..Settings::default() };
-        FramePlan::new(scene, &view, &settings, size)
+        plan_frame(&Shot::new(scene, &view, &settings, size))
     };
     let picked = |renderer: &mut Renderer| -> Vec<Option<ItemId>> {
         let all = (0..size.area()).step_by(7);
@@ -409,7 +413,7 @@ fn lit_samples_are_drawn_again_given_up_and_picked_as_others_are() {
     assert!(*renderer.picture() == wanted);
     // Whenever it is given up, what is picked is of the last picture, and the next one is right.
     edit(&mut scene, ObjectId(10), |object| {
-        object.placement = Placed::new(at(50.0, 0.0, 0.0, 30.0));
+        object.placement = Tracked::new(at(50.0, 0.0, 0.0, 30.0));
     });
     let moved = planned(&scene, LightAt::Sample);
     for patience in [0, 1, 5, 20, 60] {
@@ -431,7 +435,7 @@ fn lit_samples_are_the_same_on_all_instructions_and_by_any_number_of_threads() {
         Settings { samples: Samples::Sixteen, light: LightAt::Sample, ..Settings::default() };
     let lit = shiny(&scattered(40, 23), SIDE);
     for (scene, view) in [(scene, view), lit] {
-        let plan = FramePlan::new(&scene, &view, &settings, Size::new(SIDE, SIDE));
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(SIDE, SIDE)));
         let mut wanted = None;
         for level in marraztu::lab::instructions::levels() {
             for threads in [1, 3] {
@@ -459,7 +463,7 @@ fn where_nothing_ends_a_picture_is_the_same_with_any_number_of_samples() {
     let mut renderer = Renderer::default();
     let plan = |samples| {
         let settings = Settings { samples, ..Settings::default() };
-        FramePlan::new(&scene, &view, &settings, Size::new(200, 200))
+        plan_frame(&Shot::new(&scene, &view, &settings, Size::new(200, 200)))
     };
     let one = renderer.render(&plan(Samples::One)).clone();
     let shown = renderer.primitives();
@@ -555,7 +559,12 @@ fn what_is_picked_is_what_most_samples_show() {
         for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
             let settings = Settings { samples, ..Settings::default() };
             let mut renderer = Renderer::default();
-            renderer.render(&FramePlan::new(&scene, &view, &settings, Size::new(SIDE, SIDE)));
+            renderer.render(&plan_frame(&Shot::new(
+                &scene,
+                &view,
+                &settings,
+                Size::new(SIDE, SIDE),
+            )));
             let hit = renderer.hit(64, 20).map(|hit| hit.item);
             assert_eq!(hit, seen.then_some(ItemId::Object(ObjectId(1))), "{samples:?} {part}");
             assert!(renderer.hit(63, 20).is_some() && renderer.hit(65, 20).is_none());

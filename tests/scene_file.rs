@@ -6,6 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::{
+    Arithmetic, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt, NormalMatrix,
+    Normalising, Rounding, Samples, Settings, SpecularForm, SpecularPower, Subpixels,
+    VertexArithmetic,
+};
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
@@ -16,13 +21,11 @@ use marraztu::io::{
     save, save_picture, to_text,
 };
 use marraztu::scene::{
-    Aim, Arithmetic, Attenuation, Camera, CameraId, CameraMode, Command, Coverage, Crease,
-    DepthFormat, Fill, Filter, Frame, Interpolation, Item, LeaveOut, Lens, Light, LightAt, LightId,
-    LightKind, LoadOptions, Material, MaterialChoice, NormalLength, NormalMatrix, Normalising,
-    Normals, Object, ObjectId, Observer, Orbit, Panels, Placed, PolygonMode, Pose, PresetId,
-    Projection, Rounding, Samples, Scale, Scene, Settings, Sides, SpecularForm, SpecularPower,
-    Spin, SpotOwner, Steps, Subject, Subpixels, Surface, Texture, Transformation, UpAxis,
-    VertexArithmetic, View, Winding, Wrap,
+    Aim, Attenuation, Camera, CameraId, CameraMode, Command, Crease, Fill, Frame, Item, Lens,
+    Light, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength, Normals,
+    Object, ObjectId, Observer, Orbit, Panels, PolygonMode, Pose, PresetId, Projection, Scale,
+    Scene, Sides, Spin, SpotOwner, Steps, Subject, Surface, Texture, Tracked, Transformation,
+    UpAxis, View, Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -68,7 +71,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         visible: false,
         model: Shared::new(cube),
         hidden_parts: BTreeSet::from([1]),
-        placement: Placed::new(DMat4::IDENTITY).moved(place),
+        placement: Tracked::new(DMat4::IDENTITY).moved(place),
         spin: Spin { axes: [true, false, true], speed: c, since: d },
         material: MaterialChoice::Own(Material { exponent: 7.25, ..Material::default() }),
         surface: Surface::Texture,
@@ -94,20 +97,20 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         visible: false,
         model: scene.objects.get(ObjectId(1)).unwrap().model.clone(),
         material: MaterialChoice::Preset(PresetId::EMERALD),
-        pose: Placed::new(pose),
+        pose: Tracked::new(pose),
         lens: Lens { half_angle: 30.0, near: 0.1, far: 70.0, half_size: 3.0, ..Lens::default() },
     };
     insert(&mut scene, 0, Item::Camera(CameraId(22), Box::new(camera)));
 
     let direction = math::unit(DVec3::new(a, b, 1.0)).unwrap();
-    let aim = Placed::new(Aim { position: DVec3::new(a, b, c), direction });
+    let aim = Tracked::new(Aim { position: DVec3::new(a, b, c), direction });
     let bulb = LightKind::Bulb {
-        position: Placed::new(DVec3::new(d, c, b)),
+        position: Tracked::new(DVec3::new(d, c, b)),
         orbit: Orbit { on: true, speed: a, since: b },
     };
     let spot = |owner| LightKind::Spot { owner, half_aperture: 90.0, exponent: 0.5 };
     let kinds = [
-        LightKind::Sun { direction: Placed::new(direction) },
+        LightKind::Sun { direction: Tracked::new(direction) },
         bulb,
         spot(SpotOwner::Fixed(aim)),
         spot(SpotOwner::Object(ObjectId(20))),
@@ -172,7 +175,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
 fn without_stacks(scene: &Scene) -> Scene {
     let mut plain = scene.clone();
     for (id, object) in scene.objects.iter() {
-        let object = Object { placement: Placed::new(*object.placement.now()), ..object.clone() };
+        let object = Object { placement: Tracked::new(*object.placement.now()), ..object.clone() };
         Command::Replace(Item::Object(id, Box::new(object))).apply(&mut plain).unwrap();
     }
     plain
@@ -563,7 +566,7 @@ fn the_file_that_was_there_is_kept_beside() {
 }
 
 #[test]
-fn a_number_that_is_none_is_refused_before_anything_is_written() {
+fn a_nan_is_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.marraztu");
     let (scene, mut view) = default_scene();

@@ -16,11 +16,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::DMat4;
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Filter, LightAt, Samples, Settings};
 use marraztu::base::image::{Picture, Size};
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{
-    Fill, Filter, LightAt, Normals, ObjectId, Samples, Scene, Settings, Sides, View,
-};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::scene::{Fill, Normals, ObjectId, Scene, Sides, View};
 
 use common::{ball, edit, scene};
 
@@ -107,7 +108,7 @@ fn new_scene(sides: Sides) -> Scene {
 }
 
 fn picture((view, settings, sides): &(View, Settings, Sides)) -> Picture {
-    let plan = FramePlan::new(&new_scene(*sides), view, settings, Size::new(200, 136));
+    let plan = plan_frame(&Shot::new(&new_scene(*sides), view, settings, Size::new(200, 136)));
     Renderer::default().render(&plan).clone()
 }
 

@@ -6,14 +6,16 @@ mod common;
 
 use common::{at, ball, covered, draw, edit, scene, square};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{
+    ACCURACY_PRESETS, AXES, Arithmetic, Axis, Coverage, DepthFormat, Filter, Interpolation,
+    NormalMatrix, Rounding, Settings, SpecularPower, Subpixels, VertexArithmetic,
+};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::lesson_scene;
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{
-    ACCURACY_PRESETS, AXES, Arithmetic, Axis, Coverage, DepthFormat, Filter, Interpolation, Light,
-    LightId, LightKind, Material, MaterialChoice, NormalMatrix, ObjectId, Rounding, Scene,
-    Settings, SpecularPower, Subpixels, VertexArithmetic, View,
-};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::scene::{Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, View};
 
 const FIRST: ObjectId = ObjectId(10);
 const SECOND: ObjectId = ObjectId(11);
@@ -31,7 +33,7 @@ fn unmarked(view: View) -> View {
 /// What each pixel of a picture shows.
 fn primitives(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Vec<u32> {
     let mut renderer = Renderer::default();
-    renderer.render(&FramePlan::new(scene, view, settings, Size::new(side, side)));
+    renderer.render(&plan_frame(&Shot::new(scene, view, settings, Size::new(side, side))));
     renderer.primitives()
 }
 
@@ -95,7 +97,7 @@ fn highlights_are_as_wrong_as_their_powers() {
 
 #[test]
 fn quick_roots_grain_highlights_and_newton_mends_them() {
-    use marraztu::scene::Normalising;
+    use marraztu::accuracy::Normalising;
     let opened = lesson_scene("ball").unwrap();
     let picture = |normalising| {
         let settings = Settings { normalising, ..Settings::default() };
@@ -154,7 +156,7 @@ fn cut_off_colours_are_half_a_step_too_dark_and_a_pattern_keeps_the_mean() {
 
 #[test]
 fn rounding_is_the_same_wherever_light_is_evaluated_and_in_both_arithmetics() {
-    use marraztu::scene::LightAt;
+    use marraztu::accuracy::LightAt;
     let (scene, view) = scene(&[(ball(8), at(60.0, 0.0, 0.0, 0.0))]);
     for light in [LightAt::Face, LightAt::Vertex, LightAt::Pixel] {
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {

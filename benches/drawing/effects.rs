@@ -2,9 +2,11 @@
 //! scene that has them all.
 
 use criterion::Criterion;
+use marraztu::accuracy::Shot;
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
-use marraztu::render::{Effect, FramePlan, Renderer};
+use marraztu::render::explain_frame;
+use marraztu::render::{Effect, Renderer};
 use marraztu::scene::{Command, Item, ObjectId, Scene, Texture, View, Wrap};
 
 use super::shapes;
@@ -13,7 +15,7 @@ use super::stage::{FULL, Stage};
 pub(crate) fn measure(criterion: &mut Criterion) {
     let stage = everything();
     let Stage { scene, view, settings, size } = &stage;
-    let (_, uses) = FramePlan::explained(scene, view, settings, *size);
+    let (_, uses) = explain_frame(&Shot::new(scene, view, settings, *size));
     let mut effects: Vec<Effect> =
         uses.iter().filter(|one| one.state.is_on()).map(|one| one.effect).collect();
     effects.dedup();
@@ -53,7 +55,7 @@ fn everything() -> Stage {
     let mut object = stage.scene.objects.get(id).expect("there is one").clone();
     object.texture = Some(Shared::new(holed()));
     let turn = glam::DMat4::from_rotation_y(0.6) * glam::DMat4::from_rotation_x(1.0);
-    object.placement = marraztu::scene::Placed::new(*object.placement.now() * turn);
+    object.placement = marraztu::scene::Tracked::new(*object.placement.now() * turn);
     Command::Replace(Item::Object(id, Box::new(object))).apply(&mut stage.scene).expect("it fits");
     stage.view = View {
         marks: true,

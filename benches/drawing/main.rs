@@ -1,7 +1,7 @@
 //! How long drawing takes: by stage and shape, by effect, and how it grows.
 //!
 //! `cargo bench --bench drawing`, with a part of a name for some of it. Figures are of this machine
-//! at this moment: what means something is their ratios. `docs/speed.sh` makes a page of them.
+//! at this moment: what means something is their ratios. `tools/speed.sh` makes a page of them.
 
 mod effects;
 mod growth;

@@ -6,8 +6,8 @@ use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
 use marraztu::base::math::Axis;
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Stroke, items, selection};
-use marraztu::scene::{MaterialChoice, Model, Object, Placed, PresetId};
+use marraztu::edit::{GesturePhase, items, selection};
+use marraztu::scene::{MaterialChoice, Model, Object, PresetId, Tracked};
 
 use super::shapes;
 use super::stage::{FULL, Stage};
@@ -37,7 +37,8 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("move", count), |b| {
             b.iter(|| {
                 let (mut scene, mut view) = (stage.scene.clone(), stage.view.clone());
-                let moved = transform::step(&scene, &view, Axis::X, Sign::Positive, Stroke::First);
+                let moved =
+                    transform::step(&scene, &view, Axis::X, Sign::Positive, GesturePhase::First);
                 moved.expect("it can be moved").apply(&mut scene).expect("it fits");
                 selection::follow(&stage.scene, &scene, &mut view);
                 scene == stage.scene
@@ -55,7 +56,7 @@ fn objects(model: &Shared<Model>, count: u32) -> Vec<Object> {
         let mut object = Object::new(model.clone(), MaterialChoice::Own(material));
         let place = DVec3::new(f64::from(i % 100) - 50.0, f64::from(i / 100) - 50.0, 0.0) * 0.3;
         let placement = DMat4::from_translation(place) * DMat4::from_scale(DVec3::splat(0.1));
-        object.placement = Placed::new(placement);
+        object.placement = Tracked::new(placement);
         object
     };
     (0..count).map(object).collect()

@@ -4,13 +4,16 @@ use std::time::Duration;
 
 use criterion::Bencher;
 use glam::DVec3;
+use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::io;
+use marraztu::render::plan_frame;
 use marraztu::render::{FramePlan, Renderer};
 use marraztu::scene::{
-    CameraId, Command, Item, ItemId, MaterialChoice, Model, Object, ObjectId, Placed, Pose,
-    PresetId, Scene, Settings, View,
+    CameraId, Command, Item, ItemId, MaterialChoice, Model, Object, ObjectId, Pose, PresetId,
+    Scene, Tracked, View,
 };
 
 /// As wide and high as most windows.
@@ -32,7 +35,7 @@ impl Stage {
         let removals = ids.into_iter().map(|id| Command::Remove(ItemId::Object(id)));
         Command::Batch(removals.collect()).apply(&mut scene).expect("they are there");
         let mut object = Object::new(model.clone(), MaterialChoice::Preset(PresetId::RUBY));
-        object.placement = Placed::new(glam::DMat4::from_scale(DVec3::splat(20.0)));
+        object.placement = Tracked::new(glam::DMat4::from_scale(DVec3::splat(20.0)));
         let item = Item::Object(ObjectId(0), Box::new(object));
         Command::Insert { at: 0, item }.apply(&mut scene).expect("it fits");
         let view = View { object: Some(ObjectId(0)), marks: false, ..view };
@@ -47,10 +50,10 @@ impl Stage {
         let id: CameraId = scene.cameras.first().expect("there is one");
         let mut camera = scene.cameras.get(id).expect("it is there").clone();
         let eye = DVec3::new(0.001 * (i % 1000) as f64, 0.0, 46.0);
-        camera.pose = Placed::new(Pose::facing_minus_z(eye));
+        camera.pose = Tracked::new(Pose::facing_minus_z(eye));
         let camera = Item::Camera(id, Box::new(camera));
         Command::Replace(camera).apply(&mut scene).expect("it is there");
-        FramePlan::new(&scene, &self.view, &self.settings, self.size)
+        plan_frame(&Shot::new(&scene, &self.view, &self.settings, self.size))
     }
 
     /// Draws frames, and adds up what `time` says of each.

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use criterion::Criterion;
+use marraztu::accuracy::{LightAt, Settings};
 use marraztu::lab::timing::time;
 use marraztu::render::Stages;
-use marraztu::scene::{LightAt, Settings};
 
 use super::shapes;
 use super::stage::{FULL, Stage};

@@ -1,5 +1,5 @@
 //! Makes `docs/speed.md` of what `cargo bench --bench drawing` measured last, and of a table of
-//! other renderers' times where there is one: `docs/speed.sh` runs all of it.
+//! other renderers' times where there is one: `tools/speed.sh` runs all of it.
 //!
 //! The text is `page.md`, here beside; what stands in it between double braces is filled in.
 

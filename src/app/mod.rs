@@ -1,42 +1,41 @@
-//! The window: the only floor that knows of egui.
+//! The window: the only floor that uses egui.
 //!
 //! ```text
-//! keys, menus, buttons, mouse  ->  Ask  ->  App::answer  ->  Command or View  ->  the scene
+//! keys, menus, buttons, mouse  ->  Request  ->  App::answer  ->  Command or View  ->  the scene
 //! ```
 //!
-//! Panels and the viewport read the [`State`](state::State) and give back what is asked for; they
-//! change nothing. [`App`] answers at the end of the frame.
+//! Panels and the viewport read the [`State`](state::State) and return requests; they change
+//! nothing. [`App`] answers the requests at the end of the frame.
+//!
+//! The rooms of this floor, lowest first; a room uses only those below it (`tests/floors`):
+//!
+//! ```text
+//! theme      colours, fonts, spacing
+//! tasks      work on threads of its own
+//! widgets    controls that know nothing of scenes being edited: numbers, switches, colours, icons
+//! drawing    the thread that draws the viewport's pictures, and how it keeps up with the user
+//! state      everything that panels read
+//! actions    the table of actions, their keys, what each means now; requests
+//! input      keys and buttons that give actions
+//! documents  dialogs: files, materials, unsaved work
+//! panels     the panels around the viewport
+//! viewport   the picture, with the mouse and everything shown over it
+//! editor     the app: it answers requests, and is the only writer of the scene
+//! start      opens the window
+//! ```
 
-pub mod action;
-pub mod ask;
-mod browser;
-mod buttons;
-pub mod chord;
-pub mod comparison;
-mod decide;
-mod dialogs;
+pub mod actions;
+mod documents;
+mod drawing;
 mod editor;
-mod files;
-pub mod gestures;
-mod keyboard;
-pub mod laboratory;
-mod material_dialog;
-mod measuring;
-mod mouse;
-mod notices;
-mod overlay;
-mod pace;
-mod painter;
-pub mod panels;
-mod scene_files;
+mod input;
+mod panels;
 mod start;
 pub mod state;
 mod tasks;
 pub mod theme;
-mod trace;
 mod viewport;
-mod visibility;
-mod worker;
+pub mod widgets;
 
 pub use editor::App;
 pub use start::{StartError, run};

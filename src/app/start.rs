@@ -1,4 +1,4 @@
-//! Opens the window, or says in one sentence why there is none.
+//! Opens the window, or reports in one sentence why it cannot.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -6,15 +6,15 @@ use std::path::PathBuf;
 use eframe::NativeOptions;
 use egui::ViewportBuilder;
 
-use super::editor::App;
-use super::theme;
+use crate::app::editor::App;
+use crate::app::theme;
 use crate::io;
 
 /// Why no window could be opened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StartError {
     /// Nothing to show a window on.
-    #[error("there is no display to open a window on: neither DISPLAY nor WAYLAND_DISPLAY is set")]
+    #[error("no display to open a window on: neither DISPLAY nor WAYLAND_DISPLAY is set")]
     NoDisplay,
     /// The display does not answer.
     #[error("the display cannot be reached: {0}")]
@@ -23,7 +23,7 @@ pub enum StartError {
     #[error("the system lacks a library that windows need: {0}")]
     Library(String),
     /// No OpenGL, not even in software.
-    #[error("no OpenGL was found to show a window with: a driver or, in software, libgl1 has it")]
+    #[error("OpenGL was not found: install a graphics driver, or libgl1 for software rendering")]
     NoGl,
     /// Something else.
     #[error("the window could not be opened: {0}")]
@@ -34,7 +34,7 @@ pub enum StartError {
 /// scene with their own materials, a scene is opened in its place.
 ///
 /// # Errors
-/// Where no window can be opened.
+/// If no window can be opened.
 pub fn run(files: Vec<PathBuf>) -> Result<(), StartError> {
     if cfg!(target_os = "linux") && !has_display() {
         return Err(StartError::NoDisplay);

@@ -1,4 +1,4 @@
-//! Work that takes long, on threads of its own: loading, and the system's dialogs.
+//! Background tasks on threads of their own, such as loading and the system's dialogs.
 
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 
@@ -8,16 +8,16 @@ use crate::io::Progress;
 
 /// Work that goes on while the window answers.
 #[derive(Debug)]
-pub(super) struct Task<T> {
+pub(crate) struct Task<T> {
     /// "Loading teapot.obj".
-    pub(super) label: String,
-    pub(super) progress: Progress,
+    pub(crate) label: String,
+    pub(crate) progress: Progress,
     receiver: Receiver<T>,
 }
 
 /// How far a task is.
 #[derive(Debug)]
-pub(super) enum Outcome<T> {
+pub(crate) enum Outcome<T> {
     Running,
     Done(T),
     /// The thread ended without a word: a fault of the program's own.
@@ -28,8 +28,8 @@ impl<T: Send + 'static> Task<T> {
     /// Begins `work` on a thread, and wakes the window when it is done.
     ///
     /// # Errors
-    /// Where the system gives no thread.
-    pub(super) fn start(
+    /// If the system provides no thread.
+    pub(crate) fn start(
         ctx: &Context,
         label: String,
         work: impl FnOnce(&Progress) -> T + Send + 'static,
@@ -41,14 +41,14 @@ impl<T: Send + 'static> Task<T> {
             // Dropped last, so that the window is woken when everything has been told.
             let _wake = Wake(ctx);
             let sender = sender;
-            // Nobody may wait for it any more.
+            // The receiver may be gone.
             let _ = sender.send(work(&theirs));
         })?;
         Ok(Self { label, progress, receiver })
     }
 
     /// What has become of it. Once it is done it has nothing more to tell.
-    pub(super) fn outcome(&self) -> Outcome<T> {
+    pub(crate) fn outcome(&self) -> Outcome<T> {
         match self.receiver.try_recv() {
             Ok(result) => Outcome::Done(result),
             Err(TryRecvError::Empty) => Outcome::Running,

@@ -1,8 +1,8 @@
-//! How the window looks: colours, sizes, distances.
+//! The theme of the window: colours, sizes, spacing.
 //!
-//! The picture is the star, so that everything about it is grey; one accent says what is selected and
-//! what has the keyboard. A light and a dark palette hold the same places, and every text keeps a
-//! contrast of at least 4.5 to 1 on whatever it stands on (WCAG 2.1, success criterion 1.4.3).
+//! The picture is the star, so that everything about it is grey; one accent says what is selected
+//! and what has the keyboard. A light and a dark palette hold the same places, and every text keeps
+//! a contrast of at least 4.5 to 1 on whatever it stands on (WCAG 2.1, success criterion 1.4.3).
 
 use egui::style::{HandleShape, ScrollStyle, WidgetVisuals, Widgets};
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style};
@@ -18,7 +18,7 @@ pub const GAP: f32 = 4.0;
 pub const MARGIN: i8 = 10;
 /// To the right of what can be scrolled: the bar stands in it.
 pub const SCROLL_MARGIN: Margin = Margin { left: 0, right: MARGIN, top: 0, bottom: 0 };
-/// Where the labels of a panel's rows end and its controls begin.
+/// The width of the labels in the rows of a panel.
 pub const LABEL: f32 = 62.0;
 /// Small text: keys, units, what can be missed.
 pub const SMALL: f32 = 11.0;
@@ -31,7 +31,7 @@ pub const HEADING: f32 = 15.0;
 #[derive(Clone, Copy, Debug)]
 struct Palette {
     panel: Color32,
-    /// Where one types.
+    /// Text fields.
     field: Color32,
     /// Buttons at rest, under the pointer, pressed.
     control: Color32,
@@ -91,34 +91,35 @@ const fn gray(level: u8) -> Color32 {
     Color32::from_gray(level)
 }
 
-/// Gives `ctx` the program's looks, for both themes.
+/// Installs the styles of both themes and the font of the icons.
 pub fn install(ctx: &Context) {
+    egui_material_icons::initialize(ctx);
     ctx.set_style_of(Theme::Dark, style(Visuals::dark(), &DARK));
     ctx.set_style_of(Theme::Light, style(Visuals::light(), &LIGHT));
 }
 
 /// What marks the selected and the focused.
-pub(super) fn accent(visuals: &Visuals) -> Color32 {
+pub(crate) fn accent(visuals: &Visuals) -> Color32 {
     palette(visuals).accent
 }
 
 /// What says that something was not done.
-pub(super) fn error(visuals: &Visuals) -> Color32 {
+pub(crate) fn error(visuals: &Visuals) -> Color32 {
     palette(visuals).error
 }
 
 /// The colour of an axis' letter.
-pub(super) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
+pub(crate) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
     palette(visuals).axes[axis.index()]
 }
 
 /// The line between panels and about fields.
-pub(super) fn line(visuals: &Visuals) -> Color32 {
+pub(crate) fn line(visuals: &Visuals) -> Color32 {
     palette(visuals).line
 }
 
 /// The ring about what has the keyboard.
-pub(super) fn ring(visuals: &Visuals) -> Stroke {
+pub(crate) fn ring(visuals: &Visuals) -> Stroke {
     Stroke::new(2.0, palette(visuals).accent)
 }
 

@@ -206,6 +206,12 @@ pub fn turn_of(m: DMat3) -> DQuat {
     DQuat::from_mat3(&frame(m.z_axis, m.y_axis, DMat3::IDENTITY))
 }
 
+/// Whether all numbers of two matrices have the same bits.
+#[must_use]
+pub fn same_bits(a: &DMat4, b: &DMat4) -> bool {
+    a.to_cols_array().map(f64::to_bits) == b.to_cols_array().map(f64::to_bits)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

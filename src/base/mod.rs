@@ -1,5 +1,6 @@
-//! What every floor stands on: mathematics, colours, pictures, shared values.
+//! What every floor stands on: mathematics, colours, pictures, shared values, parallel work.
 
+pub(crate) mod cancellation;
 pub mod color;
 pub mod image;
 pub mod lists;
@@ -7,5 +8,6 @@ pub mod math;
 pub mod once;
 pub mod rng;
 mod shared;
+pub(crate) mod work_stealing;
 
 pub use shared::Shared;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use clap::Args;
-use marraztu::app::action::{Group, Look};
+use marraztu::app::actions::{ActionInfo, Group};
 
 use super::failure::Failure;
 
@@ -27,15 +27,15 @@ pub(crate) fn keys(arguments: &Keys) -> Result<(), Failure> {
 }
 
 /// The groups, each with its actions that have keys.
-fn groups() -> impl Iterator<Item = (Group, Vec<Look>)> {
+fn groups() -> impl Iterator<Item = (Group, Vec<ActionInfo>)> {
     Group::ALL.into_iter().filter_map(|group| {
-        let looks = group.actions().map(|action| action.look());
-        let looks: Vec<Look> = looks.filter(|look| !look.keys.is_empty()).collect();
+        let looks = group.actions().map(|action| action.info());
+        let looks: Vec<ActionInfo> = looks.filter(|look| !look.keys.is_empty()).collect();
         (!looks.is_empty()).then_some((group, looks))
     })
 }
 
-fn names(look: &Look) -> Vec<String> {
+fn names(look: &ActionInfo) -> Vec<String> {
     look.keys.iter().flat_map(|key| key.names()).collect()
 }
 

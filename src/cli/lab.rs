@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use marraztu::accuracy::{AXES, Axis, Settings};
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::attribution::attribute;
@@ -15,7 +16,6 @@ use marraztu::lab::picture_source::{PictureSource, Studio};
 use marraztu::lab::report::{self, Budgets, Report};
 use marraztu::lab::sweep::{Question, sweep};
 use marraztu::lab::timing::WallClock;
-use marraztu::scene::{AXES, Axis, Settings};
 
 use super::accuracy::Accuracy;
 use super::arguments::{Reading, Seeing, Surfaces};
@@ -95,7 +95,7 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
     let stage = staged(files, reading, surfaces, seeing, accuracy)?;
     let settings = stage.settings;
-    let mut studio = Studio::new(stage.scene, stage.view, *size);
+    let mut studio = Studio::new(stage.shot(*size));
     if let Some(Pixel(at)) = arguments.pixel {
         return explain_pixel(&mut studio, &settings, at);
     }
@@ -154,7 +154,7 @@ fn command() -> String {
 
 fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Result<(), Failure> {
     let Some(attribution) = attribute(studio, settings, at) else {
-        let Size { width, height } = studio.size();
+        let Size { width, height } = studio.shot().size;
         let [x, y] = at;
         let outside = format!("the picture has {width} x {height} pixels: there is no {x},{y}");
         return Err(Failure::Absent(outside));

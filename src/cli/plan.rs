@@ -52,13 +52,12 @@ enum Format {
 /// Lists the effects of the picture that the arguments describe.
 pub(crate) fn plan(arguments: &Plan) -> Result<(), Failure> {
     let stage = render::stage(&arguments.picture)?;
-    let (scene, view, settings) = (&stage.scene, &stage.view, &stage.settings);
-    let size = arguments.picture.size;
-    let explained = cost::explain((scene, view, settings, size));
+    let shot = stage.shot(arguments.picture.size);
+    let explained = cost::explain(&shot);
     let costs = arguments.measure.then(|| {
         let _bar = Bar::unmeasured("measuring");
         let budget = Duration::try_from_secs_f64(arguments.seconds).unwrap_or(Duration::MAX);
-        cost::measure((scene, view, settings, size), budget, || false)
+        cost::measure(&shot, budget, || false)
     });
     let text = match arguments.format {
         Format::Table => table(&explained, costs.as_ref()),

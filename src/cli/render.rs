@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use marraztu::base::image::Size;
-use marraztu::edit::{frame, items};
+use marraztu::accuracy::Shot;
+use marraztu::edit::{framing, items};
 use marraztu::io::{self, Progress};
-use marraztu::render::{FramePlan, Renderer, Unseen, unseen};
+use marraztu::render::plan_frame;
+use marraztu::render::{Renderer, Unseen, unseen};
 use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
 
 use super::accuracy::Accuracy;
@@ -27,14 +28,15 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     for (_, object) in stage.scene.objects.iter() {
         object.model.mesh.draw_as_filed();
     }
-    let plan = FramePlan::new(&stage.scene, &stage.view, &stage.settings, arguments.picture.size);
+    let shot = stage.shot(arguments.picture.size);
+    let plan = plan_frame(&shot);
     let mut renderer = Renderer::default();
     renderer.render_watched(&plan, &|done, all| {
         // Nothing cancels this.
         let _ = progress.reached(done, all);
     });
     drop(bar);
-    tell_unseen(&mut renderer, &stage, arguments.picture.size);
+    tell_unseen(&mut renderer, &shot);
     target.write(renderer.picture())?;
     if let (None, Target::File(path)) = (&arguments.out, &target) {
         note(&format_args!("the picture is in {}", path.display()));
@@ -45,11 +47,10 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
 }
 
 /// Notes why some objects are invisible: a line for each reason.
-fn tell_unseen(renderer: &mut Renderer, stage: &Stage, size: Size) {
-    let Stage { scene, view, settings, .. } = stage;
+fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
     let mut reasons: Vec<(Unseen, Vec<&str>)> = Vec::new();
-    for (id, reason) in unseen(renderer, scene, view, settings, size) {
-        let name = scene.objects.get(id).map_or("", |object| &*object.name);
+    for (id, reason) in unseen(renderer, shot) {
+        let name = shot.scene.objects.get(id).map_or("", |object| &*object.name);
         match reasons.iter_mut().find(|(other, _)| *other == reason) {
             Some((_, names)) => names.push(name),
             None => reasons.push((reason, vec![name])),
@@ -147,8 +148,8 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     match seeing.camera {
         Some(number) => stage.view.camera = camera(stage, number)?,
         None if stage.models_alone => {
-            let from = seeing.from.unwrap_or(frame::MODELS_FROM);
-            match frame::models(&stage.scene, &stage.view, from) {
+            let from = seeing.from.unwrap_or(framing::MODELS_FROM);
+            match framing::models(&stage.scene, &stage.view, from) {
                 Ok(command) => stage.change(command)?,
                 Err(refusal) => note(&refusal),
             }

@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::CommandFactory;
 use clap::error::ErrorKind;
+use marraztu::accuracy::{Settings, Shot};
 use marraztu::base::Shared;
+use marraztu::base::image::Size;
 use marraztu::edit::{items, selection};
 use marraztu::io::{self, Finding, Input, LoadError, Loaded, Progress};
-use marraztu::scene::{
-    Command, LoadOptions, MaterialChoice, Model, Object, Scene, Settings, Sides, View,
-};
+use marraztu::scene::{Command, LoadOptions, MaterialChoice, Model, Object, Scene, Sides, View};
 use rayon::prelude::*;
 
 use super::arguments::{Arguments, Reading};
@@ -30,6 +30,11 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
+    /// The picture of this size.
+    pub(crate) fn shot(&self, size: Size) -> Shot {
+        Shot::new(&self.scene, &self.view, &self.settings, size)
+    }
+
     /// Reads the files.
     pub(crate) fn of(files: &[PathBuf], reading: &Reading) -> Result<Self, Failure> {
         let input = input(files)?;

@@ -1,19 +1,10 @@
-//! What was changed, so that it can be taken back.
+//! The history: changes as steps that can be undone and redone.
 //!
-//! A step is what one undo takes back. It holds the command that leads away from where the scene is:
-//! steps before the present position lead back, those after it lead forward.
+//! A step is what one undo takes back. It holds the command that leads away from where the scene
+//! is: steps before the present position lead back, those after it lead forward.
 
+use super::Gesture;
 use crate::scene::{Command, CommandError, Scene};
-
-/// Whether a change stands alone, or is one of many that a single drag or held key makes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Gesture {
-    /// A key, a click, a typed number: undone by itself.
-    #[default]
-    Whole,
-    /// Part of the gesture with this number: the gesture is undone as a whole.
-    Part(u64),
-}
 
 #[derive(Debug)]
 struct Step {
@@ -22,8 +13,8 @@ struct Step {
     commands: Vec<Command>,
 }
 
-/// The changes made so far, and those taken back. Writes the scene; whoever else writes it makes the
-/// steps unfit.
+/// The changes made so far, and those taken back. Writes the scene; whoever else writes it makes
+/// the steps unfit.
 #[derive(Debug)]
 pub struct History {
     steps: Vec<Step>,
@@ -31,7 +22,7 @@ pub struct History {
     position: usize,
     /// The gesture that the last step belongs to, while it may still go on.
     open: Gesture,
-    /// The position at which the scene was saved; `None` where no step leads there any more.
+    /// The position at which the scene was saved; `None` if no step leads there any more.
     saved: Option<usize>,
 }
 
@@ -52,7 +43,7 @@ impl History {
     /// before is gone then.
     ///
     /// # Errors
-    /// Where the command does not fit the scene; neither scene nor history is then changed.
+    /// If the command does not fit the scene; then neither scene nor history changes.
     pub fn perform(
         &mut self,
         scene: &mut Scene,
@@ -81,7 +72,7 @@ impl History {
         Ok(())
     }
 
-    /// Takes the last step back. Gives its label; `None` where there was no step.
+    /// Undoes the last step. Returns its label; `None` if there was no step.
     pub fn undo(&mut self, scene: &mut Scene) -> Option<String> {
         let last = self.position.checked_sub(1)?;
         let label = self.cross(scene, last)?;
@@ -89,7 +80,7 @@ impl History {
         Some(label)
     }
 
-    /// Makes the step again that was last taken back. Gives its label; `None` where there was none.
+    /// Redoes the step that was undone last. Returns its label; `None` if there was none.
     pub fn redo(&mut self, scene: &mut Scene) -> Option<String> {
         let label = self.cross(scene, self.position)?;
         self.position += 1;

@@ -1,4 +1,4 @@
-//! New items, their removal, and everything about them but where they are.
+//! Adds, duplicates, renames and removes items, and changes their properties.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use super::names::Names;
 use crate::base::Shared;
 use crate::scene::{
     Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId, LightKind,
-    MaterialChoice, Model, Object, ObjectId, Placed, Pose, Scene, Smoothing, SpotOwner,
+    MaterialChoice, Model, Object, ObjectId, Pose, Scene, Smoothing, SpotOwner, Tracked,
 };
 
 /// More parts than this are not made objects at once: the outline could not be read any more.
@@ -47,7 +47,7 @@ pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoi
         visible: true,
         model,
         material,
-        pose: Placed::new(Pose::facing_minus_z(DVec3::ZERO)),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::ZERO)),
         lens: Lens::default(),
     };
     put_camera(scene, camera)
@@ -56,7 +56,7 @@ pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoi
 /// A new white light in the lowest free slot.
 ///
 /// # Errors
-/// Where it is a spot of an object or a camera that is not there.
+/// If it is a spot of an object or a camera that is not there.
 pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> {
     put_light(scene, Light::new(light_name(&kind), 0, kind))
 }
@@ -64,26 +64,26 @@ pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> 
 /// A copy of an item; its stack of transformations begins anew.
 ///
 /// # Errors
-/// Where the item is gone.
+/// If the item is gone.
 pub fn duplicate(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     match id {
         ItemId::Object(id) => {
             let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
-            object.placement = Placed::new(*object.placement.now());
+            object.placement = Tracked::new(*object.placement.now());
             Ok(insert_object(scene, object))
         }
         ItemId::Camera(id) => {
             let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
-            camera.pose = Placed::new(*camera.pose.now());
+            camera.pose = Tracked::new(*camera.pose.now());
             Ok(put_camera(scene, camera))
         }
         ItemId::Light(id) => {
             let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
             match &mut light.kind {
-                LightKind::Sun { direction } => *direction = Placed::new(*direction.now()),
-                LightKind::Bulb { position, .. } => *position = Placed::new(*position.now()),
+                LightKind::Sun { direction } => *direction = Tracked::new(*direction.now()),
+                LightKind::Bulb { position, .. } => *position = Tracked::new(*position.now()),
                 LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } => {
-                    *aim = Placed::new(*aim.now());
+                    *aim = Tracked::new(*aim.now());
                 }
                 LightKind::Ambient | LightKind::Spot { .. } => {}
             }
@@ -95,7 +95,7 @@ pub fn duplicate(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 /// Takes an item out of the scene, and the spots that are fixed to it.
 ///
 /// # Errors
-/// Where the item is gone, or is the last camera.
+/// If the item is gone, or is the last camera.
 pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     if !scene.contains(id) {
         return Err(Refusal::Gone);
@@ -103,12 +103,15 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     if matches!(id, ItemId::Camera(_)) && scene.cameras.len() == 1 {
         return Err(CommandError::LastCamera.into());
     }
-    let attached = |kind: &LightKind| match kind {
-        LightKind::Spot { owner: SpotOwner::Object(owner), .. } => id == ItemId::Object(*owner),
-        LightKind::Spot { owner: SpotOwner::Camera(owner), .. } => id == ItemId::Camera(*owner),
-        _ => false,
+    let attached = |light: &Light| {
+        let LightKind::Spot { owner, .. } = &light.kind else { return false };
+        match owner {
+            SpotOwner::Object(owner) => id == ItemId::Object(*owner),
+            SpotOwner::Camera(owner) => id == ItemId::Camera(*owner),
+            SpotOwner::SelectedObject | SpotOwner::SelectedCamera | SpotOwner::Fixed(_) => false,
+        }
     };
-    let spots = scene.lights.iter().filter(|(_, light)| attached(&light.kind));
+    let spots = scene.lights.iter().filter(|(_, light)| attached(light));
     let spots = spots.map(|(spot, _)| Command::Remove(ItemId::Light(spot)));
     let commands: Vec<Command> = spots.chain([Command::Remove(id)]).collect();
     Ok(one_or_batch(commands))
@@ -117,7 +120,7 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 /// Calls an item something else.
 ///
 /// # Errors
-/// Where the name is empty, or the item gone.
+/// If the name is empty, or the item gone.
 pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Result<Command, Refusal> {
     let name = name.trim();
     if name.is_empty() {
@@ -134,7 +137,7 @@ pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Result<Command, Refusal>
 /// Moves an item to another place in its list.
 ///
 /// # Errors
-/// Where the item is gone.
+/// If the item is gone.
 pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Result<Command, Refusal> {
     if scene.contains(id) { Ok(Command::Reorder { id, to }) } else { Err(Refusal::Gone) }
 }
@@ -142,7 +145,7 @@ pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Result<Command, Refusal>
 /// Shows or hides an object or a camera's mark; puts a light on or out.
 ///
 /// # Errors
-/// Where the item is gone.
+/// If the item is gone.
 pub fn toggle_shown(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     match id {
         ItemId::Object(id) => change_object(scene, id, |object| object.visible = !object.visible),
@@ -154,7 +157,7 @@ pub fn toggle_shown(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 /// Shows or hides one part of an object.
 ///
 /// # Errors
-/// Where the object is gone, or has no such part.
+/// If the object is gone, or has no such part.
 pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Refusal> {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if part as usize >= object.model.mesh.parts().len() {
@@ -171,7 +174,7 @@ pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Re
 /// list. All share the model and show one part of it.
 ///
 /// # Errors
-/// Where the object is gone, or has one part or too many.
+/// If the object is gone, or has one part or too many.
 pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     let at = scene.objects.position(id).ok_or(Refusal::Gone)?;
@@ -195,7 +198,7 @@ pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
         if i == 0 {
             commands.push(Command::Replace(Item::Object(id, Box::new(piece))));
         } else {
-            piece.placement = Placed::new(*piece.placement.now());
+            piece.placement = Tracked::new(*piece.placement.now());
             let item = Item::Object(ObjectId(next_id), Box::new(piece));
             commands.push(Command::Insert { at: at + i, item });
             next_id += 1;
@@ -216,7 +219,7 @@ fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<Stri
 /// Gives a camera another lens.
 ///
 /// # Errors
-/// Where no picture could be made through it, or the camera is gone.
+/// If no picture could be made through it, or the camera is gone.
 pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refusal> {
     if !lens.is_valid() {
         return Err(CommandError::Lens.into());
@@ -260,7 +263,7 @@ pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Result<Command
 /// Changes what of an object is neither its place nor its spin.
 ///
 /// # Errors
-/// Where the object is gone.
+/// If the object is gone.
 pub fn change_object(
     scene: &Scene,
     id: ObjectId,
@@ -285,7 +288,7 @@ pub fn change_all_objects(scene: &Scene, change: impl Fn(&mut Object)) -> Comman
 /// Changes what of a camera is not its pose.
 ///
 /// # Errors
-/// Where the camera is gone.
+/// If the camera is gone.
 pub fn change_camera(
     scene: &Scene,
     id: CameraId,
@@ -299,7 +302,7 @@ pub fn change_camera(
 /// Changes what of a light is not its place.
 ///
 /// # Errors
-/// Where the light is gone.
+/// If the light is gone.
 pub fn change_light(
     scene: &Scene,
     id: LightId,
@@ -319,7 +322,7 @@ fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
 
 fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
     if let LightKind::Spot { owner, .. } = &light.kind {
-        super::lights::check_owner(scene, owner)?;
+        check_owner(scene, owner)?;
     }
     let mut names: Names<'_> = scene.lights.iter().map(|(_, other)| &*other.name).collect();
     light.name = names.take(&light.name);
@@ -349,4 +352,14 @@ const fn light_name(kind: &LightKind) -> &'static str {
         }
         LightKind::Spot { owner: SpotOwner::Fixed(_), .. } => "spot",
     }
+}
+
+/// Whether what a spot should be fixed to is there.
+pub(super) fn check_owner(scene: &Scene, owner: &SpotOwner) -> Result<(), Refusal> {
+    let there = match owner {
+        SpotOwner::Object(id) => scene.objects.get(*id).is_some(),
+        SpotOwner::Camera(id) => scene.cameras.get(*id).is_some(),
+        SpotOwner::SelectedObject | SpotOwner::SelectedCamera | SpotOwner::Fixed(_) => true,
+    };
+    if there { Ok(()) } else { Err(Refusal::Gone) }
 }

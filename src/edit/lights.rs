@@ -1,12 +1,12 @@
-//! What of lights the keys and panels change: on, colour, aperture, slot, owner.
+//! Changes of lights: on, colour, aperture, slot, owner.
 
 use glam::DVec3;
 
-use super::items::change_light;
-use super::{Refusal, put};
+use super::items::{change_light, check_owner};
+use super::{Refusal, set_transform};
 use crate::scene::{
-    Aim, Attenuation, Command, CommandError, LightId, LightKind, Orbit, Placed, Scene, SpotOwner,
-    Subject, View,
+    Aim, Attenuation, Command, CommandError, LightId, LightKind, Orbit, Scene, SpotOwner, Subject,
+    Tracked, View,
 };
 
 /// The degrees by which a press of `+` or `-` opens or closes a spot.
@@ -36,13 +36,13 @@ impl Channel {
 /// A sun whose light goes straight down.
 #[must_use]
 pub const fn sun() -> LightKind {
-    LightKind::Sun { direction: Placed::new(DVec3::NEG_Y) }
+    LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) }
 }
 
 /// A bulb at the centre of the world.
 #[must_use]
 pub fn bulb() -> LightKind {
-    LightKind::Bulb { position: Placed::new(DVec3::ZERO), orbit: Orbit::default() }
+    LightKind::Bulb { position: Tracked::new(DVec3::ZERO), orbit: Orbit::default() }
 }
 
 /// A spot with the aperture and concentration that spots have at first.
@@ -54,13 +54,13 @@ pub const fn spot(owner: SpotOwner) -> LightKind {
 /// The owner of a spot that stands at the centre of the world and shines along -Z.
 #[must_use]
 pub const fn fixed() -> SpotOwner {
-    SpotOwner::Fixed(Placed::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
+    SpotOwner::Fixed(Tracked::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
 }
 
 /// The keys 0 to 9: puts the light in a slot on or out.
 ///
 /// # Errors
-/// Where the slot is empty.
+/// If the slot is empty.
 pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
     let in_slot = scene.lights.iter().find(|(_, light)| light.slot == slot);
     let (id, _) = in_slot.ok_or(Refusal::EmptySlot(slot))?;
@@ -88,7 +88,7 @@ pub fn step_color(
     change_light(scene, id, |light| light.color.0[index] = new)
 }
 
-/// The keys + and -: opens or closes the selected spot by so many degrees, within 0 to 90.
+/// Changes the aperture of the selected spot by an angle in degrees, within 0 to 90 (+ and -).
 ///
 /// # Errors
 /// At the end of the range, for other lights, and while the subject is not lights.
@@ -105,10 +105,10 @@ pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Result<Command
     set_aperture(scene, id, new)
 }
 
-/// Opens a spot to so many degrees from its axis; what is outside 0 to 90 is brought to its border.
+/// Sets the half-aperture of a spot in degrees, clamped to 0 to 90.
 ///
 /// # Errors
-/// Where the light is not a spot, or the number is none.
+/// If the light is not a spot, or the number is NaN.
 pub fn set_aperture(scene: &Scene, id: LightId, degrees: f64) -> Result<Command, Refusal> {
     if degrees.is_nan() {
         return Err(Refusal::TooLarge);
@@ -119,7 +119,7 @@ pub fn set_aperture(scene: &Scene, id: LightId, degrees: f64) -> Result<Command,
 /// Gathers a spot's light along its axis by an exponent of at least 0.
 ///
 /// # Errors
-/// Where the light is not a spot, or the number is not finite.
+/// If the light is not a spot, or the number is not finite.
 pub fn set_exponent(scene: &Scene, id: LightId, to: f64) -> Result<Command, Refusal> {
     if !to.is_finite() {
         return Err(Refusal::TooLarge);
@@ -130,7 +130,7 @@ pub fn set_exponent(scene: &Scene, id: LightId, to: f64) -> Result<Command, Refu
 /// Fixes a spot to something else.
 ///
 /// # Errors
-/// Where the light is not a spot, or the owner is not there.
+/// If the light is not a spot, or the owner is not there.
 pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, Refusal> {
     check_owner(scene, &to)?;
     change_spot(scene, id, |owner, _, _| *owner = to)
@@ -150,22 +150,12 @@ pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusa
 /// Lets a light fade otherwise.
 ///
 /// # Errors
-/// Where it would become infinite or negative.
+/// If it would become infinite or negative.
 pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Result<Command, Refusal> {
     if !to.is_valid() {
         return Err(CommandError::Attenuation.into());
     }
     change_light(scene, id, |light| light.attenuation = to)
-}
-
-/// Whether what a spot should be fixed to is there.
-pub(super) fn check_owner(scene: &Scene, owner: &SpotOwner) -> Result<(), Refusal> {
-    let there = match owner {
-        SpotOwner::Object(id) => scene.objects.get(*id).is_some(),
-        SpotOwner::Camera(id) => scene.cameras.get(*id).is_some(),
-        SpotOwner::SelectedObject | SpotOwner::SelectedCamera | SpotOwner::Fixed(_) => true,
-    };
-    if there { Ok(()) } else { Err(Refusal::Gone) }
 }
 
 fn change_spot(
@@ -192,5 +182,5 @@ fn subject_light<'a>(
     if view.subject != Subject::Light {
         return Err(Refusal::OnlyLights);
     }
-    put::selected_light(scene, view)
+    set_transform::selected_light(scene, view)
 }

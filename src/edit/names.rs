@@ -1,4 +1,4 @@
-//! Names that are not in use, for what is new in a list.
+//! Unused names for new items in a list.
 
 use std::collections::{HashMap, HashSet};
 

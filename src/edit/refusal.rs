@@ -1,4 +1,4 @@
-//! Why a wish is not fulfilled, worded for the status line.
+//! Refusals: why a request cannot be done, worded for the status line.
 
 use crate::scene::CommandError;
 
@@ -15,7 +15,7 @@ pub enum Refusal {
     #[error("there is nothing visible to frame")]
     NothingToFrame,
     /// What the wish names is not in the scene.
-    #[error("it is not in the scene any more")]
+    #[error("it is no longer in the scene")]
     Gone,
     /// Nothing of the chosen kind has another to go on to.
     #[error("there is only one of its kind")]
@@ -30,7 +30,7 @@ pub enum Refusal {
     #[error("only objects can be scaled: press c until the subject is an object")]
     OnlyObjectsScale,
     /// Ambient light comes from everywhere.
-    #[error("ambient light has no place and no direction")]
+    #[error("ambient light has no position and no direction")]
     Ambient,
     /// A sun has no place.
     #[error("the sun has a direction only: it can be turned, not moved")]
@@ -42,16 +42,16 @@ pub enum Refusal {
     #[error("this spot follows its {0}: move that instead")]
     SpotFollows(&'static str),
     /// The history is at its beginning.
-    #[error("nothing was changed yet")]
+    #[error("there is nothing to undo")]
     NothingDone,
     /// The history is at its end.
-    #[error("nothing was taken back")]
+    #[error("there is nothing to redo")]
     NothingUndone,
     /// The item was never anything else.
-    #[error("there is no transformation to take back")]
+    #[error("there is no transformation to undo")]
     NothingToTakeBack,
     /// The object would become flat.
-    #[error("a scale of 0 would flatten the object for good")]
+    #[error("a scale of 0 would flatten the object irreversibly")]
     Flat,
     /// A number would be infinite or none.
     #[error("a number would become too large")]
@@ -66,7 +66,7 @@ pub enum Refusal {
     #[error("the observer is an object: press C to look through the camera")]
     ObjectLooks,
     /// Neither frames nor modes belong to lights.
-    #[error("a light has neither a mode nor a frame to choose")]
+    #[error("lights have neither a mode nor a frame to choose")]
     NoModeOfLight,
     /// The key acts on lights.
     #[error("this acts on lights: press c until the subject is a light")]
@@ -84,7 +84,7 @@ pub enum Refusal {
     #[error("the key {0} belongs to another light")]
     SlotTaken(u32),
     /// Enter outside of polygon mode.
-    #[error("press o first: Enter goes to the next polygon while one is shown at a time")]
+    #[error("press o first: Enter selects the next polygon in polygon mode")]
     NotInPolygonMode,
     /// There is no polygon to show.
     #[error("the object has no polygons")]
@@ -93,16 +93,16 @@ pub enum Refusal {
     #[error("the object has only one part")]
     OnePart,
     /// Splitting would flood the outline.
-    #[error("the object has {0} parts: more than {1} are not made objects at once")]
+    #[error("the object has {0} parts; at most {1} can be split at once")]
     TooManyParts(usize, usize),
     /// Nothing turns, nothing to apply.
-    #[error("the object does not turn by itself")]
+    #[error("the object does not spin")]
     NotSpinning,
     /// The edges of the model are smooth or sharp by something else.
     #[error("the crease angle has no effect: {0}")]
     NoCrease(&'static str),
     /// Only a bulb circles.
-    #[error("only a bulb can circle")]
+    #[error("only a bulb can orbit")]
     NotABulb,
     /// A name of blanks.
     #[error("a name needs at least one letter")]

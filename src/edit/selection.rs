@@ -1,11 +1,11 @@
-//! What is selected, what is the subject, and what keeps both true after a change of the scene.
+//! The selection and the subject, and how they follow changes of the scene.
 //!
 //! None of this is a step of undo, but for one thing: while the selected camera is in analysis,
 //! selecting another object aims the camera at that one. So a selection is a view and, sometimes, a
 //! command.
 
-use super::put;
-use super::{Refusal, Stroke};
+use super::set_transform;
+use super::{GesturePhase, Refusal};
 use crate::scene::{
     Camera, CameraId, CameraMode, Command, Item, ItemId, List, ObjectId, Observer, PolygonMode,
     Pose, Scene, Subject, Transformation, View,
@@ -16,20 +16,25 @@ use crate::scene::{
 pub struct Selection {
     /// The view to be shown.
     pub view: View,
-    /// What aims the selected camera at the newly selected object, where it is in analysis.
+    /// Aims the selected camera at the newly selected object, if it is in analysis.
     pub command: Option<Command>,
 }
 
 /// Selects an item in its list. The subject stays.
 ///
 /// # Errors
-/// Where the item is gone.
+/// If the item is gone.
 pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
-    select_in(scene, view, id, Stroke::First)
+    select_in(scene, view, id, GesturePhase::First)
 }
 
 /// The same as part of a gesture: a held key pushes on the camera's stack once.
-fn select_in(scene: &Scene, view: &View, id: ItemId, stroke: Stroke) -> Result<Selection, Refusal> {
+fn select_in(
+    scene: &Scene,
+    view: &View,
+    id: ItemId,
+    phase: GesturePhase,
+) -> Result<Selection, Refusal> {
     if !scene.contains(id) {
         return Err(Refusal::Gone);
     }
@@ -45,9 +50,9 @@ fn select_in(scene: &Scene, view: &View, id: ItemId, stroke: Stroke) -> Result<S
             let camera = scene.selected_camera(view);
             let mode = camera.pose.now().mode_with(view.object);
             if let (CameraMode::Analysis { .. }, Some(object)) = (mode, scene.objects.get(id)) {
-                let aimed = put::aimed(camera.pose.now(), id, object.centre(view.time));
+                let aimed = set_transform::aimed(camera.pose.now(), id, object.centre(view.time));
                 let mut camera = camera.clone();
-                camera.pose = stroke.put(&camera.pose, aimed);
+                camera.pose = phase.apply(&camera.pose, aimed);
                 commands.push(Command::Replace(Item::Camera(view.camera, Box::new(camera))));
             } else {
                 commands.extend(left_in_fly(scene, id));
@@ -63,8 +68,8 @@ fn select_in(scene: &Scene, view: &View, id: ItemId, stroke: Stroke) -> Result<S
     Ok(Selection { view: next, command })
 }
 
-/// Cameras that once were in analysis of an object and fell back to fly, because another was selected
-/// then, stay in fly when it is selected again: nothing has aimed them at it.
+/// Cameras that once were in analysis of an object and fell back to fly, because another was
+/// selected then, stay in fly when it is selected again: nothing has aimed them at it.
 fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
     let fallen = scene
         .cameras
@@ -82,7 +87,7 @@ fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
 /// Selects an item and makes its kind the subject, as a click in the outline does.
 ///
 /// # Errors
-/// Where the item is gone.
+/// If the item is gone.
 pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
     let mut selection = select(scene, view, id)?;
     set_subject(&mut selection.view, subject_of(id));
@@ -92,8 +97,8 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
 /// The key Tab: selects the next item of the subject, round and round.
 ///
 /// # Errors
-/// Where there is no other to go on to.
-pub fn next(scene: &Scene, view: &View, stroke: Stroke) -> Result<Selection, Refusal> {
+/// If there is no other item.
+pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection, Refusal> {
     fn after<K: Copy + Ord, T>(list: &List<K, T>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
     }
@@ -104,7 +109,7 @@ pub fn next(scene: &Scene, view: &View, stroke: Stroke) -> Result<Selection, Ref
         Subject::Light if scene.lights.is_empty() => return Err(Refusal::NoLight),
         Subject::Light => after(&scene.lights, view.light).map(ItemId::Light),
     };
-    select_in(scene, view, id.ok_or(Refusal::OnlyOne)?, stroke)
+    select_in(scene, view, id.ok_or(Refusal::OnlyOne)?, phase)
 }
 
 /// The item that the subject's keys act on.
@@ -161,12 +166,12 @@ pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Ref
 /// The key `C`: the selected camera looks, or the selected object.
 ///
 /// # Errors
-/// Where there is no object.
+/// If there is no object.
 pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.observer = match view.observer {
         Observer::Object => Observer::Camera,
         Observer::Camera => {
-            put::selected_object(scene, view)?;
+            set_transform::selected_object(scene, view)?;
             Observer::Object
         }
     };
@@ -176,7 +181,7 @@ pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
 /// The key `o`: the whole object, or one polygon of it at a time, from polygon 0.
 ///
 /// # Errors
-/// Where there is no object, or it has no polygons.
+/// If there is no object, or it has no polygons.
 pub fn toggle_polygons(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.polygons = match view.polygons {
         Some(_) => None,
@@ -202,7 +207,7 @@ pub fn next_polygon(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
 /// Goes to a polygon of the selected object, as a click on it does.
 ///
 /// # Errors
-/// Outside of polygon mode, and where the object has no such polygon.
+/// Outside polygon mode, and if the object has no such polygon.
 pub fn go_to_polygon(scene: &Scene, view: &mut View, polygon: u32) -> Result<(), Refusal> {
     let count = polygon_count(scene, view)?;
     let mode = view.polygons.as_mut().ok_or(Refusal::NotInPolygonMode)?;
@@ -270,14 +275,14 @@ fn followed<K: Copy + Ord, T>(
 }
 
 fn polygon_count(scene: &Scene, view: &View) -> Result<u32, Refusal> {
-    let (_, object) = put::selected_object(scene, view)?;
+    let (_, object) = set_transform::selected_object(scene, view)?;
     match u32::try_from(object.model.mesh.polygon_count()) {
         Ok(0) | Err(_) => Err(Refusal::NoPolygons),
         Ok(count) => Ok(count),
     }
 }
 
-/// Ends polygon mode where there is no polygon to show, and brings it back into range.
+/// Ends polygon mode if there is no polygon to show, and clamps the polygon to the range.
 fn keep_polygons(scene: &Scene, view: &mut View) {
     let count = polygon_count(scene, view).unwrap_or(0);
     match &mut view.polygons {

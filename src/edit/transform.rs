@@ -1,4 +1,4 @@
-//! What x, y and z do to whom, by a step or by an amount, and what `u` takes back.
+//! Transformations of the selected item by a step or an amount, and undoing the last one.
 //!
 //! * An object, M its placement: M := M T in the local frame, M := T M in the global one.
 //! * A camera in fly moves and turns in its own frame: X yaws about its own Y, Y pitches about its
@@ -9,8 +9,8 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::put::{self, LightPlace};
-use super::{Refusal, Stroke};
+use super::set_transform::{self, LightPlace};
+use super::{GesturePhase, Refusal};
 use crate::base::math::{self, Axis};
 use crate::scene::{
     Aim, CameraMode, Command, Frame, Item, LightKind, Object, Orbit, Pose, Scene, SpotOwner,
@@ -38,43 +38,45 @@ impl Sign {
 /// One press of x, y or z: transforms the subject's selected item by the view's step.
 ///
 /// # Errors
-/// Where the item cannot be transformed so, and why.
+/// If the item cannot be transformed in this way.
 pub fn step(
     scene: &Scene,
     view: &View,
     axis: Axis,
     sign: Sign,
-    stroke: Stroke,
+    phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     let along = || axis.unit() * sign.of(distance(scene, view, axis));
     let radians = sign.of(view.steps.rotation.to_radians());
     match view.subject {
         Subject::Object => match view.transformation {
-            Transformation::Translation => translate(scene, view, along(), stroke),
-            Transformation::Rotation => rotate(scene, view, axis.unit(), radians, stroke),
+            Transformation::Translation => translate(scene, view, along(), phase),
+            Transformation::Rotation => rotate(scene, view, axis.unit(), radians, phase),
             Transformation::Scaling => {
                 let up = view.steps.scaling;
                 let factor = if sign == Sign::Positive { up } else { 1.0 / up };
-                scale(scene, view, factor, stroke)
+                scale(scene, view, factor, phase)
             }
         },
         Subject::Camera => match (axis, view.transformation) {
             (_, Transformation::Scaling) => Err(Refusal::CameraScaled),
-            (Axis::X, _) => rotate(scene, view, DVec3::Y, radians, stroke),
-            (Axis::Y, _) => rotate(scene, view, DVec3::X, radians, stroke),
-            (Axis::Z, Transformation::Translation) => translate(scene, view, along(), stroke),
-            (Axis::Z, Transformation::Rotation) => rotate(scene, view, DVec3::Z, radians, stroke),
+            (Axis::X, _) => rotate(scene, view, DVec3::Y, radians, phase),
+            (Axis::Y, _) => rotate(scene, view, DVec3::X, radians, phase),
+            (Axis::Z, Transformation::Translation) => translate(scene, view, along(), phase),
+            (Axis::Z, Transformation::Rotation) => rotate(scene, view, DVec3::Z, radians, phase),
         },
-        Subject::Light => match put::place_of(put::selected_light(scene, view)?.1)? {
-            // A sun can only be turned and a bulb only be moved, whatever is chosen.
-            LightPlace::Direction(_) => rotate(scene, view, axis.unit(), radians, stroke),
-            LightPlace::Position(_) => translate(scene, view, along(), stroke),
-            LightPlace::Aim(_) => match view.transformation {
-                Transformation::Translation => translate(scene, view, along(), stroke),
-                Transformation::Rotation => rotate(scene, view, axis.unit(), radians, stroke),
-                Transformation::Scaling => Err(Refusal::LightScaled),
-            },
-        },
+        Subject::Light => {
+            match set_transform::place_of(set_transform::selected_light(scene, view)?.1)? {
+                // A sun can only be turned and a bulb only be moved, whatever is chosen.
+                LightPlace::Direction(_) => rotate(scene, view, axis.unit(), radians, phase),
+                LightPlace::Position(_) => translate(scene, view, along(), phase),
+                LightPlace::Aim(_) => match view.transformation {
+                    Transformation::Translation => translate(scene, view, along(), phase),
+                    Transformation::Rotation => rotate(scene, view, axis.unit(), radians, phase),
+                    Transformation::Scaling => Err(Refusal::LightScaled),
+                },
+            }
+        }
     }
 }
 
@@ -97,81 +99,81 @@ pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     }
 }
 
-/// Moves the subject's selected item by `delta`: an object in the frame that the view says, a camera
-/// in its own, a light in the world's.
+/// Moves the subject's selected item by `delta`: an object in the frame that the view says, a
+/// camera in its own, a light in the world's.
 ///
 /// # Errors
-/// Where it cannot be moved, and why.
+/// If it cannot be moved.
 pub fn translate(
     scene: &Scene,
     view: &View,
     delta: DVec3,
-    stroke: Stroke,
+    phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     match view.subject {
-        Subject::Object => transform(scene, view, DMat4::from_translation(delta), stroke),
+        Subject::Object => transform(scene, view, DMat4::from_translation(delta), phase),
         Subject::Camera => {
-            let pose = match put::analysis_centre(scene, view) {
+            let pose = match set_transform::analysis_centre(scene, view) {
                 None => moved(&effective_pose(scene, view), delta),
                 Some(centre) => moved_about(scene, view, centre, delta)?,
             };
-            put::pose(scene, view.camera, pose, stroke)
+            set_transform::pose(scene, view.camera, pose, phase)
         }
         Subject::Light => {
-            let (id, light) = put::selected_light(scene, view)?;
+            let (id, light) = set_transform::selected_light(scene, view)?;
             // A bulb that circles is moved as it is seen: its place is turned before it is shown.
-            let delta = match &light.kind {
-                LightKind::Bulb { orbit, .. } => {
-                    Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
-                }
-                _ => delta,
+            let delta = if let LightKind::Bulb { orbit, .. } = &light.kind {
+                Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
+            } else {
+                delta
             };
-            let place = match put::place_of(light)? {
+            let place = match set_transform::place_of(light)? {
                 LightPlace::Direction(_) => return Err(Refusal::SunMoved),
                 LightPlace::Position(position) => LightPlace::Position(position + delta),
                 LightPlace::Aim(aim) => {
                     LightPlace::Aim(Aim { position: aim.position + delta, ..aim })
                 }
             };
-            put::light(scene, id, place, stroke)
+            set_transform::light(scene, id, place, phase)
         }
     }
 }
 
 /// Turns the subject's selected item by the right-hand rule about `axis`: an object in the frame
-/// that the view says (the global one turns about the world's origin), a camera in fly about its own
-/// eye and in analysis about the centre it looks at, both in its own frame, a light in the world's.
+/// that the view says (the global one turns about the world's origin), a camera in fly about its
+/// own eye and in analysis about the centre it looks at, both in its own frame, a light in the
+/// world's.
 ///
 /// # Errors
-/// Where it cannot be turned, and why.
+/// If it cannot be turned.
 pub fn rotate(
     scene: &Scene,
     view: &View,
     axis: DVec3,
     radians: f64,
-    stroke: Stroke,
+    phase: GesturePhase,
 ) -> Result<Command, Refusal> {
-    let turn = |axis| put::turn(axis, radians);
+    let turn = |axis| set_transform::turn(axis, radians);
     match view.subject {
-        Subject::Object => transform(scene, view, DMat4::from_mat3(turn(axis)?), stroke),
+        Subject::Object => transform(scene, view, DMat4::from_mat3(turn(axis)?), phase),
         Subject::Camera => {
             let pose = effective_pose(scene, view);
-            let pose = match put::analysis_centre(scene, view) {
+            let pose = match set_transform::analysis_centre(scene, view) {
                 None => Pose { axes: pose.axes * turn(axis)?, ..pose },
                 Some(centre) => orbited(&pose, turn(pose.axes * axis)?, centre),
             };
-            put::pose(scene, view.camera, pose, stroke)
+            set_transform::pose(scene, view.camera, pose, phase)
         }
         Subject::Light => {
-            let (id, light) = put::selected_light(scene, view)?;
-            let place = match put::place_of(light)? {
+            let (id, light) = set_transform::selected_light(scene, view)?;
+            let place = match set_transform::place_of(light)? {
                 LightPlace::Direction(direction) => LightPlace::Direction(turn(axis)? * direction),
                 LightPlace::Position(_) => return Err(Refusal::BulbTurned),
                 LightPlace::Aim(aim) => {
                     LightPlace::Aim(Aim { direction: turn(axis)? * aim.direction, ..aim })
                 }
             };
-            put::light(scene, id, place, stroke)
+            set_transform::light(scene, id, place, phase)
         }
     }
 }
@@ -179,24 +181,29 @@ pub fn rotate(
 /// Makes the selected object larger or smaller by `factor` in all directions.
 ///
 /// # Errors
-/// Where the subject is not objects, and where the object would become flat.
-pub fn scale(scene: &Scene, view: &View, factor: f64, stroke: Stroke) -> Result<Command, Refusal> {
-    stretch(scene, view, DVec3::splat(factor), stroke)
+/// If the subject is not objects, or the object would become flat.
+pub fn scale(
+    scene: &Scene,
+    view: &View,
+    factor: f64,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    stretch(scene, view, DVec3::splat(factor), phase)
 }
 
 /// Makes the selected object larger or smaller by a factor for each axis of the frame that the view
 /// says; a negative one mirrors it.
 ///
 /// # Errors
-/// Where the subject is not objects, and where the object would become flat.
+/// If the subject is not objects, or the object would become flat.
 pub fn stretch(
     scene: &Scene,
     view: &View,
     factors: DVec3,
-    stroke: Stroke,
+    phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     match view.subject {
-        Subject::Object => transform(scene, view, DMat4::from_scale(factors), stroke),
+        Subject::Object => transform(scene, view, DMat4::from_scale(factors), phase),
         Subject::Camera => Err(Refusal::CameraScaled),
         Subject::Light => Err(Refusal::LightScaled),
     }
@@ -205,13 +212,13 @@ pub fn stretch(
 /// The key `u`: the subject's selected item becomes what it was before its last transformation.
 ///
 /// # Errors
-/// Where it never was anything else.
+/// If it was never transformed.
 pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let nothing = Refusal::NothingToTakeBack;
     match view.subject {
         Subject::Object => {
-            let (id, object) = put::selected_object(scene, view)?;
-            put::object_placed(scene, view, id, object.placement.undone().ok_or(nothing)?)
+            let (id, object) = set_transform::selected_object(scene, view)?;
+            set_transform::object_placed(scene, view, id, object.placement.undone().ok_or(nothing)?)
         }
         Subject::Camera => {
             let mut camera = scene.selected_camera(view).clone();
@@ -219,8 +226,8 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
             Ok(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
         }
         Subject::Light => {
-            let (id, light) = put::selected_light(scene, view)?;
-            put::place_of(light)?;
+            let (id, light) = set_transform::selected_light(scene, view)?;
+            set_transform::place_of(light)?;
             let mut light = light.clone();
             match &mut light.kind {
                 LightKind::Sun { direction } => *direction = direction.undone().ok_or(nothing)?,
@@ -235,29 +242,34 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     }
 }
 
-/// The key `g` while the subject is cameras: from fly to analysis, which aims the selected camera at
-/// the selected object's centre, and back, which moves nothing and pushes nothing.
+/// The key `g` while the subject is cameras: from fly to analysis, which aims the selected camera
+/// at the selected object's centre, and back, which moves nothing and pushes nothing.
 ///
 /// # Errors
-/// Where there is no object to look at.
+/// If there is no object to look at.
 pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     let pose = effective_pose(scene, view);
     match pose.mode {
         CameraMode::Analysis { .. } => {
             let pose = Pose { mode: CameraMode::Fly, ..pose };
-            put::pose(scene, view.camera, pose, Stroke::Continued)
+            set_transform::pose(scene, view.camera, pose, GesturePhase::Continued)
         }
         CameraMode::Fly => {
-            let (id, object) = put::selected_object(scene, view)?;
-            let pose = put::aimed(&pose, id, object.centre(view.time));
-            put::pose(scene, view.camera, pose, Stroke::First)
+            let (id, object) = set_transform::selected_object(scene, view)?;
+            let pose = set_transform::aimed(&pose, id, object.centre(view.time));
+            set_transform::pose(scene, view.camera, pose, GesturePhase::First)
         }
     }
 }
 
 /// The selected object's placement, multiplied from the side that the frame says.
-fn transform(scene: &Scene, view: &View, t: DMat4, stroke: Stroke) -> Result<Command, Refusal> {
-    let (id, object) = put::selected_object(scene, view)?;
+fn transform(
+    scene: &Scene,
+    view: &View,
+    t: DMat4,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let (id, object) = set_transform::selected_object(scene, view)?;
     let m = *object.placement.now();
     let placement = match view.frame {
         Frame::Local => m * t,
@@ -266,14 +278,14 @@ fn transform(scene: &Scene, view: &View, t: DMat4, stroke: Stroke) -> Result<Com
     if !placement.is_finite() {
         return Err(Refusal::TooLarge);
     }
-    // What is flat already, from a file, may be moved and turned.
+    // Objects that are flat already, from a file, may be moved and turned.
     let linear = |m: DMat4| DMat3::from_mat4(m);
     let was_whole = math::has_full_rank(linear(m));
     let is_whole = math::has_full_rank(linear(placement)) && math::has_full_rank(linear(t));
     if was_whole && !is_whole {
         return Err(Refusal::Flat);
     }
-    put::object(scene, view, id, placement, stroke)
+    set_transform::object(scene, view, id, placement, phase)
 }
 
 /// The selected camera's pose, in the mode in which it moves now.

@@ -11,7 +11,7 @@ use crate::base::Shared;
 use crate::base::once::get_or_compute;
 use crate::scene::{
     Camera, CameraId, Crease, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model,
-    Object, ObjectId, Placed, Pose, PresetId, Scene, Texture, View, Wrap,
+    Object, ObjectId, Pose, PresetId, Scene, Texture, Tracked, View, Wrap,
 };
 
 /// A model that the program carries.
@@ -84,7 +84,7 @@ pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
 pub fn default_scene() -> (Scene, View) {
     let object = |asset: &Asset, material, place| {
         let mut object = Object::new(asset.model(), MaterialChoice::Preset(material));
-        object.placement = Placed::new(DMat4::from_translation(place));
+        object.placement = Tracked::new(DMat4::from_translation(place));
         object
     };
     let cam = object(&CAM, PresetId::OBSIDIAN, DVec3::new(0.0, 0.0, -400.0));
@@ -105,7 +105,7 @@ pub fn empty_scene() -> (Scene, View) {
         visible: true,
         model: cam_model(),
         material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Placed::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
         lens: Lens::default(),
     };
     let lights = Light::five().into_iter().zip(4..).map(|(light, id)| (LightId(id), light));

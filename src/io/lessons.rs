@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use super::progress::Progress;
 use super::scene_file::{Opened, SceneFileError, open_text};
 
-/// The scenes, by the names that [`crate::scene::Lesson::scene`] has.
+/// The scenes, by the names that [`crate::accuracy::Lesson::scene`] has.
 const LESSONS: &[(&str, &str)] = &[
     ("ball", include_str!("../../assets/lessons/ball.marraztu")),
     ("dusk", include_str!("../../assets/lessons/dusk.marraztu")),
@@ -38,7 +38,7 @@ pub fn lesson_scene(name: &str) -> Result<Opened, SceneFileError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::AXES;
+    use crate::accuracy::AXES;
 
     #[test]
     fn every_axis_has_a_scene_in_which_it_means_something() {

@@ -6,6 +6,7 @@
 mod assets;
 mod describe;
 mod error;
+mod examples;
 mod findings;
 mod input;
 mod lessons;
@@ -23,6 +24,7 @@ mod texture;
 pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
 pub use describe::describe;
 pub use error::LoadError;
+pub use examples::{EXAMPLES, Example, is_example};
 pub use findings::{Finding, FindingKind, joined};
 pub use input::Input;
 pub use lessons::lesson_scene;

@@ -7,7 +7,7 @@
 use serde::Serialize;
 
 use super::picture_source::PictureSource;
-use crate::scene::{AXES, Axis, AxisKind, Settings};
+use crate::accuracy::{AXES, Axis, AxisKind, Settings};
 
 /// One pixel, and where its error comes from.
 #[derive(Clone, Debug, PartialEq, Serialize)]

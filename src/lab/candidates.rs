@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::pairs::Limits;
-use crate::scene::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Scene, Settings, View};
+use crate::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Settings};
+use crate::scene::{Scene, View};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -323,8 +324,8 @@ mod tests {
         for (i, settings) in all.iter().enumerate() {
             assert!(words(settings).len() >= 2, "{}", settings.in_words());
             assert!(!all[..i].contains(settings), "{}", settings.in_words());
-            let one = settings.samples == crate::scene::Samples::One;
-            assert!(!one || settings.light != crate::scene::LightAt::Sample);
+            let one = settings.samples == crate::accuracy::Samples::One;
+            assert!(!one || settings.light != crate::accuracy::LightAt::Sample);
         }
     }
 }

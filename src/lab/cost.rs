@@ -9,9 +9,11 @@ use std::time::{Duration, Instant};
 
 use super::statistics::Quartiles;
 use super::timing::time;
+use crate::accuracy::Shot;
 use crate::base::image::Size;
+use crate::render::explain_frame;
+use crate::render::plan_frame;
 use crate::render::{Effect, EffectUse, FramePlan, Renderer};
-use crate::scene::{Scene, Settings, View};
 
 /// The smallest number of pairs that are measured for each effect.
 const PAIRS: usize = 7;
@@ -116,34 +118,27 @@ impl Costs {
     }
 }
 
-/// A scene, how it is seen, how it is drawn, and the size of the picture.
-pub type Of<'a> = (&'a Scene, &'a View, &'a Settings, Size);
-
-/// Plans and draws a picture, and counts the pixels of each effect.
+/// Plans and draws a picture, and counts the pixels of each of its effects.
 #[must_use]
-pub fn explain((scene, view, settings, size): Of<'_>) -> Explained {
+pub fn explain(shot: &Shot) -> Explained {
     let mut renderer = Renderer::default();
-    renderer.render(&FramePlan::new(scene, view, settings, size));
-    explain_with(&mut renderer, (scene, view, settings, size))
+    renderer.render(&plan_frame(shot));
+    explain_with(&mut renderer, shot)
 }
 
 /// The same for the picture that `renderer` drew last.
 #[must_use]
-pub fn explain_with(renderer: &mut Renderer, (scene, view, settings, size): Of<'_>) -> Explained {
-    let (_, mut uses) = FramePlan::explained(scene, view, settings, size);
+pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
+    let (_, mut uses) = explain_frame(shot);
     let off_by = renderer.count(&mut uses);
-    Explained { uses, off_by, size }
+    Explained { uses, off_by, size: shot.size }
 }
 
 /// Measures what the effects of a picture cost, within about `budget` of time. When `stopped`
 /// returns true, returns what was measured so far.
 #[must_use]
-pub fn measure(
-    (scene, view, settings, size): Of<'_>,
-    budget: Duration,
-    stopped: impl Fn() -> bool,
-) -> Costs {
-    let (plan, uses) = FramePlan::explained(scene, view, settings, size);
+pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Costs {
+    let (plan, uses) = explain_frame(shot);
     let mut effects: Vec<Effect> =
         uses.iter().filter(|one| one.state.is_on()).map(|one| one.effect).collect();
     effects.dedup();

@@ -14,8 +14,8 @@ use serde::Serialize;
 use super::picture_source::{PictureSource, hash};
 use super::statistics::Quartiles;
 use super::timing::{Clock, Work};
+use crate::accuracy::Settings;
 use crate::io::{Cancelled, Progress};
-use crate::scene::Settings;
 
 /// How long to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]

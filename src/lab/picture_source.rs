@@ -2,9 +2,11 @@
 
 use super::error::Rendering;
 use super::hash::fnv1a;
-use crate::base::image::{Picture, Size};
-use crate::render::{FramePlan, Renderer};
-use crate::scene::{Samples, Scene, Settings, View};
+use crate::accuracy::Shot;
+use crate::accuracy::{Samples, Settings};
+use crate::base::image::Picture;
+use crate::render::Renderer;
+use crate::render::plan_frame;
 
 /// Draws one scene, from one view and in one size, with any settings.
 pub trait PictureSource {
@@ -27,35 +29,21 @@ pub trait PictureSource {
 /// The renderer with a scene.
 #[derive(Debug)]
 pub struct Studio {
-    scene: Scene,
-    view: View,
-    size: Size,
+    shot: Shot,
     renderer: Renderer,
 }
 
 impl Studio {
-    /// A studio for this scene.
+    /// Draws this shot, with any settings.
     #[must_use]
-    pub fn new(scene: Scene, view: View, size: Size) -> Self {
-        Self { scene, view, size, renderer: Renderer::default() }
+    pub fn new(shot: Shot) -> Self {
+        Self { shot, renderer: Renderer::default() }
     }
 
     /// The scene.
     #[must_use]
-    pub const fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// The view.
-    #[must_use]
-    pub const fn view(&self) -> &View {
-        &self.view
-    }
-
-    /// The size of the pictures.
-    #[must_use]
-    pub const fn size(&self) -> Size {
-        self.size
+    pub const fn shot(&self) -> &Shot {
+        &self.shot
     }
 
     /// The name of the item that a pixel of the last picture shows, and the polygon.
@@ -64,9 +52,9 @@ impl Studio {
         use crate::scene::ItemId;
         let hit = self.renderer.hit(x, y)?;
         let name = match hit.item {
-            ItemId::Object(id) => self.scene.objects.get(id).map(|object| &object.name),
-            ItemId::Camera(id) => self.scene.cameras.get(id).map(|camera| &camera.name),
-            ItemId::Light(id) => self.scene.lights.get(id).map(|light| &light.name),
+            ItemId::Object(id) => self.shot.scene.objects.get(id).map(|object| &object.name),
+            ItemId::Camera(id) => self.shot.scene.cameras.get(id).map(|camera| &camera.name),
+            ItemId::Light(id) => self.shot.scene.lights.get(id).map(|light| &light.name),
         };
         Some((name?.clone(), hit.polygon))
     }
@@ -74,7 +62,7 @@ impl Studio {
 
 impl PictureSource for Studio {
     fn draw(&mut self, settings: &Settings) {
-        let plan = FramePlan::new(&self.scene, &self.view, settings, self.size);
+        let plan = plan_frame(&self.shot.with(*settings));
         self.renderer.render(&plan);
     }
 

@@ -16,8 +16,9 @@ use super::pairs::{Ratio, Unmeasured, Watch, measure};
 use super::picture_source::{PictureSource, Studio, hash};
 use super::statistics::Quartiles;
 use super::timing::Clock;
+use crate::accuracy::Shot;
+use crate::accuracy::{Axis, Settings};
 use crate::base::image::Size;
-use crate::scene::{Axis, Settings};
 
 /// What to measure.
 #[derive(Clone, Debug)]
@@ -177,8 +178,8 @@ pub fn sweep(
     tell: &mut dyn FnMut(&Findings),
 ) -> Result<Findings, Unmeasured> {
     let combinations = question.thoroughness.combinations;
-    let (scene, view, size) = (studio.scene(), studio.view(), studio.size());
-    let candidates = candidates(scene, view, &question.current, &question.axes, combinations);
+    let Shot { scene, view, size, .. } = studio.shot().clone();
+    let candidates = candidates(&scene, &view, &question.current, &question.axes, combinations);
     let mut bench = Bench { clock, source: studio, watch, question, size };
     bench.run(candidates, tell)
 }

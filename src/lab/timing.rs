@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::scene::Settings;
+use crate::accuracy::Settings;
 
 /// Does the work, and measures how long it takes.
 pub fn time(work: impl FnOnce()) -> Duration {

@@ -1,44 +1,41 @@
 //! From a scene to a picture.
 //!
 //! ```text
-//! Scene, View, Settings, Size  ->  FramePlan  ->  Renderer  ->  Picture
+//! Shot  ->  FramePlan  ->  Renderer  ->  Picture
 //! ```
 //!
-//! A frame goes through the rooms in this order:
+//! The rooms are floors: each uses itself and those before it in this list.
 //!
-//! ```text
-//! plan  ->  geometry  ->  visibility  ->  shading
-//! ```
-//!
-//! * [`plan`]: what is there to draw, and which effects have a part in it, before any pixel.
-//! * [`geometry`]: vertices to the screen, triangles and lines into the bins of tiles.
-//! * `visibility`: what is seen at each pixel of a tile.
-//! * `shading`: the colours of what is seen, and the tile in the picture.
-//! * [`effects`]: the light that shading adds up, effect by effect.
-//! * [`numbers`]: what light is computed in, one number or sixteen at a time.
-//! * `ways`: other ways of drawing, beside those that nearly every picture is drawn in.
-//!
-//! The [`Renderer`] leads a frame through them; [`Changes`] say which tiles another plan leaves as they
-//! are.
+//! * [`simd`]: the numbers that light is computed in, one or sixteen at a time.
+//! * `texture`: colours of textures at a position, and their mip maps.
+//! * [`lights`]: one file and one table row for each kind of light; the Phong terms.
+//! * `frame`: what a frame draws, as plain data.
+//! * [`screen`]: clipping, snapping, coverage, sample positions and tiles.
+//! * [`plan`]: decides what a frame draws before any pixel is touched, and says why.
+//! * `reference`: the fill algorithm of ancestor A, as a whole.
+//! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there to
+//!   the visibility buffer.
+//! * `shading`: the colours of what is visible, and their bytes in the picture.
+//! * `renderer`, `damage`, `count`, `unseen`: draw plans, and answer questions about what was drawn.
 
-mod changes;
-pub mod effects;
-pub mod geometry;
-mod marks;
-pub mod numbers;
+mod count;
+mod damage;
+mod frame;
+pub mod lights;
 pub mod plan;
-pub mod region;
+mod raster;
+mod reference;
 mod renderer;
+pub mod screen;
 mod shading;
-mod shares;
-mod stages;
+pub mod simd;
+mod texture;
+mod timings;
 mod unseen;
-mod visibility;
-mod watch;
-mod ways;
 
-pub use changes::{Cause, Change, Changes};
-pub use plan::{Class, Effect, EffectUse, FramePlan, State};
+pub use damage::{Cause, Change, Changes};
+pub use frame::FramePlan;
+pub use plan::{Class, Effect, EffectUse, State, explain_frame, plan_everything, plan_frame};
 pub use renderer::{GivenUp, Hit, Renderer};
-pub use stages::Stages;
+pub use timings::Stages;
 pub use unseen::{Unseen, unseen};

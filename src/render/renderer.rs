@@ -10,32 +10,35 @@ use std::sync::Mutex;
 
 use fearless_simd::Level;
 
-use super::changes::{Cause, Changes};
-use super::effects::Light;
-use super::geometry::frame::Frame;
-use super::geometry::places::{Places, passes, shifts};
-use super::geometry::tiles::{TILE, TILE_SIDE, tiles_of};
-use super::plan::{EffectUse, FramePlan};
+use super::shading::context::ShadingContext;
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Painter, TileSums, bounds_of};
-use super::shading::shines::Shines;
-use super::shading::surface::Scenery;
-use super::shares::{own, together};
-use super::stages::{Laps, Stages};
-use super::visibility::tile::Visibility;
-use super::visibility::words::{self, Seen};
-use super::watch::Watch;
-use super::ways;
+use crate::accuracy::Arithmetic;
+use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
-use crate::scene::{Arithmetic, ItemId};
+use crate::base::work_stealing::{own, together};
+use crate::render::damage::{Cause, Changes};
+use crate::render::frame::{FramePlan, Rules};
+use crate::render::plan::uses::EffectUse;
+use crate::render::raster::depth_format;
+use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::tile::Visibility;
+use crate::render::raster::visibility_buffer;
+use crate::render::raster::visibility_buffer::Visible;
+use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
+use crate::render::screen::tiles::{TILE, TILE_SIDE, tiles_of};
+use crate::render::shading::interpolated::ShadingNumber;
+use crate::render::shading::light_terms::LightTerms;
+use crate::render::timings::{Laps, Stages};
+use crate::scene::ItemId;
 
 /// Draws pictures, and keeps the memory that this takes from one to the next.
 #[derive(Debug)]
 pub struct Renderer {
     level: Level,
     picture: Picture,
-    frame: Frame,
+    frame: ScreenGeometry,
     /// For each tile of the picture the colour that fills it as a whole, where one is known to.
     filled: Vec<Option<Color>>,
     rooms: Rooms,
@@ -76,7 +79,7 @@ impl Renderer {
         Self {
             level,
             picture: Picture::default(),
-            frame: Frame::default(),
+            frame: ScreenGeometry::default(),
             filled: Vec::new(),
             rooms: Rooms::default(),
             plan: None,
@@ -100,7 +103,8 @@ impl Renderer {
     ) -> &Picture {
         self.finished = false;
         self.frame.forget();
-        self.redraw_by(plan, &Watch::new(&|| true).telling(tell)).expect("it is always wanted");
+        self.redraw_by(plan, &Cancellation::new(&|| true).telling(tell))
+            .expect("it is always wanted");
         &self.picture
     }
 
@@ -115,13 +119,17 @@ impl Renderer {
         plan: &FramePlan,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Result<Changes, GivenUp> {
-        self.redraw_by(plan, &Watch::new(wanted))
+        self.redraw_by(plan, &Cancellation::new(wanted))
     }
 
-    fn redraw_by(&mut self, plan: &FramePlan, watch: &Watch<'_>) -> Result<Changes, GivenUp> {
+    fn redraw_by(
+        &mut self,
+        plan: &FramePlan,
+        watch: &Cancellation<'_>,
+    ) -> Result<Changes, GivenUp> {
         let changes = self.changes(plan);
         self.built &= !changes.geometry;
-        if plan.rules.frame(&changes).is_none() {
+        if plan.rules == Rules::Ignored || !changes.is_nothing() {
             self.resize(plan.size);
             self.finished = false;
             // From one of the threads that draw, so that the caller sleeps and wakes once a frame.
@@ -149,7 +157,7 @@ impl Renderer {
         }
     }
 
-    fn draw_changes(&mut self, plan: &FramePlan, changes: &Changes, watch: &Watch<'_>) {
+    fn draw_changes(&mut self, plan: &FramePlan, changes: &Changes, watch: &Cancellation<'_>) {
         self.stages = Stages::default();
         let passes = passes(plan.samples);
         let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
@@ -184,13 +192,13 @@ impl Renderer {
         plan: &FramePlan,
         changes: &Changes,
         sums: &[TileSums],
-        watch: &Watch<'_>,
+        watch: &Cancellation<'_>,
     ) {
         let shifts = shifts(plan.samples);
         let last = shifts.len() - 1;
         for (i, shift) in shifts.enumerate() {
             let own = plan.seen_from(shift);
-            self.stages += self.frame.build(self.level, &own, Places::default(), watch);
+            self.stages += self.frame.build(self.level, &own, SamplePositions::default(), watch);
             if watch.is_given_up() {
                 return;
             }
@@ -203,7 +211,7 @@ impl Renderer {
         plan: &FramePlan,
         changes: &Changes,
         pass: &Pass<'_>,
-        watch: &Watch<'_>,
+        watch: &Cancellation<'_>,
     ) {
         match plan.arithmetic {
             Arithmetic::F32 => self.draw::<f32>(plan, changes, pass, watch),
@@ -225,7 +233,7 @@ impl Renderer {
     fn build_again(&mut self) {
         if let (false, Some(plan)) = (self.built, &self.plan) {
             let places = passes(plan.samples)[0];
-            self.frame.build(self.level, plan, places, &Watch::new(&|| true));
+            self.frame.build(self.level, plan, places, &Cancellation::new(&|| true));
             self.built = true;
         }
     }
@@ -265,7 +273,7 @@ impl Renderer {
         visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
         let word = visibility.word(self.level, x, y);
         let (draw, polygon) = self.seen(plan, word)?;
-        let depth = ways::depth::depth(plan.ways.depth, words::key(word));
+        let depth = depth_format::depth(plan.variants.depth, visibility_buffer::key(word));
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
@@ -354,14 +362,14 @@ impl Renderer {
 
     /// The draw and the polygon that a word of the visibility stands for.
     fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
-        match words::seen(word) {
-            Seen::Background => None,
-            Seen::Triangle(number) => {
+        match visibility_buffer::seen(word) {
+            Visible::Background => None,
+            Visible::Triangle(number) => {
                 let (draw, start) = self.frame.draw_of(number);
                 let mesh = &plan.draws[draw as usize].model.mesh;
                 Some((draw, mesh.polygon_of(number - start.number)))
             }
-            Seen::Line(line) => self.frame.line_seen(plan, line),
+            Visible::Line(line) => self.frame.line_seen(plan, line),
         }
     }
 
@@ -371,14 +379,14 @@ impl Renderer {
         plan: &FramePlan,
         changes: &Changes,
         pass: &Pass<'_>,
-        watch: &Watch<'_>,
+        watch: &Cancellation<'_>,
     ) {
         let mut laps = Laps::start();
         let Room { shines, lit, painters } = T::room(&mut self.rooms);
         shines.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let scenery = Scenery { level, plan, frame, lit, shines };
+        let context = ShadingContext { level, plan, frame, lit, shines };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self
@@ -400,11 +408,11 @@ impl Renderer {
                 let row = tile / columns;
                 if changes.tiles.contains(tile) {
                     match pass.sums.get(tile) {
-                        None => painter.paint(&scenery, tile, &bands[row]),
-                        Some(sums) => painter.add(&scenery, tile, sums),
+                        None => painter.paint(&context, tile, &bands[row]),
+                        Some(sums) => painter.add(&context, tile, sums),
                     }
                     if let (true, Some(sums)) = (pass.is_last, pass.sums.get(tile)) {
-                        painter.put_means(&scenery, tile, sums, &bands[row]);
+                        painter.put_means(&context, tile, sums, &bands[row]);
                     }
                     watch.tile_is_painted();
                 }
@@ -425,7 +433,7 @@ struct Pass<'a> {
 /// What is kept from frame to frame for one kind of numbers.
 #[derive(Debug, Default)]
 struct Room<T> {
-    shines: Shines<T>,
+    shines: LightTerms<T>,
     lit: Lit<T>,
     /// One for each thread.
     painters: Vec<Painter<T>>,
@@ -438,7 +446,7 @@ struct Rooms {
 }
 
 /// Numbers that pictures are painted in.
-trait Painted: Light {
+trait Painted: ShadingNumber {
     fn room(rooms: &mut Rooms) -> &mut Room<Self>;
 }
 

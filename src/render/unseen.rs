@@ -8,12 +8,13 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use super::plan::Draw;
-use super::{Effect, FramePlan, Renderer, State};
+use super::frame::draw::Draw;
+use super::plan::{Effect, State, explain_frame, plan_frame};
+use super::renderer::Renderer;
+use crate::accuracy::{LightAt, Settings, Shot};
 use crate::base::image::Size;
 use crate::scene::{
-    Fill, ItemId, LightAt, List, MaterialChoice, Object, ObjectId, Scene, Settings, Sides, Surface,
-    View,
+    Fill, ItemId, List, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View,
 };
 
 /// Why nothing of an object is seen.
@@ -61,19 +62,14 @@ impl fmt::Display for Unseen {
 ///
 /// Objects that the user hid, as a whole or part by part, are left out of the list.
 #[must_use]
-pub fn unseen(
-    renderer: &mut Renderer,
-    scene: &Scene,
-    view: &View,
-    settings: &Settings,
-    size: Size,
-) -> Vec<(ObjectId, Unseen)> {
+pub fn unseen(renderer: &mut Renderer, shot: &Shot) -> Vec<(ObjectId, Unseen)> {
+    let Shot { scene, view, size, .. } = shot;
     let wanted = scene.objects.iter().filter(|(id, object)| is_wanted(view, *id, object));
     let wanted: BTreeSet<ItemId> = wanted.map(|(id, _)| ItemId::Object(id)).collect();
     let Some(whole) = renderer.items_unless_all_seen(wanted.clone()) else { return Vec::new() };
     let seen: BTreeSet<ItemId> = whole.iter().flatten().copied().collect();
-    let left_out = left_out(scene, view, settings, size);
-    let mut alone = Alone { scene, view, size, whole, renderer: Renderer::default() };
+    let left_out = left_out(shot);
+    let mut alone = Alone { scene, view, size: *size, whole, renderer: Renderer::default() };
     let objects = wanted.difference(&seen).filter_map(|item| match item {
         ItemId::Object(id) => Some(*id),
         ItemId::Camera(_) | ItemId::Light(_) => None,
@@ -91,13 +87,8 @@ pub fn unseen(
 }
 
 /// Why the plan draws nothing of some things.
-fn left_out(
-    scene: &Scene,
-    view: &View,
-    settings: &Settings,
-    size: Size,
-) -> BTreeMap<ItemId, Cow<'static, str>> {
-    let (plan, uses) = FramePlan::explained(scene, view, settings, size);
+fn left_out(shot: &Shot) -> BTreeMap<ItemId, Cow<'static, str>> {
+    let (plan, uses) = explain_frame(shot);
     let is_drawn = |draw: &&Draw| draw.part_pipelines.iter().any(Option::is_some);
     let drawn: BTreeSet<ItemId> =
         plan.draws.iter().filter(is_drawn).map(|draw| draw.item).collect();
@@ -191,7 +182,7 @@ impl Alone<'_> {
         let view = View { marks: false, fill: Fill::Filled, ..self.view.clone() };
         // Where it is seen does not depend on light; this is the quickest.
         let settings = Settings { light: LightAt::Face, ..Settings::default() };
-        let plan = FramePlan::new(&scene, &view, &settings, self.size);
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, self.size));
         self.renderer.render(&plan);
         self.renderer.pixels_of(ItemId::Object(id))
     }

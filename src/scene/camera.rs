@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::{MaterialChoice, Model, ObjectId, Placed, Projection};
+use super::{MaterialChoice, Model, ObjectId, Projection, Tracked};
 use crate::base::image::Size;
 use crate::base::{Shared, math};
 
@@ -19,7 +19,7 @@ pub struct Camera {
     /// The mark's material.
     pub material: MaterialChoice,
     /// Where it is, and how it moves.
-    pub pose: Placed<Pose>,
+    pub pose: Tracked<Pose>,
     /// What it sees.
     pub lens: Lens,
 }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::{CameraId, ObjectId, Placed};
+use super::{CameraId, ObjectId, Tracked};
 use crate::base::{color::Color, math};
 
 /// A light.
@@ -58,12 +58,12 @@ pub enum LightKind {
     /// From infinitely far away.
     Sun {
         /// The way its light goes, of length 1.
-        direction: Placed<DVec3>,
+        direction: Tracked<DVec3>,
     },
     /// From a point, in all directions.
     Bulb {
         /// Where it is.
-        position: Placed<DVec3>,
+        position: Tracked<DVec3>,
         /// Circling the world's Y axis.
         orbit: Orbit,
     },
@@ -90,7 +90,7 @@ pub enum SpotOwner {
     /// This camera.
     Camera(CameraId),
     /// Nothing: a place and a direction of its own.
-    Fixed(Placed<Aim>),
+    Fixed(Tracked<Aim>),
 }
 
 /// A place and a direction.
@@ -151,8 +151,8 @@ impl Light {
     #[must_use]
     pub fn five() -> [Self; 5] {
         let spot = |owner| LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 };
-        let sun = LightKind::Sun { direction: Placed::new(DVec3::NEG_Y) };
-        let position = Placed::new(DVec3::new(0.0, 0.0, -200.0));
+        let sun = LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) };
+        let position = Tracked::new(DVec3::new(0.0, 0.0, -200.0));
         [
             Self::new("ambient", 0, LightKind::Ambient),
             Self::new("sun", 1, sun),

@@ -2,58 +2,39 @@
 //!
 //! Plain data. Nothing here draws, nothing here reads files, nothing here knows of windows.
 
-mod axes;
 mod bounds;
 mod camera;
-mod closed;
-mod clusters;
 mod command;
-mod edge_order;
 mod light;
 mod list;
 mod material;
 mod mesh;
-mod mesh_around;
-mod mesh_build;
-mod mesh_edges;
-mod mesh_fans;
-mod mesh_found;
-mod mesh_points;
-mod mesh_splits;
 mod model;
 mod object;
-mod order;
-mod placed;
-mod settings;
+mod tracked;
 pub mod triangulate;
 mod view;
 
-pub use axes::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Lesson, Preset as AccuracyPreset};
 pub use bounds::Bounds;
 pub use camera::{Camera, CameraMode, Lens, Pose};
-pub use clusters::{CLUSTER, Cluster};
 pub use command::{Command, CommandError, Item};
-pub use edge_order::{DrawEdge, EdgeOrder};
 pub use light::{Aim, Attenuation, Light, LightKind, Orbit, SpotOwner};
 pub use list::List;
 pub use material::{Material, MaterialChoice, PRESETS, Preset, PresetId};
+pub use mesh::build::CornerLists;
+pub use mesh::cache::{Derived, Facet};
+pub use mesh::clusters::{CLUSTER, Cluster};
+pub use mesh::draw_order::{DrawOrder, DrawTriangle, NormalSource, Points};
+pub use mesh::edge_order::{DrawEdge, EdgeOrder};
+pub use mesh::edges::Edge;
 pub use mesh::{
     Corner, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle, dvec3, newell,
 };
-pub use mesh_build::CornerLists;
-pub use mesh_edges::Edge;
-pub use mesh_found::{Derived, Facet};
 pub use model::{
     Crease, FileMaterial, LoadOptions, Model, Scale, Smoothing, Texture, UpAxis, Winding, Wrap,
 };
 pub use object::{Object, PartLook, Sides, Spin, Surface};
-pub use order::{DrawOrder, DrawTriangle, NormalSource, Points};
-pub use placed::Placed;
-pub use settings::{
-    Arithmetic, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt, NormalMatrix,
-    Normalising, Rounding, Samples, Settings, SpecularForm, SpecularPower, Subpixels,
-    VertexArithmetic,
-};
+pub use tracked::Tracked;
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,
     Transformation, View,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::{MaterialChoice, Model, Placed, PresetId, Texture};
+use super::{MaterialChoice, Model, PresetId, Texture, Tracked};
 use crate::base::math::{self, Axis};
 use crate::base::{Shared, color::Color};
 
@@ -22,7 +22,7 @@ pub struct Object {
     pub hidden_parts: BTreeSet<u32>,
     /// `world_from_object`, without the spin. A matrix, since a step in the global frame on a turned
     /// object need not be a product of one translation, rotation and scale.
-    pub placement: Placed<DMat4>,
+    pub placement: Tracked<DMat4>,
     /// Turning by itself.
     pub spin: Spin,
     /// Which material it has.
@@ -112,7 +112,7 @@ impl Object {
             name: model.name.clone(),
             visible: true,
             hidden_parts: BTreeSet::new(),
-            placement: Placed::new(DMat4::IDENTITY),
+            placement: Tracked::new(DMat4::IDENTITY),
             spin: Spin::default(),
             material,
             surface: Surface::default(),

@@ -7,12 +7,15 @@ mod models;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::math::Axis;
 use marraztu::edit::{lights, motion};
 use marraztu::io;
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{Projection, Scene, Settings};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::scene::{Projection, Scene};
 use tempfile::TempDir;
 
 /// A square of one unit on a side, its corners counter-clockwise seen from +Z, far from the origin.
@@ -56,7 +59,7 @@ fn drawn(folder: &Path, arguments: &[&str]) -> Picture {
 
 fn first_scene(settings: &Settings, size: Size) -> Picture {
     let (scene, view) = io::default_scene();
-    Renderer::default().render(&FramePlan::new(&scene, &view, settings, size)).clone()
+    Renderer::default().render(&plan_frame(&Shot::new(&scene, &view, settings, size))).clone()
 }
 
 #[test]
@@ -144,7 +147,8 @@ fn every_option_of_the_view_changes_the_picture() {
         // Not `assert_ne`, which would print two pictures as numbers.
         assert!(drawn(folder.path(), change) != plain, "{change:?} changes nothing");
     }
-    let settings = Settings { arithmetic: marraztu::scene::Arithmetic::F64, ..Settings::default() };
+    let settings =
+        Settings { arithmetic: marraztu::accuracy::Arithmetic::F64, ..Settings::default() };
     let exact = drawn(folder.path(), &["--arithmetic", "f64"]);
     assert!(exact == first_scene(&settings, Size::new(160, 120)));
 }
@@ -169,9 +173,9 @@ fn a_scene_is_drawn_as_it_was_saved_and_models_go_into_it() {
     let folder = folder();
     let (scene, mut view) = io::default_scene();
     view.projection = Projection::Orthographic;
-    let settings = Settings { light: marraztu::scene::LightAt::Face, ..Settings::default() };
+    let settings = Settings { light: marraztu::accuracy::LightAt::Face, ..Settings::default() };
     io::save(&folder.path().join("s.marraztu"), &scene, &view, &settings).unwrap();
-    let plan = FramePlan::new(&scene, &view, &settings, Size::new(160, 120));
+    let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(160, 120)));
     let expected = Renderer::default().render(&plan).clone();
     assert!(drawn(folder.path(), &["s.marraztu"]) == expected);
     let with_more = drawn(folder.path(), &["s.marraztu", "square.obj", "--scale", "20"]);
@@ -197,7 +201,7 @@ fn the_named_lights_shine_and_no_others_whatever_the_scene_says() {
     for slot in [0, 1, 2, 4] {
         toggle(&mut scene, slot);
     }
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(160, 120));
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(160, 120)));
     let expected = Renderer::default().render(&plan).clone();
     assert!(drawn(folder.path(), &["s.marraztu", "--lights", "1, 3"]) == expected);
 }
@@ -319,28 +323,4 @@ fn without_a_display_the_editor_says_so_and_what_to_do_instead() {
         assert!(err.contains("marraztu render"), "{err}");
         assert!(err.lines().count() <= 2, "{err}");
     }
-}
-
-#[test]
-fn the_readme_has_the_table_of_keys_that_the_program_prints() {
-    let folder = folder();
-    let (table, _) = ends_with(0, folder.path(), &["keys", "--markdown"]);
-    let table = table.replace("Cmd+", "Ctrl+");
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let readme = std::fs::read_to_string(readme).unwrap().replace("\r\n", "\n");
-    let found = readme.contains(&table);
-    assert!(found, "README.md lacks the output of `marraztu keys --markdown`:\n{table}");
-}
-
-#[test]
-fn the_scene_that_the_readme_shows_can_be_drawn() {
-    let folder = folder();
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let readme = std::fs::read_to_string(readme).unwrap();
-    let scene = readme.split("```ron").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
-    std::fs::write(folder.path().join("pot.marraztu"), scene).unwrap();
-    let square = "v -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 0\nf 1 2 3 4\n";
-    std::fs::write(folder.path().join("teapot.obj"), square).unwrap();
-    let picture = drawn(folder.path(), &["pot.marraztu"]);
-    assert!(picture.pixels().iter().any(|pixel| *pixel != picture.pixel(0, 0)));
 }

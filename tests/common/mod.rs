@@ -4,13 +4,16 @@
 #![allow(clippy::cast_possible_truncation, reason = "small numbers")]
 
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
     Camera, CameraId, Command, Item, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, Placed, Pose, PresetId, Scene, Settings,
-    SourceCorner, View,
+    MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
+    View,
 };
 
 /// A model of polygons that name vertices.
@@ -93,7 +96,7 @@ pub(crate) fn camera() -> Camera {
         visible: true,
         model: cube(),
         material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Placed::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
         lens: Lens::default(),
     }
 }
@@ -110,7 +113,7 @@ pub(crate) fn scene(models: &[(Shared<Model>, DMat4)]) -> (Scene, View) {
     for (i, (model, placement)) in models.iter().enumerate() {
         let ruby = MaterialChoice::Preset(PresetId::RUBY);
         let mut object = Object::new(model.clone(), ruby);
-        object.placement = Placed::new(*placement);
+        object.placement = Tracked::new(*placement);
         insert(&mut scene, Item::Object(ObjectId(i as u32 + 10), Box::new(object)));
     }
     scene.next_id = 100;
@@ -127,7 +130,7 @@ pub(crate) fn edit(scene: &mut Scene, id: ObjectId, change: impl FnOnce(&mut Obj
 
 /// Draws a scene.
 pub(crate) fn draw(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Picture {
-    let plan = FramePlan::new(scene, view, settings, Size::new(side, side));
+    let plan = plan_frame(&Shot::new(scene, view, settings, Size::new(side, side)));
     Renderer::default().render(&plan).clone()
 }
 

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 use marraztu::base::Shared;
 use marraztu::scene::{
     Camera, Command, Item, ItemId, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, Placed, Pose, PresetId, Scene, SourceCorner,
+    MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
     View,
 };
 
@@ -32,14 +32,14 @@ pub(crate) fn model() -> Shared<Model> {
 }
 
 /// A camera at (0, 0, 400); objects 3, 2 and 1 in this order, at (-100, 0, 0), (100, 0, 0) and
-/// (0, 0, -400), of which 3 is selected; the five lights as 4 to 8, of which the sun is selected.
+/// (0, 0, -400), with 3 selected; the five lights as 4 to 8, with the sun selected.
 pub(crate) fn three_objects() -> (Scene, View) {
     let camera = Camera {
         name: "camera 1".to_owned(),
         visible: true,
         model: model(),
         material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Placed::new(Pose::facing_minus_z(DVec3::Z * 400.0)),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::Z * 400.0)),
         lens: Lens::default(),
     };
     let mut scene = Scene::with_camera(camera);
@@ -47,7 +47,7 @@ pub(crate) fn three_objects() -> (Scene, View) {
     for (id, place) in (1..).zip(places) {
         let mut object = Object::new(model(), MaterialChoice::Preset(PresetId::RUBY));
         object.name = format!("object {id}");
-        object.placement = Placed::new(DMat4::from_translation(place));
+        object.placement = Tracked::new(DMat4::from_translation(place));
         insert(&mut scene, 0, Item::Object(ObjectId(id), Box::new(object)));
     }
     for (id, light) in (4..).zip(Light::five()) {

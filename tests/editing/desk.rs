@@ -4,7 +4,7 @@ use glam::{DMat3, DMat4, DVec3};
 use marraztu::base::math::Axis;
 use marraztu::edit::selection::{self, Selection};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Refusal, Stroke};
+use marraztu::edit::{GesturePhase, Refusal};
 use marraztu::scene::{
     CameraMode, Command, LightKind, Object, Pose, Scene, SpotOwner, Subject, Transformation, View,
 };
@@ -32,7 +32,7 @@ impl Desk {
     }
 
     pub(crate) fn step(&self, axis: Axis, sign: Sign) -> Result<Command, Refusal> {
-        transform::step(&self.scene, &self.view, axis, sign, Stroke::First)
+        transform::step(&self.scene, &self.view, axis, sign, GesturePhase::First)
     }
 
     pub(crate) fn press(&mut self, axis: Axis, sign: Sign) {
@@ -75,7 +75,7 @@ impl Desk {
         self.pose().mode_with(self.view.object)
     }
 
-    /// Where the selected light is and where it shines to, as far as it has either.
+    /// The position and the direction of the selected light, as far as it has either.
     pub(crate) fn light(&self) -> (DVec3, DVec3) {
         match &self.scene.lights.get(self.view.light.unwrap()).unwrap().kind {
             LightKind::Sun { direction } => (DVec3::ZERO, *direction.now()),
@@ -95,7 +95,7 @@ impl Desk {
     }
 }
 
-/// The turn by so many degrees about an axis, written out for each axis by itself.
+/// The turn by a number of degrees about an axis, written out for each axis by itself.
 pub(crate) fn turned(axis: Axis, degrees: f64) -> DMat3 {
     let (s, c) = degrees.to_radians().sin_cos();
     let rows = match axis {

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use marraztu::base::image::Size;
-use marraztu::edit::frame::{self, Side};
-use marraztu::edit::{Refusal, Stroke, items, place};
+use marraztu::edit::framing::{self, Side};
+use marraztu::edit::{GesturePhase, Refusal, items, placement};
 use marraztu::scene::{
     CameraMode, ItemId, ObjectId, Observer, Projection, Subject, Transformation, dvec3,
 };
@@ -17,7 +17,7 @@ fn desk() -> Desk {
 #[test]
 fn the_object_is_seen_from_r_through_the_sine_of_the_half_angle() {
     let mut desk = desk();
-    desk.perform(frame::selection(&desk.scene, &desk.view));
+    desk.perform(framing::selection(&desk.scene, &desk.view));
     // The box of the plate has its middle at (1, 2, 3) and corners 5 from there; 5 / sin 22.5 is
     // 13.0656...
     let distance = 13.065_629_648_763_766;
@@ -33,7 +33,7 @@ fn the_object_is_seen_from_r_through_the_sine_of_the_half_angle() {
 fn models_alone_are_seen_from_the_right_and_above_with_a_margin() {
     let mut desk = desk();
     desk.view.only_selected = true;
-    desk.perform(frame::models(&desk.scene, &desk.view, frame::MODELS_FROM));
+    desk.perform(framing::models(&desk.scene, &desk.view, framing::MODELS_FROM));
     // sin 30 cos 20, sin 20, cos 30 cos 20
     let z = DVec3::new(0.469_846_310_392_954, 0.342_020_143_325_669, 0.813_797_681_349_374);
     close(desk.pose().axes.z_axis, z);
@@ -51,8 +51,8 @@ fn whatever_its_size_every_vertex_is_in_the_picture_in_both_projections() {
         let mut desk = desk();
         let to = DVec3::splat(scale);
         let id = ObjectId(3);
-        desk.perform(place::object_scale(&desk.scene, &desk.view, id, to, Stroke::First));
-        desk.perform(frame::selection(&desk.scene, &desk.view));
+        desk.perform(placement::object_scale(&desk.scene, &desk.view, id, to, GesturePhase::First));
+        desk.perform(framing::selection(&desk.scene, &desk.view));
         let lens = desk.scene.selected_camera(&desk.view).lens;
         for projection in [Projection::Perspective, Projection::Orthographic] {
             let clip_from_view = lens.clip_from_view(projection, Size::new(640, 480));
@@ -72,17 +72,17 @@ fn home_sees_all_that_is_shown() {
     let mut desk = desk();
     let far_away = ItemId::Object(ObjectId(1));
     desk.perform(items::toggle_shown(&desk.scene, far_away));
-    desk.perform(frame::all(&desk.scene, &desk.view));
+    desk.perform(framing::all(&desk.scene, &desk.view));
     // Two spheres of radius 5 about (-99, 2, 3) and (101, 2, 3).
     let distance = 105.0 / 22.5_f64.to_radians().sin();
     close(desk.pose().eye, DVec3::new(1.0, 2.0, 3.0 + distance));
     desk.view.only_selected = true;
-    desk.perform(frame::all(&desk.scene, &desk.view));
+    desk.perform(framing::all(&desk.scene, &desk.view));
     close(desk.pose().eye, DVec3::new(-99.0, 2.0, 3.0 + 5.0 / 22.5_f64.to_radians().sin()));
     for id in [2, 3] {
         desk.perform(items::toggle_shown(&desk.scene, ItemId::Object(ObjectId(id))));
     }
-    assert_eq!(frame::all(&desk.scene, &desk.view), Err(Refusal::NothingToFrame));
+    assert_eq!(framing::all(&desk.scene, &desk.view), Err(Refusal::NothingToFrame));
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn the_sides_look_along_the_axes_of_the_world() {
     ];
     for (side, z, y) in expected {
         let mut desk = desk();
-        desk.perform(frame::side(&desk.scene, &desk.view, side));
+        desk.perform(framing::side(&desk.scene, &desk.view, side));
         assert_eq!((desk.pose().axes.z_axis, desk.pose().axes.y_axis), (z, y), "{side:?}");
         let away = desk.pose().eye - DVec3::new(-99.0, 2.0, 3.0);
         close(away, z * 13.065_629_648_763_766);
@@ -105,11 +105,11 @@ fn the_sides_look_along_the_axes_of_the_world() {
 fn framing_in_analysis_stays_in_analysis_and_framing_something_else_does_not() {
     let mut desk = desk();
     desk.analyse();
-    desk.perform(frame::selection(&desk.scene, &desk.view));
+    desk.perform(framing::selection(&desk.scene, &desk.view));
     assert_eq!(desk.mode(), CameraMode::Analysis { target: ObjectId(3) });
     assert!(desk.off_aim() < 1e-12);
-    desk.perform(frame::all(&desk.scene, &desk.view));
+    desk.perform(framing::all(&desk.scene, &desk.view));
     assert_eq!(desk.mode(), CameraMode::Fly);
     desk.view.observer = Observer::Object;
-    assert_eq!(frame::all(&desk.scene, &desk.view), Err(Refusal::ObjectLooks));
+    assert_eq!(framing::all(&desk.scene, &desk.view), Err(Refusal::ObjectLooks));
 }

@@ -1,7 +1,7 @@
 //! What is selected, and after what.
 
 use marraztu::edit::selection::{self, cycle_subject};
-use marraztu::edit::{Refusal, Stroke, items};
+use marraztu::edit::{GesturePhase, Refusal, items};
 use marraztu::scene::{
     CameraId, Command, ItemId, LightId, ObjectId, Observer, PolygonMode, Subject, Transformation,
 };
@@ -17,17 +17,20 @@ fn tab_goes_round_the_list_of_the_subject() {
     let mut desk = desk(Subject::Object);
     let mut seen = Vec::new();
     for _ in 0..4 {
-        desk.choose(selection::next(&desk.scene, &desk.view, Stroke::First));
+        desk.choose(selection::next(&desk.scene, &desk.view, GesturePhase::First));
         seen.push(desk.view.object.unwrap().0);
     }
     assert_eq!(seen, [2, 1, 3, 2]);
     desk.view.subject = Subject::Light;
     for _ in 0..4 {
-        desk.choose(selection::next(&desk.scene, &desk.view, Stroke::First));
+        desk.choose(selection::next(&desk.scene, &desk.view, GesturePhase::First));
     }
     assert_eq!(desk.view.light, Some(LightId(4)), "from the sun round to ambient light");
     desk.view.subject = Subject::Camera;
-    assert_eq!(selection::next(&desk.scene, &desk.view, Stroke::First), Err(Refusal::OnlyOne));
+    assert_eq!(
+        selection::next(&desk.scene, &desk.view, GesturePhase::First),
+        Err(Refusal::OnlyOne)
+    );
 }
 
 #[test]
@@ -74,7 +77,7 @@ fn after_a_removal_the_next_is_selected_else_the_one_before() {
     let mut desk = desk(Subject::Object);
     desk.view.polygons = Some(PolygonMode::begin());
     selection::next_polygon(&desk.scene, &mut desk.view).unwrap();
-    desk.choose(selection::next(&desk.scene, &desk.view, Stroke::First));
+    desk.choose(selection::next(&desk.scene, &desk.view, GesturePhase::First));
     let remove = |desk: &mut Desk| {
         let id = ItemId::Object(desk.view.object.unwrap());
         desk.perform(items::remove(&desk.scene, id));

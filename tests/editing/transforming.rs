@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4, DVec3};
 use marraztu::base::math::Axis;
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Refusal, Stroke, items, lights, selection};
+use marraztu::edit::{GesturePhase, Refusal, items, lights, selection};
 use marraztu::scene::{
     CameraMode, Frame, ItemId, LightId, LightKind, ObjectId, SpotOwner, Subject, Transformation,
 };
@@ -204,8 +204,9 @@ fn cameras_are_never_scaled_and_only_objects_can_be() {
 #[test]
 fn a_scale_that_would_flatten_the_object_is_refused() {
     let desk = Desk::new(Subject::Object, Transformation::Scaling);
-    let stretch =
-        |factors| transform::stretch(&desk.scene, &desk.view, factors, Stroke::First).map(drop);
+    let stretch = |factors| {
+        transform::stretch(&desk.scene, &desk.view, factors, GesturePhase::First).map(drop)
+    };
     assert_eq!(stretch(DVec3::new(1.0, 0.0, 1.0)), Err(Refusal::Flat));
     assert_eq!(stretch(DVec3::ZERO), Err(Refusal::Flat));
     assert_eq!(stretch(DVec3::splat(f64::NAN)), Err(Refusal::TooLarge));
@@ -279,16 +280,16 @@ fn by_size_a_step_is_a_twentieth_of_the_selected_objects_largest_extent() {
 fn u_takes_a_whole_drag_back_and_says_when_there_is_nothing_more() {
     let mut desk = Desk::new(Subject::Object, Transformation::Translation);
     let start = desk.placement();
-    for stroke in [Stroke::First, Stroke::Continued, Stroke::Continued] {
+    for phase in [GesturePhase::First, GesturePhase::Continued, GesturePhase::Continued] {
         let (scene, view) = (&desk.scene, &desk.view);
-        desk.perform(transform::translate(scene, view, DVec3::X, stroke));
+        desk.perform(transform::translate(scene, view, DVec3::X, phase));
     }
     close_matrix(desk.placement(), DMat4::from_translation(DVec3::X * 3.0) * start);
     desk.take_back();
     assert_eq!(desk.placement(), start);
     let refusal = transform::take_back(&desk.scene, &desk.view).unwrap_err();
     assert_eq!(refusal, Refusal::NothingToTakeBack);
-    assert_eq!(refusal.to_string(), "there is no transformation to take back");
+    assert_eq!(refusal.to_string(), "there is no transformation to undo");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use marraztu::base::math::Axis;
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Refusal, Stroke, look, place};
+use marraztu::edit::{GesturePhase, Refusal, navigation, placement};
 use marraztu::scene::{
     Command, Frame, Light, LightKind, Pose, Scene, Subject, Transformation, View,
 };
@@ -64,9 +64,9 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
             let mut scene = scene.clone();
             let eye = middle + DVec3::new(aside * height, height, -aside * height);
             let camera = view.camera;
-            let command = place::camera_turn(&scene, &view, camera, turn, Stroke::First);
+            let command = placement::camera_turn(&scene, &view, camera, turn, GesturePhase::First);
             apply(&mut scene, command);
-            let command = place::camera_eye(&scene, &view, camera, eye, Stroke::First);
+            let command = placement::camera_eye(&scene, &view, camera, eye, GesturePhase::First);
             apply(&mut scene, command);
             let before = pose(&scene, &view).axes;
             let command = transform::toggle_analysis(&scene, &view);
@@ -77,7 +77,7 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
         }
     }
     let mut scene = scene;
-    let command = place::camera_eye(&scene, &view, view.camera, middle, Stroke::First);
+    let command = placement::camera_eye(&scene, &view, view.camera, middle, GesturePhase::First);
     apply(&mut scene, command);
     let before = pose(&scene, &view).axes;
     let command = transform::toggle_analysis(&scene, &view);
@@ -85,7 +85,7 @@ fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump(
     assert_eq!(pose(&scene, &view).axes, before);
     // From there, turning and going away still works.
     for axis in Axis::ALL {
-        let command = transform::step(&scene, &view, axis, Sign::Positive, Stroke::First);
+        let command = transform::step(&scene, &view, axis, Sign::Positive, GesturePhase::First);
         apply(&mut scene, command);
         assert!(skew(pose(&scene, &view).axes) < 1e-12);
     }
@@ -111,7 +111,7 @@ fn case_57_a_million_turns_of_one_degree_end_where_280_degrees_do() {
         view.frame = frame;
         let axis = DVec3::new(1.0, 2.0, 3.0);
         for _ in 0..1_000_000 {
-            let command = transform::rotate(&scene, &view, axis, one, Stroke::Continued);
+            let command = transform::rotate(&scene, &view, axis, one, GesturePhase::Continued);
             apply(&mut scene, command);
         }
         let expected = DMat3::from_axis_angle(axis / 14.0_f64.sqrt(), 280.0_f64.to_radians());
@@ -123,7 +123,7 @@ fn case_57_a_million_turns_of_one_degree_end_where_280_degrees_do() {
     view.steps.rotation = 1.0;
     for _ in 0..1_000_000 {
         let sign = Sign::Positive;
-        let command = transform::step(&scene, &view, Axis::X, sign, Stroke::Continued);
+        let command = transform::step(&scene, &view, Axis::X, sign, GesturePhase::Continued);
         apply(&mut scene, command);
     }
     let axes = pose(&scene, &view).axes;
@@ -171,7 +171,7 @@ fn case_58_an_angle_of_a_million_radians_is_that_angle() {
     // cos and sin of 1e6, to 16 and 17 digits, from arithmetic of many digits.
     let (cos, sin) = (0.936_752_127_533_144_8, -0.349_993_502_171_292_94);
     let (mut scene, view) = desk(Subject::Object, Transformation::Rotation);
-    let command = transform::rotate(&scene, &view, DVec3::Z, 1e6, Stroke::First);
+    let command = transform::rotate(&scene, &view, DVec3::Z, 1e6, GesturePhase::First);
     apply(&mut scene, command);
     let x = linear(&scene, &view).x_axis;
     // Whole turns taken off in f32.
@@ -186,7 +186,7 @@ fn case_58_an_angle_of_a_million_radians_is_that_angle() {
     }
     .hold();
     for radians in [f64::INFINITY, f64::NAN] {
-        let refused = transform::rotate(&scene, &view, DVec3::Z, radians, Stroke::First);
+        let refused = transform::rotate(&scene, &view, DVec3::Z, radians, GesturePhase::First);
         assert_eq!(refused, Err(Refusal::TooLarge));
     }
 }
@@ -194,10 +194,10 @@ fn case_58_an_angle_of_a_million_radians_is_that_angle() {
 #[test]
 fn case_59_an_orbit_over_the_pole_is_continuous() {
     let by_key = |scene: &Scene, view: &View| {
-        transform::step(scene, view, Axis::Y, Sign::Negative, Stroke::First)
+        transform::step(scene, view, Axis::Y, Sign::Negative, GesturePhase::First)
     };
     let by_mouse = |scene: &Scene, view: &View| {
-        look::orbit(scene, view, 0.0, -1.0_f64.to_radians(), Stroke::First)
+        navigation::orbit(scene, view, 0.0, -1.0_f64.to_radians(), GesturePhase::First)
     };
     type Way = fn(&Scene, &View) -> Result<Command, Refusal>;
     let (mut uneven, mut naive) = (0.0_f64, 0.0_f64);
@@ -247,10 +247,10 @@ fn case_60_the_radius_of_an_orbit_is_kept_through_36000_steps() {
     ] {
         let (mut scene, mut view) = desk(Subject::Camera, Transformation::Rotation);
         let id = view.object.unwrap();
-        let command = place::object_translation(&scene, &view, id, away, Stroke::First);
+        let command = placement::object_translation(&scene, &view, id, away, GesturePhase::First);
         apply(&mut scene, command);
         let eye = away + DVec3::new(100.0, 200.0, 300.0);
-        let command = place::camera_eye(&scene, &view, view.camera, eye, Stroke::First);
+        let command = placement::camera_eye(&scene, &view, view.camera, eye, GesturePhase::First);
         apply(&mut scene, command);
         let command = transform::toggle_analysis(&scene, &view);
         apply(&mut scene, command);
@@ -259,7 +259,8 @@ fn case_60_the_radius_of_an_orbit_is_kept_through_36000_steps() {
         view.steps.rotation = 0.7;
         for i in 0..36_000 {
             let axis = if i % 3 == 0 { Axis::Y } else { Axis::X };
-            let command = transform::step(&scene, &view, axis, Sign::Positive, Stroke::Continued);
+            let command =
+                transform::step(&scene, &view, axis, Sign::Positive, GesturePhase::Continued);
             apply(&mut scene, command);
         }
         let drift = (pose(&scene, &view).eye.distance(middle) - distance).abs();
@@ -316,7 +317,7 @@ fn case_61_a_million_steps_of_a_tenth_are_a_hundred_thousand() {
         let before = place(&scene);
         for _ in 0..1_000_000 {
             let command =
-                transform::step(&scene, &view, Axis::Z, Sign::Positive, Stroke::Continued);
+                transform::step(&scene, &view, Axis::Z, Sign::Positive, GesturePhase::Continued);
             apply(&mut scene, command);
         }
         Figure {

@@ -9,7 +9,7 @@ pub(crate) struct Case {
     /// What it is judged by: Z whole numbers or fractions, D twice the digits or f64 along another
     /// way, I something that always holds, R two runs that must agree.
     pub(crate) oracle: &'static str,
-    /// What goes wrong where nobody cared.
+    /// What goes wrong in a naive program.
     pub(crate) wrong: &'static str,
 }
 
@@ -47,7 +47,7 @@ pub(crate) static CASES: &[Case] = &[
     case(4, GEOMETRY, "D", "normals of a stretched object lean over"),
     case(5, GEOMETRY, "I", "an object made smaller often enough is lost for good"),
     case(6, GEOMETRY, "R", "a mirrored object is inside out, or lit from the wrong side"),
-    case(7, GEOMETRY, "I", "a flat object has no inverse: numbers that are none spread from it"),
+    case(7, GEOMETRY, "I", "a flat object has no inverse: NaNs spread from it"),
     case(8, GEOMETRY, "D", "the length of a long vector is infinite, of a short one 0"),
     case(9, GEOMETRY, "I", "a face without area is drawn, or divides by its area"),
     case(10, GEOMETRY, "I", "normals that cancel out have no direction"),
@@ -64,7 +64,7 @@ pub(crate) static CASES: &[Case] = &[
     case(21, COVERAGE, "Z", "fans have cracks, and pixels that are drawn twice"),
     case(22, COVERAGE, "Z", "snapping turns slivers round, and unsigned counts go wrong"),
     case(23, COVERAGE, "I", "a closed body is open at its outline"),
-    case(24, COVERAGE, "I", "an edge that another face's corner splits leaks, and nobody says so"),
+    case(24, COVERAGE, "I", "an edge that another face's corner splits leaks, without a warning"),
     case(25, COVERAGE, "R", "a picture changes when it is moved by whole pixels"),
     case(26, COVERAGE, "R", "left and right, or rows and columns, are not treated alike"),
     case(27, COVERAGE, "R", "threads, tiles and instructions show in the picture"),
@@ -81,7 +81,7 @@ pub(crate) static CASES: &[Case] = &[
     case(38, INTERPOLATION, "I", "colours beyond those of the corners"),
     case(39, INTERPOLATION, "I", "places on the texture beyond it read past its end"),
     case(40, INTERPOLATION, "I", "one colour at all corners comes out as another"),
-    case(41, INTERPOLATION, "Z", "nobody says along which diagonal a quad is cut"),
+    case(41, INTERPOLATION, "Z", "nothing says along which diagonal a quad is cut"),
     case(42, LIGHT, "D", "a reciprocal root of 12 bits spoils highlights"),
     case(43, LIGHT, "I", "a unit vector's product with itself is above 1, and acos gives NaN"),
     case(44, LIGHT, "D", "acos of almost 1 has lost the angle"),
@@ -94,7 +94,7 @@ pub(crate) static CASES: &[Case] = &[
     case(51, LIGHT, "I", "light clamped before the texture is too dark"),
     case(52, COLOUR, "Z", "bytes cut off instead of rounded are too dark by half a step"),
     case(53, COLOUR, "Z", "many lights rounded one by one drift from their sum"),
-    case(54, COLOUR, "I", "a number that is none becomes any byte"),
+    case(54, COLOUR, "I", "a NaN becomes any byte"),
     case(55, COLOUR, "I", "a byte does not survive the way to a factor and back"),
     case(56, CAMERA, "I", "looking straight down, or at one's own eye, has no up"),
     case(57, CAMERA, "D", "turning again and again shears and shrinks"),

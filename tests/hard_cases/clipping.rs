@@ -2,15 +2,18 @@
 
 use crate::claims::exact::span;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Filter, Settings};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::scene::{
-    Fill, Filter, List, MeshSource, Object, ObjectId, Part, Placed, Pose, Settings, Sides,
-    SourceCorner, Surface, View,
+    Fill, List, MeshSource, Object, ObjectId, Part, Pose, Sides, SourceCorner, Surface, Tracked,
+    View,
 };
 
 use super::cases::quick_round;
@@ -64,9 +67,9 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
             object.placement = object.placement.replaced(front);
         });
         let placed = corners.map(|corner| front.transform_point3(DVec3::from_array(corner)));
-        for light in [marraztu::scene::LightAt::Pixel, marraztu::scene::LightAt::Vertex] {
+        for light in [marraztu::accuracy::LightAt::Pixel, marraztu::accuracy::LightAt::Vertex] {
             let settings = Settings { light, ..Settings::default() };
-            let plan = FramePlan::new(&scene, &view, &settings, Size::new(SIDE, SIDE));
+            let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(SIDE, SIDE)));
             let mut renderer = Renderer::default();
             let picture = renderer.render(&plan).clone();
             wrong += wrong_pixels(placed, &picture, &covered(&picture, &scene));
@@ -89,7 +92,7 @@ fn case_11_corners_in_the_observers_plane_harm_nothing() {
 }
 
 #[test]
-fn case_11_scenes_of_numbers_that_nobody_means_are_refused_or_drawn() {
+fn case_11_scenes_of_absurd_numbers_are_refused_or_drawn() {
     let tally = quick_round("scenes");
     assert!(tally.counts["refusals"] > 1000 && tally.counts["pictures"] > 10_000, "{tally}");
 }
@@ -106,7 +109,7 @@ fn case_12_a_line_through_the_observers_plane_stays_on_its_side() {
         let line = model("line", &positions, &[&[0, 1, 2], &[2, 1, 0]]);
         let (mut scene, view) = scene(&[(line, DMat4::IDENTITY)]);
         let mut camera = scene.selected_camera(&view).clone();
-        camera.pose = Placed::new(Pose::facing_minus_z(DVec3::ZERO));
+        camera.pose = Tracked::new(Pose::facing_minus_z(DVec3::ZERO));
         camera.lens.half_angle = 60.0;
         camera.lens.near = 0.5;
         scene.cameras = List::from_iter([(view.camera, camera)]);
@@ -170,7 +173,8 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
             let (mut scene, view) = scene(&[(both, DMat4::IDENTITY)]);
             edit(&mut scene, ObjectId(10), |object| object.sides = Sides::Two);
             let view = View { marks: false, ..view };
-            let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(32, 32));
+            let plan =
+                plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(32, 32)));
             let mut renderer = Renderer::default();
             renderer.render(&plan);
             let mut face = |x: usize, y: usize| renderer.hit(x, y).map(|hit| hit.polygon);
@@ -219,7 +223,8 @@ fn case_13_a_face_is_cut_at_the_same_places_from_both_sides() {
             let (mut scene, view) = scene(&[(model("face", &positions, &[face]), DMat4::IDENTITY)]);
             edit(&mut scene, ObjectId(10), |object| object.sides = Sides::Two);
             let view = View { marks: false, ..view };
-            let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(64, 64));
+            let plan =
+                plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(64, 64)));
             let mut renderer = Renderer::default();
             renderer.render(&plan);
             let seen = |i: usize| renderer.hit(i % 64, i / 64).is_some();
@@ -471,7 +476,8 @@ fn case_18_what_is_behind_the_observer_is_not_there() {
         let mut corner = || DVec3::new(0.0, 0.0, 600.0) + rng.vector(190.0);
         let corners = [corner(), corner(), corner()];
         let (scene, view) = alone(corners);
-        let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
+        let plan =
+            plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE)));
         let mut renderer = Renderer::default();
         let picture = renderer.render(&plan);
         drawn += covered(picture, &scene).iter().filter(|seen| **seen).count();

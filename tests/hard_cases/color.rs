@@ -1,11 +1,9 @@
 //! From light to bytes.
 
+use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::color::{Color, byte};
 use marraztu::base::rng::Rng;
-use marraztu::scene::{
-    Arithmetic, Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, Settings,
-    View,
-};
+use marraztu::scene::{Light, LightId, LightKind, Material, MaterialChoice, ObjectId, Scene, View};
 
 use super::common::{at, draw, edit, scene, square};
 use super::figures::Figure;
@@ -128,7 +126,7 @@ fn case_54_what_is_no_number_is_black_and_what_is_infinite_is_full() {
         .count();
     Figure {
         case: 54,
-        what: "wrong bytes of numbers that are none, infinite or huge",
+        what: "wrong bytes of numbers that are NaN, infinite or huge",
         naive: Some(("cast by way of i32, of 5", naive as f64)),
         ours: wrong as f64,
         bound: 0.0,

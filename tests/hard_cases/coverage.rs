@@ -2,16 +2,17 @@
 
 use crate::claims::exact::{span, wind};
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::lab::instructions::levels;
 use marraztu::lab::pictures;
 use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::geometry::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{
-    LoadOptions, MeshSource, Object, ObjectId, Projection, Settings, View, Winding,
-};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
+use marraztu::scene::{LoadOptions, MeshSource, Object, ObjectId, Projection, View, Winding};
 
 use super::cases::quick_round;
 use super::common::{at, ball, covered, draw, edit, model_of, scene};
@@ -595,7 +596,7 @@ fn case_29_points_every_tenth_of_a_unit_are_too_few_near_by_and_too_many_far_off
     let square = super::common::square();
     let (scene, view) = scene(&[(square, at(10.0 * unit, 0.0, 0.0, 340.0))]);
     let view = View { marks: false, ..view };
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(800, 800));
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(800, 800)));
     let picture: Picture = Renderer::default().render(&plan).clone();
     let ours = 400 - covered(&picture, &scene).iter().filter(|seen| **seen).count();
     Figure {

@@ -2,14 +2,16 @@
 
 use crate::claims::double_double::Double;
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, FAR, Flat};
-use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::scene::{
-    Command, ItemId, MaterialChoice, ObjectId, PresetId, Projection, Scene, Settings, Sides,
-    Surface, View,
+    Command, ItemId, MaterialChoice, ObjectId, PresetId, Projection, Scene, Sides, Surface, View,
 };
 
 use super::common::{at, draw, edit, model, scene, square};
@@ -32,7 +34,7 @@ fn hidden_ones(z: f64, gap: f64, projection: Projection) -> usize {
         object.material = MaterialChoice::Preset(PresetId::EMERALD);
     });
     let view = View { marks: false, projection, ..view };
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(8, 8));
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(8, 8)));
     let mut renderer = Renderer::default();
     renderer.render(&plan);
     renderer.pixels_of(ItemId::Object(ObjectId(10))).into_iter().filter(|seen| *seen).count()
@@ -140,8 +142,8 @@ fn case_32_of_the_same_plane_cut_otherwise_the_older_is_seen() {
         unit: "pixels",
     }
     .hold();
-    // Where it leans, the depth of each cut is rounded from its own corners, once; so either may be
-    // a last place nearer. It is a share of pixels that is stated, not hidden.
+    // If it leans, the depth of each cut is rounded from its own corners, once; so either may be a
+    // last place nearer. It is a share of pixels that is stated, not hidden.
     Figure {
         case: 32,
         what: "pixels of a leaning plane that show the younger, by the last place of depth",
@@ -205,7 +207,8 @@ fn case_33_on_slivers_depth_is_right_to_two_last_places_and_within_the_corners()
         let flat =
             Flat { corners: [Snapped { x, y }, Snapped { x: tx, y: ty }, beside], distances };
         let (scene, view) = flat::scene(&[vec![flat]], SIDE);
-        let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
+        let plan =
+            plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE)));
         let mut renderer = Renderer::default();
         let picture = renderer.render(&plan).clone();
         let seen = (0..SIDE * SIDE).filter(|i| flat::number_of(picture.pixels()[*i]).is_some());
@@ -260,7 +263,7 @@ fn case_33_no_depth_of_a_small_triangle_is_beyond_those_of_its_corners() {
     }
     let (mut scene, view) = flat::scene(&[flats.clone()], SIDE);
     edit(&mut scene, ObjectId(1), |object| object.sides = Sides::Two);
-    let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE)));
     let mut renderer = Renderer::default();
     renderer.render(&plan);
     let (mut ours, mut naive, mut pixels) = (0, 0, 0);
@@ -304,7 +307,8 @@ fn case_34_two_faces_that_meet_in_a_line_meet_in_that_line() {
             edit(&mut scene, ObjectId(id), |object| object.sides = Sides::Two);
         }
         let view = View { marks: false, ..view };
-        let plan = FramePlan::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
+        let plan =
+            plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE)));
         let mut renderer = Renderer::default();
         renderer.render(&plan);
         let first = renderer.pixels_of(ItemId::Object(ObjectId(10)));
@@ -422,12 +426,12 @@ fn case_36_the_order_of_faces_shows_by_their_numbers_alone() {
     let twice = model("twice", &square, &[&[0, 1, 2, 3], &[0, 1, 2, 3]]);
     let (mut scene, view) = scene(&[(twice, DMat4::IDENTITY)]);
     edit(&mut scene, ObjectId(10), |object| object.surface = Surface::Material);
-    let plan = FramePlan::new(
+    let plan = plan_frame(&Shot::new(
         &scene,
         &View { marks: false, ..view },
         &Settings::default(),
         Size::new(SIDE, SIDE),
-    );
+    ));
     let mut renderer = Renderer::default();
     renderer.render(&plan);
     for i in 0..SIDE {

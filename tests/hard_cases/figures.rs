@@ -1,7 +1,7 @@
 //! What a case measures: the naive way's number, ours, and the bound that ours is held to.
 //!
 //! Each is printed as one line, and where `MARRAZTU_FIGURES` names a folder written into a file
-//! there: `docs/stability.sh` makes its page of them.
+//! there: `tools/stability.sh` makes its page of them.
 
 use super::cases::CASES;
 

@@ -1,12 +1,15 @@
 //! Odd numbers and faces in files, scenes of other sizes, nothing and very much.
 
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::{FindingKind, LoadError, Loaded, Progress, parse};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
-    Arithmetic, Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource,
-    ObjectId, Orbit, Placed, Pose, Projection, Scene, Settings, View, newell,
+    Attenuation, Lens, Light, LightId, LightKind, List, LoadOptions, MeshSource, ObjectId, Orbit,
+    Pose, Projection, Scene, Tracked, View, newell,
 };
 
 use super::cases::quick_round;
@@ -94,7 +97,7 @@ fn case_65_faces_are_kept_mended_or_left_out_and_concave_ones_are_filled_rightly
         wrong += usize::from(loaded.findings.iter().all(|finding| finding.kind != kind));
         wrong += usize::from(loaded.model.mesh.polygon_count() != kept);
     }
-    assert!(read(&format!("{three}f 0 1 2\n")).is_err(), "a file of which nothing is left");
+    assert!(read(&format!("{three}f 0 1 2\n")).is_err(), "a file without a usable face");
     assert_eq!(wrong, 0);
     // A star of many points: what its triangles cover is the outline's own area.
     let (mut ours, mut naive) = (0.0_f64, 0.0_f64);
@@ -152,7 +155,7 @@ fn scaled(by: f64, projection: Projection) -> (Scene, View) {
     ]);
     let mut camera = scene.selected_camera(&view).clone();
     let lens = Lens::default();
-    camera.pose = Placed::new(Pose::facing_minus_z(DVec3::Z * 400.0 * by));
+    camera.pose = Tracked::new(Pose::facing_minus_z(DVec3::Z * 400.0 * by));
     camera.lens = Lens {
         near: lens.near * by,
         far: lens.far * by,
@@ -167,7 +170,7 @@ fn scaled(by: f64, projection: Projection) -> (Scene, View) {
         let mut light: Light = light.clone();
         light.attenuation = fades;
         if let LightKind::Bulb { .. } = light.kind {
-            let position = Placed::new(DVec3::new(0.0, 90.0, 120.0) * by);
+            let position = Tracked::new(DVec3::new(0.0, 90.0, 120.0) * by);
             light.kind = LightKind::Bulb { position, orbit: Orbit::default() };
         }
         (id, light)
@@ -237,7 +240,7 @@ fn case_67_nothing_and_very_much_are_drawn() {
     edit(&mut scene, ObjectId(10), |object| object.visible = false);
     // Pictures of one pixel, one row and one column of what a tile is not.
     for size in [Size::new(1, 1), Size::new(1, 130), Size::new(130, 1), Size::new(65, 63)] {
-        let plan = FramePlan::new(&scene, &view, &Settings::default(), size);
+        let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), size));
         assert_eq!(Renderer::default().render(&plan).size(), size);
     }
     // Sizes up to 2048 x 2048 pixels and 50,000 faces; `cargo test --test proofs -- sizes --whole`

@@ -2,13 +2,14 @@
 
 use crate::claims::double_double::Double;
 use glam::{DMat3, DMat4, DVec3};
+use marraztu::accuracy::Settings;
 use marraztu::base::math;
 use marraztu::base::rng::Rng;
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Refusal, Stroke, place};
-use marraztu::render::geometry::coverage::{Snapped, Triangle, doubled_area};
+use marraztu::edit::{GesturePhase, Refusal, placement};
+use marraztu::render::screen::coverage::{Snapped, Triangle, doubled_area};
 use marraztu::scene::{
-    Frame, Light, LightId, LightKind, List, ObjectId, Placed, Scene, Settings, Sides, Subject,
+    Frame, Light, LightId, LightKind, List, ObjectId, Scene, Sides, Subject, Tracked,
     Transformation, View, newell,
 };
 
@@ -155,7 +156,7 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
         let (mut scene, view) =
             scene(&[(strips.clone(), DMat4::from_translation(away + DVec3::Z * 300.0))]);
         let mut camera = scene.selected_camera(&view).clone();
-        camera.pose = Placed::new(marraztu::scene::Pose::facing_minus_z(away + DVec3::Z * 400.0));
+        camera.pose = Tracked::new(marraztu::scene::Pose::facing_minus_z(away + DVec3::Z * 400.0));
         scene.cameras = List::from_iter([(view.camera, camera)]);
         let view = View { marks: false, ..view };
         let picture = draw(&scene, &view, &Settings::default(), ROWS);
@@ -230,7 +231,7 @@ fn case_5_an_object_made_smaller_329_times_is_still_an_object() {
     let (mut scene, view) = desk(Subject::Object, Transformation::Scaling);
     let mut single = 1.0_f32;
     for _ in 0..329 {
-        let command = transform::scale(&scene, &view, 0.9, Stroke::First);
+        let command = transform::scale(&scene, &view, 0.9, GesturePhase::First);
         apply(&mut scene, command);
         single *= 0.9;
     }
@@ -271,10 +272,10 @@ fn case_6_a_mirrored_scene_gives_the_mirrored_picture() {
         let lights = [
             LightKind::Ambient,
             LightKind::Sun {
-                direction: Placed::new(super::oracle::unit(DVec3::new(-sign, -2.0, -1.0))),
+                direction: Tracked::new(super::oracle::unit(DVec3::new(-sign, -2.0, -1.0))),
             },
             LightKind::Bulb {
-                position: Placed::new(DVec3::new(90.0 * sign, 60.0, 150.0)),
+                position: Tracked::new(DVec3::new(90.0 * sign, 60.0, 150.0)),
                 orbit: marraztu::scene::Orbit::default(),
             },
         ];
@@ -312,16 +313,16 @@ fn case_7_a_scale_of_zero_is_refused_whatever_way_it_comes() {
     for factors in [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, -0.0, 1.0)] {
         for frame in [Frame::Local, Frame::Global] {
             let view = View { frame, ..view.clone() };
-            let dragged = transform::stretch(&scene, &view, factors, Stroke::First);
+            let dragged = transform::stretch(&scene, &view, factors, GesturePhase::First);
             assert_eq!(dragged, Err(Refusal::Flat));
         }
-        let typed = place::object_scale(&scene, &view, id, factors, Stroke::First);
+        let typed = placement::object_scale(&scene, &view, id, factors, GesturePhase::First);
         assert_eq!(typed, Err(Refusal::Flat));
     }
     let mut view = view;
     view.steps.scaling = 0.0;
     for sign in [Sign::Positive, Sign::Negative] {
-        assert!(transform::step(&scene, &view, math::Axis::X, sign, Stroke::First).is_err());
+        assert!(transform::step(&scene, &view, math::Axis::X, sign, GesturePhase::First).is_err());
     }
 }
 
@@ -443,7 +444,7 @@ fn case_10_normals_that_cancel_out_give_way_to_the_faces() {
         let corners = [0, 1, 2].map(|_| rng.vector(1.0).as_vec3().to_array());
         let one = picture(model("side", &corners, &[&[0, 1, 2]]));
         let two = picture(model("leaf", &corners, &[&[0, 1, 2], &[2, 1, 0]]));
-        // Where the one side is seen from behind, the leaf shows its other one.
+        // If one side is seen from behind, the leaf shows its other one.
         let background = Scene::BACKGROUND.opaque();
         let both = one.pixels().iter().zip(two.pixels());
         differ += both.filter(|(one, two)| **one != background && one != two).count();

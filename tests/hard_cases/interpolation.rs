@@ -1,15 +1,16 @@
 //! What lies between corners.
 
 use glam::{DMat4, DVec3};
+use marraztu::accuracy::{Arithmetic, Filter, LightAt, Settings};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::Renderer;
-use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu::scene::{
-    Arithmetic, Filter, LightAt, Material, MaterialChoice, MeshSource, NONE, ObjectId, Part,
-    Settings, SourceCorner, Surface, Texture, View, Wrap,
+    Material, MaterialChoice, MeshSource, NONE, ObjectId, Part, SourceCorner, Surface, Texture,
+    View, Wrap,
 };
 
 use super::clipping::{ruler, textured};

@@ -1,6 +1,6 @@
 //! Are the judges right? The oracles on cases whose answers are known.
 
-use marraztu::render::geometry::coverage::Snapped;
+use marraztu::render::screen::coverage::Snapped;
 
 use crate::claims::double_double::Double;
 use crate::claims::exact::{span, wind};

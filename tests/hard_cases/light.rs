@@ -1,16 +1,18 @@
 //! Light, against the page's equation along rays.
 
 use glam::{DMat4, DQuat, DVec3};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Arithmetic, LightAt, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
-use marraztu::edit::{Stroke, place};
+use marraztu::edit::{GesturePhase, placement};
 use marraztu::lab::instructions::levels;
-use marraztu::render::numbers::real::{Power, Real as _};
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::render::simd::{Power, Real as _};
 use marraztu::scene::{
-    Aim, Arithmetic, Command, ItemId, Light, LightAt, LightId, LightKind, Material, MaterialChoice,
-    MeshSource, NONE, ObjectId, Orbit, Part, Placed, Scene, Settings, SourceCorner, SpotOwner,
-    View,
+    Aim, Command, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
+    ObjectId, Orbit, Part, Scene, SourceCorner, SpotOwner, Tracked, View,
 };
 
 use super::common::{at, ball, draw, edit, model_of, scene, square};
@@ -23,10 +25,10 @@ const SIDE: usize = 96;
 fn with_lamps(scene: &mut Scene, lamps: &[Lamp]) {
     let kind = |lamp: &Lamp| match *lamp {
         Lamp::Ambient => LightKind::Ambient,
-        Lamp::Sun(direction) => LightKind::Sun { direction: Placed::new(direction) },
-        Lamp::Bulb(at) => LightKind::Bulb { position: Placed::new(at), orbit: Orbit::default() },
+        Lamp::Sun(direction) => LightKind::Sun { direction: Tracked::new(direction) },
+        Lamp::Bulb(at) => LightKind::Bulb { position: Tracked::new(at), orbit: Orbit::default() },
         Lamp::Spot(position, direction, half_aperture, exponent) => {
-            let aim = Placed::new(Aim { position, direction });
+            let aim = Tracked::new(Aim { position, direction });
             LightKind::Spot { owner: SpotOwner::Fixed(aim), half_aperture, exponent }
         }
     };
@@ -108,9 +110,9 @@ impl Bent {
         draw(&scene, &view, &Settings { arithmetic, ..Settings::default() }, SIDE)
     }
 
-    /// Light at every pixel before it is rounded, in byte steps and to 1/64 of one: read off the
-    /// bytes of pictures that are each a little brighter than the one before. Where the byte turns
-    /// over, the light has come half-way to the next.
+    /// Light at every pixel before it is rounded, in byte steps and to 1/64 of one: read off the bytes
+    /// of pictures that are each a little brighter than the one before. When the byte changes, the
+    /// light has come half-way to the next.
     fn before_rounding(&self, arithmetic: Arithmetic) -> Vec<f64> {
         const PARTS: u32 = 64;
         let picture = |part: u32| {
@@ -262,10 +264,11 @@ fn case_44_small_angles_are_shown_as_they_were_typed() {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             let mut scene = scene.clone();
             let typed = axis * degrees;
-            let command = place::object_turn(&scene, &view, id, typed, Stroke::First).unwrap();
+            let command =
+                placement::object_turn(&scene, &view, id, typed, GesturePhase::First).unwrap();
             command.apply(&mut scene).unwrap();
             let m = *scene.objects.get(id).unwrap().placement.now();
-            let shown = place::turn_degrees(&m).dot(axis);
+            let shown = placement::turn_degrees(&m).dot(axis);
             ours = ours.max((shown - degrees).abs() / (degrees * f64::EPSILON));
             // By the trace: cos of the angle is (trace - 1) / 2.
             let by_trace = ((m.x_axis.x + m.y_axis.y + m.z_axis.z - 1.0) / 2.0).acos().to_degrees();
@@ -365,7 +368,7 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
             let (scene, view) = lit_square(&[Lamp::Ambient, lamp]);
             for light in [LightAt::Pixel, LightAt::Vertex, LightAt::Face] {
                 let settings = Settings { light, ..Settings::default() };
-                let plan = FramePlan::new(&scene, &view, &settings, Size::new(65, 65));
+                let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(65, 65)));
                 let pictures: Vec<Picture> = levels()
                     .into_iter()
                     .map(|level| Renderer::new(level).render(&plan).clone())
@@ -601,7 +604,7 @@ fn case_51_light_is_held_to_full_once_and_after_the_texture() {
             let settings = Settings {
                 arithmetic,
                 light,
-                filter: marraztu::scene::Filter::Nearest,
+                filter: marraztu::accuracy::Filter::Nearest,
                 ..Settings::default()
             };
             let middle = draw(&scene, &view, &settings, 33).pixel(16, 18)[0];

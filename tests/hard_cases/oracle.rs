@@ -22,7 +22,7 @@ impl Eye {
         DVec3::new(across(x), -across(y), -1.0)
     }
 
-    /// Where a place of the world is in the picture, in pixels.
+    /// The position of a point of the world in the picture, in pixels.
     pub(crate) fn pixel(&self, place: DVec3) -> [f64; 2] {
         let p = place - self.at;
         let half = self.side as f64 / 2.0;

@@ -1,10 +1,11 @@
 //! What comes back.
 
+use marraztu::accuracy::Settings;
 use marraztu::base::math::{self, Axis};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Gesture, History, Stroke, items, selection};
+use marraztu::edit::{Gesture, GesturePhase, History, items, selection};
 use marraztu::io::{self, Progress};
-use marraztu::scene::{ItemId, ObjectId, Scene, Settings, Subject, Transformation, View};
+use marraztu::scene::{ItemId, ObjectId, Scene, Subject, Transformation, View};
 
 use glam::{DMat3, DVec3};
 
@@ -44,8 +45,8 @@ fn case_63_deletion_and_return_and_joined_drags_bring_back_every_stack() {
     let mut seen = vec![scene.clone()];
     let drag = |history: &mut History, scene: &mut Scene, view: &View, number| {
         for i in 0..100 {
-            let stroke = if i == 0 { Stroke::First } else { Stroke::Continued };
-            let command = transform::rotate(scene, view, DVec3::ONE, 0.1, stroke).unwrap();
+            let phase = if i == 0 { GesturePhase::First } else { GesturePhase::Continued };
+            let command = transform::rotate(scene, view, DVec3::ONE, 0.1, phase).unwrap();
             history.perform(scene, command, Gesture::Part(number), "Turn").unwrap();
         }
     };
@@ -87,7 +88,8 @@ fn case_63_a_scene_saved_on_the_way_is_the_one_that_redo_comes_back_to() {
     let text = |scene: &Scene| io::to_text(&path, scene, &view, &settings).unwrap();
     let mut history = History::new();
     for axis in Axis::ALL.into_iter().cycle().take(30) {
-        let command = transform::step(&scene, &view, axis, Sign::Positive, Stroke::First).unwrap();
+        let command =
+            transform::step(&scene, &view, axis, Sign::Positive, GesturePhase::First).unwrap();
         history.perform(&mut scene, command, Gesture::Whole, "Move").unwrap();
         if history.position() == 20 {
             io::save(&path, &scene, &view, &settings).unwrap();
@@ -112,7 +114,8 @@ fn case_63_what_is_saved_is_written_in_enough_digits() {
     let mut naive = 0;
     for i in 0..200 {
         let axis = Axis::ALL[i % 3];
-        let command = transform::step(&scene, &view, axis, Sign::Positive, Stroke::First).unwrap();
+        let command =
+            transform::step(&scene, &view, axis, Sign::Positive, GesturePhase::First).unwrap();
         command.apply(&mut scene).unwrap();
         let placement = scene.objects.get(view.object.unwrap()).unwrap().placement.now();
         let short = |x: f64| format!("{x:.14e}").parse::<f64>().unwrap();

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use marraztu::accuracy::{AXES, Axis, Choice, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io;
 use marraztu::lab::candidates::{LeftOut, Thoroughness, all_axes, candidates};
@@ -9,7 +10,6 @@ use marraztu::lab::pairs::{Limits, Watch};
 use marraztu::lab::picture_source::PictureSource;
 use marraztu::lab::sweep::{Bench, Findings, Question};
 use marraztu::lab::timing::{Clock, Work};
-use marraztu::scene::{AXES, Axis, Choice, Settings};
 
 /// A choice in which something is planted.
 pub(crate) type Planted = Option<(&'static Axis, &'static Choice)>;
@@ -116,7 +116,7 @@ fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
     let material = Material { ambient, diffuse, specular, exponent: 32.0 };
     let mut object = Object::new(Shared::new(loaded.model), MaterialChoice::Own(material));
     let stretch = glam::DMat4::from_scale(glam::DVec3::new(1.0, 2.0, 1.0));
-    object.placement = Placed::new(stretch);
+    object.placement = Tracked::new(stretch);
     let picture = Picture::filled(Size::new(1, 1), [255; 4]).into();
     let (wrap, source) = (Wrap::default(), std::path::PathBuf::new());
     let texture = Texture { source, picture, wrap, offset: [0.0; 2], scale: [1.0; 2] };

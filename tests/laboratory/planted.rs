@@ -1,9 +1,9 @@
 //! What is planted is found where it was planted, and nowhere else.
 
+use marraztu::accuracy::{Axis, AxisKind, Choice, LightAt, Settings};
 use marraztu::lab::attribution::attribute;
 use marraztu::lab::candidates::Group;
 use marraztu::lab::sweep::{Findings, Measured, Verdict};
-use marraztu::scene::{Axis, AxisKind, Choice, LightAt, Settings};
 
 use crate::bench::{FakeClock, FakeSource, Planted, found, plantable};
 

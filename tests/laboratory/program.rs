@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use marraztu::accuracy::AXES;
 use marraztu::io;
-use marraztu::scene::AXES;
 
 #[track_caller]
 fn lab(status: i32, folder: &Path, arguments: &[&str]) -> (String, String) {

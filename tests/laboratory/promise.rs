@@ -1,4 +1,4 @@
-//! The presets keep their promises, on the first scene and on ten by chance.
+//! The presets keep their promises, on the first scene and on ten random ones.
 //!
 //! Exact is held to the laboratory's reference, Default to Exact. The reference takes textures from
 //! smaller pictures of them, too, which no preset promises: here it takes them as the presets do.
@@ -6,14 +6,15 @@
 //! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is
 //! promised; a reference that is not where the presets lead.
 
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{AccuracyPreset, Filter, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::io;
 use marraztu::lab::error::Error;
 use marraztu::lab::picture_source::{PictureSource as _, Studio};
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{
-    AccuracyPreset, Command, Filter, Item, MaterialChoice, Scene, Settings, View,
-};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::scene::{Command, Item, MaterialChoice, Scene, View};
 
 use crate::random_scenes::random_scene;
 
@@ -35,12 +36,12 @@ fn reference() -> Settings {
 
 fn studios() -> Vec<(String, Studio)> {
     let (scene, view) = io::default_scene();
-    let first = Studio::new(scene, view, SIZE);
-    let by_chance = SEEDS.map(|seed| {
+    let first = Studio::new(Shot::new(&scene, &view, &Settings::default(), SIZE));
+    let random = SEEDS.map(|seed| {
         let it = random_scene(seed);
-        (format!("scene {seed}"), Studio::new(it.scene, it.view, SIZE))
+        (format!("scene {seed}"), Studio::new(Shot::new(&it.scene, &it.view, &it.settings, SIZE)))
     });
-    std::iter::once(("the first scene".to_owned(), first)).chain(by_chance).collect()
+    std::iter::once(("the first scene".to_owned(), first)).chain(random).collect()
 }
 
 /// How far the pictures of some settings are from those of others: scene by scene, and the part of
@@ -50,7 +51,7 @@ fn apart(ours: &Settings, exact: &Settings) -> (Vec<(String, Error)>, f64) {
     for (name, mut studio) in studios() {
         let exact = studio.rendering(exact);
         let error = studio.rendering(ours).error(&exact);
-        let alike = 3.0 * (studio.size().area() - error.coverage) as f64;
+        let alike = 3.0 * (studio.shot().size.area() - error.coverage) as f64;
         differing += error.differing * alike;
         bytes += alike;
         errors.push((name, error));
@@ -93,7 +94,7 @@ fn before_rounding(scene: &Scene, view: &View, settings: &Settings) -> Vec<f64> 
             object.material = MaterialChoice::Own(material);
             Command::Replace(Item::Object(id, Box::new(object))).apply(&mut scene).unwrap();
         }
-        let plan = FramePlan::new(&scene, view, settings, Size::new(96, 96));
+        let plan = plan_frame(&Shot::new(&scene, view, settings, Size::new(96, 96)));
         renderer.render(&plan).clone()
     };
     let first = picture(0);

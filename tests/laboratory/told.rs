@@ -1,11 +1,11 @@
 //! Tables, data and plots hold every choice.
 
+use marraztu::accuracy::{AXES, Axis, Choice, LightAt, Samples, Settings};
 use marraztu::lab::candidates::Group;
 use marraztu::lab::error::Measure;
 use marraztu::lab::report::{Budgets, Chart, MarkKind, Report, csv, png, svg, tabs, text};
 use marraztu::lab::sweep::Against;
 use marraztu::lab::sweep::Row;
-use marraztu::scene::{AXES, Axis, Choice, LightAt, Samples, Settings};
 
 use crate::bench::{FakeClock, FakeSource, found};
 
@@ -46,7 +46,7 @@ fn the_table_has_a_row_for_every_choice_of_every_axis() {
         let quotes = line.split('"').step_by(2).map(|plain| plain.matches(',').count());
         assert_eq!(quotes.sum::<usize>() + 1, columns, "{line}");
     }
-    // The same fields with tabs between, of which none has a comma where there are no quotes.
+    // The same fields with tabs between; none has a comma outside of quotes.
     for (line, of_csv) in tabs(&report).lines().zip(csv.lines()) {
         assert_eq!(line.split('\t').count(), columns, "{line}");
         assert_eq!(line.replace('\t', ","), of_csv.replace('"', ""));

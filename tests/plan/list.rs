@@ -1,10 +1,14 @@
 //! What is said of a frame is what the frame does.
 
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{LeaveOut, Settings};
 use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::cost;
-use marraztu::render::{Class, Effect, FramePlan, Renderer, State};
-use marraztu::scene::{Fill, ItemId, LeaveOut, LightKind, Scene, Settings, View};
+use marraztu::render::explain_frame;
+use marraztu::render::plan_frame;
+use marraztu::render::{Class, Effect, Renderer, State};
+use marraztu::scene::{Fill, ItemId, LightKind, Scene, View};
 
 use crate::random_scenes::random_scene;
 
@@ -21,11 +25,11 @@ fn every_pixel_that_shows_something_is_counted_once_under_surfaces() {
         let it = random_scene(seed);
         // Lines are counted elsewhere, and on black ground nothing black would be seen.
         let view = View { marks: true, fill: Fill::Filled, ..it.view.clone() };
-        let explained = cost::explain((&it.scene, &view, &it.settings, it.size));
+        let explained = cost::explain(&Shot::new(&it.scene, &view, &it.settings, it.size));
         let present = |effect: Effect| matches!(effect, Effect::Surfaces | Effect::Marks);
         let uses = explained.uses.iter().filter(|one| present(one.effect));
         let counted: u64 = uses.filter_map(|one| one.pixels).sum();
-        let plan = FramePlan::new(&it.scene, &view, &it.settings, it.size);
+        let plan = plan_frame(&Shot::new(&it.scene, &view, &it.settings, it.size));
         let mut renderer = Renderer::default();
         renderer.render(&plan);
         let lines = view.edges_over_fill || view.face_normals || view.vertex_normals;
@@ -46,7 +50,7 @@ fn every_pixel_that_shows_something_is_counted_once_under_surfaces() {
 fn taking_out_what_is_left_out_changes_no_byte_and_what_is_on_is_there_to_be_taken_out() {
     let (scene, view) = first();
     let settings = Settings::default();
-    let (plan, uses) = FramePlan::explained(&scene, &view, &settings, SIZE);
+    let (plan, uses) = explain_frame(&Shot::new(&scene, &view, &settings, SIZE));
     let on = |effect: Effect| uses.iter().any(|one| one.effect == effect && one.state.is_on());
     for one in &uses {
         let without = plan.without(one.effect);
@@ -61,7 +65,7 @@ fn taking_out_what_is_left_out_changes_no_byte_and_what_is_on_is_there_to_be_tak
 fn a_light_that_reaches_one_object_of_three_is_on_there_and_nowhere_else() {
     let (scene, view) = first();
     // The spot of the selected object shines along -Z: past the one beside it.
-    let uses = cost::explain((&scene, &view, &Settings::default(), SIZE)).uses;
+    let uses = cost::explain(&Shot::new(&scene, &view, &Settings::default(), SIZE)).uses;
     let spot = scene.lights.iter().find_map(|(id, light)| {
         (light.name == "object spot" && matches!(light.kind, LightKind::Spot { .. })).then_some(id)
     });
@@ -85,7 +89,7 @@ fn what_is_left_out_as_too_faint_is_said_with_its_bound() {
         }
     }
     let settings = Settings { leave_out: LeaveOut::HalfStep, ..Settings::default() };
-    let explained = cost::explain((&scene, &view, &settings, SIZE));
+    let explained = cost::explain(&Shot::new(&scene, &view, &settings, SIZE));
     let bulbs = explained.uses.iter().filter(|one| one.name == "bulb");
     for one in bulbs {
         let State::LeftOut { reason, class: Class::Bounded(steps) } = &one.state else {
@@ -95,7 +99,7 @@ fn what_is_left_out_as_too_faint_is_said_with_its_bound() {
         assert!(*steps > 0.0 && *steps < 0.25);
     }
     assert!(explained.off_by > 0.0 && explained.off_by < 0.5);
-    let exact = cost::explain((&scene, &view, &Settings::default(), SIZE));
+    let exact = cost::explain(&Shot::new(&scene, &view, &Settings::default(), SIZE));
     assert_eq!(exact.off_by, 0.0);
 }
 
@@ -103,7 +107,7 @@ fn what_is_left_out_as_too_faint_is_said_with_its_bound() {
 fn in_edges_alone_no_surface_is_lit() {
     let (scene, view) = first();
     let view = View { fill: Fill::Edges, ..view };
-    let (plan, uses) = FramePlan::explained(&scene, &view, &Settings::default(), SIZE);
+    let (plan, uses) = explain_frame(&Shot::new(&scene, &view, &Settings::default(), SIZE));
     assert_eq!(plan.keys(), ["flat"]);
     assert!(uses.iter().all(|one| one.effect != Effect::Highlights));
     let surfaces: Vec<_> = uses.iter().filter(|one| one.effect == Effect::Surfaces).collect();

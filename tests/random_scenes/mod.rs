@@ -8,15 +8,17 @@ pub(crate) mod shapes;
 
 use glam::{DMat3, DMat4, DVec3};
 
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm};
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
 use marraztu::base::{color::Color, math};
 use marraztu::render::FramePlan;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
-    Aim, Arithmetic, Attenuation, Camera, CameraId, Fill, Filter, LeaveOut, Lens, Light, LightAt,
-    LightId, LightKind, List, MaterialChoice, Normals, Object, ObjectId, Observer, Orbit, Placed,
-    PolygonMode, Pose, PresetId, Projection, Samples, Scene, Settings, Sides, SpecularForm,
-    SpotOwner, Surface, View,
+    Aim, Attenuation, Camera, CameraId, Fill, Lens, Light, LightId, LightKind, List,
+    MaterialChoice, Normals, Object, ObjectId, Observer, Orbit, PolygonMode, Pose, PresetId,
+    Projection, Scene, Sides, SpotOwner, Surface, Tracked, View,
 };
 
 use self::shapes::shapes;
@@ -34,7 +36,7 @@ pub(crate) struct RandomScene {
 impl RandomScene {
     /// The plan of its picture.
     pub(crate) fn plan(&self) -> FramePlan {
-        FramePlan::new(&self.scene, &self.view, &self.settings, self.size)
+        plan_frame(&Shot::new(&self.scene, &self.view, &self.settings, self.size))
     }
 }
 
@@ -88,7 +90,7 @@ fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
             visible: rng.percent(90),
             model: shapes()[rng.index(2)].clone(),
             material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-            pose: Placed::new(pose),
+            pose: Tracked::new(pose),
             lens: Lens { near, half_size, ..Lens::default() },
         }
     };
@@ -149,7 +151,7 @@ fn object(rng: &mut Rng) -> Object {
     };
     let axes = turn(rng) * DMat3::from_diagonal(scale);
     let mut object = Object::new(model, material);
-    object.placement = Placed::new(math::placed(axes, place(rng)));
+    object.placement = Tracked::new(math::placed(axes, place(rng)));
     object.visible = rng.percent(92);
     object.surface = rng.one_of(&[
         Surface::Material,
@@ -172,9 +174,9 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
     let light = |rng: &mut Rng, slot: u32| {
         let kind = match rng.index(6) {
             0 => LightKind::Ambient,
-            1 => LightKind::Sun { direction: Placed::new(direction(rng)) },
+            1 => LightKind::Sun { direction: Tracked::new(direction(rng)) },
             2 | 3 => LightKind::Bulb {
-                position: Placed::new(lamp_place(rng, objects)),
+                position: Tracked::new(lamp_place(rng, objects)),
                 orbit: Orbit::default(),
             },
             _ => spot(rng, objects),
@@ -242,7 +244,7 @@ fn spot(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> LightKind {
         let beside = rng.one_of(&[0.0, 0.0, 1e-9, -1e-9, 1e-4, -1e-4, 0.1, -0.1]);
         half_aperture = (angle + beside).clamp(0.0, 90.0);
     }
-    let owner = SpotOwner::Fixed(Placed::new(Aim { position, direction }));
+    let owner = SpotOwner::Fixed(Tracked::new(Aim { position, direction }));
     LightKind::Spot { owner, half_aperture, exponent }
 }
 

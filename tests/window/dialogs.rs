@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::kittest::NodeT as _;
-use marraztu::app::action::Action;
-use marraztu::app::ask::Ask;
-use marraztu::app::chord::Chord::{Command, Lower, Named, Upper};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::{Command, Lower, Named, Upper};
+use marraztu::app::actions::Request;
 use marraztu::scene::{MaterialChoice, ObjectId, PresetId, Sides};
 
 use crate::editor::Editor;
@@ -35,7 +35,7 @@ impl Editor {
     }
 
     /// Presses a key, and says whether the program then leaves.
-    fn leaves_by(&mut self, chord: marraztu::app::chord::Chord) -> bool {
+    fn leaves_by(&mut self, chord: marraztu::app::actions::Chord) -> bool {
         let (key, modifiers, _) = crate::editor::events_of(chord);
         let mut leaves = false;
         for pressed in [true, false] {
@@ -145,9 +145,9 @@ fn a_model_is_loaded_by_key_path_and_material() {
     assert_eq!(object.material, MaterialChoice::Preset(PresetId::named("gold").unwrap()));
     assert_eq!(object.placement.depth(), 0);
     assert_eq!(editor.steps(), 1);
-    assert!(editor.shows("can hardly be seen from here"), "a cube of one unit is tiny");
+    assert!(editor.shows("is out of view or too small to see"), "a cube of one unit is tiny");
     editor.click_label("Frame");
-    assert!(!editor.shows("can hardly be seen from here"));
+    assert!(!editor.shows("is out of view or too small to see"));
     assert_eq!(editor.steps(), 2);
     editor.press(Command(Key::Z));
     editor.press(Command(Key::Z));
@@ -158,7 +158,7 @@ fn a_model_is_loaded_by_key_path_and_material() {
 fn a_model_is_read_with_the_crease_angle_that_is_typed() {
     let (_folder, path) = folder_with("cube.obj", CUBE);
     let mut editor = Editor::tall();
-    editor.ask(Ask::LoadFiles(vec![path]));
+    editor.ask(Request::LoadFiles(vec![path]));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
     editor.click_label("How the file is read");
     for _ in 0..30 {
@@ -179,7 +179,7 @@ fn a_model_is_read_with_the_crease_angle_that_is_typed() {
 fn the_crease_angle_is_off_if_the_file_has_smoothing_groups() {
     let (_folder, path) = folder_with("cube.obj", &format!("s 1\n{CUBE}"));
     let mut editor = Editor::tall();
-    editor.ask(Ask::LoadFiles(vec![path]));
+    editor.ask(Request::LoadFiles(vec![path]));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
     editor.click_label("How the file is read");
     for _ in 0..30 {
@@ -193,7 +193,7 @@ fn a_dropped_file_loads_as_by_key_and_cancelling_changes_nothing() {
     let (_folder, path) = folder_with("cube.obj", CUBE);
     let mut editor = Editor::new();
     let before = editor.scene();
-    editor.ask(Ask::LoadFiles(vec![path.clone(), path]));
+    editor.ask(Request::LoadFiles(vec![path.clone(), path]));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
     editor.press(Named(Key::Escape));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
@@ -208,19 +208,19 @@ fn a_bad_file_is_told_in_one_sentence_with_its_line_and_changes_nothing() {
     let (_folder, path) = folder_with("bad.obj", "v 0 0 0\nv 1 zero 0\nf 1 2 2\n");
     let mut editor = Editor::new();
     let before = editor.scene();
-    editor.ask(Ask::LoadFiles(vec![path]));
-    editor.wait_until(|editor| editor.shows("That did not work"));
+    editor.ask(Request::LoadFiles(vec![path]));
+    editor.wait_until(|editor| editor.shows("Something went wrong"));
     assert!(editor.shows("bad.obj:2: "));
     assert!(editor.scene() == before);
     editor.press(Named(Key::Enter));
-    assert!(!editor.shows("That did not work"), "Enter closes it");
+    assert!(!editor.shows("Something went wrong"), "Enter closes it");
 }
 
 #[test]
 fn a_file_that_is_not_there_is_told() {
     let mut editor = Editor::new();
-    editor.ask(Ask::LoadFiles(vec![PathBuf::from("nowhere.obj")]));
-    editor.wait_until(|editor| editor.shows("That did not work"));
+    editor.ask(Request::LoadFiles(vec![PathBuf::from("nowhere.obj")]));
+    editor.wait_until(|editor| editor.shows("Something went wrong"));
     assert!(editor.shows("there is no such file"));
 }
 
@@ -229,14 +229,14 @@ fn what_was_mended_is_told_and_listed_on_a_click() {
     let text = format!("{CUBE}f 1 2 99\nf 1 2\n");
     let (_folder, path) = folder_with("mended.obj", &text);
     let mut editor = Editor::new();
-    editor.ask(Ask::LoadFiles(vec![path]));
+    editor.ask(Request::LoadFiles(vec![path]));
     editor.wait_until(|editor| editor.shows("Material of mended.obj"));
     editor.click_label("Load");
     editor.click_label("Details");
     assert!(editor.shows("that the file does not have"), "a sentence for each finding");
     editor.click_label("Close");
     editor.click_label("Frame");
-    assert!(!editor.shows("can hardly be seen from here"), "it is seen now");
+    assert!(!editor.shows("is out of view or too small to see"), "it is seen now");
     assert!(editor.shows("Details"), "what was mended is another matter");
     editor.click_label("Dismiss");
     assert!(editor.state().notices.is_empty());
@@ -274,7 +274,7 @@ fn a_scene_is_saved_and_opened_again_and_a_lost_model_is_asked_for() {
     let (folder, path) = folder_with("cube.obj", CUBE);
     let file = folder.path().join("my.marraztu");
     let mut editor = Editor::new();
-    editor.ask(Ask::LoadFiles(vec![path.clone()]));
+    editor.ask(Request::LoadFiles(vec![path.clone()]));
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
     editor.click_label("Load");
     assert!(!editor.state().history.is_saved());
@@ -295,13 +295,13 @@ fn a_scene_is_saved_and_opened_again_and_a_lost_model_is_asked_for() {
     std::fs::rename(&path, &moved).unwrap();
     let mut other = Editor::new();
     let first = other.scene();
-    other.ask(Ask::LoadFiles(vec![file.clone()]));
+    other.ask(Request::LoadFiles(vec![file.clone()]));
     other.wait_until(|editor| editor.shows("Where is the missing model?"));
     other.press(Named(Key::Escape));
     assert!(other.shows("The scene was not opened"));
     assert!(other.scene() == first);
     other.click_label("Close");
-    other.ask(Ask::LoadFiles(vec![file]));
+    other.ask(Request::LoadFiles(vec![file]));
     other.wait_until(|editor| editor.shows("Where is the missing model?"));
     other.type_path(&moved);
     other.wait_until(|editor| editor.scene().objects.len() == saved.objects.len());
@@ -330,9 +330,9 @@ fn a_scene_opens_with_the_panels_that_it_was_saved_with() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("my.marraztu");
     let mut editor = Editor::new();
-    let usual = editor.state().shown;
+    let usual = editor.state().panels;
     editor.perform_all(&[Action::ToggleStatistics, Action::ToggleOutline]);
-    let shown = editor.state().shown;
+    let shown = editor.state().panels;
     assert_ne!(shown, usual);
     editor.press(Command(Key::S));
     editor.type_path(&file);
@@ -340,9 +340,9 @@ fn a_scene_opens_with_the_panels_that_it_was_saved_with() {
 
     let mut other = Editor::new();
     let path = file.clone();
-    other.ask(Ask::LoadFiles(vec![file]));
+    other.ask(Request::LoadFiles(vec![file]));
     other.wait_until(|editor| editor.state().path.as_deref() == Some(&*path));
-    assert_eq!(other.state().shown, shown);
+    assert_eq!(other.state().panels, shown);
 }
 
 #[test]
@@ -361,14 +361,17 @@ fn an_object_whose_faces_are_turned_away_is_told_of_with_a_button_that_draws_bot
     )"#;
     std::fs::write(&file, scene).unwrap();
     let mut editor = Editor::new();
-    editor.ask(Ask::LoadFiles(vec![file.clone()]));
-    editor.wait_until(|editor| editor.shows("Nothing of square is seen"));
+    editor.ask(Request::LoadFiles(vec![file.clone()]));
+    editor.wait_until(|editor| editor.shows("Nothing of square is visible"));
     assert!(editor.shows("its only face is turned away"));
-    assert!(!editor.shows("Nothing of behind is seen"), "both sides of an open surface are drawn");
+    assert!(
+        !editor.shows("Nothing of behind is visible"),
+        "both sides of an open surface are drawn"
+    );
     editor.click_label("Draw both sides");
     let scene = editor.scene();
     assert_eq!(scene.objects.get(ObjectId(1)).unwrap().sides, Sides::Two);
-    assert_eq!(editor.steps(), 1, "it can be taken back");
+    assert_eq!(editor.steps(), 1, "it can be undone");
     assert!(editor.state().notices.is_empty());
 }
 
@@ -378,7 +381,7 @@ fn a_scene_that_cannot_be_saved_is_told_and_stays_unsaved() {
     editor.press(Lower(Key::Z));
     editor.press(Command(Key::S));
     editor.type_path(Path::new("/proc/nowhere/x.marraztu"));
-    assert!(editor.shows("That did not work"));
+    assert!(editor.shows("Something went wrong"));
     assert!(!editor.state().history.is_saved());
 }
 

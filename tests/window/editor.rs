@@ -4,10 +4,10 @@ use std::cell::RefCell;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use marraztu::app::action::Action;
-use marraztu::app::chord::Chord;
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord;
 use marraztu::app::state::State;
-use marraztu::app::{App, ask::Ask};
+use marraztu::app::{App, actions::Request};
 use marraztu::edit::Gesture;
 use marraztu::io;
 use marraztu::scene::{Scene, View};
@@ -95,7 +95,7 @@ impl Editor {
         self.state().view.clone()
     }
 
-    /// Number of steps that can be taken back.
+    /// Number of steps that can be undone.
     pub(crate) fn steps(&self) -> usize {
         self.state().history.position()
     }
@@ -112,9 +112,9 @@ impl Editor {
         self.settle();
     }
 
-    pub(crate) fn ask(&mut self, ask: Ask) {
+    pub(crate) fn ask(&mut self, ask: Request) {
         let ctx = self.harness.ctx.clone();
-        self.harness.state_mut().answer_ask(&ctx, ask);
+        self.harness.state_mut().answer(&ctx, ask);
         self.settle();
     }
 
@@ -123,7 +123,7 @@ impl Editor {
         self.hold(chord, 0);
     }
 
-    /// Presses a key, holds it until it has repeated so many times, and lets it go.
+    /// Presses a key, holds it until it has repeated `repeats` times, and lets it go.
     pub(crate) fn hold(&mut self, chord: Chord, repeats: usize) {
         let (key, modifiers, text) = events_of(chord);
         self.set_modifiers(modifiers);

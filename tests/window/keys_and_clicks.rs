@@ -5,9 +5,11 @@
 
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use marraztu::app::action::Action;
-use marraztu::app::ask::Ask;
-use marraztu::app::chord::Chord::{self, Command, CommandShift, Either, Lower, Named, Text, Upper};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::{
+    self, Command, CommandShift, Either, Lower, Named, Text, Upper,
+};
+use marraztu::app::actions::Request;
 use marraztu::app::state::Tone;
 use marraztu::base::math::Axis;
 use marraztu::edit::{Gesture, items};
@@ -42,13 +44,14 @@ fn every_action_does_the_same_by_each_of_its_keys_and_by_its_button() {
             };
             let mut clicked = in_situation(Editor::with_buttons(chunk));
             clicked.click_button(action);
-            for key in action.look().keys {
+            for key in action.info().keys {
                 let mut pressed = in_situation(Editor::small());
                 pressed.press(*key);
                 let of = format!("{action:?} by {key} after {situation:?}");
                 assert!(clicked.scene() == pressed.scene(), "another scene: {of}");
                 assert_eq!(clicked.view(), pressed.view(), "{of}");
-                assert_eq!(clicked.state().shown, pressed.state().shown, "{of}");
+                let shown = |editor: &Editor| (editor.state().panels, editor.state().theme);
+                assert_eq!(shown(&clicked), shown(&pressed), "{of}");
                 assert_eq!(clicked.steps(), pressed.steps(), "{of}");
             }
         }
@@ -93,12 +96,12 @@ fn two_presses_are_two_steps() {
 #[test]
 fn keys_repeat_as_the_table_says_and_toggles_never_do() {
     for action in Action::ALL.iter().filter(|action| !LEFT_OUT.contains(action)) {
-        let look = action.look();
+        let look = action.info();
         let Some(key) = look.keys.first() else { continue };
         let situation = [Action::SubjectLight, Action::NextItem];
         let begin = || {
             let mut editor = Editor::small();
-            if matches!(look.group, marraztu::app::action::Group::Light) {
+            if matches!(look.group, marraztu::app::actions::Group::Light) {
                 situation.into_iter().for_each(|action| editor.perform(action));
             }
             if *action == Action::NextPolygon {
@@ -111,7 +114,7 @@ fn keys_repeat_as_the_table_says_and_toggles_never_do() {
         held.hold(*key, 2);
         let same = once.scene() == held.scene()
             && once.view() == held.view()
-            && once.state().shown == held.state().shown;
+            && once.state().panels == held.state().panels;
         let acts = once.scene() != begin().scene() || once.view() != begin().view();
         assert!(same || look.repeats, "{action:?} repeats");
         assert!(!(same && acts && look.repeats), "{action:?} does not repeat");
@@ -169,7 +172,7 @@ fn signs_under_alt_ask_for_nothing() {
     editor.key(Key::Questionmark, false, Modifiers::ALT);
     editor.set_modifiers(Modifiers::NONE);
     editor.settle();
-    assert!(!editor.state().shown.cheat_sheet);
+    assert!(!editor.state().panels.cheat_sheet);
     assert_eq!(editor.view(), before);
 }
 
@@ -182,13 +185,13 @@ fn tab_enter_and_arrows_stay_in_the_viewport_from_the_first_frame_on() {
         editor.press(Named(Key::Tab));
         assert_eq!(editor.view().object == first, expected, "three objects, round and round");
     }
-    let shown = editor.state().shown;
+    let shown = editor.state().panels;
     for key in [Key::ArrowUp, Key::ArrowLeft, Key::Space] {
         editor.press(Named(key));
     }
     editor.press(Named(Key::Tab));
     assert_ne!(editor.view().object, first, "the viewport still has the keyboard");
-    assert_eq!(editor.state().shown, shown);
+    assert_eq!(editor.state().panels, shown);
 }
 
 /// An editor with a text field beside it.
@@ -207,11 +210,11 @@ fn with_text_field() -> Editor {
 fn what_is_typed_into_a_text_field_asks_for_nothing() {
     let mut editor = with_text_field();
     editor.press(Lower(Key::Z));
-    let (scene, view, shown) = (editor.scene(), editor.view(), editor.state().shown);
+    let (scene, view, shown) = (editor.scene(), editor.view(), editor.state().panels);
     let steps = editor.steps();
     editor.harness.get_by_role(egui::Role::TextInput).click();
     editor.settle();
-    let typed = Action::ALL.iter().flat_map(|action| action.look().keys);
+    let typed = Action::ALL.iter().flat_map(|action| action.info().keys);
     let harmless = |key: &&Chord| {
         !matches!(key, Command(_) | CommandShift(_) | Named(_)) || **key == Command(Key::Z)
     };
@@ -219,7 +222,7 @@ fn what_is_typed_into_a_text_field_asks_for_nothing() {
         editor.press(*key);
     }
     assert!(editor.scene() == scene, "not even Ctrl+Z, which is the field's own");
-    assert_eq!((editor.view(), editor.state().shown, editor.steps()), (view, shown, steps));
+    assert_eq!((editor.view(), editor.state().panels, editor.steps()), (view, shown, steps));
     let field = editor.harness.get_by_role(egui::Role::TextInput);
     assert!(field.value().is_some_and(|text| !text.is_empty()), "the field got it");
 }
@@ -321,15 +324,15 @@ fn a_slider_changed_by_a_drag_is_one_step_of_undo_with_the_frame_in_which_it_is_
             let mut red = scene.lights.get(id).unwrap().color.0[0];
             let slider = ui.add(egui::Slider::new(&mut red, 0..=255).text("Red"));
             if slider.changed() {
-                let gesture = marraztu::app::gestures::of(&slider);
+                let gesture = marraztu::app::widgets::gestures::of(&slider);
                 let command = items::change_light(scene, id, |light| light.color.0[0] = red);
                 let (command, label) = (command.unwrap(), "Red".to_owned());
-                ask = Some(Ask::Change { command, gesture, label });
+                ask = Some(Request::Change { command, gesture, label });
             }
         });
         app.editor_ui(ui);
         if let Some(ask) = ask {
-            app.answer_ask(ui.ctx(), ask);
+            app.answer(ui.ctx(), ask);
         }
     });
     let before = editor.scene();
@@ -376,7 +379,7 @@ fn an_object_that_turns_by_itself_turns_with_the_clock_and_is_no_step() {
     let command = marraztu::scene::Command::Replace(Item::Object(id, Box::new(object)));
     let (gesture, label) = (Gesture::Whole, "Spin".to_owned());
     let begin = editor.view().time;
-    editor.ask(Ask::Change { command, gesture, label });
+    editor.ask(Request::Change { command, gesture, label });
     let pictures = editor.state().statistics.pictures;
     editor.settle();
     assert!(editor.view().time > begin);

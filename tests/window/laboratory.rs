@@ -8,14 +8,16 @@ use std::time::Duration;
 use egui::PointerButton;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{By, Queryable as _};
-use marraztu::app::action::Action;
-use marraztu::app::ask::Ask;
-use marraztu::app::comparison::Compare;
-use marraztu::app::laboratory::Laboratory;
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Request;
+use marraztu::app::state::laboratory::Compare;
+use marraztu::app::state::laboratory::Laboratory;
 use marraztu::base::image::Picture;
 use marraztu::lab::report::tabs;
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{AXES, Arithmetic, Axis, Filter, LightAt, Settings};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 
 use crate::editor::Editor;
 use crate::panels::{click, control};
@@ -91,7 +93,7 @@ fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
         editor.settle();
         assert_eq!(editor.state().settings, point.settings, "{mark}");
     }
-    click(&mut editor, Role::RadioButton, "light evaluated, --shading: Face");
+    click(&mut editor, Role::RadioButton, "shading, --shading: Flat");
     assert_eq!(editor.state().settings.light, LightAt::Face);
     click(&mut editor, Role::RadioButton, "presets: Default");
     assert_eq!(editor.state().settings, Settings::default());
@@ -134,7 +136,7 @@ fn the_picture_is_compared_with_the_exact_one_of_the_same_moment() {
     assert!(part < 0.47, "{part}");
     assert_eq!(editor.steps(), 0, "the slider is no drag of the view");
     let face = Settings { light: LightAt::Face, ..Settings::default() };
-    editor.ask(Ask::Settings(face));
+    editor.ask(Request::Settings(face));
     until(&mut editor, "another comparison", |e| {
         lab(e).judged.is_some_and(|judged| judged.settings.light == LightAt::Face)
     });
@@ -148,13 +150,13 @@ fn the_picture_is_compared_with_the_exact_one_of_the_same_moment() {
 #[test]
 fn a_pixel_is_explained_by_a_click_that_selects_nothing() {
     let mut editor = editor();
-    editor.ask(Ask::Settings(Settings { light: LightAt::Face, ..Settings::default() }));
+    editor.ask(Request::Settings(Settings { light: LightAt::Face, ..Settings::default() }));
     let selected = editor.view().object;
     click(&mut editor, Role::CheckBox, "Explain a pixel: click on it");
     let middle = editor.at(0.3, 0.5);
     editor.click(middle, PointerButton::Primary);
-    until(&mut editor, "the explanation", |e| lab(e).blame.is_some());
-    let lines = lab(&editor).blame.clone().unwrap();
+    until(&mut editor, "the explanation", |e| lab(e).attribution.is_some());
+    let lines = lab(&editor).attribution.clone().unwrap();
     assert!(lines.iter().any(|line| line.contains("shading pixel instead of face")), "{lines:?}");
     assert_eq!((lab(&editor).picking, editor.view().object), (false, selected));
 }
@@ -173,8 +175,8 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
         assert_eq!((axis.sense)(&editor.scene(), &editor.view()), Ok(()));
         until(&mut editor, "the comparison", |e| lab(e).judged.is_some());
         let error = lab(&editor).judged.unwrap().error;
-        // Some are off by a step or two at most, which is what they teach, and samples are judged against
-        // as many of them; all else is plain to see.
+        // Some are off by a step or two at most, which is what they teach, and samples are judged
+        // against as many of them; all else is plain to see.
         let least = match axis.key {
             "arithmetic" | "faint" | "specular" | "samples" => 0,
             "normalising" | "rounding" => 1,
@@ -188,7 +190,7 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
 #[test]
 fn the_help_menu_leads_to_every_lesson() {
     let mut editor = Editor::of_size(1300.0, 760.0);
-    assert!(!editor.state().shown.laboratory);
+    assert!(!editor.state().panels.laboratory);
     for axis in [&AXES[0], &AXES[AXES.len() - 1]] {
         click(&mut editor, Role::Button, "Help");
         click(&mut editor, Role::MenuItem, "Lessons");
@@ -199,7 +201,7 @@ fn the_help_menu_leads_to_every_lesson() {
         }
         click(&mut editor, Role::MenuItem, axis.lesson.title);
         editor.harness.run_steps(30);
-        assert!(editor.state().shown.laboratory);
+        assert!(editor.state().panels.laboratory);
         assert_eq!(lab(&editor).lesson.key, axis.key);
         for sentence in [axis.lesson.what, axis.lesson.coarse, axis.lesson.shows] {
             assert!(editor.shows(sentence), "{sentence}");
@@ -210,13 +212,13 @@ fn the_help_menu_leads_to_every_lesson() {
     assert!(editor.shows("Nothing is measured yet."));
 }
 
-/// The compare line cuts the bright spot in half: light at vertices misses the one half, and the other is
-/// the exact picture's.
+/// The compare line cuts the bright spot in half: light at vertices misses the one half, and the
+/// other is the exact picture's.
 #[test]
 fn the_bright_spot_of_the_first_lesson_lies_on_the_compare_line() {
     let mut editor = editor();
     click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
-    click(&mut editor, Role::Button, "light evaluated");
+    click(&mut editor, Role::Button, "shading");
     click(&mut editor, Role::Button, "Take me there");
     assert_eq!(editor.state().settings.light, LightAt::Vertex);
     assert_eq!(lab(&editor).compare, Compare::Split(0.5));
@@ -224,7 +226,7 @@ fn the_bright_spot_of_the_first_lesson_lies_on_the_compare_line() {
     let size = editor.state().statistics.size;
     let drawn = |light| {
         let settings = Settings { light, ..Settings::default() };
-        let plan = FramePlan::new(&scene, &view, &settings, size);
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, size));
         Renderer::default().render(&plan).clone()
     };
     let (vertex, pixel) = (drawn(LightAt::Vertex), drawn(LightAt::Pixel));
@@ -267,7 +269,7 @@ fn every_axis_and_every_preset_is_a_choice_among_the_switches_of_the_view() {
             assert_eq!(Axis::chosen(axis, &editor.state().settings).word, choice.word, "{label}");
         }
     }
-    editor.ask(Ask::Settings(Settings::default()));
+    editor.ask(Request::Settings(Settings::default()));
     control(&editor, Role::RadioButton, "Accuracy: Exact").click_accesskit();
     editor.settle();
     assert_eq!(editor.state().settings.arithmetic, Arithmetic::F64);

@@ -6,6 +6,7 @@
 
 mod dialogs;
 mod editor;
+mod examples;
 mod keys_and_clicks;
 mod laboratory;
 mod mouse;

@@ -4,9 +4,9 @@
 //! wheels whose notches are lost or doubled, keys that act while the right button steers.
 
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Vec2, vec2};
-use marraztu::app::action::Action;
-use marraztu::app::ask::Ask;
-use marraztu::app::chord::Chord::{Command, Either, Lower, Named, Upper};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::{Command, Either, Lower, Named, Upper};
+use marraztu::app::actions::Request;
 use marraztu::scene::{CameraMode, ItemId, PolygonMode, Subject};
 
 use crate::editor::Editor;
@@ -66,7 +66,7 @@ fn a_click_in_polygon_mode_selects_the_polygon_that_is_seen() {
     let object = editor.scene().objects.get(view.object.unwrap()).unwrap().clone();
     let count = u32::try_from(object.model.mesh.polygon_count()).unwrap();
     view.polygons = Some(PolygonMode { current: 0, shown: (0..count).collect() });
-    editor.ask(Ask::Look(Box::new(view)));
+    editor.ask(Request::View(Box::new(view)));
     editor.harness.run_steps(30);
     editor.click(at, LEFT);
     let current = editor.view().polygons.unwrap().current;
@@ -326,7 +326,7 @@ fn clicking_again_goes_to_the_object_behind_and_round() {
     let mut view = editor.view();
     view.subject = Subject::Camera;
     view.steps.translation = 400.0;
-    editor.ask(Ask::Look(Box::new(view)));
+    editor.ask(Request::View(Box::new(view)));
     editor.perform(Action::StepZUp);
     let rect = editor.picture();
     let half = rect.size().min_elem() / 2.0;

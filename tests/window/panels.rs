@@ -1,19 +1,19 @@
 //! Menus, outline, switches of the view, status line and list of keys.
 //!
-//! Catches: a switch that does other than its key, an action that is in no menu, a control without a
-//! name, a list that goes by another order than the scene's, a name that is lost or given unasked.
+//! Catches: a switch that does other than its key, an action that is in no menu, a control without
+//! a name, a list that goes by another order than the scene's, a name that is lost or given
+//! unasked.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Node;
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
-use marraztu::app::action::{Action, Group};
-use marraztu::app::ask::Ask;
-use marraztu::app::chord::Chord::{Command, Either, Named};
+use marraztu::accuracy::{Arithmetic, Filter, LightAt, Settings, SpecularForm};
+use marraztu::app::actions::Chord::{Command, Either, Named};
+use marraztu::app::actions::Request;
+use marraztu::app::actions::{Action, Group};
 use marraztu::base::color::Color;
-use marraztu::scene::{
-    Arithmetic, Filter, ItemId, LightAt, LightKind, Settings, SpecularForm, Subject,
-};
+use marraztu::scene::{ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
 
@@ -60,11 +60,11 @@ fn every_switch_of_the_view_does_what_its_action_does() {
     let (mut clicked, mut asked) = (Editor::tall(), Editor::tall());
     for action in switches.into_iter().chain(slots) {
         for _ in 0..2 {
-            click(&mut clicked, Role::CheckBox, action.look().label);
+            click(&mut clicked, Role::CheckBox, action.info().label);
             asked.perform(action);
             assert_eq!(clicked.view(), asked.view(), "{action:?}");
             assert!(clicked.scene() == asked.scene(), "{action:?}");
-            let shown = control(&clicked, Role::CheckBox, action.look().label);
+            let shown = control(&clicked, Role::CheckBox, action.info().label);
             let ticked = shown.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True);
             assert_eq!(Some(ticked), action.is_on(clicked.state()), "{action:?}");
         }
@@ -84,7 +84,7 @@ fn every_choice_of_the_view_does_what_its_action_does() {
         ("Subject: Camera", Action::SubjectCamera),
         ("Observer: From object", Action::ToggleObserver),
         ("Observer: From camera", Action::ToggleObserver),
-        ("Projection: Parallel", Action::ToggleProjection),
+        ("Projection: Orthographic", Action::ToggleProjection),
         ("Projection: Perspective", Action::ToggleProjection),
         ("Normals: Face", Action::ToggleLightNormals),
         ("Normals: Vertex", Action::ToggleLightNormals),
@@ -108,9 +108,9 @@ fn every_axis_of_accuracy_is_chosen_by_its_name() {
     let mut editor = Editor::tall();
     let first = Settings::default();
     for (label, expected) in [
-        ("Shading: Face", Settings { light: LightAt::Face, ..first }),
-        ("Shading: Vertex", Settings { light: LightAt::Vertex, ..first }),
-        ("Shading: Pixel", first),
+        ("Shading: Flat", Settings { light: LightAt::Face, ..first }),
+        ("Shading: Gouraud", Settings { light: LightAt::Vertex, ..first }),
+        ("Shading: Phong", first),
         ("Highlight: N.H", Settings { specular: SpecularForm::HalfVector, ..first }),
         ("Highlight: R.V", first),
         ("Textures: Nearest", Settings { filter: Filter::Nearest, ..first }),
@@ -150,7 +150,7 @@ fn every_action_is_in_a_menu() {
             editor.harness.run_steps(30);
         }
         let is_open = |action: &&Action| {
-            let entries = editor.harness.query_all_by_label(action.look().label);
+            let entries = editor.harness.query_all_by_label(action.info().label);
             entries.into_iter().any(|entry| {
                 let role = entry.accesskit_node().role();
                 matches!(role, Role::MenuItem | Role::MenuItemCheckBox)
@@ -265,7 +265,7 @@ fn a_name_that_was_given_up_elsewhere_is_not_taken_up_again() {
     let mut editor = Editor::new();
     editor.press(Named(Key::F2));
     type_text(&mut editor, "half a na");
-    editor.ask(Ask::EndRename(None));
+    editor.ask(Request::EndRename(None));
     editor.press(Named(Key::F2));
     let field = control(&editor, Role::TextInput, "New name");
     assert_eq!((field.value().as_deref(), field.is_focused()), (Some("camera 1"), true));
@@ -406,7 +406,7 @@ fn the_list_of_keys_lists_every_action() {
     let mut editor = Editor::new();
     editor.press(Either(Key::H));
     for action in Action::ALL {
-        let shown = editor.harness.query_all_by_label(action.look().label);
+        let shown = editor.harness.query_all_by_label(action.info().label);
         let as_entry = shown.into_iter().any(|node| {
             matches!(node.accesskit_node().role(), Role::MenuItem | Role::MenuItemCheckBox)
         });

@@ -1,14 +1,15 @@
-//! The panel that says what the picture is made of, and that nothing is drawn while nothing changes.
+//! The panel that says what the picture is made of, and that nothing is drawn while nothing
+//! changes.
 //!
-//! Catches: a panel that lags behind the scene, a list of another picture, an effect without a line, a
-//! window that repaints or draws by itself.
+//! Catches: a panel that lags behind the scene, a list of another picture, an effect without a
+//! line, a window that repaints or draws by itself.
 
 use egui::accesskit::Role;
-use marraztu::app::action::Action;
-use marraztu::app::ask::Ask;
-use marraztu::app::chord::Chord::Lower;
+use marraztu::accuracy::{LeaveOut, Settings};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::Lower;
+use marraztu::app::actions::Request;
 use marraztu::render::Effect;
-use marraztu::scene::{LeaveOut, Settings};
 
 use crate::editor::Editor;
 use crate::panels::{click, control};
@@ -23,7 +24,7 @@ fn effects(editor: &Editor) -> Vec<Effect> {
 #[test]
 fn the_plan_follows_the_scene_while_it_is_shown() {
     let mut editor = Editor::of_size(1400.0, 1400.0);
-    assert!(editor.state().plan.explained.is_none(), "nobody has asked");
+    assert!(editor.state().plan.explained.is_none(), "no one has asked");
     editor.perform(Action::TogglePlan);
     assert!(editor.shows("sun on, all 3"));
     let lights = |editor: &Editor| {
@@ -63,7 +64,7 @@ fn every_effect_has_a_line_and_what_differs_is_folded_out() {
 fn what_is_measured_is_shown_until_something_changes() {
     let mut editor = Editor::of_size(900.0, 500.0);
     editor.perform(Action::MeasurePlan);
-    assert!(editor.state().shown.plan && editor.state().plan.measuring);
+    assert!(editor.state().panels.plan && editor.state().plan.measuring);
     for _ in 0..3000 {
         if !editor.state().plan.measuring {
             break;
@@ -100,7 +101,7 @@ fn faint_light_is_left_out_by_the_switch_and_by_the_setting_alike() {
     click(&mut editor, Role::CheckBox, "Leave out faint light");
     assert_eq!(editor.state().settings.leave_out, LeaveOut::HalfStep);
     assert_eq!(Action::ToggleLeaveOut.is_on(editor.state()), Some(true));
-    editor.ask(Ask::Settings(Settings::default()));
+    editor.ask(Request::Settings(Settings::default()));
     assert_eq!(Action::ToggleLeaveOut.is_on(editor.state()), Some(false));
 }
 

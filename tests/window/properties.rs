@@ -1,19 +1,19 @@
 //! The properties of what is selected.
 //!
-//! Catches: a field that sets another thing than it names, drags that are many steps, a number typed
-//! for one item that lands in another, fields that round what they only show, sliders that do other
-//! than keys.
+//! Catches: a field that sets another thing than it names, drags that are many steps, a number
+//! typed for one item that lands in another, fields that round what they only show, sliders that do
+//! other than keys.
 
 use egui::accesskit::Role;
 use egui::{Key, PointerButton, Pos2, vec2};
 use egui_kittest::kittest::NodeT as _;
 use glam::DVec3;
-use marraztu::app::action::Action;
-use marraztu::app::ask::Ask;
-use marraztu::app::chord::Chord::{Command, Either, Lower, Named, Upper};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::{Command, Either, Lower, Named, Upper};
+use marraztu::app::actions::Request;
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
-use marraztu::edit::{Gesture, items, place};
+use marraztu::edit::{Gesture, items, placement};
 use marraztu::io::{Progress, parse};
 use marraztu::scene::{
     Camera, CameraMode, ItemId, Light, LightKind, LoadOptions, MaterialChoice, Model, Object,
@@ -50,7 +50,7 @@ fn with_light(wanted: impl Fn(&LightKind) -> bool) -> Editor {
 fn with_object() -> Editor {
     let mut editor = Editor::tall();
     editor.perform(Action::SubjectObject);
-    for section in ["Steps of x, y, z", "Spin", "Drawing", "Model"] {
+    for section in ["Step sizes", "Spin", "Drawing", "Model"] {
         click(&mut editor, Role::DisclosureTriangle, section);
     }
     editor
@@ -58,7 +58,7 @@ fn with_object() -> Editor {
 
 fn with_camera() -> Editor {
     let mut editor = Editor::tall();
-    click(&mut editor, Role::DisclosureTriangle, "Steps of x, y, z");
+    click(&mut editor, Role::DisclosureTriangle, "Step sizes");
     editor
 }
 
@@ -69,7 +69,7 @@ fn type_into(editor: &mut Editor, field: &str, text: &str) {
     editor.press(Named(Key::Enter));
 }
 
-/// Drags a control by so many points to the right.
+/// Drags a control by a number of points to the right.
 fn drag(editor: &mut Editor, role: Role, label: &str, by: f32) {
     let at = control(editor, role, label).rect().center();
     let places: Vec<Pos2> = (0..=4_u8).map(|i| at + vec2(by * f32::from(i) / 4.0, 0.0)).collect();
@@ -80,15 +80,15 @@ type Read = fn(&Editor) -> f64;
 
 /// What each field of an object sets.
 const OF_OBJECT: &[(&str, Read)] = &[
-    ("Position X", |e| place::translation(object(e).placement.now()).x),
-    ("Position Y", |e| place::translation(object(e).placement.now()).y),
-    ("Position Z", |e| place::translation(object(e).placement.now()).z),
-    ("Rotation X", |e| place::turn_degrees(object(e).placement.now()).x),
-    ("Rotation Y", |e| place::turn_degrees(object(e).placement.now()).y),
-    ("Rotation Z", |e| place::turn_degrees(object(e).placement.now()).z),
-    ("Scale X", |e| place::scale(object(e).placement.now()).x),
-    ("Scale Y", |e| place::scale(object(e).placement.now()).y),
-    ("Scale Z", |e| place::scale(object(e).placement.now()).z),
+    ("Position X", |e| placement::translation(object(e).placement.now()).x),
+    ("Position Y", |e| placement::translation(object(e).placement.now()).y),
+    ("Position Z", |e| placement::translation(object(e).placement.now()).z),
+    ("Rotation X", |e| placement::turn_degrees(object(e).placement.now()).x),
+    ("Rotation Y", |e| placement::turn_degrees(object(e).placement.now()).y),
+    ("Rotation Z", |e| placement::turn_degrees(object(e).placement.now()).z),
+    ("Scale X", |e| placement::scale(object(e).placement.now()).x),
+    ("Scale Y", |e| placement::scale(object(e).placement.now()).y),
+    ("Scale Z", |e| placement::scale(object(e).placement.now()).z),
     ("Spin speed", |e| object(e).spin.speed),
 ];
 
@@ -97,15 +97,15 @@ const OF_CAMERA: &[(&str, Read)] = &[
     ("Position X", |e| camera(e).pose.now().eye.x),
     ("Position Y", |e| camera(e).pose.now().eye.y),
     ("Position Z", |e| camera(e).pose.now().eye.z),
-    ("Yaw", |e| place::camera_degrees(camera(e).pose.now()).x),
-    ("Pitch", |e| place::camera_degrees(camera(e).pose.now()).y),
-    ("Roll", |e| place::camera_degrees(camera(e).pose.now()).z),
-    ("Half-angle", |e| camera(e).lens.half_angle),
+    ("Yaw", |e| placement::camera_degrees(camera(e).pose.now()).x),
+    ("Pitch", |e| placement::camera_degrees(camera(e).pose.now()).y),
+    ("Roll", |e| placement::camera_degrees(camera(e).pose.now()).z),
+    ("Field of view", |e| 2.0 * camera(e).lens.half_angle),
     ("Near", |e| camera(e).lens.near),
     ("Far", |e| camera(e).lens.far),
     ("Half-size", |e| camera(e).lens.half_size),
-    ("Parallel near", |e| camera(e).lens.parallel_near),
-    ("Parallel far", |e| camera(e).lens.parallel_far),
+    ("Orthographic near", |e| camera(e).lens.parallel_near),
+    ("Orthographic far", |e| camera(e).lens.parallel_far),
 ];
 
 /// What is typed, and dragged, into each field becomes its value in one step, and one step of undo
@@ -226,7 +226,7 @@ fn a_number_typed_for_one_item_never_lands_in_another() {
     type_text(&mut editor, "33");
     click(&mut editor, Role::ListBoxOption, "x_wing");
     let scene = editor.scene();
-    let height = |id| place::translation(scene.objects.get(id).unwrap().placement.now()).y;
+    let height = |id| placement::translation(scene.objects.get(id).unwrap().placement.now()).y;
     let second = editor.view().object.unwrap();
     assert_ne!(first, second);
     assert_eq!((height(first), height(second)), (33.0, 0.0));
@@ -234,7 +234,7 @@ fn a_number_typed_for_one_item_never_lands_in_another() {
     // The selection goes on by itself while a number is typed: it is then for none.
     click(&mut editor, Role::SpinButton, "Position Z");
     type_text(&mut editor, "44");
-    editor.ask(Ask::Select(ItemId::Object(first)));
+    editor.ask(Request::Select(ItemId::Object(first)));
     editor.press(Named(Key::Enter));
     assert_eq!(editor.steps(), 1);
 }
@@ -244,12 +244,12 @@ fn walking_through_the_fields_changes_nothing() {
     let mut editor = with_object();
     let (scene, view, id) = (editor.scene(), editor.view(), editor.view().object.unwrap());
     let third = DVec3::new(1.0 / 3.0, 200.0 / 7.0, 1e-7);
-    let stroke = marraztu::edit::Stroke::First;
-    let command = place::object_turn(&scene, &view, id, third * 3.1, stroke).unwrap();
+    let stroke = marraztu::edit::GesturePhase::First;
+    let command = placement::object_turn(&scene, &view, id, third * 3.1, stroke).unwrap();
     let label = String::new();
-    editor.ask(Ask::Change { command, gesture: Gesture::Whole, label: label.clone() });
-    let command = place::object_translation(&editor.scene(), &view, id, third, stroke).unwrap();
-    editor.ask(Ask::Change { command, gesture: Gesture::Whole, label });
+    editor.ask(Request::Change { command, gesture: Gesture::Whole, label: label.clone() });
+    let command = placement::object_translation(&editor.scene(), &view, id, third, stroke).unwrap();
+    editor.ask(Request::Change { command, gesture: Gesture::Whole, label });
     let before = editor.scene();
     click(&mut editor, Role::SpinButton, "Position X");
     for _ in 0..12 {
@@ -291,7 +291,7 @@ fn a_stretch_goes_along_the_axes_of_the_chosen_frame() {
         type_into(&mut editor, "Stretch X", "3");
         let steps = editor.steps();
         click(&mut editor, Role::Button, button);
-        let scale = place::scale(object(&editor).placement.now());
+        let scale = placement::scale(object(&editor).placement.now());
         assert!((scale - expected).length() < 1e-9, "{button}: {scale}");
         assert_eq!(editor.steps(), steps + 1);
     }
@@ -427,7 +427,7 @@ fn a_camera_goes_to_analysis_by_its_properties_as_by_the_key() {
     pressed.press(Either(Key::G));
     assert!(matches!(mode(&clicked), CameraMode::Analysis { .. }));
     assert!(clicked.scene() == pressed.scene());
-    click(&mut clicked, Role::CheckBox, "Seen by others");
+    click(&mut clicked, Role::CheckBox, "Visible");
     assert!(!camera(&clicked).visible);
 }
 
@@ -456,7 +456,7 @@ fn with_model(editor: &mut Editor, text: &str) -> ObjectId {
     let model = Model { source: Some("/a.obj".into()), ..loaded.model };
     let object = Object::new(Shared::new(model), MaterialChoice::File);
     let command = items::insert_object(&editor.scene(), object);
-    editor.ask(Ask::Change { command, gesture: Gesture::Whole, label: "Load".to_owned() });
+    editor.ask(Request::Change { command, gesture: Gesture::Whole, label: "Load".to_owned() });
     editor.view().object.unwrap()
 }
 
@@ -483,7 +483,11 @@ fn a_crease_angle_makes_edges_sharp_or_smooth_in_one_step() {
 
     // A copy shares the model again once it has the same angle.
     let copy = items::duplicate(&editor.scene(), ItemId::Object(id)).unwrap();
-    editor.ask(Ask::Change { command: copy, gesture: Gesture::Whole, label: "Copy".to_owned() });
+    editor.ask(Request::Change {
+        command: copy,
+        gesture: Gesture::Whole,
+        label: "Copy".to_owned(),
+    });
     type_into(&mut editor, "Crease angle", "120");
     let model = |editor: &Editor, id| editor.scene().objects.get(id).unwrap().model.clone();
     let copy = editor.view().object.unwrap();

@@ -1,20 +1,19 @@
-//! Every key, with what it would do now.
+//! The cheat sheet: every key, with what it would do now.
 
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
-use super::controls;
-use crate::app::action::{Action, Group};
-use crate::app::ask::Ask;
+use crate::app::actions::{Action, Group, Request};
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::controls;
 
 const WIDTH: f32 = 700.0;
 const KEYS: f32 = 160.0;
 const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
     Window::new("Keys")
@@ -23,13 +22,13 @@ pub(super) fn show(ui: &Ui, state: &State, asks: &mut Vec<Ask>) {
         .resizable(false)
         .default_pos(ui.ctx().content_rect().center() - vec2(WIDTH, room.y) / 2.0)
         .fixed_size(vec2(WIDTH.min(room.x), room.y.min(520.0)))
-        .show(ui.ctx(), |ui| contents(ui, state, asks));
+        .show(ui.ctx(), |ui| contents(ui, state, requests));
     if !open {
-        asks.push(Action::CheatSheet.into());
+        requests.push(Action::CheatSheet.into());
     }
 }
 
-fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let id = Id::unique("search among the keys");
     let mut wanted: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let field = egui::TextEdit::singleline(&mut wanted)
@@ -50,7 +49,7 @@ fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         response.request_focus();
     }
     if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
-        asks.push(Action::CheatSheet.into());
+        requests.push(Action::CheatSheet.into());
     }
     ui.data_mut(|data| data.insert_temp(id, wanted.clone()));
     ui.add_space(theme::GAP);
@@ -66,7 +65,7 @@ fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             ui.add_space(theme::GAP);
             ui.label(RichText::new(group.label()).strong());
             for action in actions {
-                line(ui, state, asks, action);
+                line(ui, state, requests, action);
             }
         }
         if !found {
@@ -75,16 +74,16 @@ fn contents(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     });
 }
 
-/// Whether an action is what is searched for: by one of its keys as it is written, or by any of its
+/// Whether an action matches a search: by one of its keys as it is written, or by any of its
 /// words.
 fn matches(action: Action, wanted: &str) -> bool {
-    let look = action.look();
+    let info = action.info();
     let wanted = wanted.trim();
-    let keys = || look.keys.iter().flat_map(|key| key.names());
+    let keys = || info.keys.iter().flat_map(|key| key.names());
     if wanted.chars().count() == 1 && keys().any(|key| key == wanted) {
         return true;
     }
-    let text = format!("{} {} {}", look.label, look.hint, look.group.label()).to_lowercase();
+    let text = format!("{} {} {}", info.label, info.hint, info.group.label()).to_lowercase();
     let wanted = wanted.to_lowercase();
     wanted.split_whitespace().all(|word| {
         text.contains(word) || keys().any(|key| key.len() > 1 && key.to_lowercase().contains(word))
@@ -92,8 +91,8 @@ fn matches(action: Action, wanted: &str) -> bool {
 }
 
 /// One action: a click does it.
-fn line(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action) {
-    let look = action.look();
+fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action) {
+    let info = action.info();
     let available = action.availability(state);
     let enabled = available.is_ok();
     let size = vec2(ui.available_width(), theme::ROW);
@@ -102,9 +101,9 @@ fn line(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action) {
     let on = action.is_on(state);
     response.widget_info(|| match on {
         Some(on) => {
-            egui::WidgetInfo::selected(egui::Role::MenuItemCheckBox, enabled, on, look.label)
+            egui::WidgetInfo::selected(egui::Role::MenuItemCheckBox, enabled, on, info.label)
         }
-        None => egui::WidgetInfo::labeled(egui::Role::MenuItem, enabled, look.label),
+        None => egui::WidgetInfo::labeled(egui::Role::MenuItem, enabled, info.label),
     });
     if enabled && response.hovered() {
         ui.painter().rect_filled(rect, 4.0, ui.visuals().widgets.inactive.bg_fill);
@@ -116,13 +115,13 @@ fn line(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action) {
         controls::key_cap(ui, at, key, enabled);
         left += width + theme::GAP;
     };
-    for key in look.keys.iter().flat_map(|key| key.names()) {
+    for key in info.keys.iter().flat_map(|key| key.names()) {
         cap(ui, &key);
     }
     let color = controls::text_color(ui, enabled);
     let label = rect.with_min_x(rect.left() + KEYS).with_max_x(rect.left() + KEYS + LABEL);
     let text = |ui: &Ui, text: &str, width| controls::text(ui, text, TextStyle::Body, width);
-    controls::put_text(ui, label, text(ui, look.label, label.width()), color);
+    controls::put_text(ui, label, text(ui, info.label, label.width()), color);
     let now = match on {
         Some(true) => "on",
         Some(false) => "off",
@@ -132,12 +131,12 @@ fn line(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action) {
     controls::put_text(ui, now_rect, text(ui, now, NOW), color);
     let rest = rect.with_min_x(label.right() + NOW).with_max_x(rect.right() - theme::GAP);
     let hint =
-        available.as_ref().err().map_or(look.hint.to_owned(), |why| format!("Not now: {why}."));
+        available.as_ref().err().map_or(info.hint.to_owned(), |why| format!("Not now: {why}."));
     let weak = ui.visuals().weak_text_color();
     controls::put_text(ui, rest, text(ui, &hint, rest.width()), weak);
     controls::focus_ring(ui, rect, &response);
     if action.explain(response, state).clicked() {
-        asks.push(action.into());
+        requests.push(action.into());
     }
 }
 

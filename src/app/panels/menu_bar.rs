@@ -2,11 +2,10 @@
 
 use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
-use crate::app::action::{Action, Group};
-use crate::app::ask::Ask;
-use crate::app::laboratory::LabAsk;
+use crate::accuracy::AXES;
+use crate::app::actions::{Action, Group, LabRequest, Request};
 use crate::app::state::State;
-use crate::scene::AXES;
+use crate::io::EXAMPLES;
 
 /// The actions of [`Group::Window`] that have a menu of their own.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
@@ -14,33 +13,37 @@ const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::Th
 /// Those that stand under Help.
 const HELP: [Action; 2] = [Action::CheatSheet, Action::ToPanels];
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     MenuBar::new().ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
-        menu(ui, "File", |ui| group_ui(ui, state, asks, Group::File));
-        menu(ui, "Edit", |ui| {
-            group_ui(ui, state, asks, Group::Edit);
+        menu(ui, "File", |ui| {
+            group_ui(ui, state, requests, Group::File);
             ui.separator();
-            submenu(ui, "History", |ui| history_ui(ui, state, asks));
-            submenu(ui, "Select", |ui| group_ui(ui, state, asks, Group::Select));
-            submenu(ui, "Transform", |ui| group_ui(ui, state, asks, Group::Transform));
+            submenu(ui, "Examples", |ui| examples_ui(ui, requests));
         });
-        menu(ui, "Add", |ui| group_ui(ui, state, asks, Group::Add));
-        menu(ui, "View", |ui| {
-            group_ui(ui, state, asks, Group::Show);
+        menu(ui, "Edit", |ui| {
+            group_ui(ui, state, requests, Group::Edit);
             ui.separator();
-            submenu(ui, "Camera", |ui| group_ui(ui, state, asks, Group::Camera));
-            submenu(ui, "Light", |ui| group_ui(ui, state, asks, Group::Light));
+            submenu(ui, "History", |ui| history_ui(ui, state, requests));
+            submenu(ui, "Select", |ui| group_ui(ui, state, requests, Group::Select));
+            submenu(ui, "Transform", |ui| group_ui(ui, state, requests, Group::Transform));
+        });
+        menu(ui, "Add", |ui| group_ui(ui, state, requests, Group::Add));
+        menu(ui, "View", |ui| {
+            group_ui(ui, state, requests, Group::Show);
+            ui.separator();
+            submenu(ui, "Camera", |ui| group_ui(ui, state, requests, Group::Camera));
+            submenu(ui, "Light", |ui| group_ui(ui, state, requests, Group::Light));
             ui.separator();
             let own = |action: &Action| !THEMES.contains(action) && !HELP.contains(action);
-            items(ui, state, asks, Group::Window.actions().filter(own));
-            submenu(ui, "Theme", |ui| items(ui, state, asks, THEMES));
+            items(ui, state, requests, Group::Window.actions().filter(own));
+            submenu(ui, "Theme", |ui| items(ui, state, requests, THEMES));
         });
         menu(ui, "Help", |ui| {
-            items(ui, state, asks, HELP);
+            items(ui, state, requests, HELP);
             ui.separator();
-            submenu(ui, "Lessons", |ui| lessons_ui(ui, asks));
+            submenu(ui, "Lessons", |ui| lessons_ui(ui, requests));
         });
     });
 }
@@ -52,7 +55,7 @@ fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A menu in a menu; its name stands where those of actions stand, behind the column of ticks.
+/// A submenu; its name is aligned with those of actions, after the column of ticks.
 fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     let ticks = Atom::custom(IdSalt::new("tick"), vec2(12.0, 12.0));
     let shown = ui.menu_button((ticks, name), |ui| {
@@ -62,36 +65,48 @@ fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     shown.response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, name));
 }
 
-fn group_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, group: Group) {
-    items(ui, state, asks, group.actions());
+fn group_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, group: Group) {
+    items(ui, state, requests, group.actions());
 }
 
 fn items(
     ui: &mut Ui,
     state: &State,
-    asks: &mut Vec<Ask>,
+    requests: &mut Vec<Request>,
     actions: impl IntoIterator<Item = Action>,
 ) {
     for action in actions {
-        asks.extend(action.menu_item(ui, state).map(Ask::from));
+        requests.extend(action.menu_item(ui, state).map(Request::from));
     }
 }
 
-/// What each axis of accuracy teaches; a click shows it in the laboratory.
-fn lessons_ui(ui: &mut Ui, asks: &mut Vec<Ask>) {
-    for axis in AXES {
-        let title = axis.lesson.title;
-        let response = ui.button(title);
-        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, title));
-        if response.on_hover_text(axis.lesson.what).clicked() {
-            asks.push(Ask::Lab(LabAsk::Lesson(axis.key)));
+/// The scenes that the program carries; a click opens one in place of this scene.
+fn examples_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
+    for example in EXAMPLES {
+        let response = ui.button(example.title);
+        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, example.title));
+        if response.clicked() {
+            requests.push(Request::LoadFiles(vec![example.path.into()]));
             ui.close();
         }
     }
 }
 
-/// The steps of the history; a click goes to where a step is the last one done.
-fn history_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// What each axis of accuracy teaches; a click shows it in the laboratory.
+fn lessons_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
+    for axis in AXES {
+        let title = axis.lesson.title;
+        let response = ui.button(title);
+        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, title));
+        if response.on_hover_text(axis.lesson.what).clicked() {
+            requests.push(Request::Lab(LabRequest::Lesson(axis.key)));
+            ui.close();
+        }
+    }
+}
+
+/// The steps of the history; a click goes to the point just after a step.
+fn history_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let history = &state.history;
     let labels: Vec<&str> = std::iter::once("Beginning").chain(history.steps()).collect();
     ui.set_min_width(200.0);
@@ -102,8 +117,8 @@ fn history_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             let text = format!("{position}  {}", labels[position]);
             let button = egui::Button::selectable(here, text);
             let response = ui.add_sized([ui.available_width(), row], button);
-            if response.on_hover_text("Goes to where this step is the last one done").clicked() {
-                asks.push(Ask::GoTo(position));
+            if response.on_hover_text("Goes to the point just after this step").clicked() {
+                requests.push(Request::GoTo(position));
                 ui.close();
             }
         }

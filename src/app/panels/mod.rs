@@ -1,94 +1,87 @@
-//! The panels about the viewport. They read the state and give back what is asked for; they change
-//! nothing.
+//! The panels around the viewport. They read the state and return requests; they change nothing.
 
 mod cheat_sheet;
-pub(super) mod color_picker;
-mod controls;
-mod expression;
-pub(super) mod icons;
 mod lab;
 mod menu_bar;
-mod number;
+pub(crate) mod notices;
 mod outline;
-mod outline_row;
 mod plan;
 mod properties;
-pub(super) mod spheres;
 mod status_line;
 mod view_switches;
 
 use egui::{Frame, Margin, Panel, Ui};
 
-use super::ask::Ask;
-use super::state::State;
-use super::theme;
+use crate::app::actions::Request;
+use crate::app::state::State;
+use crate::app::theme;
 
-/// Below this width of the window the panels at the sides are narrower, so that the picture stays the
-/// largest thing.
+/// Below this width of the window the panels at the sides are narrower, so that the picture stays
+/// the largest thing.
 const WIDE: f32 = 1200.0;
 
-/// Shows all panels that are to be shown. What is left of `ui` is the viewport's.
-pub fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows all open panels. The rest of `ui` is left to the viewport.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let wide = ui.available_width() >= WIDE;
     let (left, right) = if wide { (228.0, 280.0) } else { (204.0, 256.0) };
     let most = |part: f32, least: f32| (ui.available_width() * part).max(least);
     let (most_left, most_right) = (most(0.25, 200.0), most(0.3, 250.0));
     let fill = ui.visuals().panel_fill;
     let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
-    // What is in them leaves room for a bar to scroll with.
+    // The contents leave room for a scroll bar.
     let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
     let side = Frame::new().fill(fill).inner_margin(margin);
-    Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, asks));
-    Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, asks));
-    if state.shown.laboratory {
+    Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, requests));
+    Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, requests));
+    if state.panels.laboratory {
         let most = (ui.available_height() * 0.7).max(180.0);
         Panel::bottom("laboratory")
             .frame(side)
             .resizable(true)
             .default_size(348.0_f32.min(most))
             .size_range(160.0..=most)
-            .show(ui, |ui| lab::show(ui, state, asks));
+            .show(ui, |ui| lab::show(ui, state, requests));
     }
     // A new name is typed in the outline.
-    let outline = state.shown.outline || state.renaming.is_some();
-    if outline || state.shown.view {
+    let outline = state.panels.outline || state.renaming.is_some();
+    if outline || state.panels.view {
         Panel::left("left").frame(side).default_size(left).size_range(170.0..=most_left).show(
             ui,
             |ui| {
-                left_ui(ui, state, asks, outline);
+                left_ui(ui, state, requests, outline);
             },
         );
     }
-    if state.shown.properties {
+    if state.panels.properties {
         Panel::right("properties")
             .frame(side)
             .default_size(right)
             .size_range(220.0..=most_right)
-            .show(ui, |ui| properties::show(ui, state, asks));
+            .show(ui, |ui| properties::show(ui, state, requests));
     }
     // Under the picture alone, so that the lists beside it keep their height.
-    if state.shown.plan {
-        plan::show(ui, state, asks);
+    if state.panels.plan {
+        plan::show(ui, state, requests);
     }
-    if state.shown.cheat_sheet {
-        cheat_sheet::show(ui, state, asks);
+    if state.panels.cheat_sheet {
+        cheat_sheet::show(ui, state, requests);
     }
 }
 
 /// The outline, and the switches of the view under it.
-fn left_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, outline: bool) {
+fn left_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, outline: bool) {
     if !outline {
-        view_switches::show(ui, state, asks);
+        view_switches::show(ui, state, requests);
         return;
     }
-    if state.shown.view {
+    if state.panels.view {
         let height = (ui.available_height() * 0.56).round();
         Panel::bottom("view switches")
             .frame(Frame::NONE)
             .resizable(true)
             .default_size(height)
             .size_range(90.0..=(height + 40.0).max(90.0))
-            .show(ui, |ui| view_switches::show(ui, state, asks));
+            .show(ui, |ui| view_switches::show(ui, state, requests));
     }
-    outline::show(ui, state, asks);
+    outline::show(ui, state, requests);
 }

@@ -1,8 +1,8 @@
-//! What the picture is made of: each effect, on or left out, why, and what it costs.
+//! The plan panel: each effect of the picture, on or left out, why, and its cost.
 //!
-//! An effect has a line, with what it is on under it where that differs from thing to thing. What is on
-//! is told by a full disk and by full text, so that the eye runs down the disks; costs are numbers with
-//! bars, so that the eye finds the largest.
+//! An effect has a line, with what it is on under it where that differs from thing to thing. What
+//! is on is told by a full disk and by full text, so that the eye runs down the disks; costs are
+//! numbers with bars, so that the eye finds the largest.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,18 +12,17 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-use super::controls;
-use super::icons::Icon;
-use crate::app::action::Action;
-use crate::app::ask::Ask;
-use crate::app::material_dialog::grouped;
-use crate::app::state::{Measured, State as Editing};
+use crate::app::actions::{Action, Request};
+use crate::app::state::{Measured, State};
 use crate::app::theme;
+use crate::app::widgets::controls;
+use crate::app::widgets::icons::Icon;
+use crate::app::widgets::text::grouped;
 use crate::lab::cost::{Explained, Group};
 use crate::render::{Effect, EffectUse};
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
     let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
     let height = ui.available_height();
@@ -37,28 +36,28 @@ pub(super) fn show(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>) {
                 ui.weak("The next picture says what it is made of.");
                 return;
             };
-            header_ui(ui, state, asks, &explained);
+            header_ui(ui, state, requests, &explained);
             table_ui(ui, state, &explained);
         });
 }
 
-/// What is said of all together, and the button that measures.
-fn header_ui(ui: &mut Ui, state: &Editing, asks: &mut Vec<Ask>, explained: &Explained) {
+/// The summary, and the button that measures.
+fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.label(RichText::new("Plan").strong());
         ui.add_space(theme::GAP);
         let label = ui.add(egui::Label::new(RichText::new(summary(explained)).weak()).truncate());
         label.on_hover_text(
-            "What is left out by class E changes no bit of the picture. By class B, which \"Leave out \
-            faint light\" allows, a byte is one step off at most.",
+            "Effects left out by class E change no bit of the picture. Those left out by class B, \
+            which \"Leave out faint light\" allows, change a byte by at most one step.",
         );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(f32::from(theme::MARGIN));
             let label = if state.plan.measuring { "Stop" } else { "Measure" };
             let button = ui.add(egui::Button::new(label).min_size(vec2(70.0, theme::ROW)));
             if Action::MeasurePlan.explain(button, state).clicked() {
-                asks.push(Action::MeasurePlan.into());
+                requests.push(Action::MeasurePlan.into());
             }
             if state.plan.measuring {
                 ui.add(egui::Spinner::new().size(14.0));
@@ -78,8 +77,8 @@ fn times_ui(ui: &mut Ui, measured: &Measured, now: bool) {
         "measured before the last change".to_owned()
     };
     ui.weak(text).on_hover_text(
-        "Milliseconds are medians of pairs of frames, with an effect and without it in turn. What two \
-        equal frames seem to differ by is noise.",
+        "Milliseconds are medians over pairs of frames, one with an effect and one without it. \
+        The noise is the difference between two equal frames.",
     );
 }
 
@@ -94,14 +93,14 @@ fn summary(explained: &Explained) -> String {
     format!("{on} on; {left_out} left out, which {changes}")
 }
 
-/// Whether what was measured is what is shown.
-fn is_of_now(measured: &Measured, state: &Editing) -> bool {
+/// Whether the measurement is of the picture in the viewport.
+fn is_of_now(measured: &Measured, state: &State) -> bool {
     measured.settings == state.settings
         && measured.view == state.view
         && measured.scene == state.scene
 }
 
-/// Where the columns begin, and how wide they are.
+/// The start and width of each column.
 struct Columns {
     name: Rect,
     on: Rect,
@@ -130,7 +129,7 @@ impl Columns {
     }
 }
 
-fn table_ui(ui: &mut Ui, state: &Editing, explained: &Explained) {
+fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
     let (head, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
     let columns = Columns::of(head.with_max_x(head.right() - f32::from(theme::MARGIN)));
     let titles = [
@@ -230,7 +229,7 @@ fn use_ui(ui: &mut Ui, most: u64, one: &EffectUse) {
 struct Row<'a> {
     name: &'a str,
     indent: f32,
-    /// Whether it is unfolded, where it can be.
+    /// Whether it is unfolded; `None` if it cannot be.
     chevron: Option<bool>,
     on: bool,
     things: &'a str,
@@ -299,7 +298,7 @@ impl Row<'_> {
     }
 }
 
-/// Full where something is on, empty where it is left out.
+/// A disk: full if an effect is on, empty if it is left out.
 fn disk_ui(ui: &Ui, at: egui::Pos2, on: bool) {
     let visuals = ui.visuals();
     if on {

@@ -1,17 +1,18 @@
-//! What the next key would do, and the last word to the user.
+//! The status line: what the next key would do, and the last message.
 //!
-//! Where there is no room for all, what matters least is left out from the middle; nothing is cut off.
+//! Where there is no room for all, what matters least is left out from the middle; nothing is cut
+//! off.
 
 use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use super::controls;
-use super::icons::Icon;
-use super::number::short;
-use crate::app::ask::Ask;
-use crate::app::state::{Economy, Message, State, Tone};
+use crate::app::actions::Request;
+use crate::app::state::{Message, Reduction, State, Tone};
 use crate::app::theme;
+use crate::app::widgets::controls;
+use crate::app::widgets::icons::Icon;
+use crate::app::widgets::number::short;
 use crate::scene::{
-    CameraMode, Frame, ItemId, LightKind, Observer, Projection, Subject, Transformation,
+    CameraMode, Frame, ItemId, LightKind, Observer, Projection, SpotOwner, Subject, Transformation,
 };
 
 /// What stands between the parts of the line.
@@ -20,8 +21,8 @@ const BETWEEN: &str = "  |  ";
 /// A longer name is written with dots in its middle.
 const LONGEST_NAME: usize = 28;
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -46,9 +47,9 @@ fn line_ui(ui: &mut Ui, state: &State) {
     response.on_hover_text(format!("{whole}\n{TIME}"));
 }
 
-/// What the time at the end of the line is.
-const TIME: &str = "The time is that of the last picture: from the scene to pixels in memory, on the \
-    thread that draws. What the window takes to show it is not in it.";
+/// Explains the time at the end of the line.
+const TIME: &str = "The time to draw the last picture, from the scene to pixels in memory. \
+    It does not include the time to show the picture in the window.";
 
 fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     let (icon, color) = match message.tone {
@@ -65,10 +66,12 @@ fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     response.on_hover_text(&message.text);
 }
 
-/// The parts of the line, in order: what is selected, what the keys do to it, who looks, what it cost.
+/// The parts of the line, in order: the selection, what the keys do to it, the observer, what it
+/// cost.
 fn parts(state: &State) -> Vec<String> {
     let (scene, view) = (&state.scene, &state.view);
-    let mut parts = vec![selected(state), transformation(state).to_owned()];
+    let mut parts =
+        vec![selected(state), transformation(state).map_or_else(|why| why, verb).to_owned()];
     parts.extend(frame(state).map(str::to_owned));
     parts.extend(step(state));
     let projection = match view.projection {
@@ -88,8 +91,8 @@ fn parts(state: &State) -> Vec<String> {
         _ => format!("{on} lights"),
     });
     let statistics = &state.statistics;
-    if statistics.economy != Economy::NONE {
-        parts.push(format!("while moving: {}", statistics.economy.words()));
+    if statistics.reduction != Reduction::NONE {
+        parts.push(format!("while moving: {}", statistics.reduction.words()));
     }
     if statistics.pictures > 0 {
         parts.push(format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0));
@@ -126,21 +129,17 @@ fn selected(state: &State) -> String {
     }
 }
 
-/// What x, y and z do to what is selected.
-fn transformation(state: &State) -> &'static str {
+/// What x, y and z do to the selection, or why nothing.
+fn transformation(state: &State) -> Result<Transformation, &'static str> {
     let (scene, view) = (&state.scene, &state.view);
-    if let Some(ItemId::Light(id)) = state.selected() {
-        return match scene.lights.get(id).map(|light| &light.kind) {
-            Some(LightKind::Sun { .. }) => "rotate",
-            Some(LightKind::Bulb { .. }) => "move",
-            Some(LightKind::Spot { owner: crate::scene::SpotOwner::Fixed(_), .. }) => {
-                verb(view.transformation)
-            }
-            Some(LightKind::Spot { .. }) => "follows its owner",
-            Some(LightKind::Ambient) | None => "from everywhere",
-        };
+    let Some(ItemId::Light(id)) = state.selected() else { return Ok(view.transformation) };
+    match scene.lights.get(id).map(|light| &light.kind) {
+        Some(LightKind::Sun { .. }) => Ok(Transformation::Rotation),
+        Some(LightKind::Bulb { .. }) => Ok(Transformation::Translation),
+        Some(LightKind::Spot { owner: SpotOwner::Fixed(_), .. }) => Ok(view.transformation),
+        Some(LightKind::Spot { .. }) => Err("follows its owner"),
+        Some(LightKind::Ambient) | None => Err("from everywhere"),
     }
-    verb(view.transformation)
 }
 
 const fn verb(transformation: Transformation) -> &'static str {
@@ -172,13 +171,7 @@ fn frame(state: &State) -> Option<&'static str> {
 /// How far the next press of x, y or z goes.
 fn step(state: &State) -> Option<String> {
     let steps = &state.view.steps;
-    let does = match transformation(state) {
-        "move" => Transformation::Translation,
-        "rotate" => Transformation::Rotation,
-        "scale" => Transformation::Scaling,
-        _ => return None,
-    };
-    Some(match does {
+    Some(match transformation(state).ok()? {
         Transformation::Translation if steps.by_size => "step by size".to_owned(),
         Transformation::Translation => format!("step {}", short(steps.translation)),
         Transformation::Rotation => format!("step {} deg", short(steps.rotation)),
@@ -186,7 +179,7 @@ fn step(state: &State) -> Option<String> {
     })
 }
 
-/// The parts joined; where that does not fit, dots stand for those in the middle.
+/// The parts joined; if they do not fit, dots replace those in the middle.
 fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     let whole = parts.join(BETWEEN);
     // The first part and the last ones say most.
@@ -209,8 +202,8 @@ fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     parts.first().cloned().unwrap_or_default()
 }
 
-/// `name`, with dots in its middle where it has more than `longest` letters.
-pub(super) fn middle_elided(name: &str, longest: usize) -> String {
+/// `name`, with dots in its middle if it has more than `longest` letters.
+pub(crate) fn middle_elided(name: &str, longest: usize) -> String {
     let letters: Vec<char> = name.chars().collect();
     if letters.len() <= longest {
         return name.to_owned();
@@ -238,8 +231,8 @@ mod tests {
         let mut state = State::new(scene, view);
         state.statistics.pictures = 1;
         assert!(!parts(&state).join(BETWEEN).contains("moving"));
-        state.statistics.economy.vertex_light = true;
-        state.statistics.economy.half_size = true;
+        state.statistics.reduction.vertex_light = true;
+        state.statistics.reduction.half_size = true;
         let said = "  |  while moving: light per vertex, half size  |  0.0 ms";
         assert!(parts(&state).join(BETWEEN).ends_with(said));
     }

@@ -1,79 +1,68 @@
-//! Every switch of the view, with its key, and how exactly pictures are drawn.
+//! The switches of the view, with their keys, and the settings of accuracy.
 
 use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
-use super::color_picker::swatch;
-use super::controls::{
-    self, Choice, action_switch, change, choices, choices_in_rows, row, section,
-};
-use crate::app::action::Action;
-use crate::app::ask::Ask;
+use crate::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis};
+use crate::app::actions::{Action, Group, Request, change};
+use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::color_picker::swatch;
+use crate::app::widgets::controls::{self, Choice, choices, choices_in_rows, row, section};
 use crate::scene::{
-    ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, CameraMode, Command, Frame, Normals, Observer,
-    Projection, Subject, Transformation,
+    CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation,
 };
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let area = ScrollArea::vertical().id_salt("view switches").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         section(ui, "Keys act on", true, |ui| {
-            subject_ui(ui, state, asks);
-            transformation_ui(ui, state, asks);
-            frame_ui(ui, state, asks);
+            subject_ui(ui, state, requests);
+            transformation_ui(ui, state, requests);
+            frame_ui(ui, state, requests);
         });
-        section(ui, "Seen", true, |ui| {
-            observer_ui(ui, state, asks);
-            projection_ui(ui, state, asks);
-            background_ui(ui, state, asks);
+        section(ui, "View", true, |ui| {
+            observer_ui(ui, state, requests);
+            projection_ui(ui, state, requests);
+            background_ui(ui, state, requests);
         });
-        section(ui, "Drawn", true, |ui| {
+        section(ui, "Display", true, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            for action in [
-                Action::ToggleEdges,
-                Action::ToggleEdgesOverFill,
-                Action::TogglePolygons,
-                Action::ToggleOthers,
-                Action::ToggleBackFaces,
-                Action::ToggleFaceNormals,
-                Action::ToggleVertexNormals,
-                Action::ToggleNormalLength,
-                Action::ToggleMarks,
-                Action::ToggleLeaveOut,
-                Action::ToggleCoarse,
-            ] {
-                action_switch(ui, state, asks, action);
+            // Flat shading is a choice in the section below.
+            let choice = Action::ToggleLightNormals;
+            for action in Group::Show.actions().filter(|action| *action != choice) {
+                action_switch(ui, state, requests, action);
             }
         });
         section(ui, "Light", true, |ui| {
-            slots_ui(ui, state, asks);
-            normals_ui(ui, state, asks);
-            settings_ui(ui, state, asks);
+            slots_ui(ui, state, requests);
+            normals_ui(ui, state, requests);
+            settings_ui(ui, state, requests);
         });
     });
 }
 
-/// Choices among actions: each with its name, whether it is the one, and the action that makes it so.
+/// Choices among actions: each with its name, whether it is the one, and the action that makes it
+/// so.
 fn actions_ui(
     ui: &mut Ui,
     state: &State,
-    asks: &mut Vec<Ask>,
+    requests: &mut Vec<Request>,
     of: &str,
     actions: &[(&str, bool, Action)],
 ) {
     let all: Vec<Choice<'_>> = actions
         .iter()
-        .map(|(label, on, action)| Choice::of_action(of, label, *on, *action, state))
+        .map(|(label, on, action)| action_choice(of, label, *on, *action, state))
         .collect();
     if let Some(clicked) = choices(ui, &all) {
-        asks.push(actions[clicked].2.into());
+        requests.push(actions[clicked].2.into());
     }
 }
 
 /// What the keys act on. The key `c` goes from one to the next.
-pub(super) fn subject_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let subject = state.view.subject;
     let all = [
         ("Camera", Subject::Camera, Action::SubjectCamera),
@@ -89,26 +78,26 @@ pub(super) fn subject_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         .iter()
         .map(|(label, this, action)| Choice {
             key: (*this == next).then(|| "c".to_owned()),
-            ..Choice::of_action("Subject", label, *this == subject, *action, state)
+            ..action_choice("Subject", label, *this == subject, *action, state)
         })
         .collect();
     if let Some(clicked) = choices(ui, &all_choices) {
-        asks.push(all[clicked].2.into());
+        requests.push(all[clicked].2.into());
     }
 }
 
-fn transformation_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.view.transformation;
     let all = [
         ("Move", now == Transformation::Translation, Action::Translate),
         ("Rotate", now == Transformation::Rotation, Action::Rotate),
         ("Scale", now == Transformation::Scaling, Action::Scale),
     ];
-    actions_ui(ui, state, asks, "Transformation", &all);
+    actions_ui(ui, state, requests, "Transformation", &all);
 }
 
 /// How cameras move, or in which frame objects are transformed.
-pub(super) fn frame_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let view = &state.view;
     let (of, [first, second], is_second) = match view.subject {
         Subject::Camera => {
@@ -121,57 +110,64 @@ pub(super) fn frame_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         }
     };
     let all = [(first, !is_second, Action::ToggleFrame), (second, is_second, Action::ToggleFrame)];
-    actions_ui(ui, state, asks, of, &all);
+    actions_ui(ui, state, requests, of, &all);
 }
 
-fn observer_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn observer_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let object = state.view.observer == Observer::Object;
     let all = [
         ("From camera", !object, Action::ToggleObserver),
         ("From object", object, Action::ToggleObserver),
     ];
-    actions_ui(ui, state, asks, "Observer", &all);
+    actions_ui(ui, state, requests, "Observer", &all);
 }
 
-fn projection_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
-    let parallel = state.view.projection == Projection::Orthographic;
+fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let orthographic = state.view.projection == Projection::Orthographic;
     let all = [
-        ("Perspective", !parallel, Action::ToggleProjection),
-        ("Parallel", parallel, Action::ToggleProjection),
+        ("Perspective", !orthographic, Action::ToggleProjection),
+        ("Orthographic", orthographic, Action::ToggleProjection),
     ];
-    actions_ui(ui, state, asks, "Projection", &all);
+    actions_ui(ui, state, requests, "Projection", &all);
 }
 
-fn background_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     row(ui, "Background", |ui| {
         let color = state.scene.background;
-        let changed = swatch(ui, "Background", "What is seen where nothing is", color);
+        let changed = swatch(ui, "Background", "Colour of the background", color);
         if let Some((color, gesture)) = changed {
-            change(asks, "Set the background", gesture, Ok(Command::Background(color)));
+            change(requests, "Set the background", gesture, Ok(Command::Background(color)));
         }
     });
 }
 
 /// The lights with a key of their own, as a row of small switches.
-fn slots_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn slots_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let width = ((ui.available_width() - 9.0 * 2.0) / 10.0).floor();
         for action in Action::ALL.iter().copied() {
             if let Some(slot) = action.slot() {
-                slot_ui(ui, state, asks, action, slot, width);
+                slot_ui(ui, state, requests, action, slot, width);
             }
         }
     });
 }
 
-fn slot_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action, slot: u32, width: f32) {
+fn slot_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    action: Action,
+    slot: u32,
+    width: f32,
+) {
     let light = state.scene.lights.iter().find(|(_, light)| light.slot == slot);
     let on = light.is_some_and(|(_, light)| light.on);
     let enabled = light.is_some();
     let sense = if enabled { Sense::click() } else { Sense::hover() };
     let (rect, response) = ui.allocate_exact_size(vec2(width, theme::ROW), sense);
-    let label = action.look().label;
+    let label = action.info().label;
     response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, enabled, on, label));
     let visuals = ui.visuals();
     let (fill, color) = match (on, enabled) {
@@ -196,19 +192,19 @@ fn slot_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, action: Action, slot
     let name = light.map_or("No light has this key", |(_, light)| light.name.as_str());
     let response = action.explain(response, state).on_hover_text(name);
     if response.clicked() {
-        asks.push(action.into());
+        requests.push(action.into());
     }
 }
 
-fn normals_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn normals_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let face = state.view.normals == Normals::Face;
     let all =
         [("Vertex", !face, Action::ToggleLightNormals), ("Face", face, Action::ToggleLightNormals)];
-    row(ui, "Normals", |ui| actions_ui(ui, state, asks, "Normals", &all));
+    row(ui, "Normals", |ui| actions_ui(ui, state, requests, "Normals", &all));
 }
 
 /// How exactly pictures are drawn: the presets, and every axis of the table.
-fn settings_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.settings;
     let hints: Vec<String> = ACCURACY_PRESETS.iter().map(AccuracyPreset::in_words).collect();
     let presets: Vec<Choice<'_>> = ACCURACY_PRESETS
@@ -217,18 +213,19 @@ fn settings_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         .map(|(preset, hint)| Choice::new("Accuracy", preset.label, preset.of(&now) == now, hint))
         .collect();
     if let Some(clicked) = row(ui, "Accuracy", |ui| choices_in_rows(ui, &presets)) {
-        asks.push(Ask::Settings(ACCURACY_PRESETS[clicked].of(&now)));
+        requests.push(Request::Settings(ACCURACY_PRESETS[clicked].of(&now)));
     }
     for axis in AXES {
-        axis_ui(ui, axis, state, asks);
+        axis_ui(ui, axis, state, requests);
     }
 }
 
 /// The choices of an axis of accuracy.
-pub(super) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, asks: &mut Vec<Ask>) {
+pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Vec<Request>) {
     let now = state.settings;
     let senseless = (axis.sense)(&state.scene, &state.view).err();
-    let own = |choice: &crate::scene::Choice| choice.is_of_its_own(&state.scene, &state.view, &now);
+    let own =
+        |choice: &crate::accuracy::Choice| choice.is_of_its_own(&state.scene, &state.view, &now);
     let hints: Vec<String> = axis
         .choices
         .iter()
@@ -244,6 +241,6 @@ pub(super) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, asks: &mut Vec<As
         .map(|(choice, hint)| Choice::new(axis.label, choice.label, choice.is(&now), hint))
         .collect();
     if let Some(clicked) = row(ui, axis.label, |ui| choices_in_rows(ui, &all)) {
-        asks.push(Ask::Settings(axis.choices[clicked].of(&now)));
+        requests.push(Request::Settings(axis.choices[clicked].of(&now)));
     }
 }

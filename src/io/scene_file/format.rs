@@ -8,9 +8,10 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
+use crate::accuracy::Settings;
 use crate::scene::{
     Attenuation, Fill, Frame, Lens, MaterialChoice, NormalLength, Normals, Observer, Panels,
-    Projection, Settings, Sides, Steps, Subject, Surface, Transformation, UpAxis, Winding, Wrap,
+    Projection, Sides, Steps, Subject, Surface, Transformation, UpAxis, Winding, Wrap,
 };
 
 /// The version that is written, and the latest that is read.

@@ -16,17 +16,17 @@ use std::path::{Path, PathBuf};
 
 use self::format::{FileModel, FileScene, FileTexture, Head, VERSION};
 use super::error::{LoadError, shown};
+use super::examples;
 use super::findings::{Finding, Findings, joined};
 use super::obj::load_with;
 use super::progress::Progress;
 use super::read::{MOST_WORDS, read, utf_8};
 use super::replace::{SaveError, Worth, replace};
 use super::texture::Pictures;
+use crate::accuracy::Settings;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
-use crate::scene::{
-    Crease, LoadOptions, Model, Scale, Scene, Settings, Texture, UpAxis, View, Winding,
-};
+use crate::scene::{Crease, LoadOptions, Model, Scale, Scene, Texture, UpAxis, View, Winding};
 
 /// What the names of scene files end in, without the point.
 pub const SCENE_ENDING: &str = "marraztu";
@@ -136,6 +136,10 @@ pub fn open_with(
     progress: &Progress,
 ) -> Result<Opened, SceneFileError> {
     let name = shown(path);
+    if let Some(text) = examples::scene_text(path) {
+        let folder = path.parent().unwrap_or(path).to_owned();
+        return open_text(text, &name, folder, relocated, progress);
+    }
     let bytes = utf_8(read(path, MOST_WORDS, &Progress::new())?);
     let text = String::from_utf8(bytes).map_err(|_bytes| SceneFileError::File {
         file: name.clone(),
@@ -236,6 +240,9 @@ impl<'a> Files<'a> {
 
     /// Where a file is that the scene file names.
     fn place(&self, path: &str) -> PathBuf {
+        if examples::is_example(Path::new(path)) {
+            return PathBuf::from(path);
+        }
         let place = paths::plain(&self.folder.join(path));
         self.relocated.get(&place).cloned().unwrap_or(place)
     }
@@ -267,7 +274,10 @@ impl<'a> Files<'a> {
                 Some(own) => own,
                 None => {
                     let place = self.place(path);
-                    self.pictures.texture(&place, &mut self.findings)?
+                    match examples::content(&place) {
+                        Some(content) => examples::texture(&place, content)?,
+                        None => self.pictures.texture(&place, &mut self.findings)?,
+                    }
                 }
             };
             self.textures.insert(path.to_owned(), texture);
@@ -288,7 +298,7 @@ impl<'a> Files<'a> {
         let mut missing: Vec<PathBuf> = of_models
             .chain(textures.iter().copied().filter(|path| super::own_texture(path).is_none()))
             .map(|path| self.place(path))
-            .filter(|place| !place.exists())
+            .filter(|place| examples::content(place).is_none() && !place.exists())
             .collect();
         missing.sort();
         missing.dedup();
@@ -328,7 +338,10 @@ impl<'a> Files<'a> {
                 }
                 let options = LoadOptions { up: *up, scale, winding: *winding, crease };
                 let place = self.place(path);
-                let loaded = load_with(&place, &options, &mut self.pictures, progress)?;
+                let loaded = match examples::content(&place) {
+                    Some(content) => examples::model(&place, content, &options, progress)?,
+                    None => load_with(&place, &options, &mut self.pictures, progress)?,
+                };
                 self.findings.extend(loaded.findings);
                 Ok(Shared::new(loaded.model))
             }

@@ -15,8 +15,8 @@ use crate::base::{Shared, color::Color};
 use crate::io::findings::{FindingKind, Findings};
 use crate::scene::{
     Aim, Camera, CameraId, CameraMode, Command, CommandError, Item, Light, LightId, LightKind,
-    List, MaterialChoice, Model, Object, ObjectId, Orbit, Placed, PolygonMode, Pose, Scene, Sides,
-    Spin, SpotOwner, Steps, Texture, View,
+    List, MaterialChoice, Model, Object, ObjectId, Orbit, PolygonMode, Pose, Scene, Sides, Spin,
+    SpotOwner, Steps, Texture, Tracked, View,
 };
 
 /// The most things of a kind in a scene: each is looked up among all others.
@@ -159,7 +159,7 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
         visible: object.visible,
         model,
         hidden_parts,
-        placement: Placed::new(DMat4::from_cols_array_2d(&object.placement)),
+        placement: Tracked::new(DMat4::from_cols_array_2d(&object.placement)),
         spin: Spin { axes, speed, since },
         material: read_material(&object.material)?,
         surface: object.surface,
@@ -199,7 +199,7 @@ fn read_camera(camera: &FileCamera, needs: &dyn Needs) -> Result<Camera, String>
         visible: camera.visible,
         model: needs.model(&camera.model),
         material: read_material(&camera.material)?,
-        pose: Placed::new(Pose { eye, axes, mode }),
+        pose: Tracked::new(Pose { eye, axes, mode }),
         lens: camera.lens,
     })
 }
@@ -208,12 +208,12 @@ fn read_light(light: &FileLight) -> Result<Light, String> {
     let kind = match light.kind {
         FileLightKind::Ambient => LightKind::Ambient,
         FileLightKind::Sun { direction } => {
-            LightKind::Sun { direction: Placed::new(read_direction(direction)?) }
+            LightKind::Sun { direction: Tracked::new(read_direction(direction)?) }
         }
         FileLightKind::Bulb { position, orbit: FileOrbit { on, speed, since } } => {
             finite("its place", &position)?;
             finite("its orbit", &[speed, since])?;
-            let position = Placed::new(DVec3::from_array(position));
+            let position = Tracked::new(DVec3::from_array(position));
             LightKind::Bulb { position, orbit: Orbit { on, speed, since } }
         }
         FileLightKind::Spot { ref owner, half_aperture, exponent } => {
@@ -244,7 +244,7 @@ fn read_owner(owner: &FileOwner) -> Result<SpotOwner, String> {
         FileOwner::Fixed { position, direction } => {
             finite("its place", &position)?;
             let position = DVec3::from_array(position);
-            SpotOwner::Fixed(Placed::new(Aim { position, direction: read_direction(direction)? }))
+            SpotOwner::Fixed(Tracked::new(Aim { position, direction: read_direction(direction)? }))
         }
     })
 }

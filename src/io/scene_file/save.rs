@@ -10,10 +10,11 @@ use super::format::{
     FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, UNSAID, VERSION,
 };
 use super::paths::relative;
-use crate::io::own_texture;
+use crate::accuracy::Settings;
+use crate::io::{is_example, own_texture};
 use crate::scene::{
     Aim, Camera, CameraId, CameraMode, Light, LightKind, LoadOptions, Model, Object, Orbit, Pose,
-    Scene, Settings, Spin, SpotOwner, Texture, View,
+    Scene, Spin, SpotOwner, Texture, View,
 };
 
 /// A scene with what is saved beside it, as a file holds it. `folder` is the file's, complete.
@@ -58,6 +59,9 @@ fn file_model(model: &Model, folder: &Path) -> Result<FileModel, String> {
 }
 
 fn file_path(path: &Path, folder: &Path) -> Result<String, String> {
+    if let Some(example) = path.to_str().filter(|_| is_example(path)) {
+        return Ok(example.to_owned());
+    }
     let complete = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
     relative(folder, &complete)
         .ok_or_else(|| format!("the name {} cannot be written as text", path.display()))

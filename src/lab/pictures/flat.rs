@@ -6,15 +6,18 @@
 
 use glam::{DMat4, DVec3};
 
+use crate::accuracy::Settings;
+use crate::accuracy::Shot;
 use crate::base::Shared;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
-use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
-use crate::render::{FramePlan, Renderer};
+use crate::render::Renderer;
+use crate::render::plan_frame;
+use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::scene::{
     Camera, CameraId, Lens, List, LoadOptions, MaterialChoice, Mesh, MeshSource, Model, NONE,
-    Object, ObjectId, Part, Placed, Pose, PresetId, Projection, Scene, Settings, Sides,
-    SourceCorner, Surface, View,
+    Object, ObjectId, Part, Pose, PresetId, Projection, Scene, Sides, SourceCorner, Surface,
+    Tracked, View,
 };
 
 /// How far the camera sees, in units.
@@ -64,7 +67,7 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
         visible: false,
         model: model(&[], side, 0),
         material: MaterialChoice::Preset(PresetId::SILVER),
-        pose: Placed::new(Pose::facing_minus_z(DVec3::ZERO)),
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::ZERO)),
         lens: Lens {
             half_size: side as f64 / 2.0,
             parallel_near: 0.0,
@@ -93,7 +96,7 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
 /// Draws a scene of [`scene`].
 #[must_use]
 pub fn draw((scene, view): &(Scene, View), side: usize, renderer: &mut Renderer) -> Picture {
-    let plan = FramePlan::new(scene, view, &Settings::default(), Size::new(side, side));
+    let plan = plan_frame(&Shot::new(scene, view, &Settings::default(), Size::new(side, side)));
     renderer.render(&plan).clone()
 }
 

@@ -11,16 +11,20 @@ use glam::{DMat4, DVec3};
 
 use self::flat::Flat;
 use super::hash::fnv1a;
+use crate::accuracy::Shot;
+use crate::accuracy::{
+    AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm, SpecularPower,
+};
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::base::rng::Rng;
 use crate::io;
-use crate::render::geometry::coverage::{SUBPIXELS, Snapped};
+use crate::render::plan_frame;
+use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::render::{FramePlan, Renderer};
 use crate::scene::{
-    AXES, Arithmetic, Command, Fill, Filter, Item, LightAt, LoadOptions, Mesh, MeshSource, Model,
-    NONE, Normals, Object, Part, Projection, Samples, Scene, Settings, SourceCorner, SpecularForm,
-    SpecularPower, Texture, View, Wrap,
+    Command, Fill, Item, LoadOptions, Mesh, MeshSource, Model, NONE, Normals, Object, Part,
+    Projection, Scene, SourceCorner, Texture, View, Wrap,
 };
 
 /// The width and height of the pictures in pixels.
@@ -80,7 +84,7 @@ pub fn all() -> Vec<TestPicture> {
     let near = nearer(&scene);
     let settings = Settings::default();
     let picture = |name: &str, scene: &Scene, view: &View, settings: Settings| {
-        let plan = FramePlan::new(scene, view, &settings, Size::new(SIDE, SIDE));
+        let plan = plan_frame(&Shot::new(scene, view, &settings, Size::new(SIDE, SIDE)));
         TestPicture { name: String::from(name), plan }
     };
     let (arithmetic, power) = (Arithmetic::F64, SpecularPower::Library);

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use super::Report;
+use crate::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
 use crate::lab::candidates::Group;
 use crate::lab::sweep::{Measured, Row};
-use crate::scene::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
 
 /// A number with three significant digits: "0", "0.0123", "4.57", "137", "1.2e-5".
 #[must_use]

@@ -5,10 +5,10 @@
 //! for whole lights, smallest first, on an object or on what a tile shows of it; the other is for the
 //! foot of highlights, whose powers count as 0 below a common value.
 
-use super::Stage;
-use super::draw::Form;
-use crate::render::effects::{Lamp, Matter};
-use crate::render::region::Region;
+use crate::render::frame::draw::Form;
+use crate::render::frame::draw::Stage;
+use crate::render::lights::region::Region;
+use crate::render::lights::{PhongMaterial, ViewLight};
 
 /// Steps of a byte in a factor of 1.
 const STEPS: f64 = 255.0;
@@ -23,9 +23,14 @@ const HIGHLIGHTS: f64 = 0.249;
 const ROUNDING: f64 = 1.0 + 1e-4;
 
 /// What a light adds to a channel at most, in steps of a byte.
-pub(super) fn most(stage: &Stage, lamp: &Lamp, matter: &Matter, region: Option<&Region>) -> f64 {
+pub(super) fn most(
+    stage: &Stage,
+    lamp: &ViewLight,
+    matter: &PhongMaterial,
+    region: Option<&Region>,
+) -> f64 {
     let highlight = stage.highlight != Form::Plain;
-    STEPS * ROUNDING * (stage.effect.most)(lamp, matter, highlight, region)
+    STEPS * ROUNDING * (stage.effect.max_contribution)(lamp, matter, highlight, region)
 }
 
 /// Takes out of some lights what adds least, as long as all of it stays below `budget` steps of a byte.
@@ -57,7 +62,7 @@ pub(super) fn thin<T>(
 /// `None` where there is no highlight; 1 or more where all of them may go.
 pub(super) fn least_power(
     stages: &[Stage],
-    (lamps, matter): (&[Lamp], &Matter),
+    (lamps, matter): (&[ViewLight], &PhongMaterial),
     region: Option<&Region>,
 ) -> Option<f64> {
     let lit = stages.iter().filter(|stage| stage.highlight != Form::Plain);
@@ -69,7 +74,7 @@ pub(super) fn least_power(
 /// What is cut off of the highlights where powers below `power` count as 0, in steps of a byte.
 pub(super) fn cut_off(
     stages: &[Stage],
-    lit: (&[Lamp], &Matter),
+    lit: (&[ViewLight], &PhongMaterial),
     region: Option<&Region>,
     power: f64,
 ) -> f64 {
@@ -77,7 +82,12 @@ pub(super) fn cut_off(
 }
 
 /// The brightest that the middle of a highlight may be, as a factor.
-fn strength(stage: &Stage, lamp: &Lamp, matter: &Matter, region: Option<&Region>) -> f64 {
+fn strength(
+    stage: &Stage,
+    lamp: &ViewLight,
+    matter: &PhongMaterial,
+    region: Option<&Region>,
+) -> f64 {
     let channels = lamp.color.iter().zip(matter.specular).map(|(color, ks)| color * ks);
-    channels.fold(0.0, f64::max) * (stage.effect.arrives)(lamp, region)
+    channels.fold(0.0, f64::max) * (stage.effect.max_falloff)(lamp, region)
 }

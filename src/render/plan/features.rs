@@ -4,10 +4,11 @@
 
 use std::borrow::Cow;
 
-use super::planner::Planner;
+use super::planning::{Planner, Planning};
 use super::uses::{Effect, EffectUse, State, Thing};
-use super::{Back, Draw, Pipeline, Planning, Shaded};
-use crate::scene::{Filter, ItemId, LightAt, Normals, Object, Settings, Sides, Surface};
+use crate::accuracy::{Filter, LightAt, Settings};
+use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
+use crate::scene::{ItemId, Normals, Object, Sides, Surface};
 
 /// What a row reads.
 struct Facts<'a> {
@@ -26,7 +27,7 @@ const FEATURES: &[Feature] = &[
     Feature(Effect::Surfaces, surfaces),
     Feature(Effect::Normals, normals),
     Feature(Effect::Texture, texture),
-    Feature(Effect::Holes, holes),
+    Feature(Effect::AlphaTest, holes),
     Feature(Effect::VertexColors, vertex_colors),
     Feature(Effect::BackFaces, back_faces),
     Feature(Effect::Edges, |it| switched(it.draw.lines.edges)),
@@ -35,7 +36,7 @@ const FEATURES: &[Feature] = &[
 ];
 
 /// What a thing's being seen is called.
-pub(super) const fn presence(item: ItemId) -> Effect {
+pub(crate) const fn presence(item: ItemId) -> Effect {
     match item {
         ItemId::Object(_) => Effect::Surfaces,
         ItemId::Camera(_) | ItemId::Light(_) => Effect::Marks,
@@ -53,7 +54,7 @@ impl Planner<'_> {
                 Pipeline::Shaded(shaded) => Some(shaded),
                 Pipeline::Flat(_) => None,
             });
-            Facts { settings: self.settings, object, draw, shaded: shaded.collect() }
+            Facts { settings: &self.shot.settings, object, draw, shaded: shaded.collect() }
         };
         let note = |effect: Effect, state: State| EffectUse {
             effect,

@@ -2,12 +2,14 @@
 
 use glam::DVec3;
 
+use super::planning::{Planning, Shining};
 use super::rules::LightFacts;
 use super::uses::{Effect, EffectUse, State};
-use super::{ObserverSpace, Planning};
 use crate::base::math;
-use crate::render::effects::{self, Entry, Lamp};
-use crate::scene::{Aim, Attenuation, LightId, LightKind, Scene, View};
+use crate::render::lights;
+use crate::render::lights::{LightRow, ViewLight};
+use crate::render::plan::observer::ObserverSpace;
+use crate::scene::{Aim, Attenuation, LightKind, Scene, View};
 
 /// The lights that a frame evaluates, in the observer's space.
 pub(super) fn lamps(
@@ -36,13 +38,13 @@ pub(super) fn lamps(
         }
         // What is off or nowhere shines black: so it can be computed, too.
         let shines = light.on && source.is_some();
-        let source = source.unwrap_or_else(|| Source::new(&effects::SPOT));
+        let source = source.unwrap_or_else(|| Source::new(&lights::SPOT));
         let lamp = u32::try_from(into.plan.lamps.len()).expect("fewer than 2^32 lights");
         let (position, attenuation) =
             within_reach(place_of(&source), &light.attenuation, observer.unit);
         let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
         into.plan.lights.push(id);
-        into.plan.lamps.push(Lamp {
+        into.plan.lamps.push(ViewLight {
             color: if shines { light.color.factors() } else { [0.0; 3] },
             position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
@@ -76,21 +78,9 @@ fn within_reach(place: DVec3, fades: &Attenuation, unit: f64) -> (DVec3, [f64; 3
     (place / nearer, coefficients)
 }
 
-/// A light that is evaluated in this frame.
-#[derive(Clone, Debug)]
-pub(super) struct Shining {
-    pub(super) id: LightId,
-    pub(super) name: String,
-    pub(super) effect: &'static Entry,
-    /// The place of its light among the lamps of the plan.
-    pub(super) lamp: u32,
-    /// Whether it is on, and somewhere.
-    pub(super) shines: bool,
-}
-
 /// Where light comes from, in world space.
 struct Source {
-    effect: &'static Entry,
+    effect: &'static LightRow,
     position: DVec3,
     direction: DVec3,
     cos_half_aperture: f64,
@@ -99,7 +89,7 @@ struct Source {
 
 impl Source {
     /// Light that goes everywhere from the origin.
-    const fn new(effect: &'static Entry) -> Self {
+    const fn new(effect: &'static LightRow) -> Self {
         Self {
             effect,
             position: DVec3::ZERO,
@@ -113,12 +103,12 @@ impl Source {
 /// Where a light is now; `None` for a spot whose owner is not there.
 fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
     Some(match kind {
-        LightKind::Ambient => Source::new(&effects::AMBIENT),
+        LightKind::Ambient => Source::new(&lights::AMBIENT),
         LightKind::Sun { direction } => {
-            Source { direction: *direction.now(), ..Source::new(&effects::SUN) }
+            Source { direction: *direction.now(), ..Source::new(&lights::SUN) }
         }
         LightKind::Bulb { position, orbit } => {
-            Source { position: orbit.at(*position.now(), view.time), ..Source::new(&effects::BULB) }
+            Source { position: orbit.at(*position.now(), view.time), ..Source::new(&lights::BULB) }
         }
         LightKind::Spot { owner, half_aperture, exponent } => {
             let Aim { position, direction } = scene.aim(view, owner)?;
@@ -127,7 +117,7 @@ fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
                 direction,
                 cos_half_aperture: libm::cos(half_aperture.to_radians()),
                 exponent: *exponent,
-                ..Source::new(&effects::SPOT)
+                ..Source::new(&lights::SPOT)
             }
         }
     })

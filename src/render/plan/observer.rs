@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
+use crate::accuracy::Shot;
 use crate::base::image::Size;
 use crate::base::math;
-use crate::render::geometry::clip::Screen;
-use crate::render::region::Region;
-use crate::scene::{Lens, Projection, Scene, View};
+use crate::render::lights::region::Region;
+use crate::render::screen::clip::Screen;
+use crate::scene::{Lens, Projection};
 
 /// How far is seen in the unit of view space: at least so far, and less than twice as far.
 const FAR: f64 = 1024.0;
@@ -28,17 +29,19 @@ fn unit(lens: &Lens, projection: Projection) -> f64 {
 /// units far: so light of 32 bits is the same for scenes of atoms and of stars, and for scenes of
 /// ordinary size the unit is the world's.
 #[derive(Debug)]
-pub(in crate::render) struct ObserverSpace {
+pub(crate) struct ObserverSpace {
     /// How many units of view space a unit of the world is.
-    pub(in crate::render) unit: f64,
-    pub(in crate::render) world_from_view: DMat4,
-    pub(in crate::render) view_from_world: DMat4,
-    pub(in crate::render) clip_from_view: DMat4,
-    pub(in crate::render) size: Size,
+    pub(crate) unit: f64,
+    pub(crate) world_from_view: DMat4,
+    pub(crate) view_from_world: DMat4,
+    pub(crate) clip_from_view: DMat4,
+    pub(crate) size: Size,
 }
 
 impl ObserverSpace {
-    pub(super) fn new(scene: &Scene, view: &View, size: Size) -> Self {
+    pub(super) fn new(shot: &Shot) -> Self {
+        let Shot { scene, view, size, .. } = shot;
+        let size = *size;
         let world_from_view = scene.observer_frame(view);
         // The axes are orthonormal, so the inverse turn is the transposed one.
         let turn = DMat3::from_mat4(world_from_view).transpose();

@@ -5,29 +5,21 @@ use std::collections::BTreeSet;
 use glam::{DMat3, DMat4, DVec3};
 
 use super::features::presence;
-use super::lamps::Shining;
+use super::planning::{Planner, Planning};
 use super::rules::Thing;
 use super::surfaces::Ground;
-use super::turning::Turning;
+use super::turning::turning_of;
 use super::uses::{self, EffectUse, State};
-use super::{Back, Draw, Lines, ObserverSpace, Pipeline, Planning};
+use crate::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
 use crate::base::{Shared, color::Color, math};
-use crate::render::marks;
-use crate::render::region::Region;
-use crate::render::ways::Ways;
+use crate::render::frame::draw::{Back, Draw, Lines, Pipeline};
+use crate::render::frame::variants::Variants;
+use crate::render::lights::region::Region;
+use crate::render::plan::helpers;
+use crate::render::plan::observer::ObserverSpace;
 use crate::scene::{
-    Fill, ItemId, LightAt, LightId, LightKind, Model, NormalLength, NormalMatrix, NormalSource,
-    Object, ObjectId, Observer, Scene, Settings, VertexArithmetic, View,
+    Fill, ItemId, LightId, LightKind, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
 };
-
-/// What planning reads.
-pub(super) struct Planner<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) view: &'a View,
-    pub(super) settings: &'a Settings,
-    pub(super) observer: ObserverSpace,
-    pub(super) shining: Vec<Shining>,
-}
 
 /// Where an object is, for the observer.
 struct Placement {
@@ -38,7 +30,7 @@ struct Placement {
 impl Planner<'_> {
     /// Objects, the oldest first.
     pub(super) fn add_objects(&self, into: &mut Planning) {
-        let mut objects: Vec<_> = self.scene.objects.iter().collect();
+        let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
         objects.sort_by_key(|(id, _)| *id);
         for (id, object) in objects {
             match self.not_asked_for(id, object) {
@@ -50,10 +42,10 @@ impl Planner<'_> {
 
     /// Why the user does not want to see an object.
     fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
-        let alone = self.view.only_selected || self.view.polygons.is_some();
+        let alone = self.shot.view.only_selected || self.shot.view.polygons.is_some();
         if !object.visible {
             Some("hidden")
-        } else if alone && self.view.object != Some(id) {
+        } else if alone && self.shot.view.object != Some(id) {
             Some("only the selected object is shown")
         } else {
             None
@@ -61,15 +53,15 @@ impl Planner<'_> {
     }
 
     fn add_object(&self, into: &mut Planning, item: ItemId, object: &Object) {
-        let selected = self.view.object.map(ItemId::Object) == Some(item);
-        let polygons = self.view.polygons.as_ref().filter(|_| selected).map(|mode| {
-            if self.view.polygons_stay {
+        let selected = self.shot.view.object.map(ItemId::Object) == Some(item);
+        let polygons = self.shot.view.polygons.as_ref().filter(|_| selected).map(|mode| {
+            if self.shot.view.polygons_stay {
                 mode.shown.clone()
             } else {
                 BTreeSet::from([mode.current])
             }
         });
-        let back = match (object.is_two_sided(), self.view.back_faces) {
+        let back = match (object.is_two_sided(), self.shot.view.back_faces) {
             (true, _) => Back::Lit,
             (false, true) => Back::Red,
             (false, false) => Back::Left,
@@ -83,7 +75,7 @@ impl Planner<'_> {
             },
             polygons,
             lines: self.lines(&object.model, object.edge_color),
-            ..self.draw(item, &object.model, object.world_from_object(self.view.time))
+            ..self.draw(item, &object.model, object.world_from_object(self.shot.view.time))
         };
         self.add(into, object, draw);
     }
@@ -97,18 +89,18 @@ impl Planner<'_> {
             model: model.clone(),
             clip_from_object,
             view_from_object,
-            view_from_normal: match self.settings.stretched {
+            view_from_normal: match self.shot.settings.stretched {
                 NormalMatrix::Cofactor => math::normal_matrix(linear),
                 NormalMatrix::AsItIs => math::at_power_of_two(linear),
             },
             mirrored: linear.determinant() < 0.0,
             back: Back::Left,
-            normals: self.view.normals,
+            normals: self.shot.view.normals,
             normal_source: NormalSource::File,
             part_pipelines: Vec::new(),
             uniform: None,
             polygons: None,
-            filled: self.view.fill == Fill::Filled,
+            filled: self.shot.view.fill == Fill::Filled,
             lines: Lines {
                 edges: false,
                 face_normals: None,
@@ -121,7 +113,7 @@ impl Planner<'_> {
     /// The way of an object to the observer's spaces.
     fn placement(&self, world_from_object: DMat4) -> Placement {
         let ObserverSpace { view_from_world, clip_from_view, .. } = self.observer;
-        if self.settings.vertices == VertexArithmetic::F32 {
+        if self.shot.settings.vertices == VertexArithmetic::F32 {
             let view_from_object = view_from_world.as_mat4() * world_from_object.as_mat4();
             let clip_from_object = (clip_from_view.as_mat4() * view_from_object).as_dmat4();
             return Placement { view_from_object: view_from_object.as_dmat4(), clip_from_object };
@@ -139,12 +131,12 @@ impl Planner<'_> {
             return left_out(into, item, &object.name, "it has no vertices");
         };
         let thing = Thing { observer: &self.observer, draw: &draw, bounds };
-        let rules = into.plan.rules.clone();
+        let rules = into.plan.rules;
         let reason = if mesh.polygon_count() == 0 {
             Some("it has no faces")
         } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
             Some("its placement is flat: it has no inside and no outside")
-        } else if into.plan.ways.has_rare_geometry() {
+        } else if into.plan.variants.has_rare_geometry() {
             // Where it is seen is not where it is.
             None
         } else {
@@ -156,7 +148,7 @@ impl Planner<'_> {
         if draw.part_pipelines.is_empty() {
             let seen = rules.surfaces(&thing).is_none();
             let (region, tiled) = self.region(&draw, bounds.corners());
-            let turning = Turning::of(&draw, self.settings.light);
+            let turning = turning_of(&draw, self.shot.settings.light);
             let ground = Ground { item, object, region, turning, tiled, seen };
             draw.part_pipelines = self.part_pipelines(into, &ground);
         }
@@ -179,13 +171,13 @@ impl Planner<'_> {
 
     /// Where an object is lit, where that is known, and whether nothing of it is cut.
     fn region(&self, draw: &Draw, corners: [DVec3; 8]) -> (Option<Region>, bool) {
-        if self.settings.light != LightAt::Pixel {
+        if self.shot.settings.light != LightAt::Pixel {
             // At its own vertices and faces, wherever the planes of the view are.
             let exact = Region::placed(draw.view_from_object, corners, 0.0);
             let error = 2e-6 * exact.reach();
             return (Some(Region::placed(draw.view_from_object, corners, error)), false);
         }
-        let sure = !Ways::of(self.settings).has_rare_geometry();
+        let sure = !Variants::of(&self.shot.settings).has_rare_geometry();
         if !sure || !self.observer.holds(draw.clip_from_object, corners) {
             return (None, false);
         }
@@ -193,7 +185,7 @@ impl Planner<'_> {
     }
 
     fn lines(&self, model: &Model, color: Color) -> Lines {
-        let view = self.view;
+        let view = &self.shot.view;
         let extent = model.mesh.bounds().map_or(0.0, |bounds| bounds.extent().max_element());
         let length = match view.normal_length {
             NormalLength::Units => 5.0,
@@ -209,10 +201,10 @@ impl Planner<'_> {
 
     /// Cameras that do not look, and bulbs that shine.
     pub(super) fn add_marks(&self, into: &mut Planning) {
-        let object_looks = self.view.observer == Observer::Object
-            && self.view.object.is_some_and(|id| self.scene.objects.get(id).is_some());
-        for (id, camera) in self.scene.cameras.iter() {
-            let looks = !object_looks && self.view.camera == id;
+        let object_looks = self.shot.view.observer == Observer::Object
+            && self.shot.view.object.is_some_and(|id| self.shot.scene.objects.get(id).is_some());
+        for (id, camera) in self.shot.scene.cameras.iter() {
+            let looks = !object_looks && self.shot.view.camera == id;
             let reason = match (looks, camera.visible) {
                 (true, _) => Some("it looks"),
                 (false, false) => Some("hidden"),
@@ -226,27 +218,27 @@ impl Planner<'_> {
                 name: camera.name.clone(),
                 ..Object::new(camera.model.clone(), camera.material.clone())
             };
-            let placement = marks::world_from_mark(camera);
+            let placement = helpers::world_from_mark(camera);
             let draw = Draw {
-                back: if self.view.back_faces { Back::Red } else { Back::Left },
+                back: if self.shot.view.back_faces { Back::Red } else { Back::Left },
                 lines: self.lines(&mark.model, mark.edge_color),
                 ..self.draw(ItemId::Camera(id), &mark.model, placement)
             };
             self.add(into, &mark, draw);
         }
-        let on = self.scene.lights.iter().filter(|(_, light)| light.on);
+        let on = self.shot.scene.lights.iter().filter(|(_, light)| light.on);
         for (id, position) in on.filter_map(|(id, _)| self.bulb_place(id)) {
-            let Some(placement) = marks::world_from_diamond(&self.observer, position) else {
+            let Some(placement) = helpers::world_from_diamond(&self.observer, position) else {
                 continue;
             };
-            let pipeline = into.pipeline(Pipeline::Flat(marks::YELLOW));
+            let pipeline = into.pipeline(Pipeline::Flat(helpers::YELLOW));
             let draw = Draw {
                 part_pipelines: vec![Some(pipeline)],
                 filled: true,
-                ..self.draw(ItemId::Light(id), marks::diamond(), placement)
+                ..self.draw(ItemId::Light(id), helpers::diamond(), placement)
             };
             let name =
-                self.scene.lights.get(id).map_or_else(String::new, |light| light.name.clone());
+                self.shot.scene.lights.get(id).map_or_else(String::new, |light| light.name.clone());
             let model = draw.model.clone();
             let mark = Object { name, ..Object::new(model, crate::scene::MaterialChoice::File) };
             self.add(into, &mark, draw);
@@ -254,9 +246,9 @@ impl Planner<'_> {
     }
 
     fn bulb_place(&self, id: LightId) -> Option<(LightId, DVec3)> {
-        match &self.scene.lights.get(id)?.kind {
+        match &self.shot.scene.lights.get(id)?.kind {
             LightKind::Bulb { position, orbit } => {
-                Some((id, orbit.at(*position.now(), self.view.time)))
+                Some((id, orbit.at(*position.now(), self.shot.view.time)))
             }
             _ => None,
         }

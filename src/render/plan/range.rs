@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::{Eye, FramePlan};
+use crate::render::frame::{Eye, FramePlan};
 
 /// The least and the largest length in view space whose square, with all that is done to it, has room
 /// in 32 bits.

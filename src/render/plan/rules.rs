@@ -1,79 +1,24 @@
 //! When something is left out of a frame because nothing of the picture changes by it.
 //!
-//! All rules are one table of functions, and planning asks nothing else. So a rule can be switched off,
-//! which draws what it would leave out, and it can be replaced by a wrong one: the proofs of
-//! [`lab`](crate::lab) do both, and see that the picture stays and that it does not.
-
-use std::sync::{Arc, OnceLock};
+//! All rules are here, one function for each decision, and planning asks nothing else. Each gives the
+//! reason for which something is left out. [`Rules::Ignored`] leaves nothing out: the same picture,
+//! which is how the rules are tested.
 
 use super::observer::ObserverSpace;
-use super::turning::{Turning, is_turned_away};
-use super::{Draw, Stage};
-use crate::base::once::get_or_compute;
-use crate::render::changes::Changes;
-use crate::render::effects::{Entry, Lamp, Matter};
-use crate::render::region::Region;
+use super::turning::is_turned_away;
+use crate::render::frame::Rules;
+use crate::render::frame::draw::{Draw, Stage};
+use crate::render::lights::region::Region;
+use crate::render::lights::turning::Turning;
+use crate::render::lights::{LightRow, PhongMaterial, ViewLight};
 use crate::scene::{Bounds, Light, LightKind, SpotOwner, Texture};
 
-/// Why something is left out; `None` where it is not.
-pub type Verdict = Option<&'static str>;
-
-/// What a rule decides about, and how.
-#[derive(Clone, Copy, Debug)]
-pub enum Test {
-    /// Whether a light is left out of the whole frame.
-    Light(fn(&LightFacts<'_>) -> Verdict),
-    /// Whether a light is left out on a surface, wherever that is.
-    Reflection(fn(&Meeting<'_>) -> Verdict),
-    /// Whether a light's highlight is left out on a surface.
-    Highlight(fn(&Meeting<'_>) -> Verdict),
-    /// Whether a light is left out on an object.
-    Object(fn(&Meeting<'_>) -> Verdict),
-    /// Whether a light is left out on what a tile of the picture shows.
-    Tile(fn(&Meeting<'_>) -> Verdict),
-    /// Whether the places and normals of what is seen are left out.
-    Places(fn(&Reading) -> Verdict),
-    /// Whether the colours of surfaces are left out.
-    Surfaces(fn(&Thing<'_>) -> Verdict),
-    /// Whether an object is left out.
-    Thing(fn(&Thing<'_>) -> Verdict),
-    /// Whether a texture is left out.
-    Texture(fn(Option<&Texture>) -> Verdict),
-    /// Whether looking for the holes of a texture is left out.
-    Holes(fn(&Covering<'_>) -> Verdict),
-    /// Whether a whole frame is left out, for what it changes of the last one.
-    Frame(fn(&Changes) -> Verdict),
-}
-
-/// A rule of the table.
-#[derive(Clone, Copy, Debug)]
-pub struct Rule {
-    /// What it is called in reports.
-    pub name: &'static str,
-    /// What it decides.
-    pub test: Test,
-    variant: Variant,
-}
-
-/// Whether a rule is that of the table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Variant {
-    Sound,
-    Off,
-    Replaced,
-}
-
-impl PartialEq for Rule {
-    fn eq(&self, other: &Self) -> bool {
-        (self.name, self.variant) == (other.name, other.variant)
-    }
-}
-
-impl Eq for Rule {}
+/// Why something is left out; `None` if it is not.
+type Verdict = Option<&'static str>;
 
 /// A light, and whether there is a place from which it shines.
 #[derive(Clone, Copy, Debug)]
-pub struct LightFacts<'a> {
+pub(crate) struct LightFacts<'a> {
     /// The light.
     pub light: &'a Light,
     /// Whether what it is fixed to is there, if it is fixed to anything.
@@ -82,13 +27,13 @@ pub struct LightFacts<'a> {
 
 /// A light and a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting<'a> {
+pub(crate) struct Meeting<'a> {
     /// How the light lights.
-    pub effect: &'static Entry,
+    pub effect: &'static LightRow,
     /// The light.
-    pub lamp: &'a Lamp,
+    pub lamp: &'a ViewLight,
     /// The surface.
-    pub matter: &'a Matter,
+    pub matter: &'a PhongMaterial,
     /// Where the surface is, where that is known.
     pub region: Option<&'a Region>,
     /// How its faces are turned, where that is known.
@@ -97,25 +42,25 @@ pub struct Meeting<'a> {
 
 /// The lights of a surface.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Reading {
+pub(crate) struct Reading {
     /// How many they are.
     pub lights: usize,
     /// How many of them look at where a place is, how it is turned, or from where it is seen.
-    pub of_places: usize,
+    pub of_positions: usize,
 }
 
 impl Reading {
     pub(super) fn of<'a>(stages: impl Iterator<Item = &'a Stage>) -> Self {
         stages.fold(Self::default(), |sum, stage| Self {
             lights: sum.lights + 1,
-            of_places: sum.of_places + usize::from(stage.effect.reads_places),
+            of_positions: sum.of_positions + usize::from(stage.effect.reads_positions),
         })
     }
 }
 
 /// A mesh at its place, seen by somebody.
 #[derive(Clone, Copy, Debug)]
-pub struct Thing<'a> {
+pub(crate) struct Thing<'a> {
     pub(super) observer: &'a ObserverSpace,
     pub(super) draw: &'a Draw,
     pub(super) bounds: Bounds,
@@ -124,20 +69,20 @@ pub struct Thing<'a> {
 impl Thing<'_> {
     /// Whether all of it lies outside the view: its box, and no normals reach out of that.
     #[must_use]
-    pub fn is_outside(&self) -> bool {
+    pub(crate) fn is_outside(&self) -> bool {
         let corners = self.bounds.corners();
         !self.draws_normals() && self.observer.misses(self.draw.clip_from_object, corners)
     }
 
     /// Whether all of its faces are turned away, and so are not drawn; where it has few.
     #[must_use]
-    pub fn is_turned_away(&self) -> bool {
+    pub(crate) fn is_turned_away(&self) -> bool {
         !self.draws_normals() && is_turned_away(self.draw, self.observer.size)
     }
 
     /// Whether its polygons are filled.
     #[must_use]
-    pub const fn is_filled(&self) -> bool {
+    pub(crate) const fn is_filled(&self) -> bool {
         self.draw.filled
     }
 
@@ -148,7 +93,7 @@ impl Thing<'_> {
 
 /// A texture on a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Covering<'a> {
+pub(crate) struct Covering<'a> {
     /// The texture.
     pub texture: &'a Texture,
     /// What its alpha is multiplied with; below one half together, nothing is drawn.
@@ -158,32 +103,81 @@ pub struct Covering<'a> {
 impl Covering<'_> {
     /// Whether something is drawn at each of its texels, and so anywhere between them.
     #[must_use]
-    pub fn has_no_holes(&self) -> bool {
+    pub(crate) fn has_no_holes(&self) -> bool {
         f64::from(self.texture.picture.least_alpha()) / 255.0 * self.opacity >= 0.5
     }
 }
 
-/// The table. A new rule is a line here.
-const TABLE: &[(&str, Test)] = &[
-    ("light off", Test::Light(|it| (!it.light.on).then_some("switched off"))),
-    (
-        "light black",
-        Test::Light(|it| (it.light.color.0 == [0; 3]).then_some("its colour is black")),
-    ),
-    ("light without an owner", Test::Light(without_owner)),
-    ("coefficients 0", Test::Reflection(|it| (it.effect.needless)(it.lamp, it.matter))),
-    ("Ks 0", Test::Highlight(|it| (!it.matter.mirrors(it.lamp)).then_some("Ks is 0"))),
-    ("object beyond the light", Test::Object(|it| (it.effect.misses)(it.lamp, it.region?))),
-    ("light behind the faces", Test::Object(behind)),
-    ("tile beyond the light", Test::Tile(|it| (it.effect.misses)(it.lamp, it.region?))),
-    ("normals not needed", Test::Places(|it| (it.of_places == 0).then_some("no light reads them"))),
-    ("surfaces not filled", Test::Surfaces(|it| (!it.is_filled()).then_some("edges only"))),
-    ("outside the view", Test::Thing(|it| it.is_outside().then_some("outside the view"))),
-    ("turned away", Test::Thing(|it| it.is_turned_away().then_some("every face is turned away"))),
-    ("no texture", Test::Texture(|it| it.is_none().then_some("there is none"))),
-    ("texture without holes", Test::Holes(|it| it.has_no_holes().then_some("it has no holes"))),
-    ("unchanged", Test::Frame(|it| it.is_nothing().then_some("nothing has changed"))),
-];
+impl Rules {
+    /// Whether a light is left out of the whole frame.
+    pub(super) fn light(self, it: &LightFacts<'_>) -> Verdict {
+        self.verdict(|| {
+            because(!it.light.on, "switched off")
+                .or_else(|| because(it.light.color.0 == [0; 3], "its colour is black"))
+                .or_else(|| without_owner(it))
+        })
+    }
+
+    /// Whether a light is left out on a surface, wherever that is.
+    pub(super) fn reflection(self, it: &Meeting<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_noop)(it.lamp, it.matter))
+    }
+
+    /// Whether a light's highlight is left out on a surface.
+    pub(super) fn highlight(self, it: &Meeting<'_>) -> Verdict {
+        self.verdict(|| because(!it.matter.mirrors(it.lamp), "Ks is 0"))
+    }
+
+    /// Whether a light is left out on an object.
+    pub(super) fn object(self, it: &Meeting<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_culled)(it.lamp, it.region?).or_else(|| behind(it)))
+    }
+
+    /// Whether a light is left out on what a tile of the picture shows.
+    pub(super) fn tile(self, it: &Meeting<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_culled)(it.lamp, it.region?))
+    }
+
+    /// Whether the positions and normals of fragments are left out.
+    pub(super) fn positions(self, it: &Reading) -> Verdict {
+        self.verdict(|| because(it.of_positions == 0, "no light reads them"))
+    }
+
+    /// Whether the colours of surfaces are left out.
+    pub(super) fn surfaces(self, it: &Thing<'_>) -> Verdict {
+        self.verdict(|| because(!it.is_filled(), "edges only"))
+    }
+
+    /// Whether an object is left out.
+    pub(super) fn thing(self, it: &Thing<'_>) -> Verdict {
+        self.verdict(|| {
+            because(it.is_outside(), "outside the view")
+                .or_else(|| because(it.is_turned_away(), "every face is turned away"))
+        })
+    }
+
+    /// Whether a texture is left out.
+    pub(super) fn texture(self, it: Option<&Texture>) -> Verdict {
+        self.verdict(|| because(it.is_none(), "there is none"))
+    }
+
+    /// Whether the alpha test of a texture is left out.
+    pub(super) fn holes(self, it: &Covering<'_>) -> Verdict {
+        self.verdict(|| because(it.has_no_holes(), "it has no holes"))
+    }
+
+    /// The verdict of a rule, if rules apply.
+    fn verdict(self, rule: impl FnOnce() -> Verdict) -> Verdict {
+        match self {
+            Self::Applied => rule(),
+            Self::Ignored => None,
+        }
+    }
+}
+
+fn because(left_out: bool, reason: &'static str) -> Verdict {
+    left_out.then_some(reason)
+}
 
 fn behind(it: &Meeting<'_>) -> Verdict {
     let is_behind = (it.effect.is_behind)(it.lamp, it.region?, it.turning?);
@@ -199,107 +193,4 @@ fn without_owner(it: &LightFacts<'_>) -> Verdict {
         _ => "its place is no number",
     };
     (!it.is_placed).then_some(reason)
-}
-
-/// The rules that a frame is planned by.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Rules(Vec<Rule>);
-
-impl Rules {
-    /// How many there are.
-    pub const COUNT: usize = TABLE.len();
-
-    /// The rules of the table.
-    #[must_use]
-    pub fn sound() -> Arc<Self> {
-        static SOUND: OnceLock<Arc<Rules>> = OnceLock::new();
-        Arc::clone(get_or_compute(&SOUND, || Arc::new(Self::of(Variant::Sound))))
-    }
-
-    /// The same with every rule switched off: everything that a scene names is computed.
-    #[must_use]
-    pub fn off() -> Arc<Self> {
-        let mut rules = Self::of(Variant::Off);
-        for rule in &mut rules.0 {
-            rule.test = rule.test.never();
-        }
-        Arc::new(rules)
-    }
-
-    /// The rules of the table with one of them, by its name, replaced.
-    #[must_use]
-    pub fn with(name: &str, replace: impl FnOnce(Test) -> Test) -> Option<Arc<Self>> {
-        let mut rules = Self::of(Variant::Sound);
-        let rule = rules.0.iter_mut().find(|rule| rule.name == name)?;
-        (rule.test, rule.variant) = (replace(rule.test), Variant::Replaced);
-        Some(Arc::new(rules))
-    }
-
-    fn of(variant: Variant) -> Self {
-        Self(TABLE.iter().map(|(name, test)| Rule { name, test: *test, variant }).collect())
-    }
-
-    /// The rules, in order.
-    pub fn iter(&self) -> impl Iterator<Item = &Rule> {
-        self.0.iter()
-    }
-
-    fn first(&self, ask: impl Fn(&Test) -> Verdict) -> Verdict {
-        self.0.iter().find_map(|rule| ask(&rule.test))
-    }
-}
-
-/// From rows `method kind facts`: the method that asks the rules of a kind, and for the kind the rules
-/// that never and always leave out.
-macro_rules! kinds {
-    ($($method:ident $kind:ident($($name:ident: $facts:ty),+);)+) => {
-        impl Rules {
-            $(
-                pub(in crate::render) fn $method(&self, $($name: $facts),+) -> Verdict {
-                    self.first(|test| match test {
-                        Test::$kind(test) => test($($name),+),
-                        _ => None,
-                    })
-                }
-            )+
-        }
-
-        impl Test {
-            /// The rule of the same kind that leaves nothing out.
-            #[must_use]
-            pub fn never(self) -> Self {
-                match self {
-                    $(Self::$kind(_) => Self::$kind(|$($name: $facts),+| {
-                        let _ = ($($name),+);
-                        None
-                    }),)+
-                }
-            }
-
-            /// The rule of the same kind that leaves out whatever it is asked about.
-            #[must_use]
-            pub fn always(self) -> Self {
-                match self {
-                    $(Self::$kind(_) => Self::$kind(|$($name: $facts),+| {
-                        let _ = ($($name),+);
-                        Some("always")
-                    }),)+
-                }
-            }
-        }
-    };
-}
-
-kinds! {
-    light Light(it: &LightFacts<'_>);
-    reflection Reflection(it: &Meeting<'_>);
-    highlight Highlight(it: &Meeting<'_>);
-    object Object(it: &Meeting<'_>);
-    tile Tile(it: &Meeting<'_>);
-    places Places(it: &Reading);
-    surfaces Surfaces(it: &Thing<'_>);
-    thing Thing(it: &Thing<'_>);
-    texture Texture(it: Option<&Texture>);
-    holes Holes(it: &Covering<'_>);
-    frame Frame(it: &Changes);
 }

@@ -3,21 +3,20 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use super::draw::Form;
-use super::lamps::Shining;
-use super::planner::Planner;
+use super::bounded;
+use super::planning::{Planner, Planning, Shining};
 use super::rules::{Covering, Meeting, Reading};
-use super::turning::Turning;
 use super::uses::{self, Class, Effect, EffectUse, State};
-use super::{Pipeline, Planning, Shaded, Stage, bounded};
+use crate::accuracy::{Arithmetic, LeaveOut, LightAt, SpecularForm};
 use crate::base::image::{Picture, Size};
 use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color};
-use crate::render::effects::Matter;
-use crate::render::region::Region;
-use crate::scene::{
-    Arithmetic, ItemId, LeaveOut, LightAt, Object, PartLook, SpecularForm, Surface, Texture, Wrap,
-};
+use crate::render::frame::draw::Form;
+use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::lights::PhongMaterial;
+use crate::render::lights::region::Region;
+use crate::render::lights::turning::Turning;
+use crate::scene::{ItemId, Object, PartLook, Surface, Texture, Wrap};
 
 /// What the surfaces of an object have in common.
 #[derive(Debug)]
@@ -71,7 +70,7 @@ impl Planner<'_> {
             return Some(into.pipeline(Pipeline::Flat(Color([0; 3]))));
         }
         let mesh = &object.model.mesh;
-        let rules = into.plan.rules.clone();
+        let rules = into.plan.rules;
         let texture = look.texture.filter(|_| !mesh.uvs().is_empty());
         let texture = match rules.texture(texture.map(|texture| &**texture)) {
             Some(_) => None,
@@ -95,7 +94,7 @@ impl Planner<'_> {
     fn lit(&self, into: &mut Planning, ground: &Ground<'_>, look: &PartLook<'_>) -> Shaded {
         let matter = coefficients(look);
         let floor = self.floor(into, ground.region.as_ref(), &matter);
-        let mut matter = matter.with_floor(floor, self.settings.power);
+        let mut matter = matter.with_floor(floor, self.shot.settings.power);
         let mut shaded = Shaded {
             matter,
             light: None,
@@ -112,28 +111,28 @@ impl Planner<'_> {
             return shaded;
         }
         let mut stages = self.stages(into, ground, &matter);
-        if self.settings.leave_out == LeaveOut::HalfStep {
+        if self.shot.settings.leave_out == LeaveOut::HalfStep {
             shaded.dropped = self.thin(into, ground, &matter, &mut stages);
             (matter, shaded.cut_off) = self.cut(into, ground, matter, &mut stages);
         }
         shaded.matter = matter;
-        shaded.places = into.plan.rules.places(&Reading::of(stages.iter())).is_none();
+        shaded.places = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
         // Tile by tile where some light shines on a part of space only, or is too faint in some.
         shaded.tiled = ground.tiled
-            && (self.settings.leave_out == LeaveOut::HalfStep
+            && (self.shot.settings.leave_out == LeaveOut::HalfStep
                 || stages.iter().any(|stage| stage.effect.has_reach));
         shaded.light = Some(stages);
         shaded
     }
 
     /// The power of 2 below which powers of highlights count as 0.
-    fn floor(&self, into: &Planning, region: Option<&Region>, matter: &Matter) -> f64 {
+    fn floor(&self, into: &Planning, region: Option<&Region>, matter: &PhongMaterial) -> f64 {
         // By what the scene says, and not by what is left of it after leaving out.
         let with_highlight = |shining: &&Shining| {
             let lamp = &into.plan.lamps[shining.lamp as usize];
             shining.shines
                 && matter.mirrors(lamp)
-                && (shining.effect.needless)(lamp, matter).is_none()
+                && (shining.effect.is_noop)(lamp, matter).is_none()
         };
         let lit = || self.shining.iter().filter(with_highlight);
         // A highlight that is stronger than its light reaches further down, and so does one of a light
@@ -143,14 +142,14 @@ impl Planner<'_> {
         // off here would be all that its polygons show.
         let arriving = |shining: &Shining| {
             let lamp = &into.plan.lamps[shining.lamp as usize];
-            (shining.effect.arrives)(lamp, region)
+            (shining.effect.max_falloff)(lamp, region)
         };
-        let arriving = match self.settings.light {
+        let arriving = match self.shot.settings.light {
             LightAt::Face | LightAt::Vertex => 1.0,
             LightAt::Pixel | LightAt::Sample => lit().map(arriving).fold(1.0, f64::max),
         };
         let deeper = |floor: f64| (floor - libm::log2(strongest * arriving)).max(LOWEST);
-        if self.settings.arithmetic == Arithmetic::F64 {
+        if self.shot.settings.arithmetic == Arithmetic::F64 {
             return deeper(-24.0);
         }
         let count = lit().count().max(1);
@@ -161,7 +160,12 @@ impl Planner<'_> {
     }
 
     /// The lights that a material needs, in the order of the scene.
-    fn stages(&self, into: &mut Planning, ground: &Ground<'_>, matter: &Matter) -> Vec<Stage> {
+    fn stages(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        matter: &PhongMaterial,
+    ) -> Vec<Stage> {
         let mut stages = Vec::new();
         let mut no_highlight = Some("no light is on it");
         for Shining { id, name, effect, lamp, .. } in &self.shining {
@@ -181,10 +185,10 @@ impl Planner<'_> {
                 continue;
             }
             let plain = into.plan.rules.highlight(&meeting);
-            if effect.reads_places {
+            if effect.reads_positions {
                 no_highlight = no_highlight.and(plain);
             }
-            let highlight = match self.settings.specular {
+            let highlight = match self.shot.settings.specular {
                 _ if plain.is_some() => Form::Plain,
                 SpecularForm::Reflection => Form::Reflection,
                 SpecularForm::HalfVector => Form::HalfVector,
@@ -196,7 +200,7 @@ impl Planner<'_> {
     }
 
     fn note_highlights(&self, ground: &Ground<'_>, left_out: Option<State>) -> EffectUse {
-        let form = match self.settings.specular {
+        let form = match self.shot.settings.specular {
             SpecularForm::Reflection => "(R.V)^Ns",
             SpecularForm::HalfVector => "(N.H)^Ns",
         };
@@ -214,7 +218,7 @@ impl Planner<'_> {
         &self,
         into: &mut Planning,
         ground: &Ground<'_>,
-        matter: &Matter,
+        matter: &PhongMaterial,
         stages: &mut Vec<Stage>,
     ) -> f64 {
         let Planning { plan, notes, .. } = into;
@@ -240,9 +244,9 @@ impl Planner<'_> {
         &self,
         into: &mut Planning,
         ground: &Ground<'_>,
-        matter: Matter,
+        matter: PhongMaterial,
         stages: &mut [Stage],
-    ) -> (Matter, f64) {
+    ) -> (PhongMaterial, f64) {
         let lit = (&into.plan.lamps[..], &matter);
         let region = ground.region.as_ref();
         let Some(power) = bounded::least_power(stages, lit, region) else { return (matter, 0.0) };
@@ -252,7 +256,7 @@ impl Planner<'_> {
         }
         let cut_off = bounded::cut_off(stages, lit, region, power.min(1.0));
         if power < 1.0 {
-            return (matter.with_floor(floor, self.settings.power), cut_off);
+            return (matter.with_floor(floor, self.shot.settings.power), cut_off);
         }
         for stage in stages {
             stage.highlight = Form::Plain;
@@ -273,15 +277,15 @@ const LARGEST: f64 = 1e30;
 
 /// What a part reflects. A file may say anything: what is no number reflects nothing, and an exponent
 /// below 0 would make a highlight of what is not one.
-fn coefficients(look: &PartLook<'_>) -> Matter {
+fn coefficients(look: &PartLook<'_>) -> PhongMaterial {
     let material = look.material;
     let number = |k: f64| if k.is_nan() { 0.0 } else { k };
     let held = |color: [f64; 3]| color.map(|k| number(k).clamp(-LARGEST, LARGEST));
-    Matter {
+    PhongMaterial {
         ambient: held(material.ambient),
         diffuse: held(material.diffuse),
         specular: held(material.specular),
         exponent: number(material.exponent).clamp(0.0, LARGEST),
-        ..Matter::default()
+        ..PhongMaterial::default()
     }
 }

@@ -4,22 +4,22 @@
 //! and all that the tile shows lies in it. A light that misses the piece is taken out of the lists of
 //! stages that the tile is coloured by; so no pixel asks.
 
-use fearless_simd::Level;
 use glam::DVec3;
 
 use super::rules::{Meeting, Reading};
-use super::{Eye, FramePlan, Pipeline, Shaded, Stage, bounded};
-use crate::render::geometry::coverage::PixelBox;
-use crate::render::region::Region;
-use crate::render::visibility::tile::Visibility;
-use crate::scene::{LeaveOut, Samples};
+use crate::accuracy::{LeaveOut, Samples};
+use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::frame::{Eye, FramePlan};
+use crate::render::lights::region::Region;
+use crate::render::plan::bounded;
+use crate::render::screen::coverage::PixelBox;
 
 /// What interpolating a depth, or one by w, in 32 bits may be wrong by, as a part of the largest.
 const ROUNDING: f64 = 2e-6;
 
 /// The stages of a tile. Each thread has its own, and keeps its memory.
 #[derive(Debug, Default)]
-pub(in crate::render) struct TilePlan {
+pub(crate) struct TilePlan {
     /// Where everything is that the tile shows, where it matters.
     region: Option<Region>,
     /// By pipeline: what was decided, if it was in this tile.
@@ -43,24 +43,24 @@ struct Decided {
 
 /// The lights that a tile is coloured by, with one pipeline.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::render) struct TileLight<'a> {
+pub(crate) struct TileLight<'a> {
     /// All of the pipeline's, in the order of the scene.
-    pub(in crate::render) stages: &'a [Stage],
+    pub(crate) stages: &'a [Stage],
     /// The places of those that are evaluated, where not all are.
-    pub(in crate::render) kept: Option<&'a [u32]>,
+    pub(crate) kept: Option<&'a [u32]>,
     /// Whether any of them looks at places and normals.
-    pub(in crate::render) places: bool,
+    pub(crate) places: bool,
     /// What the lights that were left out add at most, in steps of a byte.
-    pub(in crate::render) dropped: f64,
+    pub(crate) dropped: f64,
 }
 
 impl TilePlan {
-    /// Turns to a tile whose visibility is known.
-    pub(in crate::render) fn begin(
+    /// Turns to a tile. `depths` gives the least and the largest depth of its triangles, if it has any.
+    pub(crate) fn begin(
         &mut self,
-        (level, plan): (Level, &FramePlan),
-        visibility: &Visibility,
+        plan: &FramePlan,
         bounds: PixelBox,
+        depths: impl FnOnce() -> Option<[f32; 2]>,
     ) {
         for pipeline in self.seen.drain(..) {
             self.decided[pipeline] = None;
@@ -70,13 +70,13 @@ impl TilePlan {
             |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
         let middles = plan.samples == Samples::One || plan.lit_by_sample;
         let tiled = middles && plan.pipelines.iter().any(tiled);
-        let depths = tiled.then(|| visibility.depths(level));
+        let depths = tiled.then(depths);
         self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));
         self.decided.resize(plan.pipelines.len(), None);
     }
 
     /// The lights of a surface in this tile.
-    pub(in crate::render) fn light<'a>(
+    pub(crate) fn light<'a>(
         &'a mut self,
         plan: &FramePlan,
         pipeline: u32,
@@ -124,7 +124,7 @@ impl TilePlan {
             dropped += bounded::thin(&mut self.own, most, budget, |_, _| {});
         }
         let kept = self.own.iter().map(|place| &stages[*place as usize]);
-        let places = plan.rules.places(&Reading::of(kept)).is_none();
+        let places = plan.rules.positions(&Reading::of(kept)).is_none();
         let from = self.kept.len();
         self.kept.extend_from_slice(&self.own);
         Decided { from, to: self.kept.len(), places, dropped }

@@ -3,47 +3,37 @@
 
 use glam::DVec3;
 
-use super::{Back, Draw};
+use crate::accuracy::LightAt;
 use crate::base::image::Size;
 use crate::base::math;
-use crate::render::geometry::clip::{Screen, ScreenVertex};
-use crate::render::geometry::coverage::doubled_area;
-use crate::scene::{LightAt, Normals, dvec3};
+use crate::render::frame::draw::{Back, Draw};
+use crate::render::lights::turning::Turning;
+use crate::render::screen::clip::{Screen, ScreenVertex};
+use crate::render::screen::coverage::doubled_area;
+use crate::scene::{Normals, dvec3};
 
 /// As many triangles or normals at most.
 const FEW: usize = 64;
 
-/// The normals by which a small mesh is lit, in view space, of length 1.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Turning(Vec<DVec3>);
-
-impl Turning {
-    /// Those of a draw; `None` where they are many, where backs are lit, or where placing stretches some
-    /// so much more than others that their mixtures are not sure.
-    pub(super) fn of(draw: &Draw, light_at: LightAt) -> Option<Self> {
-        let mesh = &draw.model.mesh;
-        let normals = match (light_at, draw.normals) {
-            (LightAt::Face, _) | (_, Normals::Face) => mesh.polygon_normals(),
-            (_, Normals::Vertex) => &mesh.draw_order().points(draw.normal_source).normals,
-        };
-        if normals.len() > FEW || draw.back == Back::Lit {
-            return None;
-        }
-        let placed: Vec<DVec3> =
-            normals.iter().map(|normal| draw.view_from_normal * dvec3(*normal)).collect();
-        let lengths = || placed.iter().map(|normal| normal.length());
-        let (least, most) =
-            (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
-        if least * 10.0 < most {
-            return None;
-        }
-        placed.into_iter().map(math::unit).collect::<Option<_>>().map(Self)
+/// The normals of a draw; `None` where they are many, where backs are lit, or where placing stretches some
+/// so much more than others that their mixtures are not sure.
+pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Turning> {
+    let mesh = &draw.model.mesh;
+    let normals = match (light_at, draw.normals) {
+        (LightAt::Face, _) | (_, Normals::Face) => mesh.polygon_normals(),
+        (_, Normals::Vertex) => &mesh.draw_order().points(draw.normal_source).normals,
+    };
+    if normals.len() > FEW || draw.back == Back::Lit {
+        return None;
     }
-
-    /// Whether this is so of all normals.
-    pub(in crate::render) fn all(&self, is: impl Fn(DVec3) -> bool) -> bool {
-        self.0.iter().all(|normal| is(*normal))
+    let placed: Vec<DVec3> =
+        normals.iter().map(|normal| draw.view_from_normal * dvec3(*normal)).collect();
+    let lengths = || placed.iter().map(|normal| normal.length());
+    let (least, most) = (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
+    if least * 10.0 < most {
+        return None;
     }
+    placed.into_iter().map(math::unit).collect::<Option<_>>().map(Turning)
 }
 
 /// Whether no triangle of a small mesh is drawn because all are turned away, as their corners are

@@ -15,12 +15,12 @@ pub enum Effect {
     Light(LightId),
     /// The highlights of all lights.
     Highlights,
-    /// Places and normals at every pixel.
+    /// Positions and normals at every pixel.
     Normals,
     /// Textures.
     Texture,
     /// Looking for the holes of textures.
-    Holes,
+    AlphaTest,
     /// The colours of vertices.
     VertexColors,
     /// Polygons that are turned away.
@@ -45,7 +45,7 @@ impl Effect {
             Self::Highlights => "Highlights",
             Self::Normals => "Normals at pixels",
             Self::Texture => "Textures",
-            Self::Holes => "Holes of textures",
+            Self::AlphaTest => "AlphaTest of textures",
             Self::VertexColors => "Vertex colours",
             Self::BackFaces => "Back faces",
             Self::Edges => "Edges",

@@ -1,8 +1,10 @@
 //! A plan with one effect taken out, so that it can be measured what the effect costs.
 
-use super::draw::Form;
 use super::rules::Reading;
-use super::{Back, Effect, FramePlan, Pipeline, Shaded};
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::Form;
+use crate::render::frame::draw::{Back, Pipeline, Shaded};
+use crate::render::plan::uses::Effect;
 use crate::scene::ItemId;
 
 impl FramePlan {
@@ -23,7 +25,7 @@ impl FramePlan {
                 shaded.texture = None;
                 shaded.cutout = None;
             }),
-            Effect::Holes => plan.for_each_shaded(|shaded| shaded.cutout = None),
+            Effect::AlphaTest => plan.for_each_shaded(|shaded| shaded.cutout = None),
             Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
             Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Left),
             Effect::Edges => plan.draws.iter_mut().for_each(|draw| draw.lines.edges = false),
@@ -48,12 +50,12 @@ impl FramePlan {
         }
     }
 
-    fn for_each_light(&mut self, change: impl Fn(&mut Vec<super::Stage>)) {
-        let rules = self.rules.clone();
+    fn for_each_light(&mut self, change: impl Fn(&mut Vec<crate::render::frame::draw::Stage>)) {
+        let rules = self.rules;
         self.for_each_shaded(|shaded| {
             if let Some(stages) = &mut shaded.light {
                 change(stages);
-                shaded.places = rules.places(&Reading::of(stages.iter())).is_none();
+                shaded.places = rules.positions(&Reading::of(stages.iter())).is_none();
             }
         });
     }

@@ -3,28 +3,29 @@
 //! Where all that is to do is to mix colours, or to light what is there, that is one pass without a list;
 //! all else goes the way of other blocks.
 
+use super::context::ShadingContext;
 use super::groups::{Group, group_of};
 use super::interpolate::Look;
-use super::surface::{Out, Scenery, Shader};
-use super::whole::{BlockLight, Blocks, Canvas};
-use crate::render::effects::Light;
-use crate::render::plan::{Back, Pipeline};
-use crate::scene::{LightAt, Rounding};
+use super::interpolated::ShadingNumber;
+use super::surface::{Out, Shader};
+use crate::accuracy::{LightAt, Rounding};
+use crate::render::frame::draw::{Back, Pipeline};
+use crate::render::shading::full_blocks::{BlockLight, Blocks, Canvas};
 
-impl<T: Light> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers as a whole.
-    pub(super) fn whole_blocks(
+    pub(crate) fn whole_blocks(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         number: u32,
         blocks: Blocks,
         canvas: &mut Canvas<'_>,
     ) {
-        let group = group_of(scenery, number);
+        let group = group_of(context, number);
         let [x, y] = blocks.corner;
         self.items.list_whole(number, [x, y]);
-        if self.mix_blocks(scenery, &group, blocks, canvas)
-            || self.light_blocks(scenery, &group, blocks, canvas)
+        if self.mix_blocks(context, &group, blocks, canvas)
+            || self.light_blocks(context, &group, blocks, canvas)
         {
             return;
         }
@@ -32,7 +33,7 @@ impl<T: Light> Shader<T> {
             self.items.list_whole(number, [x + column, y + row]);
             let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
             let at = canvas.place(place);
-            self.color_group(scenery, &group, &mut Out::Tile(canvas, at));
+            self.color_group(context, &group, &mut Out::Tile(canvas, at));
         });
     }
 
@@ -40,25 +41,25 @@ impl<T: Light> Shader<T> {
     /// to do is to mix the colours of its corners. Says whether it is.
     fn mix_blocks(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         blocks: Blocks,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let Scenery { level, plan, lit, .. } = *scenery;
+        let ShadingContext { level, plan, lit, .. } = *context;
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return false;
         };
         let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
-        if !mixed || group.draw.back == Back::Red || plan.ways.mixes_one_by_one() {
+        if !mixed || group.draw.back == Back::Red || plan.variants.mixes_one_by_one() {
             return false;
         }
         let tables = lit.tables(group.draw_index, group.pipeline);
         if !tables[0].is_colored() {
             return false;
         }
-        if self.take(scenery, group, true) {
-            self.carry_diffuse(scenery, group, shaded, tables);
+        if self.take(context, group, true) {
+            self.carry_diffuse(context, group, shaded, tables);
             self.faces.spread(level);
         }
         T::mix_blocks(level, &self.faces, blocks, canvas)
@@ -68,24 +69,24 @@ impl<T: Light> Shader<T> {
     /// list, where they are lit and nothing else is done to them. Says whether it is so.
     fn light_blocks(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         blocks: Blocks,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let Scenery { level, plan, shines, .. } = *scenery;
+        let ShadingContext { level, plan, shines, .. } = *context;
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return false;
         };
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
         let textured = shaded.texture.is_some() || shaded.vertex_colors;
-        let rare = plan.ways.has_rare_places()
-            || plan.ways.rare_roots().is_some()
-            || plan.ways.rounding != Rounding::Nearest;
+        let rare = plan.variants.has_rare_places()
+            || plan.variants.rare_roots().is_some()
+            || plan.variants.rounding != Rounding::Nearest;
         if shaded.light.is_none() || !pixels || textured || rare || group.draw.back == Back::Red {
             return false;
         }
-        let new = self.take(scenery, group, true);
+        let new = self.take(context, group, true);
         let Self { tile, faces, batch, .. } = self;
         let lights = tile.light(plan, group.pipeline, shaded);
         if !lights.places {

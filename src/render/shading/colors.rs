@@ -5,13 +5,13 @@
 //! parts are added up as whole numbers. So the sum does not depend on its order, and the mean of equal
 //! colours is the byte that each of them would be.
 
-use crate::render::effects::BATCH;
-use crate::render::geometry::tiles::BLOCK_PIXELS;
-use crate::render::numbers::real::{Machine, Triple};
+use crate::render::screen::tiles::BLOCK_PIXELS;
+use crate::render::simd::BATCH;
+use crate::render::simd::{Lanes, Vec3};
 
 /// What colours are wanted for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Form {
+pub(crate) enum Form {
     /// To be shown.
     #[default]
     Pixels,
@@ -21,10 +21,10 @@ pub(super) enum Form {
 
 /// Colours of a list of pixels.
 #[derive(Debug)]
-pub(in crate::render) struct Colors {
-    pub(super) form: Form,
+pub(crate) struct Colors {
+    pub(crate) form: Form,
     /// Red, green, blue and 255 in the order of memory.
-    pub(super) pixels: [u32; BATCH],
+    pub(crate) pixels: [u32; BATCH],
     /// Red, green and blue.
     parts: [[u32; BATCH]; 3],
 }
@@ -41,30 +41,30 @@ impl Default for Colors {
 impl Colors {
     /// Puts colours in, from `at` on.
     #[inline(always)]
-    pub(super) fn store<M: Machine>(&mut self, machine: M, color: Triple<M::R>, at: usize) {
+    pub(crate) fn store<M: Lanes>(&mut self, lanes: M, color: Vec3<M::R>, at: usize) {
         match self.form {
-            Form::Pixels => machine.store_pixels(color, &mut self.pixels, at),
-            Form::Parts => machine.store_parts(color, machine.lift(0.5), &mut self.parts, at),
+            Form::Pixels => lanes.store_pixels(color, &mut self.pixels, at),
+            Form::Parts => lanes.store_parts(color, lanes.lift(0.5), &mut self.parts, at),
         }
     }
 
     /// The same, with a threshold for each in the place of one half, from where on it is rounded up.
     #[inline(always)]
-    pub(in crate::render) fn store_by<M: Machine>(
+    pub(crate) fn store_by<M: Lanes>(
         &mut self,
-        machine: M,
-        color: Triple<M::R>,
+        lanes: M,
+        color: Vec3<M::R>,
         threshold: M::R,
         at: usize,
     ) {
         match self.form {
-            Form::Pixels => machine.store_pixels_by(color, threshold, &mut self.pixels, at),
-            Form::Parts => machine.store_parts(color, threshold, &mut self.parts, at),
+            Form::Pixels => lanes.store_pixels_by(color, threshold, &mut self.pixels, at),
+            Form::Parts => lanes.store_parts(color, threshold, &mut self.parts, at),
         }
     }
 
     /// Gives all of them one colour.
-    pub(super) fn fill(&mut self, color: [u8; 4]) {
+    pub(crate) fn fill(&mut self, color: [u8; 4]) {
         match self.form {
             Form::Pixels => self.pixels.fill(u32::from_le_bytes(color)),
             Form::Parts => {
@@ -76,7 +76,7 @@ impl Colors {
     }
 
     /// Gives one of them a colour.
-    pub(super) fn set(&mut self, i: usize, color: [u8; 4]) {
+    pub(crate) fn set(&mut self, i: usize, color: [u8; 4]) {
         match self.form {
             Form::Pixels => self.pixels[i] = u32::from_le_bytes(color),
             Form::Parts => {
@@ -88,7 +88,7 @@ impl Colors {
     }
 
     /// Gives each the colour that stands at its place now.
-    pub(super) fn hand_out(&mut self, places: &[i32; BATCH]) {
+    pub(crate) fn hand_out(&mut self, places: &[i32; BATCH]) {
         let hand_out = |row: &mut [u32; BATCH]| {
             let before = *row;
             for (color, place) in row.iter_mut().zip(places) {
@@ -109,7 +109,7 @@ const fn parts(byte: u8) -> u32 {
 
 /// The colours of a block's pixels, added up over their samples: at most 2^6, each below 2^24.
 #[derive(Clone, Debug)]
-pub(in crate::render) struct Sums([[u32; 4]; BLOCK_PIXELS]);
+pub(crate) struct Sums([[u32; 4]; BLOCK_PIXELS]);
 
 impl Default for Sums {
     fn default() -> Self {
@@ -120,7 +120,7 @@ impl Default for Sums {
 impl Sums {
     /// Adds a colour, as often as some samples show it, at a place of the block.
     #[inline(always)]
-    pub(super) fn add(&mut self, place: usize, color: [u8; 4], samples: i32) {
+    pub(crate) fn add(&mut self, place: usize, color: [u8; 4], samples: i32) {
         let sum = &mut self.0[place % BLOCK_PIXELS];
         for (sum, byte) in sum.iter_mut().zip(color) {
             *sum += parts(byte) * samples.cast_unsigned();
@@ -128,13 +128,13 @@ impl Sums {
     }
 
     /// Adds a colour everywhere.
-    pub(super) fn add_everywhere(&mut self, color: [u8; 4], samples: i32) {
+    pub(crate) fn add_everywhere(&mut self, color: [u8; 4], samples: i32) {
         (0..BLOCK_PIXELS).for_each(|place| self.add(place, color, samples));
     }
 
     /// Adds the first of some colours, each at its place and as often as its samples show it.
     #[inline(always)]
-    pub(super) fn add_all(&mut self, colors: &Colors, places: &[u8], samples: &[i32]) {
+    pub(crate) fn add_all(&mut self, colors: &Colors, places: &[u8], samples: &[i32]) {
         let [red, green, blue] = &colors.parts;
         for (i, (place, samples)) in places.iter().zip(samples).enumerate() {
             let sum = &mut self.0[usize::from(*place) % BLOCK_PIXELS];
@@ -148,7 +148,7 @@ impl Sums {
 
     /// The means of 2^`log2` samples, as pixels, row by row.
     #[inline(always)]
-    pub(super) fn means(&self, log2: u32) -> [u32; BLOCK_PIXELS] {
+    pub(crate) fn means(&self, log2: u32) -> [u32; BLOCK_PIXELS] {
         let shift = BITS + log2;
         std::array::from_fn(|i| {
             let [r, g, b, _] = self.0[i];
@@ -163,18 +163,18 @@ mod tests {
     use fearless_simd::{Level, dispatch};
 
     use super::*;
-    use crate::render::numbers::real::{Exact, Number};
-    use crate::render::numbers::sixteen::Sixteen;
+    use crate::render::simd::Sixteen;
+    use crate::render::simd::{Exact, Number};
 
     /// Colours of both forms, from numbers that are the same for all three channels.
     fn both(numbers: &[f32; BATCH]) -> [Colors; 2] {
         [Form::Pixels, Form::Parts].map(|form| {
             let mut colors = Colors { form, ..Colors::default() };
             dispatch!(Level::new(), simd => {
-                let machine = Sixteen(simd);
+                let lanes = Sixteen(simd);
                 for at in (0..BATCH).step_by(16) {
-                    let number = machine.load(numbers, at);
-                    colors.store(machine, Triple([number; 3]), at);
+                    let number = lanes.load(numbers, at);
+                    colors.store(lanes, Vec3([number; 3]), at);
                 }
             });
             colors
@@ -200,7 +200,7 @@ mod tests {
             }
             let mut exact = Colors { form: Form::Parts, ..Colors::default() };
             for (i, number) in numbers.iter().enumerate() {
-                exact.store(Exact, Triple([f64::from(*number); 3]), i);
+                exact.store(Exact, Vec3([f64::from(*number); 3]), i);
                 assert_eq!((exact.parts[0][i] >> BITS) as u8, f64::from(*number).byte());
             }
         }

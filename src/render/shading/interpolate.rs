@@ -1,6 +1,6 @@
 //! From pixels and the triangles that they show to what is there: place, normal, light.
 //!
-//! What the corners carry is mixed by where in its triangle each pixel lies ([`Located`]). A value that
+//! What the corners carry is mixed by where in its triangle each pixel lies ([`Barycentrics`]). A value that
 //! all corners share comes out as it went in, bit for bit, since only differences are weighted.
 //!
 //! The place of a pixel in space is the point of its ray at its depth, so that the direction to the
@@ -10,38 +10,39 @@ use fearless_simd::Level;
 use glam::DMat3;
 
 use super::colors::Colors;
-use super::faces::{Faces, picked};
-use super::items::Items;
-use super::located::Located;
-use crate::render::effects::{Batch, Rows, Sample, set, store};
-use crate::render::geometry::coverage::SUBPIXELS;
-use crate::render::numbers::pick::{SLOTS, paged};
-use crate::render::numbers::real::{Kernel, Machine, Number, Real, Triple};
-use crate::render::plan::{Draw, Eye, FramePlan};
+use crate::render::frame::draw::Draw;
+use crate::render::frame::{Eye, FramePlan};
+use crate::render::lights::{Batch, Rows, Sample, set, store};
+use crate::render::screen::coverage::SUBPIXELS;
+use crate::render::shading::barycentrics::Barycentrics;
+use crate::render::shading::fragments::Fragments;
+use crate::render::shading::triangle_attributes::{TriangleAttributes, picked};
+use crate::render::simd::gather::{SLOTS, paged};
+use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
 
 /// What the corners carry, at some pixels.
 #[inline(always)]
-fn mixed<M: Machine, const PAGES: usize>(
-    machine: M,
+fn mixed<M: Lanes, const PAGES: usize>(
+    lanes: M,
     rows: &[[[M::Number; SLOTS]; 3]; 3],
     slots: M::Slots,
     weights: [M::R; 2],
-) -> Triple<M::R> {
-    let a = picked::<M, PAGES>(machine, &rows[0], slots);
-    let b = picked::<M, PAGES>(machine, &rows[1], slots);
-    let c = picked::<M, PAGES>(machine, &rows[2], slots);
+) -> Vec3<M::R> {
+    let a = picked::<M, PAGES>(lanes, &rows[0], slots);
+    let b = picked::<M, PAGES>(lanes, &rows[1], slots);
+    let c = picked::<M, PAGES>(lanes, &rows[2], slots);
     between([a, b, c], weights)
 }
 
 /// What the first corner carries, and the weighted differences of the others from it.
 #[inline(always)]
-pub(super) fn between<R: Real>([a, b, c]: [Triple<R>; 3], [second, third]: [R; 2]) -> Triple<R> {
+pub(crate) fn between<R: Real>([a, b, c]: [Vec3<R>; 3], [second, third]: [R; 2]) -> Vec3<R> {
     a.plus(b.times(second)).plus(c.times(third))
 }
 
 /// Where what is mixed goes.
 #[derive(Debug)]
-pub(super) enum Mixed<'a, T> {
+pub(crate) enum Mixed<'a, T> {
     /// Light.
     Rows(&'a mut Rows<T>),
     /// Colours.
@@ -49,51 +50,51 @@ pub(super) enum Mixed<'a, T> {
 }
 
 /// Mixes what the corners carry at every pixel.
-pub(super) fn mix<T: Number>(
+pub(crate) fn mix<T: Number>(
     level: Level,
-    items: &Items,
-    faces: &Faces<T>,
-    located: &Located<T>,
+    items: &Fragments,
+    faces: &TriangleAttributes<T>,
+    located: &Barycentrics<T>,
     to: Mixed<'_, T>,
 ) {
     paged!(faces.count, PAGES => T::run(level, Mix::<T, PAGES> { items, faces, located, to }));
 }
 
 struct Mix<'a, T, const PAGES: usize> {
-    items: &'a Items,
-    faces: &'a Faces<T>,
-    located: &'a Located<T>,
+    items: &'a Fragments,
+    faces: &'a TriangleAttributes<T>,
+    located: &'a Barycentrics<T>,
     to: Mixed<'a, T>,
 }
 
 impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
     #[inline(always)]
-    fn run<M: Machine<Number = T>>(self, machine: M) {
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { items, faces, located, mut to } = self;
         for at in (0..items.len).step_by(M::LANES) {
-            let slots = machine.slots(&items.slots, at);
+            let slots = lanes.slots(&items.slots, at);
             let weights =
-                [machine.load(&located.weights[0], at), machine.load(&located.weights[1], at)];
-            let value = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
+                [lanes.load(&located.weights[0], at), lanes.load(&located.weights[1], at)];
+            let value = mixed::<M, PAGES>(lanes, &faces.values, slots, weights);
             match &mut to {
-                Mixed::Rows(rows) => store(machine, value, rows, at),
-                Mixed::Colors(colors) => colors.store(machine, value, at),
+                Mixed::Rows(rows) => store(lanes, value, rows, at),
+                Mixed::Colors(colors) => colors.store(lanes, value, at),
             }
         }
     }
 }
 
 /// Place, normal and direction to the observer of every pixel, from normals that the corners carry.
-pub(super) fn surroundings<T: Number>(
+pub(crate) fn surroundings<T: Number>(
     level: Level,
     (plan, draw): (&FramePlan, &Draw),
-    items: &Items,
-    faces: &Faces<T>,
-    located: &Located<T>,
+    items: &Fragments,
+    faces: &TriangleAttributes<T>,
+    located: &Barycentrics<T>,
     batch: &mut Batch<T>,
 ) {
     let look = Look::new(plan, draw);
-    let way = plan.ways.rare_roots();
+    let way = plan.variants.rare_roots();
     match (items.shared, way) {
         (true, Some(_)) => {
             let kernel = Surroundings::<T, 4, true> { items, faces, located, batch, look };
@@ -148,47 +149,47 @@ impl<T: Number> Rays<T> {
 
 /// How the observer looks at a draw.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look<T> {
+pub(crate) struct Look<T> {
     rays: Rays<T>,
     /// The columns of the matrix that turns normals into view space.
     normals: [[T; 3]; 3],
 }
 
 impl<T: Number> Look<T> {
-    pub(super) fn new(plan: &FramePlan, draw: &Draw) -> Self {
+    pub(crate) fn new(plan: &FramePlan, draw: &Draw) -> Self {
         Self { rays: Rays::new(plan), normals: matrix(draw.view_from_normal) }
     }
 
     /// Place, normal and direction to the observer of some pixels, from the normal there in object space,
     /// where in the picture they are looked at, and their w; in parallel projection `z` is asked.
     #[inline(always)]
-    pub(super) fn at<M: Machine<Number = T>>(
+    pub(crate) fn at<M: Lanes<Number = T>>(
         &self,
-        machine: M,
-        Triple([x, y, z]): Triple<M::R>,
+        lanes: M,
+        Vec3([x, y, z]): Vec3<M::R>,
         [column, row]: [M::R; 2],
         w: M::R,
         depth: impl FnOnce() -> M::R,
     ) -> Sample<M::R> {
         let Self { rays, normals: [nx, ny, nz] } = *self;
-        let (nx, ny, nz) = (set(machine, nx), set(machine, ny), set(machine, nz));
+        let (nx, ny, nz) = (set(lanes, nx), set(lanes, ny), set(lanes, nz));
         let normal = nx.times(x).plus(ny.times(y)).plus(nz.times(z)).unit();
-        let (zero, one) = (machine.lift(0.0), machine.lift(1.0));
-        let x = column * machine.set(rays.x[0]) + machine.set(rays.x[1]);
-        let y = row * machine.set(rays.y[0]) + machine.set(rays.y[1]);
+        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
+        let x = column * lanes.set(rays.x[0]) + lanes.set(rays.x[1]);
+        let y = row * lanes.set(rays.y[0]) + lanes.set(rays.y[1]);
         let (position, to_eye) = if rays.parallel {
-            (Triple([x, y, depth()]), Triple([zero, zero, one]))
+            (Vec3([x, y, depth()]), Vec3([zero, zero, one]))
         } else {
-            (Triple([x * w, y * w, -w]), Triple([-x, -y, one]).unit())
+            (Vec3([x * w, y * w, -w]), Vec3([-x, -y, one]).unit())
         };
         Sample { position, normal, to_eye }
     }
 }
 
 struct Surroundings<'a, T, const PAGES: usize, const SHARED: bool> {
-    items: &'a Items,
-    faces: &'a Faces<T>,
-    located: &'a Located<T>,
+    items: &'a Fragments,
+    faces: &'a TriangleAttributes<T>,
+    located: &'a Barycentrics<T>,
     batch: &'a mut Batch<T>,
     look: Look<T>,
 }
@@ -197,31 +198,29 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
     for Surroundings<'_, T, PAGES, SHARED>
 {
     #[inline(always)]
-    fn run<M: Machine<Number = T>>(self, machine: M) {
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { items, faces, located, batch, look } = self;
         for at in (0..items.len).step_by(M::LANES) {
-            let slots = machine.slots(&items.slots, at);
+            let slots = lanes.slots(&items.slots, at);
             let weights =
-                [machine.load(&located.weights[0], at), machine.load(&located.weights[1], at)];
-            let normal = mixed::<M, PAGES>(machine, &faces.values, slots, weights);
-            let half = machine.lift(0.5);
+                [lanes.load(&located.weights[0], at), lanes.load(&located.weights[1], at)];
+            let normal = mixed::<M, PAGES>(lanes, &faces.values, slots, weights);
+            let half = lanes.lift(0.5);
             let place = match SHARED {
-                true => {
-                    [machine.load(&located.places[0], at), machine.load(&located.places[1], at)]
-                }
-                false => [machine.whole(&items.x, at) + half, machine.whole(&items.y, at) + half],
+                true => [lanes.load(&located.places[0], at), lanes.load(&located.places[1], at)],
+                false => [lanes.whole(&items.x, at) + half, lanes.whole(&items.y, at) + half],
             };
-            let w = machine.load(&located.w, at);
-            let sample = look.at(machine, normal, place, w, || {
-                depth_between(picked::<M, PAGES>(machine, &faces.z, slots), weights)
+            let w = lanes.load(&located.w, at);
+            let sample = look.at(lanes, normal, place, w, || {
+                depth_between(picked::<M, PAGES>(lanes, &faces.z, slots), weights)
             });
-            batch.put(machine, sample, at);
+            batch.put(lanes, sample, at);
         }
     }
 }
 
 /// z between corners, in parallel projection.
 #[inline(always)]
-pub(super) fn depth_between<R: Real>(Triple([z0, z1, z2]): Triple<R>, weights: [R; 2]) -> R {
+pub(crate) fn depth_between<R: Real>(Vec3([z0, z1, z2]): Vec3<R>, weights: [R; 2]) -> R {
     z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1]
 }

@@ -10,16 +10,21 @@ use std::sync::OnceLock;
 use fearless_simd::Level;
 use glam::{DMat3, DVec3};
 
-use super::faces::Faces;
+use super::interpolated::ShadingNumber;
+use crate::accuracy::{LightAt, Normalising};
 use crate::base::math::each;
-use crate::render::effects::{BATCH, Batch, Light, Shine, load, set, store};
-use crate::render::numbers::real::{Kernel, Machine, Number, Real, Triple};
-use crate::render::plan::{Back, Draw, Eye, FramePlan, Pipeline, Shaded, Stage, TileLight};
-use crate::scene::{Facet, LightAt, Normalising, Normals, dvec3};
+use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
+use crate::render::frame::{Eye, FramePlan};
+use crate::render::lights::{Batch, LightTerm, load, set, store};
+use crate::render::plan::tile::TileLight;
+use crate::render::shading::triangle_attributes::TriangleAttributes;
+use crate::render::simd::BATCH;
+use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
+use crate::scene::{Facet, Normals, dvec3};
 
 /// Light at the vertices of a frame, and what it takes to light faces.
 #[derive(Debug, Default)]
-pub(in crate::render) struct Lit<T> {
+pub(crate) struct Lit<T> {
     tables: Vec<Table<T>>,
     /// How many of the tables are of this frame.
     used: usize,
@@ -33,7 +38,7 @@ type Lights<T> = [[T; 4]; BATCH];
 /// The light of one draw by one pipeline on one side, at its points or (with the normals of faces)
 /// at its corners.
 #[derive(Debug, Default)]
-pub(super) struct Table<T> {
+pub(crate) struct Table<T> {
     draw: u32,
     pipeline: u32,
     /// The way to view space, with the normals of this side.
@@ -47,9 +52,9 @@ pub(super) struct Table<T> {
     specular: Vec<OnceLock<Lights<T>>>,
 }
 
-impl<T: Light> Lit<T> {
+impl<T: ShadingNumber> Lit<T> {
     /// Makes ready for what the plan says is lit at vertices.
-    pub(in crate::render) fn prepare(&mut self, plan: &FramePlan) {
+    pub(crate) fn prepare(&mut self, plan: &FramePlan) {
         self.to_view.clear();
         self.to_view.extend(plan.draws.iter().map(|draw| ToView::new(plan, draw)));
         self.used = 0;
@@ -82,7 +87,7 @@ impl<T: Light> Lit<T> {
 
     /// The light of a draw by a pipeline, on the front and on the back; the same where only one side
     /// is lit.
-    pub(super) fn tables(&self, draw: u32, pipeline: u32) -> [&Table<T>; 2] {
+    pub(crate) fn tables(&self, draw: u32, pipeline: u32) -> [&Table<T>; 2] {
         // They were made ready in this order.
         let of = |table: &Table<T>| (table.draw, table.pipeline);
         let tables = &self.tables[..self.used];
@@ -93,11 +98,11 @@ impl<T: Light> Lit<T> {
     }
 
     /// Puts the centres and the normals of some faces of a draw into a batch, in view space.
-    pub(super) fn place_faces(
+    pub(crate) fn place_faces(
         &self,
         level: Level,
         (index, draw): (u32, &Draw),
-        faces: &Faces<T>,
+        faces: &TriangleAttributes<T>,
         batch: &mut Batch<T>,
     ) {
         let mesh = &draw.model.mesh;
@@ -124,16 +129,16 @@ fn put<T: Number>(batch: &mut Batch<T>, i: usize, position: [f32; 3], normal: [f
 
 /// By what the vertices of a draw are lit.
 #[derive(Debug)]
-pub(super) struct Lighting<'a, T> {
-    pub(super) level: Level,
-    pub(super) draw: &'a Draw,
-    pub(super) stages: &'a [Stage],
-    pub(super) shines: &'a [Shine<T>],
+pub(crate) struct Lighting<'a, T> {
+    pub(crate) level: Level,
+    pub(crate) draw: &'a Draw,
+    pub(crate) stages: &'a [Stage],
+    pub(crate) shines: &'a [LightTerm<T>],
 }
 
-impl<T: Light> Table<T> {
+impl<T: ShadingNumber> Table<T> {
     /// Whether there are colours in the place of diffuse light, and no other.
-    pub(super) const fn is_colored(&self) -> bool {
+    pub(crate) const fn is_colored(&self) -> bool {
         self.tint.is_some()
     }
 
@@ -150,7 +155,7 @@ impl<T: Light> Table<T> {
 
     /// The diffuse light at a place, or its colour. What it takes to light it is done in `batch`.
     #[inline(always)]
-    pub(super) fn diffuse(
+    pub(crate) fn diffuse(
         &self,
         place: u32,
         lighting: &Lighting<'_, T>,
@@ -165,7 +170,7 @@ impl<T: Light> Table<T> {
 
     /// The specular light at a place whose diffuse light was asked for before.
     #[inline(always)]
-    pub(super) fn specular(&self, place: u32) -> [T; 4] {
+    pub(crate) fn specular(&self, place: u32) -> [T; 4] {
         let lights = self.specular[place as usize / BATCH].get();
         lights.expect("it comes with diffuse light")[place as usize % BATCH]
     }
@@ -266,20 +271,20 @@ struct Keep<'a, T> {
 
 impl<T: Number> Kernel<T> for Keep<'_, T> {
     #[inline(always)]
-    fn run<M: Machine<Number = T>>(self, machine: M) {
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { batch, tint, to: [diffuse, specular] } = self;
-        let zero = machine.lift(0.0);
+        let zero = lanes.lift(0.0);
         for at in (0..batch.len).step_by(M::LANES) {
-            let Triple([r, g, b]) = load(machine, &batch.diffuse, at);
-            let s = load(machine, &batch.specular, at);
+            let Vec3([r, g, b]) = load(lanes, &batch.diffuse, at);
+            let s = load(lanes, &batch.specular, at);
             if let Some(tint) = tint {
-                let Triple([tr, tg, tb]) = set(machine, tint);
-                let Triple([r, g, b]) = Triple([tr * r, tg * g, tb * b]).plus(s);
-                machine.store_four([r, g, b, zero], diffuse, at);
+                let Vec3([tr, tg, tb]) = set(lanes, tint);
+                let Vec3([r, g, b]) = Vec3([tr * r, tg * g, tb * b]).plus(s);
+                lanes.store_four([r, g, b, zero], diffuse, at);
             } else {
-                let Triple([sr, sg, sb]) = s;
-                machine.store_four([r, g, b, zero], diffuse, at);
-                machine.store_four([sr, sg, sb, zero], specular, at);
+                let Vec3([sr, sg, sb]) = s;
+                lanes.store_four([r, g, b, zero], diffuse, at);
+                lanes.store_four([sr, sg, sb, zero], specular, at);
             }
         }
     }
@@ -312,7 +317,7 @@ impl<T: Number> ToView<T> {
             linear: columns(DMat3::from_mat4(draw.view_from_object)),
             normals: columns(draw.view_from_normal),
             eye: plan.eye,
-            way: plan.ways.rare_roots(),
+            way: plan.variants.rare_roots(),
         }
     }
 
@@ -337,12 +342,12 @@ fn near_observer(draw: &Draw) -> DVec3 {
 
 /// Vectors times a matrix, which is given by its columns.
 #[inline(always)]
-fn turned<M: Machine>(
-    machine: M,
+fn turned<M: Lanes>(
+    lanes: M,
     [a, b, c]: [[M::Number; 3]; 3],
-    Triple([x, y, z]): Triple<M::R>,
-) -> Triple<M::R> {
-    let (a, b, c) = (set(machine, a), set(machine, b), set(machine, c));
+    Vec3([x, y, z]): Vec3<M::R>,
+) -> Vec3<M::R> {
+    let (a, b, c) = (set(lanes, a), set(lanes, b), set(lanes, c));
     a.times(x).plus(b.times(y)).plus(c.times(z))
 }
 
@@ -354,34 +359,34 @@ struct Place<'a, T> {
 
 impl<T: Number> Kernel<T> for Place<'_, T> {
     #[inline(always)]
-    fn run<M: Machine<Number = T>>(self, machine: M) {
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { batch, to_view } = self;
-        let (middle, origin) = (set(machine, to_view.middle), set(machine, to_view.middle_in_view));
+        let (middle, origin) = (set(lanes, to_view.middle), set(lanes, to_view.middle_in_view));
         for at in (0..batch.len).step_by(M::LANES) {
-            let near = load(machine, &batch.position, at).minus(middle);
+            let near = load(lanes, &batch.position, at).minus(middle);
             // What lies beyond everything that can be seen is brought near enough for its distance to
             // a lamp to have a square.
-            let (low, high) = (machine.lift(-FARTHEST), machine.lift(FARTHEST));
+            let (low, high) = (lanes.lift(-FARTHEST), lanes.lift(FARTHEST));
             let held = |x: M::R| Real::min(Real::max(x, low), high);
-            let [x, y, z] = turned(machine, to_view.linear, near).plus(origin).0;
-            let position = Triple([held(x), held(y), held(z)]);
-            let normal = turned(machine, to_view.normals, load(machine, &batch.normal, at)).unit();
-            let zero = machine.lift(0.0);
+            let [x, y, z] = turned(lanes, to_view.linear, near).plus(origin).0;
+            let position = Vec3([held(x), held(y), held(z)]);
+            let normal = turned(lanes, to_view.normals, load(lanes, &batch.normal, at)).unit();
+            let zero = lanes.lift(0.0);
             let to_eye = match to_view.eye {
-                Eye::Point => Triple([zero, zero, zero]).minus(position).unit(),
-                Eye::Parallel => Triple([zero, zero, machine.lift(1.0)]),
+                Eye::Point => Vec3([zero, zero, zero]).minus(position).unit(),
+                Eye::Parallel => Vec3([zero, zero, lanes.lift(1.0)]),
             };
-            store(machine, position, &mut batch.position, at);
-            store(machine, normal, &mut batch.normal, at);
-            store(machine, to_eye, &mut batch.to_eye, at);
+            store(lanes, position, &mut batch.position, at);
+            store(lanes, normal, &mut batch.normal, at);
+            store(lanes, to_eye, &mut batch.to_eye, at);
         }
     }
 }
 
 /// Adds up the light of some stages at every place of a batch.
-pub(super) fn run<T: Light>(
+pub(crate) fn run<T: ShadingNumber>(
     stages: &[Stage],
-    shines: &[Shine<T>],
+    shines: &[LightTerm<T>],
     level: Level,
     batch: &mut Batch<T>,
 ) {
@@ -392,7 +397,12 @@ pub(super) fn run<T: Light>(
 
 impl TileLight<'_> {
     /// Adds up the light that reaches a tile at every place of a batch.
-    pub(super) fn shine<T: Light>(&self, shines: &[Shine<T>], level: Level, batch: &mut Batch<T>) {
+    pub(crate) fn shine<T: ShadingNumber>(
+        &self,
+        shines: &[LightTerm<T>],
+        level: Level,
+        batch: &mut Batch<T>,
+    ) {
         match self.kept {
             None => run(self.stages, shines, level, batch),
             Some(kept) => {

@@ -1,27 +1,30 @@
-//! From what is seen in a tile to its colours in the picture.
+//! From what is visible in a tile to its colours in the picture.
 //!
-//! A `painter` has the `surface` list what a block shows (`items`), fetch what is known of the triangles
-//! (`faces`), find where pixels lie in them (`located`), mix what their corners carry (`interpolate`),
-//! and light them, at pixels or at faces and vertices (`light`), in the colour of the surface itself
-//! (`textured`); `finish` makes bytes of it, and `resolve` means of samples. Blocks of one triangle
-//! (`blocks`) go through all of it in one pass, without a list (`whole`).
+//! A `painter` has the `surface` list the fragments of a block (`fragments`), fetch what is known of
+//! their triangles (`triangle_attributes`), find where they lie in them (`barycentrics`), interpolate
+//! what the corners carry (`interpolate`), and light them, per pixel, face or vertex (`light`), in the
+//! colour of the surface itself (`textured`); `quantize` makes bytes of it, and `resolve` means of
+//! samples. Blocks that one triangle covers (`blocks`) go through all of it in one pass, without a list
+//! (`full_blocks`).
 
+mod barycentric_variants;
+pub(crate) mod barycentrics;
 mod blocks;
-pub(super) mod colors;
-pub(super) mod faces;
-pub(super) mod finish;
+mod clamp_to_triangle;
+pub(crate) mod colors;
+pub(crate) mod context;
+pub(crate) mod fragments;
+mod full_blocks;
 mod groups;
-mod hold;
 mod interpolate;
-pub(super) mod items;
-pub(super) mod light;
-pub(super) mod located;
-pub(super) mod painter;
+pub(crate) mod interpolated;
+pub(crate) mod light;
+pub(crate) mod light_terms;
+pub(crate) mod painter;
+pub(crate) mod quantize;
 mod resolve;
-pub(super) mod shines;
-pub(super) mod surface;
-pub(super) mod texels;
-pub(super) mod texture;
+pub(crate) mod rounding;
+pub(crate) mod surface;
+mod texels;
 mod textured;
-mod weights;
-mod whole;
+pub(crate) mod triangle_attributes;

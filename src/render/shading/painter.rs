@@ -8,20 +8,21 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::colors::Sums;
+use super::context::ShadingContext;
+use super::interpolated::ShadingNumber;
 use super::resolve::Samples;
-use super::surface::{Out, Scenery, Shader};
-use super::whole::{Blocks, Canvas};
+use super::surface::{Out, Shader};
 use crate::base::color::Color;
 use crate::base::image::Size;
-use crate::render::effects::Light;
-use crate::render::geometry::coverage::PixelBox;
-use crate::render::geometry::places::{ALL, FOUR};
-use crate::render::geometry::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
-use crate::render::plan::FramePlan;
-use crate::render::visibility::tile::Visibility;
+use crate::render::frame::FramePlan;
+use crate::render::raster::tile::Visibility;
+use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::sample_positions::{ALL, FOUR};
+use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::render::shading::full_blocks::{Blocks, Canvas};
 
 /// The pixels of a tile; tiles are counted along rows.
-pub(in crate::render) fn bounds_of(tile: usize, size: Size) -> PixelBox {
+pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
     let [columns, _] = tiles_of(size);
     let tile = i32::try_from(tile).expect("pictures have 32-bit sizes");
     let (left, top) = (tile % columns * TILE, tile / columns * TILE);
@@ -33,10 +34,10 @@ pub(in crate::render) fn bounds_of(tile: usize, size: Size) -> PixelBox {
 
 /// The rows of the picture that a row of tiles lies in.
 #[derive(Debug)]
-pub(in crate::render) struct Band<'a> {
-    pub(in crate::render) pixels: &'a mut [[u8; 4]],
+pub(crate) struct Band<'a> {
+    pub(crate) pixels: &'a mut [[u8; 4]],
     /// For each of its tiles the colour that fills it as a whole, where one is known to.
-    pub(in crate::render) filled: &'a mut [Option<Color>],
+    pub(crate) filled: &'a mut [Option<Color>],
 }
 
 /// A band that nobody else has.
@@ -50,7 +51,7 @@ const ROW: usize = BLOCK as usize;
 const BLOCKS: usize = TILE_SIDE / ROW;
 
 /// The colours of a tile over several passes, block by block; nothing before the first.
-pub(in crate::render) type TileSums = Mutex<Vec<Sums>>;
+pub(crate) type TileSums = Mutex<Vec<Sums>>;
 
 /// Where a block of a tile begins.
 const fn corner_in_tile(block: usize) -> [usize; 2] {
@@ -60,7 +61,7 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
 /// Draws one tile after another. No line of the cache has parts of two of these.
 #[derive(Debug)]
 #[repr(align(128))]
-pub(in crate::render) struct Painter<T> {
+pub(crate) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
     samples: Samples,
@@ -68,7 +69,7 @@ pub(in crate::render) struct Painter<T> {
     pixels: Vec<[u8; 4]>,
 }
 
-impl<T: Light> Default for Painter<T> {
+impl<T: ShadingNumber> Default for Painter<T> {
     fn default() -> Self {
         Self {
             shader: Shader::default(),
@@ -79,20 +80,20 @@ impl<T: Light> Default for Painter<T> {
     }
 }
 
-impl<T: Light> Painter<T> {
+impl<T: ShadingNumber> Painter<T> {
     /// Gets ready for another frame.
-    pub(in crate::render) const fn begin(&mut self) {
+    pub(crate) const fn begin(&mut self) {
         self.shader.begin();
     }
 
     /// Paints a tile of the picture, whose band is given.
-    pub(in crate::render) fn paint(
+    pub(crate) fn paint(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         tile: usize,
         band: &Mutex<Band<'_>>,
     ) {
-        let Scenery { level, plan, frame, .. } = *scenery;
+        let ShadingContext { level, plan, frame, .. } = *context;
         let (size, background) = (plan.size, plan.background);
         let bounds = bounds_of(tile, size);
         if !frame.is_empty(tile) {
@@ -101,20 +102,20 @@ impl<T: Light> Painter<T> {
         if frame.is_empty(tile) || self.visibility.is_empty() {
             return Self::fill(tile, size, background, &mut locked(band));
         }
-        self.shader.tile.begin((level, plan), &self.visibility, bounds);
+        self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
         let (column, place) = Self::place(tile, size);
         if let (true, Ok(mut band)) = (whole, band.try_lock()) {
             // Straight into the picture, where nobody else is at work in these rows.
             let Band { pixels, filled } = &mut *band;
             let mut canvas = Canvas { pixels: &mut pixels[place.start..], stride: size.width };
-            let shows = self.blocks(scenery, bounds, &mut canvas);
+            let shows = self.blocks(context, bounds, &mut canvas);
             filled[column] = Some(background).filter(|_| !shows);
             return;
         }
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        let shows = self.blocks(scenery, bounds, &mut canvas);
+        let shows = self.blocks(context, bounds, &mut canvas);
         self.pixels = pixels;
         let mut band = locked(band);
         if shows {
@@ -127,14 +128,14 @@ impl<T: Light> Painter<T> {
     /// Colours the blocks of a tile; says whether it shows anything but the background.
     fn blocks(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         bounds: PixelBox,
         canvas: &mut Canvas<'_>,
     ) -> bool {
         let mut whole = self.visibility.whole_blocks();
         if whole != u64::MAX {
             for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
-                row[..TILE_SIDE].fill(scenery.plan.background.opaque());
+                row[..TILE_SIDE].fill(context.plan.background.opaque());
             }
         }
         let mut shows = whole != 0;
@@ -146,16 +147,16 @@ impl<T: Light> Painter<T> {
                         .fold(0, |which, other| which | 1 << other);
                     whole &= !which;
                     let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
-                    self.shader.whole_blocks(scenery, number, blocks, canvas);
+                    self.shader.whole_blocks(context, number, blocks, canvas);
                 }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
                 let at = canvas.place(corner_in_tile(block));
-                shows |= if scenery.frame.places().are_many() {
-                    self.block_of_samples(scenery, (block, corner), canvas, at)
+                shows |= if context.frame.places().are_many() {
+                    self.block_of_samples(context, (block, corner), canvas, at)
                 } else {
                     let words = self.visibility.block(block);
-                    self.shader.block(scenery, words, corner, (canvas, at))
+                    self.shader.block(context, words, corner, (canvas, at))
                 };
             }
         }
@@ -165,25 +166,25 @@ impl<T: Light> Painter<T> {
     /// Colours a block whose pixels have four samples.
     fn block_of_samples(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         (block, corner): (usize, [i32; 2]),
         canvas: &mut Canvas<'_>,
         at: usize,
     ) -> bool {
         let Self { shader, visibility, samples, .. } = self;
         let planes = visibility.planes(block);
-        if samples.compare(scenery.level, planes) {
-            return shader.block(scenery, &planes[0], corner, (canvas, at));
+        if samples.compare(context.level, planes) {
+            return shader.block(context, &planes[0], corner, (canvas, at));
         }
         let mut sums = Sums::default();
-        let shows = shader.add_samples(scenery, (samples, planes), corner, &mut sums);
+        let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
         canvas.put(at, &sums.means(FOUR.ilog2()));
         shows
     }
 
     /// Adds the colours of a tile of a picture that one sample of its pixels sees to those of others.
-    fn add_picture(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &mut [Sums]) {
-        let Scenery { level, plan, frame, .. } = *scenery;
+    fn add_picture(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &mut [Sums]) {
+        let ShadingContext { level, plan, frame, .. } = *context;
         let bounds = bounds_of(tile, plan.size);
         if !frame.is_empty(tile) {
             self.visibility.draw(level, plan, frame, (tile, bounds));
@@ -192,10 +193,10 @@ impl<T: Light> Painter<T> {
             let background = plan.background.opaque();
             return to.iter_mut().for_each(|to| to.add_everywhere(background, 1));
         }
-        self.shader.tile.begin((level, plan), &self.visibility, bounds);
+        self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        self.blocks(scenery, bounds, &mut canvas);
+        self.blocks(context, bounds, &mut canvas);
         for (block, to) in to.iter_mut().enumerate() {
             let rows = canvas.pixels[canvas.place(corner_in_tile(block))..].chunks(TILE_SIDE);
             let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
@@ -205,19 +206,19 @@ impl<T: Light> Painter<T> {
     }
 
     /// Adds the colours of four samples of a tile, or of the one that is looked at, to those of others.
-    pub(in crate::render) fn add(&mut self, scenery: &Scenery<'_, T>, tile: usize, to: &TileSums) {
-        let Scenery { level, plan, frame, .. } = *scenery;
+    pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
+        let ShadingContext { level, plan, frame, .. } = *context;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
         to.resize(BLOCK_PIXELS, Sums::default());
         if !frame.places().are_many() {
-            return self.add_picture(scenery, tile, &mut to);
+            return self.add_picture(context, tile, &mut to);
         }
         let empty = frame.is_empty(tile);
         let bounds = bounds_of(tile, plan.size);
         let Self { shader, visibility, samples, .. } = self;
         if !empty {
             visibility.draw(level, plan, frame, (tile, bounds));
-            shader.tile.begin((level, plan), visibility, bounds);
+            shader.tile.begin(plan, bounds, || visibility.depths(level));
         }
         for (block, to) in to.iter_mut().enumerate() {
             if empty || !visibility.shows(block) {
@@ -226,25 +227,25 @@ impl<T: Light> Painter<T> {
             }
             let corner = visibility.corner(block);
             if let Some(number) = visibility.whole(block) {
-                shader.whole_block(scenery, number, corner, &mut Out::Sums(to));
+                shader.whole_block(context, number, corner, &mut Out::Sums(to));
             } else {
                 let planes = visibility.planes(block);
                 samples.compare(level, planes);
-                shader.add_samples(scenery, (samples, planes), corner, to);
+                shader.add_samples(context, (samples, planes), corner, to);
             }
         }
     }
 
     /// Puts the means of all samples of a tile into its band of the picture.
-    pub(in crate::render) fn put_means(
+    pub(crate) fn put_means(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         tile: usize,
         of: &TileSums,
         band: &Mutex<Band<'_>>,
     ) {
         let of = of.lock().unwrap_or_else(PoisonError::into_inner);
-        let FramePlan { size, samples, .. } = *scenery.plan;
+        let FramePlan { size, samples, .. } = *context.plan;
         let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
         for (block, sums) in of.iter().enumerate() {
             let at = canvas.place(corner_in_tile(block));

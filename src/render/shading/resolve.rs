@@ -7,18 +7,19 @@
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
 
 use super::colors::Sums;
-use super::surface::{Out, Scenery, Shader};
-use crate::render::effects::Light;
-use crate::render::geometry::places::FOUR;
-use crate::render::geometry::tiles::BLOCK_PIXELS;
-use crate::render::visibility::words::{Planes, Seen, seen_number};
+use super::context::ShadingContext;
+use super::interpolated::ShadingNumber;
+use super::surface::{Out, Shader};
+use crate::render::raster::visibility_buffer::{Planes, Visible, seen_number};
+use crate::render::screen::sample_positions::FOUR;
+use crate::render::screen::tiles::BLOCK_PIXELS;
 
 /// The number that the word of the background has.
 const BACKGROUND: u32 = u32::MAX;
 
 /// What the samples of a block's pixels show.
 #[derive(Debug)]
-pub(super) struct Samples {
+pub(crate) struct Samples {
     /// The numbers of what they show, as words hold them.
     numbers: [[u32; BLOCK_PIXELS]; FOUR],
     /// For each sample, how many from it on show what it shows; of no meaning where it is not among the
@@ -37,7 +38,7 @@ impl Default for Samples {
 
 impl Samples {
     /// Compares the samples of each pixel. Says whether all pixels show one thing each.
-    pub(super) fn compare(&mut self, level: Level, planes: &Planes) -> bool {
+    pub(crate) fn compare(&mut self, level: Level, planes: &Planes) -> bool {
         dispatch!(level, simd => self.compare_in(simd, planes));
         self.new[1..] == [0; FOUR - 1]
     }
@@ -77,27 +78,27 @@ impl Samples {
     }
 }
 
-impl<T: Light> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// Adds up the colours of a block, the corner of which is its upper left pixel, whose samples were
     /// compared. Says whether any of them shows more than the background.
-    pub(super) fn add_samples(
+    pub(crate) fn add_samples(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         (samples, planes): (&Samples, &Planes),
         corner: [i32; 2],
         sums: &mut Sums,
     ) -> bool {
-        let mut shown = self.items.list(scenery.level, &planes[0], corner);
+        let mut shown = self.items.list(context.level, &planes[0], corner);
         if shown.triangles != 0 {
             self.items.share(&samples.shares[0]);
-            self.color_items(scenery, corner, &mut Out::Sums(sums));
+            self.color_items(context, corner, &mut Out::Sums(sums));
         }
         let mut others = !shown.triangles;
         while others != 0 {
             let place = others.trailing_zeros() as usize;
             others &= others - 1;
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
-            add_other(scenery, number, place, share, sums);
+            add_other(context, number, place, share, sums);
         }
         self.items.begin_shared();
         for sample in 1..FOUR {
@@ -107,31 +108,37 @@ impl<T: Light> Shader<T> {
                 pixels &= pixels - 1;
                 let number = samples.numbers[sample][place];
                 let share = samples.shares[sample][place];
-                if !matches!(seen_number(number), Seen::Triangle(_)) {
+                if !matches!(seen_number(number), Visible::Triangle(_)) {
                     shown.lines |= u64::from(number != BACKGROUND) << place;
-                    add_other(scenery, number, place, share, sums);
+                    add_other(context, number, place, share, sums);
                     continue;
                 }
                 shown.triangles |= 1 << place;
                 self.items.add(number, corner, place, share);
                 if self.items.is_full() {
-                    self.color_items(scenery, corner, &mut Out::Sums(sums));
+                    self.color_items(context, corner, &mut Out::Sums(sums));
                     self.items.begin_shared();
                 }
             }
         }
         if self.items.len > 0 {
-            self.color_items(scenery, corner, &mut Out::Sums(sums));
+            self.color_items(context, corner, &mut Out::Sums(sums));
         }
         (shown.triangles | shown.lines) != 0
     }
 }
 
 /// Adds what is no triangle: a line, or the background.
-fn add_other<T>(scenery: &Scenery<'_, T>, number: u32, place: usize, share: i32, sums: &mut Sums) {
+fn add_other<T>(
+    context: &ShadingContext<'_, T>,
+    number: u32,
+    place: usize,
+    share: i32,
+    sums: &mut Sums,
+) {
     let color = match seen_number(number) {
-        Seen::Line(line) => scenery.frame.line_color(scenery.plan, line),
-        _ => scenery.plan.background.opaque(),
+        Visible::Line(line) => context.frame.line_color(context.plan, line),
+        _ => context.plan.background.opaque(),
     };
     sums.add(place, color, share);
 }

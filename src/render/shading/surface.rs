@@ -1,59 +1,50 @@
 //! From what is seen to colours.
 //!
-//! A block's pixels are listed by the triangles that they show ([`Items`]). What is known of these is
-//! fetched once for each triangle ([`Faces`]), taken from there by the pixels ([`Located`]), lit
+//! A block's pixels are listed by the triangles that they show ([`Fragments`]). What is known of these is
+//! fetched once for each triangle ([`TriangleAttributes`]), taken from there by the pixels ([`Barycentrics`]), lit
 //! ([`Batch`]), and made bytes. Light that is evaluated at faces is evaluated at the faces of the
 //! block; no pixel asks where it lies.
 
-use fearless_simd::Level;
-
+use super::barycentric_variants::locate_by_variant;
 use super::colors::{Colors, Form, Sums};
-use super::faces::Faces;
-use super::finish::{Finish, Own};
+use super::context::ShadingContext;
 use super::groups::{Group, group_of, one_group};
 use super::interpolate::{Mixed, mix, surroundings};
-use super::items::Items;
-use super::light::{Lighting, Lit, Table, run};
-use super::located::Located;
-use super::shines::Shines;
-use super::whole::Canvas;
+use super::interpolated::ShadingNumber;
+use super::light::{Lighting, Table, run};
+use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
-use crate::render::effects::{BATCH, Batch, Light, Rows};
-use crate::render::geometry::frame::Frame;
-use crate::render::geometry::places::ALL;
-use crate::render::geometry::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::render::numbers::pick::SLOTS;
-use crate::render::plan::{Back, FramePlan, Pipeline, Shaded, Stage, TilePlan};
-use crate::render::visibility::words::{Seen, seen};
-use crate::render::ways::bytes::{FinishBy, thresholds};
-use crate::scene::{LightAt, Rounding};
-
-/// What colouring pixels reads.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::render) struct Scenery<'a, T> {
-    pub(in crate::render) level: Level,
-    pub(in crate::render) plan: &'a FramePlan,
-    pub(in crate::render) frame: &'a Frame,
-    pub(in crate::render) lit: &'a Lit<T>,
-    pub(in crate::render) shines: &'a Shines<T>,
-}
+use crate::render::frame::draw::{Back, Pipeline, Shaded, Stage};
+use crate::render::lights::{Batch, Rows};
+use crate::render::plan::tile::TilePlan;
+use crate::render::raster::visibility_buffer::{Visible, seen};
+use crate::render::screen::sample_positions::ALL;
+use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::render::shading::barycentrics::Barycentrics;
+use crate::render::shading::fragments::Fragments;
+use crate::render::shading::full_blocks::Canvas;
+use crate::render::shading::quantize::{Finish, Own};
+use crate::render::shading::rounding::{FinishBy, thresholds};
+use crate::render::shading::triangle_attributes::TriangleAttributes;
+use crate::render::simd::BATCH;
+use crate::render::simd::gather::SLOTS;
 
 /// Colours pixels. Each thread has its own.
 #[derive(Debug)]
-pub(super) struct Shader<T> {
+pub(crate) struct Shader<T> {
     /// The lights of the tile that is coloured.
-    pub(super) tile: TilePlan,
-    pub(super) items: Items,
-    pub(super) faces: Faces<T>,
-    pub(super) located: Located<T>,
-    pub(super) batch: Batch<T>,
-    pub(super) texels: Rows<T>,
+    pub(crate) tile: TilePlan,
+    pub(crate) items: Fragments,
+    pub(crate) faces: TriangleAttributes<T>,
+    pub(crate) located: Barycentrics<T>,
+    pub(crate) batch: Batch<T>,
+    pub(crate) texels: Rows<T>,
     colors: Colors,
 }
 
 /// Where colours of a block go.
 #[derive(Debug)]
-pub(super) enum Out<'a, 'b> {
+pub(crate) enum Out<'a, 'b> {
     /// Into a tile, from a place on.
     Tile(&'a mut Canvas<'b>, usize),
     /// To what other samples show.
@@ -71,13 +62,13 @@ enum Mixture {
     Light,
 }
 
-impl<T: Light> Default for Shader<T> {
+impl<T: ShadingNumber> Default for Shader<T> {
     fn default() -> Self {
         Self {
             tile: TilePlan::default(),
-            items: Items::default(),
-            faces: Faces::default(),
-            located: Located::default(),
+            items: Fragments::default(),
+            faces: TriangleAttributes::default(),
+            located: Barycentrics::default(),
             batch: Batch::default(),
             texels: [[T::default(); BATCH]; 3],
             colors: Colors::default(),
@@ -85,68 +76,68 @@ impl<T: Light> Default for Shader<T> {
     }
 }
 
-impl<T: Light> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// Gets ready for another frame.
-    pub(super) const fn begin(&mut self) {
+    pub(crate) const fn begin(&mut self) {
         self.faces.forget();
     }
 
     /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on. What
     /// shows the background is left as it is; says whether anything else is shown.
-    pub(super) fn block(
+    pub(crate) fn block(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         words: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
         (canvas, at): (&mut Canvas<'_>, usize),
     ) -> bool {
-        let shown = self.items.list(scenery.level, words, corner);
+        let shown = self.items.list(context.level, words, corner);
         let mut lines = shown.lines;
         while lines != 0 {
             let i = lines.trailing_zeros() as usize;
             lines &= lines - 1;
-            if let Seen::Line(line) = seen(words[i]) {
+            if let Visible::Line(line) = seen(words[i]) {
                 canvas.pixels[at + canvas.place(in_block(i))] =
-                    scenery.frame.line_color(scenery.plan, line);
+                    context.frame.line_color(context.plan, line);
             }
         }
         if shown.triangles != 0 {
-            self.color_items(scenery, corner, &mut Out::Tile(canvas, at));
+            self.color_items(context, corner, &mut Out::Tile(canvas, at));
         }
         (shown.triangles | shown.lines) != 0
     }
 
     /// Colours the pixels of the list.
-    pub(super) fn color_items(
+    pub(crate) fn color_items(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         corner: [i32; 2],
         out: &mut Out<'_, '_>,
     ) {
-        if let Some(group) = one_group(scenery, &self.items) {
-            self.color_group(scenery, &group, out);
+        if let Some(group) = one_group(context, &self.items) {
+            self.color_group(context, &group, out);
         } else {
-            self.color_groups(scenery, corner, out);
+            self.color_groups(context, corner, out);
         }
     }
 
     /// Colours the pixels of a block that one triangle covers as a whole.
-    pub(super) fn whole_block(
+    pub(crate) fn whole_block(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         number: u32,
         corner: [i32; 2],
         out: &mut Out<'_, '_>,
     ) {
         self.items.list_whole(number, corner);
         self.items.shares = [ALL; BLOCK_PIXELS];
-        self.color_group(scenery, &group_of(scenery, number), out);
+        self.color_group(context, &group_of(context, number), out);
     }
 
     /// Colours pixels that are coloured together.
-    pub(super) fn color_group(
+    pub(crate) fn color_group(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         out: &mut Out<'_, '_>,
     ) {
@@ -154,11 +145,11 @@ impl<T: Light> Shader<T> {
             Out::Tile(..) => Form::Pixels,
             Out::Sums(_) => Form::Parts,
         };
-        self.group(scenery, group);
+        self.group(context, group);
         match out {
             Out::Tile(canvas, at) => self.copy(canvas, *at),
             Out::Sums(sums) => {
-                let Items { len, places, shares, .. } = &self.items;
+                let Fragments { len, places, shares, .. } = &self.items;
                 sums.add_all(&self.colors, &places[..*len], &shares[..*len]);
             }
         }
@@ -166,15 +157,20 @@ impl<T: Light> Shader<T> {
 
     /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
     /// ways.
-    fn color_groups(&mut self, scenery: &Scenery<'_, T>, corner: [i32; 2], out: &mut Out<'_, '_>) {
+    fn color_groups(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        corner: [i32; 2],
+        out: &mut Out<'_, '_>,
+    ) {
         let mut done = [false; SLOTS];
         let all = std::mem::take(&mut self.items);
         for slot in 0..all.count {
             if done[slot] {
                 continue;
             }
-            let group = group_of(scenery, all.numbers[slot]);
-            let end = scenery.frame.draw_of(all.numbers[slot]).1.end;
+            let group = group_of(context, all.numbers[slot]);
+            let end = context.frame.draw_of(all.numbers[slot]).1.end;
             let mut keep = [false; SLOTS];
             for (other, number) in all.numbers[..all.count].iter().enumerate().skip(slot) {
                 keep[other] = (group.base..end).contains(number)
@@ -182,7 +178,7 @@ impl<T: Light> Shader<T> {
                 done[other] |= keep[other];
             }
             self.items.take_from(&all, &keep, corner);
-            self.color_group(scenery, &group, out);
+            self.color_group(context, &group, out);
         }
         self.items = all;
     }
@@ -200,11 +196,11 @@ impl<T: Light> Shader<T> {
         }
     }
 
-    fn group(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>) {
-        match &scenery.plan.pipelines[group.pipeline as usize] {
+    fn group(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>) {
+        match &context.plan.pipelines[group.pipeline as usize] {
             Pipeline::Flat(color) => self.colors.fill(color.opaque()),
             Pipeline::Shaded(shaded) => {
-                self.shaded(scenery, group, shaded);
+                self.shaded(context, group, shaded);
                 if group.draw.back == Back::Red {
                     self.redden();
                 }
@@ -221,21 +217,27 @@ impl<T: Light> Shader<T> {
         }
     }
 
-    fn shaded(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
-        let Scenery { level, plan, .. } = *scenery;
+    fn shaded(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>, shaded: &Shaded) {
+        let ShadingContext { level, plan, .. } = *context;
         let draw = group.draw;
         let textured = shaded.texture.is_some() || shaded.vertex_colors;
-        let rounding = plan.ways.rounding;
+        let rounding = plan.variants.rounding;
         // Every pixel has its own colour.
         let each = textured || rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let places = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
-        let new = self.take(scenery, group, places);
+        let new = self.take(context, group, places);
         if places {
             self.located.find(level, &self.items, &self.faces, (plan, draw));
-            if plan.ways.has_rare_places() {
-                let corners = scenery.frame.corners_of(plan, group.draw_index);
-                plan.ways.locate(&self.items, &self.faces, corners, &mut self.located);
+            if plan.variants.has_rare_places() {
+                let corners = context.frame.corners_of(plan, group.draw_index);
+                locate_by_variant(
+                    plan.variants,
+                    &self.items,
+                    &self.faces,
+                    corners,
+                    &mut self.located,
+                );
             }
         }
         self.batch.len = self.items.len;
@@ -243,17 +245,17 @@ impl<T: Light> Shader<T> {
         match light {
             None => {}
             Some((LightAt::Pixel | LightAt::Sample, _)) => {
-                self.light_pixels(scenery, group, shaded, new);
+                self.light_pixels(context, group, shaded, new);
             }
-            Some((LightAt::Vertex, _)) => match self.mix_light(scenery, group, shaded, new) {
+            Some((LightAt::Vertex, _)) => match self.mix_light(context, group, shaded, new) {
                 Mixture::Bytes => return,
                 Mixture::Colors => tint = [1.0; 3],
                 Mixture::Light => {}
             },
-            Some((LightAt::Face, stages)) => self.light_faces(scenery, group, stages, each),
+            Some((LightAt::Face, stages)) => self.light_faces(context, group, stages, each),
         }
         if textured {
-            self.texels(scenery, group, shaded);
+            self.texels(context, group, shaded);
         }
         let Self { batch, texels, colors, .. } = self;
         let own = if textured { Own::Texels(texels) } else { Own::Tint(tint.map(T::from_f64)) };
@@ -271,13 +273,13 @@ impl<T: Light> Shader<T> {
 
     /// Takes the triangles of the list, and where they are if the pixels have `places`. Says whether
     /// they are others than before.
-    pub(super) fn take(
+    pub(crate) fn take(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         places: bool,
     ) -> bool {
-        let Scenery { level, plan, frame, .. } = *scenery;
+        let ShadingContext { level, plan, frame, .. } = *context;
         let Group { draw, draw_index, base, .. } = *group;
         let corners = places || draw.back != Back::Left;
         let order = corners.then(|| draw.model.mesh.draw_order());
@@ -295,12 +297,12 @@ impl<T: Light> Shader<T> {
     /// Light at every pixel.
     fn light_pixels(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         shaded: &Shaded,
         new: bool,
     ) {
-        let Scenery { level, plan, shines, .. } = *scenery;
+        let ShadingContext { level, plan, shines, .. } = *context;
         let Self { tile, items, faces, located, batch, .. } = self;
         let light = tile.light(plan, group.pipeline, shaded);
         if light.places {
@@ -320,20 +322,20 @@ impl<T: Light> Shader<T> {
     /// Light of the vertices, mixed at every pixel.
     fn mix_light(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         shaded: &Shaded,
         new: bool,
     ) -> Mixture {
-        let Scenery { level, plan, .. } = *scenery;
-        let tables = scenery.lit.tables(group.draw_index, group.pipeline);
+        let ShadingContext { level, plan, .. } = *context;
+        let tables = context.lit.tables(group.draw_index, group.pipeline);
         if new || !tables[0].is_colored() {
-            self.carry_diffuse(scenery, group, shaded, tables);
+            self.carry_diffuse(context, group, shaded, tables);
             self.faces.spread(level);
         }
         let Self { items, faces, located, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
-        if colored && plan.ways.rounding == Rounding::Nearest {
+        if colored && plan.variants.rounding == Rounding::Nearest {
             mix(level, items, faces, located, Mixed::Colors(colors));
             return Mixture::Bytes;
         }
@@ -354,17 +356,17 @@ impl<T: Light> Shader<T> {
     }
 
     /// Lets the faces carry the diffuse light of their corners, or their colours.
-    pub(super) fn carry_diffuse(
+    pub(crate) fn carry_diffuse(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         shaded: &Shaded,
         tables: [&Table<T>; 2],
     ) {
         let Self { faces, batch, .. } = self;
         let stages = shaded.light.as_deref().unwrap_or_default();
-        let shines = scenery.shines.of(group.pipeline);
-        let lighting = Lighting { level: scenery.level, draw: group.draw, stages, shines };
+        let shines = context.shines.of(group.pipeline);
+        let lighting = Lighting { level: context.level, draw: group.draw, stages, shines };
         faces.carry_light(
             group.draw,
             #[inline(always)]
@@ -375,12 +377,12 @@ impl<T: Light> Shader<T> {
     /// Light of the faces: at every pixel where they have `places`, else face by face.
     fn light_faces(
         &mut self,
-        scenery: &Scenery<'_, T>,
+        context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         stages: &[Stage],
         places: bool,
     ) {
-        let Scenery { level, lit, shines, .. } = *scenery;
+        let ShadingContext { level, lit, shines, .. } = *context;
         let Self { items, faces, batch, .. } = self;
         batch.len = faces.count;
         lit.place_faces(level, (group.draw_index, group.draw), faces, batch);

@@ -1,40 +1,19 @@
-//! What a surface shows of itself at a pixel: where it is on its texture, which colour its vertices give,
-//! and whether it is there at all.
+//! What a surface shows of itself at a pixel: the footprint of a pixel on its texture, and the colour
+//! that its vertices give.
 
 use glam::DVec3;
 
-use super::texture;
-use super::weights::Weights;
-use crate::render::geometry::frame::Frame;
-use crate::render::plan::{Draw, FramePlan, Pipeline, Shaded};
-use crate::scene::{Filter, NONE, Texture, dvec3};
-
-/// The places on the texture of a triangle's corners.
-pub(super) type Uvs = [[f64; 2]; 3];
-
-/// The place on the texture between those of the corners.
-#[inline(always)]
-pub(super) fn uv([a, b, c]: Uvs, weights: DVec3) -> [f64; 2] {
-    let between = |axis: usize| {
-        let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-        let value = a[axis] + (b[axis] - a[axis]) * weights.y + (c[axis] - a[axis]) * weights.z;
-        value.clamp(low, high)
-    };
-    [between(0), between(1)]
-}
-
-/// The places on the texture of a triangle's corners; `None` where one has none.
-pub(super) fn uvs(draw: &Draw, number: u32) -> Option<Uvs> {
-    let mesh = &draw.model.mesh;
-    let own = mesh.triangles()[number as usize];
-    let ids = own.corners.map(|corner| mesh.corners()[corner as usize].uv);
-    (!ids.contains(&NONE)).then(|| ids.map(|id| mesh.uvs()[id as usize].map(f64::from)))
-}
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::Draw;
+use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::screen::weights::Weights;
+use crate::render::texture::uv::uvs;
+use crate::scene::dvec3;
 
 /// How far off on the texture the pixels to the right and below lie of a pixel of a triangle of a draw.
 #[cold]
-pub(super) fn uv_ways(
-    (plan, frame): (&FramePlan, &Frame),
+pub(crate) fn uv_ways(
+    (plan, frame): (&FramePlan, &ScreenGeometry),
     draw_index: u32,
     number: u32,
     [x, y]: [i32; 2],
@@ -52,56 +31,11 @@ pub(super) fn uv_ways(
 }
 
 /// The vertex colours' mixture.
-pub(super) fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
+pub(crate) fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
     let mesh = &draw.model.mesh;
     let own = mesh.triangles()[number as usize];
     let [a, b, c] = own
         .corners
         .map(|corner| dvec3(mesh.colors()[mesh.corners()[corner as usize].position as usize]));
     (a + (b - a) * weights.y + (c - a) * weights.z).to_array()
-}
-
-/// A triangle with a texture that leaves some of it out.
-#[derive(Debug)]
-pub(in crate::render) struct Holes<'a> {
-    weights: Weights<'a>,
-    uvs: Uvs,
-    texture: &'a Texture,
-    opacity: f64,
-    filter: Filter,
-}
-
-impl<'a> Holes<'a> {
-    /// Those of a triangle, in places of pixels that are shifted by so many parts of a pixel from their
-    /// middles; `None` where it has none.
-    pub(in crate::render) fn of(
-        plan: &'a FramePlan,
-        frame: &Frame,
-        number: u32,
-        shift: [i32; 2],
-    ) -> Option<Self> {
-        let (index, start) = frame.draw_of(number);
-        let draw = &plan.draws[index as usize];
-        let number = number - start.number;
-        let pipeline = &plan.pipelines[draw.pipeline_of(number) as usize];
-        let Pipeline::Shaded(Shaded { cutout: Some(opacity), texture: Some(texture), .. }) =
-            pipeline
-        else {
-            return None;
-        };
-        Some(Self {
-            weights: Weights::new(plan, draw, frame.corners_of(plan, index), number, shift),
-            uvs: uvs(draw, number)?,
-            texture,
-            opacity: *opacity,
-            filter: plan.filter,
-        })
-    }
-
-    /// Whether it is drawn in a pixel.
-    #[inline(always)]
-    pub(in crate::render) fn is_opaque(&self, pixel: [i32; 2]) -> bool {
-        let uv = uv(self.uvs, self.weights.at(pixel));
-        texture::sample::<f64>(self.texture, uv, self.filter)[3] * self.opacity >= 0.5
-    }
 }

@@ -2,19 +2,26 @@
 
 use fearless_simd::dispatch;
 
+use super::context::ShadingContext;
 use super::groups::Group;
-use super::surface::{Scenery, Shader};
-use super::texels::{color, uv, uv_ways, uvs};
-use super::texture;
-use crate::render::effects::Light;
-use crate::render::numbers::pick::SLOTS;
-use crate::render::plan::Shaded;
+use super::interpolated::ShadingNumber;
+use super::surface::Shader;
+use super::texels::{color, uv_ways};
+use crate::render::frame::draw::Shaded;
+use crate::render::simd::gather::SLOTS;
+use crate::render::texture::sample;
+use crate::render::texture::uv::{uv, uvs};
 
-impl<T: Light> Shader<T> {
+impl<T: ShadingNumber> Shader<T> {
     /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
-    pub(super) fn texels(&mut self, scenery: &Scenery<'_, T>, group: &Group<'_>, shaded: &Shaded) {
-        let (plan, draw) = (scenery.plan, group.draw);
-        let mips = shaded.texture.as_ref().and_then(|texture| scenery.shines.mips_of(texture));
+    pub(crate) fn texels(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        shaded: &Shaded,
+    ) {
+        let (plan, draw) = (context.plan, group.draw);
+        let mips = shaded.texture.as_ref().and_then(|texture| context.shines.mips_of(texture));
         let Self { items, faces, located, texels, .. } = self;
         for (row, tint) in texels.iter_mut().zip(shaded.tint) {
             row.fill(T::from_f64(tint));
@@ -26,7 +33,7 @@ impl<T: Light> Shader<T> {
             }
         }
         // Where a processor rounds down by an instruction, it is that.
-        dispatch!(scenery.level, _ => for i in 0..items.len {
+        dispatch!(context.level, _ => for i in 0..items.len {
             let slot = items.slots[i].cast_unsigned() as usize % SLOTS;
             let number = faces.numbers[slot];
             let weights = located.weights(i);
@@ -35,11 +42,11 @@ impl<T: Light> Shader<T> {
             {
                 let uv = uv(corners, weights);
                 let texel = match mips {
-                    None => texture::sample::<T>(texture, uv, plan.filter),
+                    None => sample::sample::<T>(texture, uv, plan.filter),
                     Some(mips) => mips.sample(
                         uv,
                         uv_ways(
-                            (plan, scenery.frame),
+                            (plan, context.frame),
                             group.draw_index,
                             number,
                             [items.x[i], items.y[i]],

@@ -6,7 +6,7 @@ use marraztu::base::rng::Rng;
 use marraztu::render::Renderer;
 use marraztu::scene::{
     Command, Corner, FileMaterial, Item, Light, LightId, LightKind, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, Placed, SourceCorner, SpotOwner,
+    MeshSource, Model, NONE, Object, ObjectId, Part, SourceCorner, SpotOwner, Tracked,
 };
 
 use super::plan::{SCENES, same, seeds};
@@ -55,8 +55,11 @@ pub(super) fn with_lights_off(it: &RandomScene, count: u32, rng: &mut Rng) -> Ra
     for i in 0..count {
         let kind = rng.one_of(&[
             LightKind::Ambient,
-            LightKind::Sun { direction: Placed::new(glam::DVec3::NEG_Y) },
-            LightKind::Bulb { position: Placed::new(glam::DVec3::ZERO), orbit: Default::default() },
+            LightKind::Sun { direction: Tracked::new(glam::DVec3::NEG_Y) },
+            LightKind::Bulb {
+                position: Tracked::new(glam::DVec3::ZERO),
+                orbit: Default::default(),
+            },
             LightKind::Spot {
                 owner: SpotOwner::SelectedObject,
                 half_aperture: 45.0,
@@ -78,7 +81,7 @@ fn with_absent(it: &RandomScene, rng: &mut Rng) -> RandomScene {
     let material = MaterialChoice::Own(shapes::material(rng));
     let mut hidden = Object::new(rng.one_of(shapes::shapes()), material);
     hidden.visible = false;
-    hidden.placement = Placed::new(glam::DMat4::from_scale(glam::DVec3::splat(20.0)));
+    hidden.placement = Tracked::new(glam::DMat4::from_scale(glam::DVec3::splat(20.0)));
     let at = rng.index(more.scene.objects.len() + 1);
     insert(&mut more, at, Item::Object(id, Box::new(hidden)));
     let objects: Vec<_> = more.scene.objects.iter().map(|(id, o)| (id, o.clone())).collect();

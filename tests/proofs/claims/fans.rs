@@ -10,7 +10,7 @@ use super::{Proof, Tally};
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::Renderer;
-use marraztu::render::geometry::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
+use marraztu::render::screen::coverage::{PixelBox, SUBPIXELS, Snapped, Triangle, doubled_area};
 
 pub(crate) const PROOF: Proof = Proof {
     name: "fans",

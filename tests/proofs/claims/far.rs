@@ -4,7 +4,7 @@ use super::fans::compare;
 use super::{Proof, Tally};
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::Flat;
-use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 
 pub(crate) const PROOF: Proof = Proof {
     name: "samples",

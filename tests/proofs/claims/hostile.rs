@@ -7,18 +7,18 @@
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::Tally;
+use marraztu::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm};
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
 use marraztu::base::{Shared, math};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Stroke, place};
+use marraztu::edit::{GesturePhase, placement};
 use marraztu::scene::{
-    Aim, Arithmetic, Attenuation, Camera, CameraId, Command, Fill, Filter, Frame, Item, LeaveOut,
-    Lens, Light, LightAt, LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, NormalLength, Normals, Object, ObjectId, Observer, Orbit, Part,
-    Placed, Pose, PresetId, Projection, Samples, Scene, Settings, Sides, SourceCorner,
-    SpecularForm, Spin, SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
+    Aim, Attenuation, Camera, CameraId, Command, Fill, Frame, Item, Lens, Light, LightId,
+    LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE, NormalLength,
+    Normals, Object, ObjectId, Observer, Orbit, Part, Pose, PresetId, Projection, Scene, Sides,
+    SourceCorner, Spin, SpotOwner, Subject, Surface, Texture, Tracked, Transformation, View, Wrap,
 };
 
 /// Applies a command, or checks that a refused one changes nothing.
@@ -141,15 +141,16 @@ impl Hostile {
 
     fn command(&mut self, scene: &Scene, view: &View) -> Option<Command> {
         let object = view.object?;
-        let (v, stroke) = (self.vector(10.0), self.rng.one_of(&[Stroke::First, Stroke::Continued]));
+        let (v, stroke) =
+            (self.vector(10.0), self.rng.one_of(&[GesturePhase::First, GesturePhase::Continued]));
         let axis = self.rng.one_of(&math::Axis::ALL);
         match self.rng.below(7) {
             0 => transform::translate(scene, view, v, stroke),
             1 => transform::rotate(scene, view, v, self.number(7.0), stroke),
             2 => transform::stretch(scene, view, v, stroke),
-            3 => place::object_scale(scene, view, object, v, stroke),
-            4 => place::object_turn(scene, view, object, v, stroke),
-            5 => place::object_translation(scene, view, object, v, stroke),
+            3 => placement::object_scale(scene, view, object, v, stroke),
+            4 => placement::object_turn(scene, view, object, v, stroke),
+            5 => placement::object_translation(scene, view, object, v, stroke),
             _ => transform::step(scene, view, axis, Sign::Positive, stroke),
         }
         .ok()
@@ -205,7 +206,7 @@ impl Hostile {
         let placement = self.placement();
         let mean = placement.transform_point3(object.model.mesh.polygon_centre(0));
         self.surfaces.push(mean);
-        object.placement = Placed::new(placement);
+        object.placement = Tracked::new(placement);
         if self.rng.one_in(4) {
             let axes = [self.bool(), self.bool(), self.bool()];
             object.spin = Spin { axes, speed: self.number(90.0), since: self.number(1.0) };
@@ -283,7 +284,7 @@ impl Hostile {
             visible: self.bool(),
             model: marraztu::io::cam_model(),
             material: MaterialChoice::Preset(PresetId::SILVER),
-            pose: Placed::new(pose),
+            pose: Tracked::new(pose),
             lens,
         }
     }
@@ -296,12 +297,12 @@ impl Hostile {
             0 => SpotOwner::SelectedObject,
             1 => SpotOwner::SelectedCamera,
             2 => SpotOwner::Object(ObjectId(1)),
-            _ => SpotOwner::Fixed(Placed::new(Aim { position: place, direction })),
+            _ => SpotOwner::Fixed(Tracked::new(Aim { position: place, direction })),
         };
         let kind = match self.rng.below(4) {
             0 => LightKind::Ambient,
-            1 => LightKind::Sun { direction: Placed::new(direction) },
-            2 => LightKind::Bulb { position: Placed::new(place), orbit },
+            1 => LightKind::Sun { direction: Tracked::new(direction) },
+            2 => LightKind::Bulb { position: Tracked::new(place), orbit },
             _ => LightKind::Spot {
                 owner,
                 half_aperture: self.amount(90.0),

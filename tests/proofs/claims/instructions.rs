@@ -7,11 +7,11 @@ use std::hint::black_box;
 
 use fearless_simd::Level;
 
+use marraztu::accuracy::Settings;
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
 use marraztu::io;
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::Settings;
 
 use super::absent::with_lights_off;
 use super::random_scenes::RandomScene;

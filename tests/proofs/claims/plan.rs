@@ -2,10 +2,12 @@
 //! by plans that leave out nothing. `tests/breakages` breaks the rules one by one and sees this
 //! fail.
 
+use marraztu::accuracy::Shot;
 use marraztu::base::image::Picture;
-use marraztu::render::plan::rules::Rules;
+use marraztu::render::plan_everything;
+
+use marraztu::accuracy::{LeaveOut, Settings};
 use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::{LeaveOut, Settings};
 
 use super::random_scenes::{RandomScene, random_scene};
 use super::{Proof, Tally};
@@ -44,7 +46,7 @@ pub(super) const fn seeds(batch: u64) -> std::ops::Range<u64> {
 
 /// A plan that leaves out nothing: everything that the scene names is computed.
 fn complete(it: &RandomScene) -> FramePlan {
-    FramePlan::by(Rules::off(), &it.scene, &it.view, &it.settings, it.size)
+    plan_everything(&Shot::new(&it.scene, &it.view, &it.settings, it.size))
 }
 
 /// Draws the scenes of a batch by their plans and by complete ones, and expects the same bytes.

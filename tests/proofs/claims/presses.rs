@@ -11,7 +11,7 @@ use super::double_double::Double;
 use super::{Proof, Tally};
 use marraztu::base::math::Axis;
 use marraztu::base::rng::Rng;
-use marraztu::edit::Stroke;
+use marraztu::edit::GesturePhase;
 use marraztu::edit::transform::{self, Sign};
 use marraztu::io;
 use marraztu::scene::{Frame, Scene, Subject, Transformation, View};
@@ -66,7 +66,7 @@ fn desk(subject: Subject, transformation: Transformation, frame: Frame) -> (Scen
 }
 
 fn press(scene: &mut Scene, view: &View, (axis, sign): (Axis, Sign)) {
-    let command = transform::step(scene, view, axis, sign, Stroke::Continued);
+    let command = transform::step(scene, view, axis, sign, GesturePhase::Continued);
     command.expect("nothing is in the way").apply(scene).expect("the item is there");
 }
 

@@ -6,12 +6,14 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::hostile::Hostile;
 use super::{Proof, Tally};
+use marraztu::accuracy::Shot;
+use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
-use marraztu::render::{FramePlan, Renderer};
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
 use marraztu::scene::{
-    Aim, Arithmetic, Command, Item, Light, LightKind, MaterialChoice, Orbit, Placed, Scene,
-    Settings, SpotOwner, View,
+    Aim, Command, Item, Light, LightKind, MaterialChoice, Orbit, Scene, SpotOwner, Tracked, View,
 };
 
 pub(crate) const PROOF: Proof = Proof {
@@ -37,7 +39,7 @@ fn check(batch: u64) -> Result<Tally, String> {
         let (scene, view) = hostile.scene(&mut tally);
         let settings = hostile.settings();
         let size = Size::new(1 + hostile.rng.index(40), 1 + hostile.rng.index(40));
-        let plan = FramePlan::new(&scene, &view, &settings, size);
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, size));
         let first = plain.render(&plan).clone();
         let fail = |what: String| Err(format!("scene {i}: {what}"));
         if let Some(at) = difference(&first, best.render(&plan)) {
@@ -53,8 +55,9 @@ fn check(batch: u64) -> Result<Tally, String> {
         }
         if settings.arithmetic == Arithmetic::F32 {
             let settings = Settings { arithmetic: Arithmetic::F64, ..settings };
-            let mut in_f64 =
-                |scene: &Scene| best.render(&FramePlan::new(scene, &view, &settings, size)).clone();
+            let mut in_f64 = |scene: &Scene| {
+                best.render(&plan_frame(&Shot::new(scene, &view, &settings, size))).clone()
+            };
             let exact = in_f64(&scene);
             let differ = first.pixels().iter().zip(exact.pixels());
             tally.count("pixels", size.area() as u64);
@@ -142,14 +145,14 @@ fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {
         let mut axis = |v: DVec4| v * (DVec3::ONE + rng.vector(1.0) * PART).extend(1.0);
         let m = object.placement.now();
         let m = DMat4::from_cols(axis(m.x_axis), axis(m.y_axis), axis(m.z_axis), m.w_axis);
-        object.placement = Placed::new(m);
+        object.placement = Tracked::new(m);
         let _ = Command::Replace(Item::Object(id, Box::new(object))).apply(&mut scene);
     }
     let lights: Vec<_> = scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
     for (id, light) in lights {
         let kind = match &light.kind {
             LightKind::Bulb { position, orbit } => LightKind::Bulb {
-                position: Placed::new(nudge(orbit.at(*position.now(), view.time), rng)),
+                position: Tracked::new(nudge(orbit.at(*position.now(), view.time), rng)),
                 orbit: Orbit { on: false, ..*orbit },
             },
             LightKind::Spot { owner, half_aperture, exponent } => {
@@ -157,14 +160,14 @@ fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {
                 let direction = aim.direction + rng.vector(1.0) * PART;
                 let aim = Aim { position: nudge(aim.position, rng), direction };
                 LightKind::Spot {
-                    owner: SpotOwner::Fixed(Placed::new(aim)),
+                    owner: SpotOwner::Fixed(Tracked::new(aim)),
                     half_aperture: *half_aperture,
                     exponent: *exponent,
                 }
             }
-            LightKind::Sun { direction } => {
-                LightKind::Sun { direction: Placed::new(*direction.now() + rng.vector(1.0) * PART) }
-            }
+            LightKind::Sun { direction } => LightKind::Sun {
+                direction: Tracked::new(*direction.now() + rng.vector(1.0) * PART),
+            },
             LightKind::Ambient => continue,
         };
         let item = Item::Light(id, Box::new(Light { kind, ..light }));

@@ -3,12 +3,14 @@
 
 use super::fans::seen;
 use super::{Proof, Tally};
+use marraztu::accuracy::Settings;
+use marraztu::accuracy::Shot;
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
 use marraztu::lab::pictures::flat::{self, Flat};
-use marraztu::render::geometry::coverage::{SUBPIXELS, Snapped};
-use marraztu::render::{FramePlan, Renderer};
-use marraztu::scene::Settings;
+use marraztu::render::Renderer;
+use marraztu::render::plan_frame;
+use marraztu::render::screen::coverage::{SUBPIXELS, Snapped};
 
 pub(crate) const PROOF: Proof = Proof {
     name: "sizes",
@@ -78,7 +80,7 @@ fn narrow(tally: &mut Tally) -> Result<(), String> {
     let (scene, view) = flat::scene(&[vec![Flat::new(whole)]], 1);
     let long = 1 << 14;
     for size in [Size::new(long, 1), Size::new(1, long), Size::new(7, 1), Size::new(1, 7)] {
-        let plan = FramePlan::new(&scene, &view, &Settings::default(), size);
+        let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), size));
         let picture = Renderer::default().render(&plan).clone();
         let whole = picture.pixels().iter().all(|pixel| flat::number_of(*pixel) == Some(0));
         if picture.size() != size || !whole {

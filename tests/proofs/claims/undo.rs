@@ -3,17 +3,20 @@
 use glam::{DVec2, DVec3};
 
 use super::{Proof, Tally};
+use marraztu::accuracy::Settings;
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
 use marraztu::base::math::Axis;
 use marraztu::base::rng::Rng;
 use marraztu::edit::lights::{self, Channel};
-use marraztu::edit::look::{self, Pointer};
+use marraztu::edit::navigation::{self, Pointer};
 use marraztu::edit::transform::{self, Sign};
-use marraztu::edit::{Gesture, History, Refusal, Stroke, frame, items, motion, place, selection};
+use marraztu::edit::{
+    Gesture, GesturePhase, History, Refusal, framing, items, motion, placement, selection,
+};
 use marraztu::io;
 use marraztu::scene::{
-    Command, Frame, ItemId, LightKind, MaterialChoice, Model, Scene, Settings, SpotOwner, Subject,
+    Command, Frame, ItemId, LightKind, MaterialChoice, Model, Scene, SpotOwner, Subject,
     Transformation, View,
 };
 
@@ -154,7 +157,7 @@ fn every_bit(scene: &Scene) -> String {
 
 /// A random command.
 fn anything(scene: &Scene, view: &mut View, rng: &mut Rng) -> Result<Command, Refusal> {
-    let stroke = rng.one_of(&[Stroke::First, Stroke::First, Stroke::Continued]);
+    let stroke = rng.one_of(&[GesturePhase::First, GesturePhase::First, GesturePhase::Continued]);
     view.time += 0.1;
     let item = any_item(scene, rng).ok_or(Refusal::Gone)?;
     let object = || view.object.ok_or(Refusal::NoObject);
@@ -181,7 +184,7 @@ fn placing(
     scene: &Scene,
     view: &mut View,
     rng: &mut Rng,
-    stroke: Stroke,
+    stroke: GesturePhase,
 ) -> Result<Command, Refusal> {
     use Transformation::{Rotation, Scaling, Translation};
     match rng.below(8) {
@@ -198,22 +201,27 @@ fn placing(
         5 => transform::rotate(scene, view, rng.vector(10.0), rng.real(-10.0, 10.0), stroke),
         6 => {
             let object = view.object.ok_or(Refusal::NoObject)?;
-            place::object_turn(scene, view, object, rng.vector(200.0), stroke)
+            placement::object_turn(scene, view, object, rng.vector(200.0), stroke)
         }
         _ => transform::take_back(scene, view),
     }
 }
 
-/// A random camera movement.
-fn looking(scene: &Scene, view: &View, rng: &mut Rng, stroke: Stroke) -> Result<Command, Refusal> {
+/// Looks from somewhere else.
+fn looking(
+    scene: &Scene,
+    view: &View,
+    rng: &mut Rng,
+    stroke: GesturePhase,
+) -> Result<Command, Refusal> {
     let size = Size::new(640, 480);
     let at = DVec2::new(rng.real(120.0, 520.0), rng.real(40.0, 440.0));
     let amount: DVec3 = rng.vector(10.0);
     match rng.below(4) {
-        0 => look::orbit(scene, view, amount.x, amount.y, stroke),
-        1 => look::pan(scene, view, at, size, stroke),
-        2 => look::zoom(scene, view, amount.z, Pointer { at, depth: None }, size, stroke),
-        _ => frame::selection(scene, view),
+        0 => navigation::orbit(scene, view, amount.x, amount.y, stroke),
+        1 => navigation::pan(scene, view, at, size, stroke),
+        2 => navigation::zoom(scene, view, amount.z, Pointer { at, depth: None }, size, stroke),
+        _ => framing::selection(scene, view),
     }
 }
 

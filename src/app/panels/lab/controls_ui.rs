@@ -1,28 +1,27 @@
-//! What the laboratory is asked: to measure, to judge, to keep to a budget, to compare, to explain.
+//! The controls of the laboratory: measuring, error metric, budgets, comparison, attribution.
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui};
 
-use crate::app::ask::Ask;
-use crate::app::comparison::{Compare, in_words};
-use crate::app::laboratory::LabAsk;
-use crate::app::panels::controls::{Choice, Switch, choices, row};
-use crate::app::panels::number::Number;
+use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
+use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::theme;
+use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, row};
+use crate::app::widgets::number::Number;
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::Measure;
 use crate::lab::report::{Budgets, Report, brief, tabs};
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let area = ScrollArea::vertical().id_salt("what the laboratory is asked").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
-        measure_ui(ui, state, asks);
-        judge_ui(ui, state, asks);
-        budgets_ui(ui, state, asks);
+        measure_ui(ui, state, requests);
+        judge_ui(ui, state, requests);
+        budgets_ui(ui, state, requests);
         ui.add_space(theme::GAP);
-        compare_ui(ui, state, asks);
-        pixel_ui(ui, state, asks);
+        compare_ui(ui, state, requests);
+        pixel_ui(ui, state, requests);
         if let Some(report) = &state.lab.report {
             command_ui(ui, report);
         }
@@ -30,20 +29,20 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
-fn measure_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let lab = &state.lab;
     ui.horizontal(|ui| match lab.running {
         Some(fraction) => {
             let width = ui.available_width() - 70.0;
             ui.add(ProgressBar::new(fraction as f32).desired_width(width).show_percentage());
-            if ui.button("Cancel").on_hover_text("Gives up measuring").clicked() {
-                asks.push(Ask::Lab(LabAsk::Cancel));
+            if ui.button("Cancel").on_hover_text("Cancels measuring").clicked() {
+                requests.push(Request::Lab(LabRequest::Cancel));
             }
         }
         None => {
             let quick = ui.button("Measure").on_hover_text(
-                "Times every choice against the default, and judges its picture against the exact one: \
-                 some 20 seconds for the first scene",
+                "Times every choice against the default and compares its picture with the exact \
+                 one: about 20 seconds for the default scene",
             );
             let whole = ui.button("Thoroughly").on_hover_text(
                 "The same with more pairs of pictures and more combinations: some minutes",
@@ -52,7 +51,7 @@ fn measure_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
                 [(quick.clicked(), Thoroughness::QUICK), (whole.clicked(), Thoroughness::WHOLE)]
             {
                 if clicked {
-                    asks.push(Ask::Lab(LabAsk::Measure(thoroughness)));
+                    requests.push(Request::Lab(LabRequest::Measure(thoroughness)));
                 }
             }
         }
@@ -65,24 +64,24 @@ fn measure_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     }
 }
 
-fn judge_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.lab.measure;
     let all: Vec<Choice<'_>> = Measure::ALL
         .iter()
         .zip([
             ("RMSE", "The root of the mean square of the differences, in byte steps of 255"),
-            ("Max", "The largest difference of a byte, in steps of 255"),
-            ("Bytes", "The part of the bytes that differ at all, however little"),
-            ("FLIP", "How different the pictures look when one flips between them, from 0 to 1"),
+            ("Maximum", "The largest difference of a byte, in steps of 255"),
+            ("Differing bytes", "The fraction of bytes that differ at all"),
+            ("FLIP", "How different the pictures look when flipping between them, from 0 to 1"),
         ])
-        .map(|(measure, (label, hint))| Choice::new("Error as", label, *measure == now, hint))
+        .map(|(measure, (label, hint))| Choice::new("Error metric", label, *measure == now, hint))
         .collect();
-    if let Some(clicked) = row(ui, "Error as", |ui| choices(ui, &all)) {
-        asks.push(Ask::Lab(LabAsk::Judge(Measure::ALL[clicked])));
+    if let Some(clicked) = row(ui, "Error metric", |ui| choices_in_rows(ui, &all)) {
+        requests.push(Request::Lab(LabRequest::Judge(Measure::ALL[clicked])));
     }
 }
 
-fn budgets_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn budgets_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let (budgets, report) = (state.lab.budgets, state.lab.report.as_ref());
     let error = Budget {
         label: "Error up to",
@@ -92,8 +91,8 @@ fn budgets_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         value: budgets.error,
         found: report.and_then(Report::fastest),
     };
-    if let Some(error) = budget_ui(ui, &error, report, asks) {
-        asks.push(Ask::Lab(LabAsk::Budgets(Budgets { error, ..budgets })));
+    if let Some(error) = budget_ui(ui, &error, report, requests) {
+        requests.push(Request::Lab(LabRequest::Budgets(Budgets { error, ..budgets })));
     }
     let ms = Budget {
         label: "Time up to",
@@ -103,8 +102,8 @@ fn budgets_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         value: budgets.ms,
         found: report.and_then(Report::most_exact),
     };
-    if let Some(ms) = budget_ui(ui, &ms, report, asks) {
-        asks.push(Ask::Lab(LabAsk::Budgets(Budgets { ms, ..budgets })));
+    if let Some(ms) = budget_ui(ui, &ms, report, requests) {
+        requests.push(Request::Lab(LabRequest::Budgets(Budgets { ms, ..budgets })));
     }
 }
 
@@ -114,7 +113,7 @@ struct Budget {
     hint: &'static str,
     suffix: &'static str,
     value: Option<f64>,
-    /// The point that keeps to it; none where there is no budget, or nothing keeps to it.
+    /// The point within the budget; `None` without a budget, or if no point is within it.
     found: Option<Option<usize>>,
 }
 
@@ -123,7 +122,7 @@ fn budget_ui(
     ui: &mut Ui,
     budget: &Budget,
     report: Option<&Report>,
-    asks: &mut Vec<Ask>,
+    requests: &mut Vec<Request>,
 ) -> Option<Option<f64>> {
     let mut changed = None;
     row(ui, budget.label, |ui| {
@@ -139,8 +138,8 @@ fn budget_ui(
                 let point = &report.findings.points[point];
                 let text = format!("{}, {} ms", point.name, brief(point.ms));
                 let button = egui::Button::new(text).truncate();
-                if ui.add(button).on_hover_text("Draws the picture so").clicked() {
-                    asks.push(Ask::Settings(point.settings));
+                if ui.add(button).on_hover_text("Draws the picture with these settings").clicked() {
+                    requests.push(Request::Settings(point.settings));
                 }
             }
             (Some(None), _) => {
@@ -154,7 +153,7 @@ fn budget_ui(
     changed
 }
 
-fn compare_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.lab.compare;
     let is_split = matches!(now, Compare::Split(_));
     let all = [
@@ -167,32 +166,34 @@ fn compare_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let shown: Vec<Choice<'_>> =
         all.iter().map(|(label, on, hint, _)| Choice::new("Compare", label, *on, hint)).collect();
     if let Some(clicked) = row(ui, "Compare", |ui| choices(ui, &shown)) {
-        asks.push(Ask::Lab(LabAsk::Compare(all[clicked].3)));
+        requests.push(Request::Lab(LabRequest::Compare(all[clicked].3)));
     }
     if let (Some(judged), true) = (&state.lab.judged, now != Compare::Off) {
         ui.label(RichText::new(format!("Error: {}", in_words(&judged.error))).small());
     }
 }
 
-fn pixel_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let switch = Switch::new("Explain a pixel: click on it", state.lab.picking).ui(ui);
-    let switch =
-        switch.on_hover_text("Says for one pixel how far it is off, and which axis is to blame");
+    let switch = switch.on_hover_text("Shows the error of one pixel and attributes it to an axis");
     if switch.clicked() {
-        asks.push(Ask::Lab(LabAsk::Pick(!state.lab.picking)));
+        requests.push(Request::Lab(LabRequest::Pick(!state.lab.picking)));
     }
-    for line in state.lab.blame.iter().flatten() {
+    for line in state.lab.attribution.iter().flatten() {
         ui.add(egui::Label::new(RichText::new(line).monospace()).wrap());
     }
 }
 
 fn command_ui(ui: &mut Ui, report: &Report) {
     ui.horizontal(|ui| {
-        if ui.button("Copy command").on_hover_text("What measures this without a window").clicked()
+        if ui
+            .button("Copy command")
+            .on_hover_text("Copies the command that measures this without a window")
+            .clicked()
         {
             ui.ctx().copy_text(report.command.clone());
         }
-        let hint = "The whole table, with tabs between its fields, as spreadsheets take it";
+        let hint = "Copies the whole table as tab-separated text for spreadsheets";
         if ui.button("Copy table").on_hover_text(hint).clicked() {
             ui.ctx().copy_text(tabs(report));
         }

@@ -1,16 +1,15 @@
-//! What each axis of accuracy teaches: three sentences, its choices, and a scene that shows it.
+//! The lesson of each axis of accuracy: three sentences, its choices, and a scene that shows it.
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::ask::Ask;
-use crate::app::laboratory::LabAsk;
+use crate::accuracy::{AXES, AxisKind};
+use crate::app::actions::{LabRequest, Request};
 use crate::app::panels::view_switches::axis_ui;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::scene::{AXES, AxisKind};
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let area = ScrollArea::vertical().id_salt("lessons").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         let axis = state.lab.lesson;
@@ -18,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
             for other in AXES {
                 let button = egui::Button::selectable(other.key == axis.key, other.name);
                 if ui.add(button).on_hover_text(other.lesson.title).clicked() {
-                    asks.push(Ask::Lab(LabAsk::Lesson(other.key)));
+                    requests.push(Request::Lab(LabRequest::Lesson(other.key)));
                 }
             }
         });
@@ -27,9 +26,9 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
         ui.horizontal(|ui| {
             let hint = "Opens a small scene in which the difference is plain to see";
             if ui.button("Take me there").on_hover_text(hint).clicked() {
-                asks.push(Ask::Lab(LabAsk::ShowLesson(axis.key)));
+                requests.push(Request::Lab(LabRequest::ShowLesson(axis.key)));
             }
-            axis_ui(ui, axis, state, asks);
+            axis_ui(ui, axis, state, requests);
         });
         let coarse = match axis.kind {
             AxisKind::Scored | AxisKind::ScoredApart => "When it is coarse",

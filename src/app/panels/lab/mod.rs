@@ -1,7 +1,7 @@
-//! The laboratory: time against error, the table behind it, and what each axis teaches.
+//! The laboratory: time against error, the table behind it, and the lesson of each axis.
 //!
-//! At the left what is asked, in the middle the scatter, at the right the table or the lessons. A click
-//! on a mark or on a row of the table draws the picture so.
+//! At the left what is asked, in the middle the scatter, at the right the table or the lessons. A
+//! click on a mark or on a row of the table draws the picture so.
 
 mod controls_ui;
 mod lessons;
@@ -10,17 +10,16 @@ mod table;
 
 use egui::{Layout, Rect, Ui, UiBuilder, vec2};
 
-use super::controls::{Choice, choices};
-use crate::app::ask::Ask;
-use crate::app::laboratory::{LabAsk, Side};
+use crate::app::actions::Request;
 use crate::app::state::State;
-use crate::app::theme;
+use crate::app::widgets::controls::{Choice, choices};
+use crate::app::{actions::LabRequest, state::laboratory::Side, theme};
 
-/// How wide what is asked is.
+/// The width of the controls.
 const ASKED: f32 = 264.0;
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let whole = ui.available_rect_before_wrap();
     let all = whole.shrink2(vec2(0.0, 2.0));
     let gap = f32::from(theme::MARGIN);
@@ -28,9 +27,9 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let rest = all.with_min_x(asked.right() + gap);
     let middle = rest.with_max_x(rest.left() + (rest.width() * 0.42).round());
     let right = rest.with_min_x(middle.right() + gap);
-    within(ui, asked, |ui| controls_ui::show(ui, state, asks));
-    within(ui, middle, |ui| scatter::show(ui, state, asks));
-    within(ui, right, |ui| right_ui(ui, state, asks));
+    within(ui, asked, |ui| controls_ui::show(ui, state, requests));
+    within(ui, middle, |ui| scatter::show(ui, state, requests));
+    within(ui, right, |ui| right_ui(ui, state, requests));
     // All of it, else the panel would shrink from frame to frame.
     ui.allocate_rect(whole, egui::Sense::hover());
 }
@@ -43,17 +42,17 @@ fn within(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
     add(&mut child);
 }
 
-fn right_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+fn right_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let side = state.lab.side;
     let all = [
         Choice::new("Laboratory", "Table", side == Side::Table, "Every choice with its figures"),
         Choice::new("Laboratory", "Lessons", side == Side::Lessons, "What each axis teaches"),
     ];
     if let Some(clicked) = choices(ui, &all) {
-        asks.push(Ask::Lab(LabAsk::Side([Side::Table, Side::Lessons][clicked])));
+        requests.push(Request::Lab(LabRequest::Side([Side::Table, Side::Lessons][clicked])));
     }
     match side {
-        Side::Table => table::show(ui, state, asks),
-        Side::Lessons => lessons::show(ui, state, asks),
+        Side::Table => table::show(ui, state, requests),
+        Side::Lessons => lessons::show(ui, state, requests),
     }
 }

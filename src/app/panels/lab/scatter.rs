@@ -1,16 +1,16 @@
-//! Time against error: each mark is a choice that a click makes live.
+//! The scatter plot of time against error; clicking a mark draws the picture with its settings.
 
 use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 
-use crate::app::ask::Ask;
-use crate::app::panels::controls;
+use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::controls;
 use crate::lab::report::{Chart, Mark, MarkKind, Report, brief};
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(report) = &state.lab.report else {
         return empty_ui(ui, state);
     };
@@ -18,13 +18,13 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let transform = plot_ui(ui, &chart);
     front_ui(ui, &chart, (&chart.front_apart, 1.0), &transform);
     front_ui(ui, &chart, (&chart.front, 1.5), &transform);
-    // What is drawn now and what is on the front lies above the rest.
+    // The current settings and the front are drawn above the rest.
     let mut marks: Vec<&Mark> = chart.marks.iter().collect();
     let is_now = |mark: &Mark| report.findings.points[mark.point].settings == state.settings;
     marks.sort_by_key(|mark| (is_now(mark), mark.on_front));
     for mark in &marks {
         if mark_ui(ui, place(mark, &transform), mark, is_now(mark), report).clicked() {
-            asks.push(Ask::Settings(report.findings.points[mark.point].settings));
+            requests.push(Request::Settings(report.findings.points[mark.point].settings));
         }
     }
     marks.reverse();
@@ -41,8 +41,8 @@ fn empty_ui(ui: &mut Ui, state: &State) {
             "The default is measured against itself first: how much it differs is the noise."
         }
         None => {
-            "What does accuracy cost? Measure draws this picture with every choice, and shows here how \
-             long each takes and how far it is from the exact picture."
+            "What does accuracy cost? Measure draws this picture with every choice and shows \
+             here how long each takes and how far it is from the exact picture."
         }
     };
     ui.add_space(ui.available_height() * 0.35);
@@ -104,7 +104,7 @@ fn front_ui(ui: &Ui, chart: &Chart, (front, width): (&[usize], f32), transform: 
     let _ = ui.painter().with_clip_rect(*transform.frame()).line(line, stroke);
 }
 
-/// Names beside marks, the first first, where there is room for them.
+/// Names beside marks, in order, if there is room for them.
 fn names_ui(ui: &Ui, marks: &[&Mark], transform: &PlotTransform) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let mut taken: Vec<Rect> = marks
@@ -117,7 +117,7 @@ fn names_ui(ui: &Ui, marks: &[&Mark], transform: &PlotTransform) {
         let ink = if mark.on_front { visuals.text_color() } else { visuals.weak_text_color() };
         let text = ui.painter().layout_no_wrap(mark.name.clone(), font.clone(), ink);
         let size = text.size();
-        // Where the front runs, to the right and up, last.
+        // Last: to the upper right, along the front.
         let around = [
             at + vec2(10.0, -size.y),
             at + vec2(-10.0 - size.x, 0.0),
@@ -187,7 +187,7 @@ fn triangle(at: Pos2, size: f32, ink: Color32) -> Shape {
     Shape::convex_polygon(corners, ink, Stroke::NONE)
 }
 
-/// What is known of a choice.
+/// The figures of a choice, for its tooltip.
 fn tip_ui(ui: &mut Ui, mark: &Mark, report: &Report) {
     let point = &report.findings.points[mark.point];
     let quartiles = &point.ratio.quartiles;
@@ -202,11 +202,11 @@ fn tip_ui(ui: &mut Ui, mark: &Mark, report: &Report) {
     ));
     ui.label(format!(
         "Error: {}; FLIP {}",
-        crate::app::comparison::in_words(&point.error),
+        crate::app::state::laboratory::in_words(&point.error),
         brief(point.error.flip)
     ));
     if mark.on_front {
-        ui.label("Nothing else is both faster and more exact.");
+        ui.label("No other choice is both faster and more exact.");
     }
     match mark.kind {
         MarkKind::Model => {
@@ -215,12 +215,11 @@ fn tip_ui(ui: &mut Ui, mark: &Mark, report: &Report) {
         MarkKind::Apart => {
             ui.label("Judged against 64 samples a pixel, each lit: a front of its own.");
         }
-        _ if !report.is_scored(mark.point) => {
-            ui.label(
-                "Shows other triangles at some pixels, which FLIP alone judges: on no front here.",
-            );
+        MarkKind::Default | MarkKind::Preset | MarkKind::Axis | MarkKind::Combination => {
+            if !report.is_scored(mark.point) {
+                ui.label("Some pixels show other triangles, which only FLIP judges: on no front.");
+            }
         }
-        _ => {}
     }
-    ui.weak("Click to draw the picture so.");
+    ui.weak("Click to draw the picture with these settings.");
 }

@@ -1,11 +1,11 @@
-//! The table: every choice with its figures; a click on a row draws the picture so.
+//! The table of the laboratory: every choice with its figures; a click applies it.
 
 use egui::{Color32, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::ask::Ask;
-use crate::app::panels::controls::{focus_ring, put_text, text};
+use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::controls::{focus_ring, put_text, text};
 use crate::lab::report::{Report, brief, heading};
 use crate::lab::sweep::{Measured, Row, Verdict};
 
@@ -68,8 +68,8 @@ const COLUMNS: [Column; 7] = [
     },
 ];
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(report) = &state.lab.report else {
         ui.weak("Nothing is measured yet.");
         return;
@@ -87,13 +87,13 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
                 ui.label(RichText::new(&heading).small().strong());
                 last = heading;
             }
-            row_ui(ui, state, report, row, front.contains(&row.point), asks);
+            row_ui(ui, state, report, row, front.contains(&row.point), requests);
         }
         foot_ui(ui, report);
     });
 }
 
-/// Where a column is in a row.
+/// The place of a column in a row.
 fn cell(row: Rect, column: usize) -> Rect {
     let before: f32 = COLUMNS[..column].iter().map(|column| column.share).sum();
     let left = row.left() + (NAMES + before) * row.width();
@@ -120,7 +120,7 @@ fn row_ui(
     report: &Report,
     row: &Row,
     on_front: bool,
-    asks: &mut Vec<Ask>,
+    requests: &mut Vec<Request>,
 ) {
     let point = &report.findings.points[row.point];
     let now = point.settings == state.settings;
@@ -135,7 +135,7 @@ fn row_ui(
         (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
     };
     ui.painter().rect_filled(rect, 3.0, fill);
-    // What is worth choosing has a bar, as it has a line in the scatter.
+    // Choices on the front have a bar, as they have a line in the scatter.
     if on_front {
         let bar = Rect::from_min_size(rect.min + vec2(1.0, 3.0), vec2(2.0, rect.height() - 6.0));
         ui.painter().rect_filled(bar, 1.0, theme::accent(ui.visuals()));
@@ -160,7 +160,7 @@ fn row_ui(
         point.ratio.pairs, point.ratio.thrown, point.error.coverage
     );
     if response.on_hover_text(hint).clicked() {
-        asks.push(Ask::Settings(point.settings));
+        requests.push(Request::Settings(point.settings));
     }
 }
 
@@ -182,9 +182,9 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
     small(
         ui,
         format!(
-            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself it differed \
-             by {:.1} % in {} pairs: less than that means nothing. * is the default; a bar marks what \
-             nothing beats in both.",
+            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself \
+             it differed by {:.1} % in {} pairs, so smaller differences mean nothing. * is the \
+             default; a bar marks choices that no other beats in both.",
             findings.threads,
             findings.instructions,
             brief(findings.control.a_ms),

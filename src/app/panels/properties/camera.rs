@@ -3,38 +3,38 @@
 use egui::Ui;
 use glam::{DMat3, DVec3};
 
-use super::super::controls::{Switch, change, row, section};
-use super::super::number::{Number, keep_angles, kept_angles, vector};
-use super::super::view_switches::frame_ui;
 use super::object::same_turn;
 use super::{material, number_row, steps_ui};
-use crate::app::ask::Ask;
+use crate::app::actions::{Request, change};
+use crate::app::panels::view_switches::frame_ui;
 use crate::app::state::State;
+use crate::app::widgets::controls::{Switch, row, section};
+use crate::app::widgets::number::{Number, keep_angles, kept_angles, vector};
 use crate::base::math::{self, Axis};
-use crate::edit::{Gesture, items, place};
+use crate::edit::{Gesture, items, placement};
 use crate::scene::{Camera, CameraId, Lens};
 
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId) {
     let Some(camera) = state.scene.cameras.get(id) else { return };
-    section(ui, "Place and direction", true, |ui| {
-        pose_ui(ui, state, asks, id, camera);
-        row(ui, "Moves", |ui| frame_ui(ui, state, asks));
+    section(ui, "Transform", true, |ui| {
+        pose_ui(ui, state, requests, id, camera);
+        row(ui, "Moves", |ui| frame_ui(ui, state, requests));
     });
-    section(ui, "Lens", true, |ui| lens_ui(ui, state, asks, id, camera));
-    steps_ui(ui, state, asks, false);
-    section(ui, "Mark", true, |ui| mark_ui(ui, state, asks, id, camera));
+    section(ui, "Lens", true, |ui| lens_ui(ui, state, requests, id, camera));
+    steps_ui(ui, state, requests, false);
+    section(ui, "Camera model", true, |ui| mark_ui(ui, state, requests, id, camera));
 }
 
-fn pose_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera: &Camera) {
+fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let (scene, view) = (&state.scene, &state.view);
     let pose = camera.pose.now();
-    let hint = "Where the camera's eye is";
+    let hint = "Position of the camera's eye";
     let eye = row(ui, "Position", |ui| vector(ui, &Number::new("Position", hint), pose.eye));
     if let Some((to, gesture)) = eye {
-        let command = place::camera_eye(scene, view, id, to, state.stroke(gesture));
-        change(asks, format!("Move {}", camera.name), gesture, command);
+        let command = placement::camera_eye(scene, view, id, to, state.phase(gesture));
+        change(requests, format!("Move {}", camera.name), gesture, command);
     }
-    let canonical = place::camera_degrees(pose);
+    let canonical = placement::camera_degrees(pose);
     let same = |given| same_turn(camera_turn(given), camera_turn(canonical));
     let given = kept_angles(ui, "angles", canonical, same);
     let rows = [
@@ -48,8 +48,8 @@ fn pose_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera
             let mut to = given;
             to[i] = degrees;
             keep_angles(ui, "angles", to);
-            let command = place::camera_turn(scene, view, id, to, state.stroke(gesture));
-            change(asks, format!("Turn {}", camera.name), gesture, command);
+            let command = placement::camera_turn(scene, view, id, to, state.phase(gesture));
+            change(requests, format!("Turn {}", camera.name), gesture, command);
         }
     }
 }
@@ -60,48 +60,53 @@ fn camera_turn(degrees: DVec3) -> DMat3 {
     turn(Axis::Y, degrees.x) * turn(Axis::X, degrees.y) * turn(Axis::Z, degrees.z)
 }
 
-fn lens_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera: &Camera) {
+fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let lens = camera.lens;
     let mut set = |changed: Option<(f64, Gesture)>, to: &dyn Fn(f64) -> Lens| {
         if let Some((value, gesture)) = changed {
             let command = items::set_lens(&state.scene, id, to(value));
-            change(asks, format!("Lens of {}", camera.name), gesture, command);
+            change(requests, format!("Lens of {}", camera.name), gesture, command);
         }
     };
     ui.weak("Perspective");
-    let hint = "Degrees to each side of the axis, across the shorter side of the picture";
-    let number = Number::new("Half-angle", hint).speed(0.1).range(0.01..=89.9).suffix(" deg");
-    let half_angle = number_row(ui, "Half-angle", number, lens.half_angle);
-    set(half_angle, &|half_angle| Lens { half_angle, ..lens });
-    let number = Number::new("Near", "Where the view begins: more than 0").speed(0.1);
+    let hint = "The whole angle across the shorter side of the picture, usually the vertical one";
+    let number = Number::new("Field of view", hint).speed(0.2).range(0.02..=179.8).suffix(" deg");
+    let angle = number_row(ui, "Field of view", number, 2.0 * lens.half_angle);
+    set(angle, &|angle| Lens { half_angle: angle / 2.0, ..lens });
+    let number = Number::new("Near", "Distance of the near plane: more than 0").speed(0.1);
     let near = number_row(ui, "Near", number, lens.near);
     set(near, &|near| Lens { near, ..lens });
-    let number = Number::new("Far", "Where the view ends: more than Near").speed(5.0);
+    let number = Number::new("Far", "Distance of the far plane: more than Near").speed(5.0);
     let far = number_row(ui, "Far", number, lens.far);
     set(far, &|far| Lens { far, ..lens });
-    ui.weak("Parallel");
-    let hint = "Units to each side of the axis, across the shorter side of the picture";
+    ui.weak("Orthographic");
+    let hint = "Units from the axis to the border across the shorter side of the picture";
     let number = Number::new("Half-size", hint).range(1e-9..=1e12);
     let half_size = number_row(ui, "Half-size", number, lens.half_size);
     set(half_size, &|half_size| Lens { half_size, ..lens });
-    let number = Number::new("Parallel near", "Where the parallel view begins");
+    let number =
+        Number::new("Orthographic near", "Distance of the near plane of the orthographic view");
     let near = number_row(ui, "Near", number, lens.parallel_near);
     set(near, &|parallel_near| Lens { parallel_near, ..lens });
-    let number = Number::new("Parallel far", "Where it ends: more than Near").speed(5.0);
+    let number = Number::new(
+        "Orthographic far",
+        "Distance of the far plane of the orthographic view: more than Near",
+    )
+    .speed(5.0);
     let far = number_row(ui, "Far", number, lens.parallel_far);
     set(far, &|parallel_far| Lens { parallel_far, ..lens });
 }
 
 /// What other observers see of the camera.
-fn mark_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: CameraId, camera: &Camera) {
+fn mark_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
     let scene = &state.scene;
-    let hint = "Other cameras see it as a small pyramid";
-    if Switch::new("Seen by others", camera.visible).ui(ui).on_hover_text(hint).clicked() {
+    let hint = "Shows the camera to other observers as a small pyramid";
+    if Switch::new("Visible", camera.visible).ui(ui).on_hover_text(hint).clicked() {
         let command = items::change_camera(scene, id, |camera| camera.visible ^= true);
-        change(asks, format!("Show or hide {}", camera.name), Gesture::Whole, command);
+        change(requests, format!("Show or hide {}", camera.name), Gesture::Whole, command);
     }
     if let Some((to, gesture)) = material::choice_ui(ui, &camera.material, None) {
         let command = items::change_camera(scene, id, |camera| camera.material = to);
-        change(asks, format!("Material of {}", camera.name), gesture, command);
+        change(requests, format!("Material of {}", camera.name), gesture, command);
     }
 }

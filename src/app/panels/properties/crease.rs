@@ -2,11 +2,10 @@
 
 use egui::Ui;
 
-use super::super::controls::change;
-use super::super::number::Number;
 use super::number_row;
-use crate::app::ask::Ask;
+use crate::app::actions::{Request, change};
 use crate::app::state::State;
+use crate::app::widgets::number::Number;
 use crate::edit::{Gesture, items};
 use crate::scene::{Crease, Object, ObjectId};
 
@@ -14,7 +13,13 @@ use crate::scene::{Crease, Object, ObjectId};
 /// every frame would be too slow.
 const MOST_WHILE_DRAGGED: usize = 200_000;
 
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+pub(crate) fn show(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    id: ObjectId,
+    object: &Object,
+) {
     let idle =
         items::why_no_crease(&object.model, object.file_normals).map(|why| format!("Off: {why}"));
     let hint = idle.as_deref().unwrap_or(
@@ -30,7 +35,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId
     }
     if let Some((crease, gesture)) = changed.and_then(|(to, by)| Some((Crease::new(to)?, by))) {
         let command = items::set_crease(&state.scene, id, crease);
-        change(asks, format!("Change the crease angle of {}", object.name), gesture, command);
+        change(requests, format!("Change the crease angle of {}", object.name), gesture, command);
     }
 }
 
@@ -53,7 +58,7 @@ impl Waiting {
         ui.scope_id().with("crease angle")
     }
 
-    /// What is left of a change while a drag goes on: nothing, until the button is let go.
+    /// A change that is held back until the button is released.
     fn until_let_go(
         ui: &Ui,
         waiting: Option<Self>,

@@ -3,17 +3,18 @@
 use egui::{ComboBox, Slider, Ui};
 use glam::DVec3;
 
-use super::super::color_picker::swatch;
-use super::super::controls::{Switch, change, row, section};
-use super::super::number::{Number, vector};
 use super::{number_row, steps_ui};
-use crate::app::ask::Ask;
+use crate::app::actions::{Request, change};
 use crate::app::state::State;
-use crate::app::{gestures, theme};
+use crate::app::theme;
+use crate::app::widgets::color_picker::swatch;
+use crate::app::widgets::controls::{Switch, row, section};
+use crate::app::widgets::gestures;
+use crate::app::widgets::number::{Number, vector};
 use crate::base::color;
-use crate::edit::{Gesture, items, lights, motion, place};
+use crate::edit::{Gesture, items, lights, motion, placement};
 use crate::scene::{
-    Aim, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Placed, Scene, SpotOwner,
+    Aim, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Scene, SpotOwner, Tracked,
 };
 
 /// A light that is being shown.
@@ -23,37 +24,37 @@ struct Shown<'a> {
     light: &'a Light,
 }
 
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: LightId) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: LightId) {
     let Some(light) = state.scene.lights.get(id) else { return };
     let shown = Shown { state, id, light };
-    section(ui, "Colour", true, |ui| shown.color_ui(ui, asks));
+    section(ui, "Colour", true, |ui| shown.color_ui(ui, requests));
     match &light.kind {
         LightKind::Ambient => {}
         LightKind::Sun { direction } => {
-            section(ui, "Direction", true, |ui| shown.direction_ui(ui, asks, *direction.now()));
+            section(ui, "Direction", true, |ui| shown.direction_ui(ui, requests, *direction.now()));
         }
         LightKind::Bulb { position, orbit } => {
             section(ui, "Place", true, |ui| {
-                shown.position_ui(ui, asks, *position.now());
-                shown.orbit_ui(ui, asks, *orbit);
+                shown.position_ui(ui, requests, *position.now());
+                shown.orbit_ui(ui, requests, *orbit);
             });
         }
         LightKind::Spot { owner, half_aperture, exponent } => {
-            section(ui, "Cone", true, |ui| shown.cone_ui(ui, asks, *half_aperture, *exponent));
+            section(ui, "Cone", true, |ui| shown.cone_ui(ui, requests, *half_aperture, *exponent));
             section(ui, "Place", true, |ui| {
-                shown.owner_ui(ui, asks, owner);
+                shown.owner_ui(ui, requests, owner);
                 if let SpotOwner::Fixed(aim) = owner {
-                    shown.position_ui(ui, asks, aim.now().position);
-                    shown.direction_ui(ui, asks, aim.now().direction);
+                    shown.position_ui(ui, requests, aim.now().position);
+                    shown.direction_ui(ui, requests, aim.now().direction);
                 }
             });
         }
     }
     if matches!(light.kind, LightKind::Bulb { .. } | LightKind::Spot { .. }) {
-        section(ui, "Fading", false, |ui| shown.fading_ui(ui, asks));
+        section(ui, "Fading", false, |ui| shown.fading_ui(ui, requests));
     }
     if !matches!(light.kind, LightKind::Ambient) {
-        steps_ui(ui, state, asks, false);
+        steps_ui(ui, state, requests, false);
     }
 }
 
@@ -62,16 +63,16 @@ impl Shown<'_> {
         format!("{verb} {}", self.light.name)
     }
 
-    fn color_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>) {
+    fn color_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
         let Self { state, id, light } = *self;
         let scene = &state.scene;
         if Switch::new("Shines", light.on).ui(ui).on_hover_text(self.key_hint()).clicked() {
             let command = items::toggle_shown(scene, ItemId::Light(id));
-            change(asks, self.label("Switch"), Gesture::Whole, command);
+            change(requests, self.label("Switch"), Gesture::Whole, command);
         }
         let mut set = |color, gesture| {
             let command = items::change_light(scene, id, |light| light.color = color);
-            change(asks, self.label("Colour"), gesture, command);
+            change(requests, self.label("Colour"), gesture, command);
         };
         let channels = [("Red", "q and Q"), ("Green", "v and V"), ("Blue", "a and A")];
         for (i, (name, keys)) in channels.into_iter().enumerate() {
@@ -87,11 +88,11 @@ impl Shown<'_> {
                 set(color, gesture);
             }
         });
-        let hint = "0 to 9 is the key that switches the light; no two lights have the same";
+        let hint = "The key from 0 to 9 that switches the light; each key belongs to one light";
         let number = Number::new("Key", hint).speed(0.05).range(0.0..=9999.0).whole();
         if let Some((to, gesture)) = number_row(ui, "Key", number, f64::from(light.slot)) {
             let command = lights::set_slot(scene, id, whole(to));
-            change(asks, self.label("Key of"), gesture, command);
+            change(requests, self.label("Key of"), gesture, command);
         }
     }
 
@@ -102,71 +103,69 @@ impl Shown<'_> {
         }
     }
 
-    fn position_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, position: DVec3) {
-        let hint = "Where the light is";
+    fn position_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, position: DVec3) {
+        let hint = "Position of the light";
         let changed =
             row(ui, "Position", |ui| vector(ui, &Number::new("Position", hint), position));
         if let Some((to, gesture)) = changed {
-            let stroke = self.state.stroke(gesture);
-            let command = place::light_position(&self.state.scene, self.id, to, stroke);
-            change(asks, self.label("Move"), gesture, command);
+            let phase = self.state.phase(gesture);
+            let command = placement::light_position(&self.state.scene, self.id, to, phase);
+            change(requests, self.label("Move"), gesture, command);
         }
     }
 
-    fn direction_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, direction: DVec3) {
-        let hint = "The way its light goes; brought to length 1";
+    fn direction_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, direction: DVec3) {
+        let hint = "Direction of the light; normalised";
         let field = Number::new("Direction", hint).speed(0.01).range(-1.0..=1.0);
         let changed = row(ui, "Direction", |ui| vector(ui, &field, direction));
         if let Some((to, gesture)) = changed {
-            let stroke = self.state.stroke(gesture);
-            let command = place::light_direction(&self.state.scene, self.id, to, stroke);
-            change(asks, self.label("Turn"), gesture, command);
+            let phase = self.state.phase(gesture);
+            let command = placement::light_direction(&self.state.scene, self.id, to, phase);
+            change(requests, self.label("Turn"), gesture, command);
         }
     }
 
-    fn orbit_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, orbit: Orbit) {
+    fn orbit_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, orbit: Orbit) {
         let (scene, time) = (&self.state.scene, self.state.view.time);
         let hint = "Circles the world's Y axis";
         if Switch::new("Circles", orbit.on).ui(ui).on_hover_text(hint).clicked() {
             let command = motion::toggle_orbit(scene, self.id, time);
-            change(asks, self.label("Circle"), Gesture::Whole, command);
+            change(requests, self.label("Circle"), Gesture::Whole, command);
         }
         let number = Number::new("Circling speed", "Degrees a second").suffix(" deg/s");
         if let Some((speed, gesture)) = number_row(ui, "Speed", number, orbit.speed) {
             let to = Orbit { speed, ..orbit };
-            let stroke = self.state.stroke(gesture);
-            let command = motion::set_orbit(scene, self.id, to, time, stroke);
-            change(asks, self.label("Circle"), gesture, command);
+            let phase = self.state.phase(gesture);
+            let command = motion::set_orbit(scene, self.id, to, time, phase);
+            change(requests, self.label("Circle"), gesture, command);
         }
     }
 
-    fn cone_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, half_aperture: f64, exponent: f64) {
+    fn cone_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, half_aperture: f64, exponent: f64) {
         let scene = &self.state.scene;
         let hint = "Degrees from the axis to the border of the cone; keys + and -";
         let number = Number::new("Half-aperture", hint).speed(0.2).range(0.0..=90.0);
         let number = number.suffix(" deg");
         if let Some((to, gesture)) = number_row(ui, "Aperture", number, half_aperture) {
             let command = lights::set_aperture(scene, self.id, to);
-            change(asks, self.label("Aperture of"), gesture, command);
+            change(requests, self.label("Aperture of"), gesture, command);
         }
-        let hint = "How much the light is gathered along the axis";
+        let hint = "Concentration of the light along the axis";
         let number = Number::new("Concentration", hint).speed(0.1).range(0.0..=1000.0);
         if let Some((to, gesture)) = number_row(ui, "Exponent", number, exponent) {
             let command = lights::set_exponent(scene, self.id, to);
-            change(asks, self.label("Concentration of"), gesture, command);
+            change(requests, self.label("Concentration of"), gesture, command);
         }
     }
 
     /// What the spot is fixed to.
-    fn owner_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>, owner: &SpotOwner) {
+    fn owner_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, owner: &SpotOwner) {
         let scene = &self.state.scene;
         let mut owners = vec![SpotOwner::SelectedObject, SpotOwner::SelectedCamera];
         owners.extend(scene.objects.ids().map(SpotOwner::Object));
         owners.extend(scene.cameras.ids().map(SpotOwner::Camera));
-        owners.push(match owner {
-            SpotOwner::Fixed(_) => owner.clone(),
-            _ => SpotOwner::Fixed(Placed::new(self.aim(owner))),
-        });
+        let fixed = matches!(owner, SpotOwner::Fixed(_)).then(|| owner.clone());
+        owners.push(fixed.unwrap_or_else(|| SpotOwner::Fixed(Tracked::new(self.aim(owner)))));
         row(ui, "Shines from", |ui| {
             let combo = ComboBox::from_id_salt("owner")
                 .selected_text(owner_name(scene, owner))
@@ -183,24 +182,23 @@ impl Shown<'_> {
                     let name = owner_name(scene, &to);
                     if ui.selectable_label(to == *owner, name).clicked() && to != *owner {
                         let command = lights::set_owner(scene, self.id, to);
-                        change(asks, self.label("Fix"), Gesture::Whole, command);
+                        change(requests, self.label("Fix"), Gesture::Whole, command);
                     }
                 }
             });
-            shown
-                .response
-                .accessible_name("Shines from")
-                .on_hover_text("What the spot is fixed to: it shines from there along -Z");
+            shown.response.accessible_name("Shines from").on_hover_text(
+                "The item that the spot is attached to; it shines from there along -Z",
+            );
         });
     }
 
-    /// Where the spot is now, as a place and a direction of its own.
+    /// The current position and direction of the spot.
     fn aim(&self, owner: &SpotOwner) -> Aim {
         let nowhere = Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z };
         self.state.scene.aim(&self.state.view, owner).unwrap_or(nowhere)
     }
 
-    fn fading_ui(&self, ui: &mut Ui, asks: &mut Vec<Ask>) {
+    fn fading_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
         ui.weak("1 / (constant + linear d + quadratic d^2)");
         let now = self.light.attenuation;
         let mut set = |label: &str, value: f64, to: &dyn Fn(f64) -> Attenuation| {
@@ -208,7 +206,7 @@ impl Shown<'_> {
             let number = number.speed(value.abs().max(1e-6) / 50.0).range(0.0..=1e12);
             if let Some((value, gesture)) = number_row(ui, label, number, value) {
                 let command = lights::set_attenuation(&self.state.scene, self.id, to(value));
-                change(asks, self.label("Fading of"), gesture, command);
+                change(requests, self.label("Fading of"), gesture, command);
             }
         };
         set("Constant", now.constant, &|constant| Attenuation { constant, ..now });
@@ -249,7 +247,7 @@ fn owner_name(scene: &Scene, owner: &SpotOwner) -> String {
     }
 }
 
-/// A field's whole number as one.
+/// The value of a field that holds a whole number.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "kept from 0 to 9999")]
 fn whole(number: f64) -> u32 {
     number.clamp(0.0, 9999.0) as u32

@@ -1,13 +1,13 @@
-//! Which material something has: the nineteen as small spheres, the file's, the user's own.
+//! The choice of a material: the nineteen presets as spheres, the file's, or one's own.
 
 use egui::{Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use super::super::color_picker::swatch;
-use super::super::controls::{self, row};
-use super::super::number::Number;
-use super::super::spheres::{self, Sphere};
 use super::number_row;
 use crate::app::theme;
+use crate::app::widgets::color_picker::swatch;
+use crate::app::widgets::controls::{self, row};
+use crate::app::widgets::number::Number;
+use crate::app::widgets::spheres::{self, Sphere};
 use crate::base::color::Color;
 use crate::edit::Gesture;
 use crate::scene::{Material, MaterialChoice, Object, PresetId};
@@ -15,9 +15,9 @@ use crate::scene::{Material, MaterialChoice, Object, PresetId};
 /// Spheres in a row: the nineteen, the file's and the user's own fill three rows.
 const COLUMNS: u8 = 7;
 
-/// Shows the choice; `object` is what has the material, where it is an object. Gives the choice that
-/// was made.
-pub(super) fn choice_ui(
+/// Shows the choice; `object` is the object with the material, if it is one. Gives the choice
+/// that was made.
+pub(crate) fn choice_ui(
     ui: &mut Ui,
     choice: &MaterialChoice,
     object: Option<&Object>,
@@ -67,11 +67,9 @@ fn coefficients(choice: &MaterialChoice, object: Option<&Object>) -> Material {
 }
 
 fn same_kind(a: &MaterialChoice, b: &MaterialChoice) -> bool {
-    match (a, b) {
-        (MaterialChoice::Preset(a), MaterialChoice::Preset(b)) => a == b,
-        (MaterialChoice::File, MaterialChoice::File)
-        | (MaterialChoice::Own(_), MaterialChoice::Own(_)) => true,
-        _ => false,
+    match a {
+        MaterialChoice::Own(_) => matches!(b, MaterialChoice::Own(_)),
+        MaterialChoice::Preset(_) | MaterialChoice::File => a == b,
     }
 }
 
@@ -88,7 +86,7 @@ fn cell_ui(ui: &mut Ui, side: f32, sphere: Sphere, name: &str, on: bool) -> bool
         ui.painter().rect_filled(rect, 4.0, visuals.widgets.hovered.bg_fill);
     }
     spheres::paint(ui, rect.shrink(3.0), sphere);
-    // What is not one of the nineteen carries a letter.
+    // Materials that are not presets carry a letter.
     let letter = match sphere {
         Sphere::Preset(_) => "",
         Sphere::File(_) => "F",

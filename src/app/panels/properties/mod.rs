@@ -9,17 +9,16 @@ mod surface;
 
 use egui::{ScrollArea, Sense, TextStyle, Ui, vec2};
 
-use super::controls::{self, Switch, look, row, section};
-use super::icons::Icon;
-use super::number::Number;
-use super::outline_row::name;
-use crate::app::ask::Ask;
+use crate::app::actions::{Request, change_view};
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::controls::{self, Switch, row, section};
+use crate::app::widgets::icons::Icon;
+use crate::app::widgets::number::Number;
 use crate::scene::{ItemId, Transformation};
 
-/// Shows it; what is asked for is added to `asks`.
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let Some(item) = state.selected().filter(|item| state.scene.contains(*item)) else {
         ui.add_space(theme::GAP);
         ui.weak("Nothing is selected.");
@@ -30,9 +29,9 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>) {
     let area = ScrollArea::vertical().id_salt("properties").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.push_id(item, |ui| match item {
-            ItemId::Object(id) => object::show(ui, state, asks, id),
-            ItemId::Camera(id) => camera::show(ui, state, asks, id),
-            ItemId::Light(id) => light::show(ui, state, asks, id),
+            ItemId::Object(id) => object::show(ui, state, requests, id),
+            ItemId::Camera(id) => camera::show(ui, state, requests, id),
+            ItemId::Light(id) => light::show(ui, state, requests, id),
         });
     });
 }
@@ -54,14 +53,15 @@ fn title(ui: &mut Ui, state: &State, item: ItemId) {
     let right = rect.right() - kind.size().x;
     controls::put_text(ui, rect.with_min_x(right), kind, weak);
     let left = rect.with_min_x(icon.right() + 6.0).with_max_x(right - theme::GAP);
-    let text = controls::text(ui, name(state, item), TextStyle::Heading, left.width());
+    let text =
+        controls::text(ui, state.name(item).unwrap_or_default(), TextStyle::Heading, left.width());
     controls::put_text(ui, left, text, color);
-    response.on_hover_text(name(state, item));
+    response.on_hover_text(state.name(item).unwrap_or_default());
 }
 
 /// How far one press of x, y or z goes.
-fn steps_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, scaling: bool) {
-    section(ui, "Steps of x, y, z", false, |ui| {
+fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bool) {
+    section(ui, "Step sizes", false, |ui| {
         let steps = state.view.steps;
         let does = |to| match to {
             Transformation::Translation => ("Move", "Units that a press of x, y or z moves"),
@@ -81,7 +81,7 @@ fn steps_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, scaling: bool) {
                 number.ui(ui, width, value)
             });
             if let Some((value, _)) = changed {
-                look(asks, state, |view| match to {
+                change_view(requests, state, |view| match to {
                     Transformation::Translation => view.steps.translation = value,
                     Transformation::Rotation => view.steps.rotation = value,
                     Transformation::Scaling => view.steps.scaling = value,
@@ -98,7 +98,7 @@ fn steps_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, scaling: bool) {
         let by_size = Switch::new("Move by size", steps.by_size).ui(ui);
         let hint = "A press moves by 1/20 of the selected object's largest extent";
         if by_size.on_hover_text(hint).clicked() {
-            look(asks, state, |view| view.steps.by_size ^= true);
+            change_view(requests, state, |view| view.steps.by_size ^= true);
         }
     });
 }

@@ -3,51 +3,57 @@
 use egui::{Button, Ui};
 use glam::{DMat3, DVec3};
 
-use super::super::color_picker::swatch;
-use super::super::controls::{Choice, Switch, change, choices, fact, row, section};
-use super::super::number::{Number, keep_angles, kept_angles, short, vector};
 use super::{crease, material, number_row, steps_ui, surface};
-use crate::app::ask::Ask;
-use crate::app::material_dialog::grouped;
+use crate::app::actions::{Request, change};
 use crate::app::state::State;
+use crate::app::widgets::color_picker::swatch;
+use crate::app::widgets::controls::{Choice, Switch, choices, fact, row, section};
+use crate::app::widgets::number::{Number, keep_angles, kept_angles, short, vector};
+use crate::app::widgets::text::grouped;
 use crate::base::math::{self, Axis};
-use crate::edit::{Gesture, items, motion, place, transform};
+use crate::edit::{Gesture, items, motion, placement, transform};
 use crate::scene::{Frame, Object, ObjectId, Sides, Spin};
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId) {
     let Some(object) = state.scene.objects.get(id) else { return };
-    section(ui, "Placement", true, |ui| placement_ui(ui, state, asks, id, object));
+    section(ui, "Placement", true, |ui| placement_ui(ui, state, requests, id, object));
     section(ui, "Material", true, |ui| {
         let label = format!("Material of {}", object.name);
         let chosen = material::choice_ui(ui, &object.material, Some(object));
         if let Some((to, gesture)) = chosen {
             let command = items::change_object(&state.scene, id, |object| object.material = to);
-            change(asks, label, gesture, command);
+            change(requests, label, gesture, command);
         }
     });
-    section(ui, "Surface", true, |ui| surface::show(ui, state, asks, id, object));
-    steps_ui(ui, state, asks, true);
-    section(ui, "Spin", false, |ui| spin_ui(ui, state, asks, id, object));
-    section(ui, "Drawing", false, |ui| drawing_ui(ui, state, asks, id, object));
+    section(ui, "Surface", true, |ui| surface::show(ui, state, requests, id, object));
+    steps_ui(ui, state, requests, true);
+    section(ui, "Spin", false, |ui| spin_ui(ui, state, requests, id, object));
+    section(ui, "Drawing", false, |ui| drawing_ui(ui, state, requests, id, object));
     section(ui, "Model", false, |ui| model_ui(ui, object));
 }
 
-fn placement_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+fn placement_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    id: ObjectId,
+    object: &Object,
+) {
     let (scene, view) = (&state.scene, &state.view);
     let placement = object.placement.now();
     let speed = (object.largest_extent() / 200.0).clamp(1e-3, 10.0);
-    let hint = "Where the object's origin is";
+    let hint = "Position of the object's origin";
     let field = Number::new("Position", hint).speed(speed);
-    let now = place::translation(placement);
+    let now = placement::translation(placement);
     let position = row(ui, "Position", |ui| vector(ui, &field, now));
     if let Some((to, gesture)) = position {
-        let command = place::object_translation(scene, view, id, to, state.stroke(gesture));
-        change(asks, format!("Move {}", object.name), gesture, command);
+        let command = placement::object_translation(scene, view, id, to, state.phase(gesture));
+        change(requests, format!("Move {}", object.name), gesture, command);
     }
     let hint = "Degrees about X, then Y, then Z of the object";
-    let canonical = place::turn_degrees(placement);
+    let canonical = placement::turn_degrees(placement);
     let given = kept_angles(ui, "rotation", canonical, |given| {
         same_turn(object_turn(given), object_turn(canonical))
     });
@@ -55,24 +61,24 @@ fn placement_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, o
     let turn = row(ui, "Rotation", |ui| vector(ui, &field, given));
     if let Some((to, gesture)) = turn {
         keep_angles(ui, "rotation", to);
-        let command = place::object_turn(scene, view, id, to, state.stroke(gesture));
-        change(asks, format!("Rotate {}", object.name), gesture, command);
+        let command = placement::object_turn(scene, view, id, to, state.phase(gesture));
+        change(requests, format!("Rotate {}", object.name), gesture, command);
     }
-    let hint = "How much longer the object's own axes are than in its file; negative mirrors";
+    let hint = "Scale along the object's own axes relative to its file; negative mirrors";
     let field = Number::new("Scale", hint).speed(0.01);
-    let scale = row(ui, "Scale", |ui| vector(ui, &field, place::scale(placement)));
+    let scale = row(ui, "Scale", |ui| vector(ui, &field, placement::scale(placement)));
     if let Some((to, gesture)) = scale {
-        let command = place::object_scale(scene, view, id, to, state.stroke(gesture));
-        change(asks, format!("Scale {}", object.name), gesture, command);
+        let command = placement::object_scale(scene, view, id, to, state.phase(gesture));
+        change(requests, format!("Scale {}", object.name), gesture, command);
     }
-    stretch_ui(ui, state, asks, object);
+    stretch_ui(ui, state, requests, object);
 }
 
 /// Factors along the axes of the chosen frame, and the button that multiplies by them.
-fn stretch_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, object: &Object) {
+fn stretch_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, object: &Object) {
     let id = ui.scope_id().with("stretch");
     let kept: [f64; 3] = ui.data(|data| data.get_temp(id)).unwrap_or([1.0; 3]);
-    let hint = "A factor along each axis of the frame that is chosen";
+    let hint = "Factor along each axis of the chosen frame";
     let field = Number::new("Stretch", hint).speed(0.01);
     let factors = row(ui, "Stretch", |ui| vector(ui, &field, DVec3::from_array(kept)));
     if let Some((to, _)) = factors {
@@ -87,9 +93,9 @@ fn stretch_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, object: &Object) 
         let response = ui.add_enabled(kept != [1.0; 3], button);
         if response.on_hover_text(hint).on_disabled_hover_text("Set a factor first").clicked() {
             let factors = DVec3::from_array(kept);
-            let stroke = state.stroke(Gesture::Whole);
-            let command = transform::stretch(&state.scene, &state.view, factors, stroke);
-            change(asks, format!("Stretch {}", object.name), Gesture::Whole, command);
+            let phase = state.phase(Gesture::Whole);
+            let command = transform::stretch(&state.scene, &state.view, factors, phase);
+            change(requests, format!("Stretch {}", object.name), Gesture::Whole, command);
         }
     });
 }
@@ -102,45 +108,51 @@ fn object_turn(degrees: DVec3) -> DMat3 {
 }
 
 /// Whether two turns are the same but for rounding.
-pub(super) fn same_turn(a: DMat3, b: DMat3) -> bool {
+pub(crate) fn same_turn(a: DMat3, b: DMat3) -> bool {
     let difference = a - b;
     let columns = [difference.x_axis, difference.y_axis, difference.z_axis];
     columns.iter().all(|column| column.abs().max_element() < 1e-9)
 }
 
-fn spin_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+fn spin_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId, object: &Object) {
     let (scene, time) = (&state.scene, state.view.time);
     let spin = object.spin;
     for axis in Axis::ALL {
         let letter = LETTERS[axis.index()];
         let label = format!("About own {letter}");
         let response = Switch::new(&label, spin.axes[axis.index()]).ui(ui);
-        let hint = "Turns by itself; what it has turned stays when it is switched off";
+        let hint = "Spins by itself; switching it off keeps the rotation so far";
         if response.on_hover_text(hint).clicked() {
             let command = motion::toggle_spin(scene, id, axis, time);
-            change(asks, format!("Spin {}", object.name), Gesture::Whole, command);
+            change(requests, format!("Spin {}", object.name), Gesture::Whole, command);
         }
     }
     let number = Number::new("Spin speed", "Degrees a second").suffix(" deg/s");
     if let Some((speed, gesture)) = number_row(ui, "Speed", number, spin.speed) {
         let to = Spin { speed, ..spin };
-        let command = motion::set_spin(scene, id, to, time, state.stroke(gesture));
-        change(asks, format!("Spin {}", object.name), gesture, command);
+        let command = motion::set_spin(scene, id, to, time, state.phase(gesture));
+        change(requests, format!("Spin {}", object.name), gesture, command);
     }
     row(ui, "", |ui| {
         let response = ui.add_enabled(spin.is_on(), Button::new("Apply the turn"));
-        let hint = "Makes what it has turned so far its placement";
+        let hint = "Applies the rotation so far to the placement";
         if response.on_hover_text(hint).on_disabled_hover_text("It does not turn").clicked() {
             let command = motion::apply_spin(scene, id, time);
-            change(asks, format!("Apply the spin of {}", object.name), Gesture::Whole, command);
+            change(requests, format!("Apply the spin of {}", object.name), Gesture::Whole, command);
         }
     });
 }
 
-fn drawing_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+fn drawing_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    id: ObjectId,
+    object: &Object,
+) {
     let scene = &state.scene;
-    let set = |asks: &mut Vec<Ask>, verb: &str, gesture, command| {
-        change(asks, format!("{verb} {}", object.name), gesture, command);
+    let set = |requests: &mut Vec<Request>, verb: &str, gesture, command| {
+        change(requests, format!("{verb} {}", object.name), gesture, command);
     };
     let sides = [
         ("One side", Sides::One, "Back faces are not drawn."),
@@ -154,7 +166,7 @@ fn drawing_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, obj
     if let Some(clicked) = choices(ui, &all) {
         let to = sides[clicked].1;
         let command = items::change_object(scene, id, |object| object.sides = to);
-        set(asks, "Change the sides of", Gesture::Whole, command);
+        set(requests, "Change the sides of", Gesture::Whole, command);
     }
     let file_normals = Switch {
         enabled: object.model.mesh.has_file_normals(),
@@ -166,14 +178,14 @@ fn drawing_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, obj
     };
     if file_normals.ui(ui).on_hover_text(hint).clicked() {
         let command = items::change_object(scene, id, |object| object.file_normals ^= true);
-        set(asks, "Change the normals of", Gesture::Whole, command);
+        set(requests, "Change the normals of", Gesture::Whole, command);
     }
-    crease::show(ui, state, asks, id, object);
+    crease::show(ui, state, requests, id, object);
     row(ui, "Edges", |ui| {
-        let hint = "Edges and normals are drawn in it";
+        let hint = "The colour of edges and normals";
         if let Some((color, gesture)) = swatch(ui, "Edge colour", hint, object.edge_color) {
             let command = items::change_object(scene, id, |object| object.edge_color = color);
-            set(asks, "Colour the edges of", gesture, command);
+            set(requests, "Colour the edges of", gesture, command);
         }
     });
 }
@@ -205,7 +217,7 @@ mod tests {
     fn angles_that_a_user_gave_say_the_same_as_those_that_are_computed() {
         let given = DVec3::new(10.0, 95.0, -20.0);
         let placement = glam::DMat4::from_mat3(object_turn(given));
-        let canonical = place::turn_degrees(&placement);
+        let canonical = placement::turn_degrees(&placement);
         assert!(canonical.y < 90.0, "{canonical}");
         assert!(same_turn(object_turn(given), object_turn(canonical)));
         assert!(!same_turn(object_turn(given), object_turn(given + DVec3::X * 1e-3)));

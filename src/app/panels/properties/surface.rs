@@ -1,15 +1,21 @@
-//! What an object's surface shows: its material, its texture, a tint.
+//! The surface of an object: material, texture, tint.
 
 use egui::Ui;
 
-use super::super::color_picker::swatch;
-use super::super::controls::{Choice, change, choices, row};
-use crate::app::ask::Ask;
+use crate::app::actions::{Request, change};
 use crate::app::state::State;
+use crate::app::widgets::color_picker::swatch;
+use crate::app::widgets::controls::{Choice, choices, row};
 use crate::edit::{Gesture, items};
 use crate::scene::{Object, ObjectId, Surface};
 
-pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+pub(crate) fn show(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    id: ObjectId,
+    object: &Object,
+) {
     let all = [
         ("Material", Surface::Material, "The material, lit."),
         ("Texture", Surface::Texture, "The texture, not lit."),
@@ -22,19 +28,25 @@ pub(super) fn show(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId
     if let Some(clicked) = choices(ui, &all_choices) {
         let to = all[clicked].1;
         let command = items::change_object(&state.scene, id, |object| object.surface = to);
-        change(asks, format!("Change the surface of {}", object.name), Gesture::Whole, command);
+        change(requests, format!("Change the surface of {}", object.name), Gesture::Whole, command);
     }
-    texture_ui(ui, state, asks, id, object);
+    texture_ui(ui, state, requests, id, object);
     row(ui, "Tint", |ui| {
         let hint = "Multiplied with the texture";
         if let Some((tint, gesture)) = swatch(ui, "Tint", hint, object.tint) {
             let command = items::change_object(&state.scene, id, |object| object.tint = tint);
-            change(asks, format!("Tint {}", object.name), gesture, command);
+            change(requests, format!("Tint {}", object.name), gesture, command);
         }
     });
 }
 
-fn texture_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, object: &Object) {
+fn texture_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    id: ObjectId,
+    object: &Object,
+) {
     let by_hand = object.texture.as_ref().map(|texture| {
         let name = texture.source.file_name().unwrap_or(texture.source.as_os_str());
         name.to_string_lossy().into_owned()
@@ -51,15 +63,15 @@ fn texture_ui(ui: &mut Ui, state: &State, asks: &mut Vec<Ask>, id: ObjectId, obj
     });
     row(ui, "", |ui| {
         let choose = ui.button("Choose...");
-        if choose.on_hover_text("Lays a picture over the object").clicked() {
-            asks.push(Ask::ChooseTexture(id));
+        if choose.on_hover_text("Chooses a picture as the texture of the object").clicked() {
+            requests.push(Request::ChooseTexture(id));
         }
         let remove = ui.add_enabled(by_hand.is_some(), egui::Button::new("Remove"));
-        let hint = "Takes the picture away that was chosen by hand";
+        let hint = "Removes the chosen texture";
         if remove.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
             let command = items::change_object(&state.scene, id, |object| object.texture = None);
             let label = format!("Remove the texture of {}", object.name);
-            change(asks, label, Gesture::Whole, command);
+            change(requests, label, Gesture::Whole, command);
         }
     });
 }

@@ -1,0 +1,81 @@
+//! Where an axis means something.
+
+use glam::{DMat3, DVec3};
+
+use crate::accuracy::{Samples, Settings};
+use crate::base::math::power_of_two_near;
+use crate::scene::{Object, ObjectId, Scene, Surface, View};
+
+/// The objects that are shown.
+fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> {
+    let all = !view.only_selected && view.polygons.is_none();
+    let alone = view.object;
+    let is_shown =
+        move |(id, object): &(ObjectId, &Object)| object.visible && (all || alone == Some(*id));
+    scene.objects.iter().filter(is_shown).map(|(_, object)| object)
+}
+
+/// Whether one of the parts that are shown has it; else the reason that is given.
+pub(super) fn if_any(
+    scene: &Scene,
+    view: &View,
+    has: fn(&Object, u32) -> bool,
+    reason: &'static str,
+) -> Result<(), &'static str> {
+    let mut parts = shown(scene, view).flat_map(|object| {
+        let count = u32::try_from(object.model.mesh.parts().len()).unwrap_or(u32::MAX);
+        (0..count).filter(|part| !object.hidden_parts.contains(part)).map(move |i| (object, i))
+    });
+    if parts.any(|(object, part)| has(object, part)) { Ok(()) } else { Err(reason) }
+}
+
+pub(super) const fn is_there(_: &Object, _: u32) -> bool {
+    true
+}
+
+pub(super) fn is_lit(object: &Object, _: u32) -> bool {
+    object.surface != Surface::Texture
+}
+
+pub(super) fn is_textured(object: &Object, part: u32) -> bool {
+    !object.model.mesh.uvs().is_empty() && object.part_look(part).texture.is_some()
+}
+
+pub(super) fn is_mirroring(object: &Object, part: u32) -> bool {
+    is_lit(object, part) && object.part_look(part).material.specular.iter().any(|ks| *ks > 0.0)
+}
+
+/// Whether its highlight's exponent is a power of two.
+pub(super) fn has_even_power(object: &Object, part: u32) -> bool {
+    let exponent = object.part_look(part).material.exponent;
+    is_mirroring(object, part) && exponent >= 1.0 && power_of_two_near(exponent) == exponent
+}
+
+/// Whether one of the objects that are shown is so; else the reason that is given.
+pub(super) fn if_any_object(
+    scene: &Scene,
+    view: &View,
+    is: fn(&Object) -> bool,
+    reason: &'static str,
+) -> Result<(), &'static str> {
+    if shown(scene, view).any(is) { Ok(()) } else { Err(reason) }
+}
+
+/// Whether pixels are looked at in several places.
+pub(super) fn has_several_samples(settings: &Settings) -> Result<(), &'static str> {
+    if settings.samples == Samples::One { Err("a pixel has one sample") } else { Ok(()) }
+}
+
+/// Any object.
+pub(super) const fn is_any(_: &Object) -> bool {
+    true
+}
+
+/// Whether it is lit, and placed by more than turning, moving and an even scale.
+pub(super) fn is_stretched(object: &Object) -> bool {
+    let m = DMat3::from_mat4(*object.placement.now());
+    let gram = m.transpose() * m;
+    let most = gram.x_axis.x.max(gram.y_axis.y).max(gram.z_axis.z);
+    let even = DMat3::from_diagonal(DVec3::splat(gram.x_axis.x));
+    object.surface != Surface::Texture && !(gram - even).abs_diff_eq(DMat3::ZERO, 1e-9 * most)
+}

@@ -1,0 +1,114 @@
+use super::*;
+use crate::accuracy::AccuracyPreset;
+use crate::accuracy::{
+    Arithmetic, Filter, LeaveOut, LightAt, Samples, SpecularForm, SpecularPower,
+};
+
+#[test]
+fn each_choice_is_read_back_as_it_was_set_and_touches_no_other_axis() {
+    for axis in AXES {
+        for choice in axis.choices {
+            let settings = choice.of(&Settings::default());
+            assert_eq!(axis.chosen(&settings).word, choice.word);
+            let held = axis.choices.iter().filter(|choice| choice.is(&settings)).count();
+            assert_eq!(held, 1, "{}: {}", axis.key, choice.word);
+            for other in AXES.iter().filter(|other| other.key != axis.key) {
+                assert_eq!(other.chosen(&settings).word, other.default_choice().word);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_reference_is_exact_in_everything_and_keeps_the_models() {
+    let chosen = Settings {
+        light: LightAt::Face,
+        specular: SpecularForm::HalfVector,
+        ..Settings::default()
+    };
+    let reference = chosen.reference();
+    assert_eq!(reference.arithmetic, Arithmetic::F64);
+    assert_eq!(reference.light, LightAt::Pixel);
+    assert_eq!(reference.filter, Filter::Trilinear);
+    assert_eq!(reference.power, SpecularPower::Library);
+    assert_eq!(reference.leave_out, LeaveOut::Unseen);
+    assert_eq!(reference.specular, SpecularForm::HalfVector);
+}
+
+#[test]
+fn several_samples_are_judged_against_the_most_of_them_each_lit() {
+    let one = Settings::default();
+    for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
+        let reference = Settings { samples, ..one }.reference();
+        assert_eq!((reference.samples, reference.light), (Samples::SixtyFour, LightAt::Sample));
+        assert_eq!(reference, one.reference_on("samples"));
+    }
+    let sample = Axis::named("shading").unwrap().choice("sample").unwrap();
+    assert_eq!((sample.among)(&one), Err("a pixel has one sample"));
+    assert_eq!((sample.among)(&Settings { samples: Samples::Four, ..one }), Ok(()));
+    assert_eq!(sample.of(&one).reference(), one.reference());
+}
+
+#[test]
+fn presets_are_the_points_that_their_names_promise() {
+    let of = |word: &str| AccuracyPreset::named(word).unwrap().of(&Settings::default());
+    let draft = Settings { light: LightAt::Vertex, filter: Filter::Nearest, ..of("default") };
+    assert_eq!(of("draft"), draft);
+    assert_eq!(of("default"), Settings::default());
+    let exact = Settings {
+        arithmetic: Arithmetic::F64,
+        power: SpecularPower::Library,
+        ..Settings::default()
+    };
+    assert_eq!(of("exact"), exact);
+    assert_eq!(draft.in_words(), "Draft");
+    let other = Settings { specular: SpecularForm::HalfVector, ..of("exact") };
+    assert_eq!(other.in_words(), "Exact, specular half-vector");
+    let other = Settings { light: LightAt::Face, ..other };
+    assert_eq!(
+        other.in_words(),
+        "shading face, arithmetic f64, power library, specular half-vector"
+    );
+}
+
+#[test]
+fn a_filter_makes_no_sense_without_a_texture_and_a_highlight_none_without_ks() {
+    use crate::base::Shared;
+    use crate::scene::*;
+    let source = MeshSource {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        corners: (0..3).map(|position| SourceCorner { position, uv: NONE, normal: NONE }).collect(),
+        arities: vec![3],
+        polygon_parts: vec![0],
+        parts: vec![Part { name: String::new(), material: None }],
+        ..MeshSource::default()
+    };
+    let model = Shared::new(Model {
+        name: String::new(),
+        source: None,
+        options: LoadOptions::default(),
+        mesh: Mesh::new(source).unwrap(),
+        materials: Vec::new(),
+        edge_color: None,
+    });
+    let dull = Material { ambient: [0.1; 3], diffuse: [0.5; 3], specular: [0.0; 3], exponent: 1.0 };
+    let mut scene = Scene::with_camera(Camera {
+        name: String::new(),
+        visible: true,
+        model: model.clone(),
+        material: MaterialChoice::Own(dull),
+        pose: Tracked::new(Pose::facing_minus_z(glam::DVec3::Z)),
+        lens: Lens::default(),
+    });
+    let sense = |scene: &Scene, key: &str| {
+        (Axis::named(key).unwrap().sense)(scene, &scene.first_view()).is_ok()
+    };
+    for axis in AXES {
+        assert!(!sense(&scene, axis.key), "{} of an empty scene", axis.key);
+    }
+    let object = Object::new(model, MaterialChoice::Own(dull));
+    let item = Item::Object(ObjectId(1), Box::new(object));
+    Command::Insert { at: 0, item }.apply(&mut scene).unwrap();
+    assert!(sense(&scene, "shading") && sense(&scene, "arithmetic"));
+    assert!(!sense(&scene, "filter") && !sense(&scene, "specular"));
+}

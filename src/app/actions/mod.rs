@@ -1,0 +1,12 @@
+//! Actions: everything a user can ask for by a key, a menu or a button.
+
+mod chord;
+mod request;
+mod resolve;
+mod table;
+
+pub use chord::Chord;
+pub use request::{LabRequest, Request};
+pub(crate) use request::{change, change_view};
+pub(crate) use resolve::{FileIntent, Intent, resolve};
+pub use table::{Action, ActionInfo, Group};

@@ -1,0 +1,114 @@
+//! Requests: what panels, menus, keys and the viewport return. Only the app answers them.
+
+use std::path::PathBuf;
+
+use super::table::Action;
+use crate::accuracy::Settings;
+use crate::app::state::State;
+use crate::app::state::laboratory::{Compare, Side};
+use crate::edit::{Gesture, Refusal};
+use crate::lab::candidates::Thoroughness;
+use crate::lab::error::Measure;
+use crate::lab::report::Budgets;
+use crate::scene::{Command, ItemId, ObjectId, View};
+
+/// A request to the app.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// What stands in the table of actions.
+    Do(Action),
+    /// A change of the scene.
+    Change {
+        /// The change.
+        command: Command,
+        /// What it is part of.
+        gesture: Gesture,
+        /// As the history calls it: "Move teapot".
+        label: String,
+    },
+    /// A change of the view that selects nothing else.
+    View(Box<View>),
+    /// A change of how exactly pictures are drawn.
+    Settings(Settings),
+    /// Something of the laboratory.
+    Lab(LabRequest),
+    /// Selects an item, and makes its kind the subject.
+    Select(ItemId),
+    /// Selects a polygon of the selected object while polygons are shown one at a time.
+    SelectPolygon(u32),
+    /// Goes to the point in the history after this number of steps.
+    GoTo(usize),
+    /// Asks for a name of this item.
+    BeginRename(ItemId),
+    /// Ends that: with a name, or without.
+    EndRename(Option<String>),
+    /// Asks for a picture file to lay over this object.
+    ChooseTexture(ObjectId),
+    /// Loads these files, or opens the scene among them.
+    LoadFiles(Vec<PathBuf>),
+    /// Lists all that the notice at this place has to say.
+    Details(usize),
+    /// Gives up loading the file that stands at this place.
+    CancelLoading(usize),
+    /// Puts away the notice that stands at this place.
+    PutAway(usize),
+    /// Takes a gesture back while it lasts, as if it had never begun.
+    Abandon(Gesture),
+    /// Says in the status line why a request was refused.
+    Refuse(String),
+}
+
+impl From<Action> for Request {
+    fn from(action: Action) -> Self {
+        Self::Do(action)
+    }
+}
+
+/// A request to the laboratory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LabRequest {
+    /// Measure the picture in the viewport.
+    Measure(Thoroughness),
+    /// Cancel measuring.
+    Cancel,
+    /// Use this error metric.
+    Judge(Measure),
+    /// Keep to these budgets.
+    Budgets(Budgets),
+    /// Compare the picture with the exact one in this way.
+    Compare(Compare),
+    /// The next click picks a pixel, or does not.
+    Pick(bool),
+    /// Explain this pixel.
+    Attribute([usize; 2]),
+    /// Show this beside the scatter.
+    Side(Side),
+    /// Show the lesson of this axis, by its key; opens the laboratory if needed.
+    Lesson(&'static str),
+    /// Open the scene of this lesson.
+    ShowLesson(&'static str),
+}
+
+/// Asks for a change of the scene, or tells why there is none.
+pub(crate) fn change(
+    requests: &mut Vec<Request>,
+    label: impl Into<String>,
+    gesture: Gesture,
+    command: Result<Command, Refusal>,
+) {
+    requests.push(match command {
+        Ok(command) => Request::Change { command, gesture, label: label.into() },
+        Err(refusal) => Request::Refuse(refusal.to_string()),
+    });
+}
+
+/// Asks for a change of the view.
+pub(crate) fn change_view(
+    requests: &mut Vec<Request>,
+    state: &State,
+    change: impl FnOnce(&mut View),
+) {
+    let mut view = state.view.clone();
+    change(&mut view);
+    requests.push(Request::View(Box::new(view)));
+}

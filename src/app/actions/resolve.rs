@@ -1,0 +1,400 @@
+//! Resolves an action to what it means for the scene as it is now.
+//!
+//! Whether an action is available is decided here as well, by resolving it: a disabled button, a
+//! refusal in the status line and the action's effect can never disagree. The matches are
+//! exhaustive, so that a new action does not compile until it has a meaning.
+
+use egui::ThemePreference;
+
+use super::table::Action;
+use crate::accuracy::{LeaveOut, Settings};
+use crate::app::state::State;
+use crate::base::math::Axis;
+use crate::edit::framing::Side;
+use crate::edit::lights::{APERTURE_STEP, Channel};
+use crate::edit::selection::Selection;
+use crate::edit::transform::Sign;
+use crate::edit::{GesturePhase, Refusal, framing, items, lights, selection, transform};
+use crate::scene::{
+    CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
+    Panels, Projection, SpotOwner, Subject, Transformation, View,
+};
+
+/// What an action means.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Intent {
+    /// A change of the scene.
+    Change(Command),
+    /// A change of the scene whose new item becomes the subject.
+    Add(Command, Subject),
+    /// A change of the view.
+    View(Box<View>),
+    /// Another selection.
+    Select(Box<Selection>),
+    /// Other settings of accuracy.
+    Settings(Settings),
+    /// Other panels are shown.
+    Panels(Panels),
+    /// The window becomes light or dark.
+    Theme(ThemePreference),
+    /// Asks for a new name.
+    Rename(ItemId),
+    /// One step back in the history.
+    Undo,
+    /// One step forward in the history.
+    Redo,
+    /// Something with files.
+    File(FileIntent),
+    /// A camera is added once its material is chosen.
+    AskCamera,
+    /// The effects of the picture are measured, or no longer.
+    Measure,
+    /// The keyboard goes to the panels, or back to the viewport.
+    ChangeKeyboardOwner,
+}
+
+/// What an action does with files, most of it by asking for one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FileIntent {
+    New,
+    Open,
+    Load,
+    Save,
+    SaveAs,
+    SavePicture,
+    Quit,
+}
+
+type Resolved = Result<Intent, Refusal>;
+
+/// The switches of the lights, in the order of their keys.
+const LIGHT_SWITCHES: [Action; 10] = [
+    Action::Light0,
+    Action::Light1,
+    Action::Light2,
+    Action::Light3,
+    Action::Light4,
+    Action::Light5,
+    Action::Light6,
+    Action::Light7,
+    Action::Light8,
+    Action::Light9,
+];
+
+/// What `action` means in this phase of a gesture.
+///
+/// # Errors
+/// Why it is not available.
+pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Resolved {
+    let (scene, view) = (&state.scene, &state.view);
+    let step = |axis, sign| transform::step(scene, view, axis, sign, phase).map(Intent::Change);
+    let color = |channel, by| lights::step_color(scene, view, channel, by).map(Intent::Change);
+    let aperture = |by| lights::step_aperture(scene, view, by).map(Intent::Change);
+    let look_from = |side| framing::side(scene, view, side).map(Intent::Change);
+    let file = |intent| Ok(Intent::File(intent));
+    match action {
+        Action::New => file(FileIntent::New),
+        Action::Open => file(FileIntent::Open),
+        Action::Load => file(FileIntent::Load),
+        Action::Save => file(FileIntent::Save),
+        Action::SaveAs => file(FileIntent::SaveAs),
+        Action::SavePicture => file(FileIntent::SavePicture),
+        Action::Quit => file(FileIntent::Quit),
+
+        Action::Undo if state.history.position() == 0 => Err(Refusal::NothingDone),
+        Action::Undo => Ok(Intent::Undo),
+        Action::Redo if state.history.position() == state.history.steps().len() => {
+            Err(Refusal::NothingUndone)
+        }
+        Action::Redo => Ok(Intent::Redo),
+        Action::TakeBack => transform::take_back(scene, view).map(Intent::Change),
+        Action::Rename => selected(state).map(Intent::Rename),
+        Action::Duplicate => {
+            let id = selected(state)?;
+            let subject = selection::subject_of(id);
+            items::duplicate(scene, id).map(|command| Intent::Add(command, subject))
+        }
+        Action::Delete => items::remove(scene, selected(state)?).map(Intent::Change),
+        Action::Split => items::split(scene, object(state)?).map(Intent::Change),
+        Action::ToggleVisible => items::toggle_shown(scene, selected(state)?).map(Intent::Change),
+
+        Action::AddCamera => Ok(Intent::AskCamera),
+        Action::AddSun => add_light(state, lights::sun()),
+        Action::AddBulb => add_light(state, lights::bulb()),
+        Action::AddSpot => add_light(state, lights::spot(lights::fixed())),
+        Action::AddObjectSpot => add_light(state, lights::spot(SpotOwner::Object(object(state)?))),
+        Action::AddCameraSpot => add_light(state, lights::spot(SpotOwner::Camera(view.camera))),
+
+        Action::NextItem => {
+            selection::next(scene, view, phase).map(|next| Intent::Select(Box::new(next)))
+        }
+        Action::NextPolygon => seen(state, |view| selection::next_polygon(scene, view)),
+        Action::NextSubject => viewed(state, selection::cycle_subject),
+        Action::SubjectCamera => subject(state, Subject::Camera),
+        Action::SubjectObject => subject(state, Subject::Object),
+        Action::SubjectLight => subject(state, Subject::Light),
+
+        Action::Translate => transformation(state, Transformation::Translation),
+        Action::Rotate => transformation(state, Transformation::Rotation),
+        Action::Scale => transformation(state, Transformation::Scaling),
+        Action::ToggleFrame => match view.subject {
+            Subject::Camera => transform::toggle_analysis(scene, view).map(Intent::Change),
+            Subject::Object => {
+                viewed(state, |view| view.frame = other(view.frame, Frame::Local, Frame::Global))
+            }
+            Subject::Light => Err(Refusal::NoModeOfLight),
+        },
+        Action::StepXUp => step(Axis::X, Sign::Positive),
+        Action::StepXDown => step(Axis::X, Sign::Negative),
+        Action::StepYUp => step(Axis::Y, Sign::Positive),
+        Action::StepYDown => step(Axis::Y, Sign::Negative),
+        Action::StepZUp => step(Axis::Z, Sign::Positive),
+        Action::StepZDown => step(Axis::Z, Sign::Negative),
+
+        Action::ToggleEdges => {
+            viewed(state, |view| view.fill = other(view.fill, Fill::Filled, Fill::Edges))
+        }
+        Action::ToggleEdgesOverFill => viewed(state, |view| view.edges_over_fill ^= true),
+        Action::TogglePolygons => seen(state, |view| selection::toggle_polygons(scene, view)),
+        Action::ToggleOthers => viewed(state, |view| match view.polygons {
+            Some(_) => view.polygons_stay ^= true,
+            None => view.only_selected ^= true,
+        }),
+        Action::ToggleBackFaces => viewed(state, |view| view.back_faces ^= true),
+        Action::ToggleFaceNormals => viewed(state, |view| view.face_normals ^= true),
+        Action::ToggleVertexNormals => viewed(state, |view| view.vertex_normals ^= true),
+        Action::ToggleNormalLength => viewed(state, |view| {
+            view.normal_length =
+                other(view.normal_length, NormalLength::Units, NormalLength::BySize);
+        }),
+        Action::ToggleLeaveOut => {
+            let leave_out = other(state.settings.leave_out, LeaveOut::Unseen, LeaveOut::HalfStep);
+            Ok(Intent::Settings(Settings { leave_out, ..state.settings }))
+        }
+        Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
+        Action::ToggleCoarse => viewed(state, |view| view.coarse_while_moving ^= true),
+        Action::ToggleLightNormals => {
+            viewed(state, |view| view.normals = other(view.normals, Normals::Vertex, Normals::Face))
+        }
+
+        Action::ToggleProjection => viewed(state, |view| {
+            view.projection =
+                other(view.projection, Projection::Perspective, Projection::Orthographic);
+        }),
+        Action::ToggleObserver => seen(state, |view| selection::toggle_observer(scene, view)),
+        Action::FrameSelection => framing::selection(scene, view).map(Intent::Change),
+        Action::FrameAll => framing::all(scene, view).map(Intent::Change),
+        Action::LookFront => look_from(Side::Front),
+        Action::LookRight => look_from(Side::Right),
+        Action::LookTop => look_from(Side::Top),
+
+        Action::Light0
+        | Action::Light1
+        | Action::Light2
+        | Action::Light3
+        | Action::Light4
+        | Action::Light5
+        | Action::Light6
+        | Action::Light7
+        | Action::Light8
+        | Action::Light9 => {
+            let slot = action.slot().ok_or(Refusal::NoLight)?;
+            lights::toggle_slot(scene, slot).map(Intent::Change)
+        }
+        Action::ApertureUp => aperture(APERTURE_STEP),
+        Action::ApertureDown => aperture(-APERTURE_STEP),
+        Action::RedUp => color(Channel::Red, 1),
+        Action::RedDown => color(Channel::Red, -1),
+        Action::GreenUp => color(Channel::Green, 1),
+        Action::GreenDown => color(Channel::Green, -1),
+        Action::BlueUp => color(Channel::Blue, 1),
+        Action::BlueDown => color(Channel::Blue, -1),
+
+        Action::ToPanels => Ok(Intent::ChangeKeyboardOwner),
+        Action::CheatSheet => panels(state, |panels| panels.cheat_sheet ^= true),
+        Action::ToggleOutline => panels(state, |panels| panels.outline ^= true),
+        Action::ToggleProperties => panels(state, |panels| panels.properties ^= true),
+        Action::ToggleViewPanel => panels(state, |panels| panels.view ^= true),
+        Action::ToggleStatistics => panels(state, |panels| panels.statistics ^= true),
+        Action::TogglePlan => panels(state, |panels| panels.plan ^= true),
+        Action::MeasurePlan => Ok(Intent::Measure),
+        Action::ToggleLaboratory => panels(state, |panels| panels.laboratory ^= true),
+        Action::ThemeSystem => Ok(Intent::Theme(ThemePreference::System)),
+        Action::ThemeLight => Ok(Intent::Theme(ThemePreference::Light)),
+        Action::ThemeDark => Ok(Intent::Theme(ThemePreference::Dark)),
+    }
+}
+
+fn selected(state: &State) -> Result<ItemId, Refusal> {
+    state.selected().ok_or(match state.view.subject {
+        Subject::Light => Refusal::NoLight,
+        Subject::Camera | Subject::Object => Refusal::NoObject,
+    })
+}
+
+fn object(state: &State) -> Result<ObjectId, Refusal> {
+    state.view.object.ok_or(Refusal::NoObject)
+}
+
+fn add_light(state: &State, kind: LightKind) -> Resolved {
+    let command = items::insert_light(&state.scene, kind)?;
+    Ok(Intent::Add(command, Subject::Light))
+}
+
+/// A change of the view that may be refused.
+fn seen(state: &State, change: impl FnOnce(&mut View) -> Result<(), Refusal>) -> Resolved {
+    let mut view = state.view.clone();
+    change(&mut view)?;
+    Ok(Intent::View(Box::new(view)))
+}
+
+/// A change of the view that is always possible.
+fn viewed(state: &State, change: impl FnOnce(&mut View)) -> Resolved {
+    let mut view = state.view.clone();
+    change(&mut view);
+    Ok(Intent::View(Box::new(view)))
+}
+
+fn subject(state: &State, subject: Subject) -> Resolved {
+    viewed(state, |view| selection::set_subject(view, subject))
+}
+
+fn transformation(state: &State, transformation: Transformation) -> Resolved {
+    seen(state, |view| selection::set_transformation(view, transformation))
+}
+
+fn panels(state: &State, change: impl FnOnce(&mut Panels)) -> Resolved {
+    let mut panels = state.panels;
+    change(&mut panels);
+    Ok(Intent::Panels(panels))
+}
+
+/// The one of two that `now` is not.
+fn other<T: Copy + PartialEq>(now: T, first: T, second: T) -> T {
+    if now == first { second } else { first }
+}
+
+impl Action {
+    /// Whether the action is available; if not, the reason, as the end of "Not now: ...".
+    ///
+    /// # Errors
+    /// The reason, in words.
+    pub fn availability(self, state: &State) -> Result<(), String> {
+        match resolve(self, state, GesturePhase::First) {
+            Ok(_) => Ok(()),
+            Err(refusal) => Err(refusal.to_string()),
+        }
+    }
+
+    /// The slot of the light that the action switches.
+    #[must_use]
+    pub fn slot(self) -> Option<u32> {
+        let at = LIGHT_SWITCHES.iter().position(|action| *action == self)?;
+        u32::try_from(at).ok()
+    }
+
+    /// The name of what the action does now, as the history shows it: "Rotate teapot".
+    #[must_use]
+    pub fn step_label(self, state: &State) -> String {
+        let name = state.selected_name();
+        let steps = [
+            Self::StepXUp,
+            Self::StepXDown,
+            Self::StepYUp,
+            Self::StepYDown,
+            Self::StepZUp,
+            Self::StepZDown,
+        ];
+        if steps.contains(&self) {
+            let verb = match state.view.transformation {
+                Transformation::Translation => "Move",
+                Transformation::Rotation => "Rotate",
+                Transformation::Scaling => "Scale",
+            };
+            format!("{verb} {name}")
+        } else if matches!(self, Self::Delete | Self::Duplicate) {
+            format!("{} {name}", self.info().label)
+        } else {
+            self.info().label.to_owned()
+        }
+    }
+
+    /// Whether the action's switch is on; `None` if the action is not a switch.
+    #[must_use]
+    pub fn is_on(self, state: &State) -> Option<bool> {
+        let (scene, view, panels) = (&state.scene, &state.view, &state.panels);
+        if let Some(slot) = self.slot() {
+            return Some(scene.lights.iter().any(|(_, light)| light.slot == slot && light.on));
+        }
+        Some(match self {
+            Self::SubjectCamera => view.subject == Subject::Camera,
+            Self::SubjectObject => view.subject == Subject::Object,
+            Self::SubjectLight => view.subject == Subject::Light,
+            Self::Translate => view.transformation == Transformation::Translation,
+            Self::Rotate => view.transformation == Transformation::Rotation,
+            Self::Scale => view.transformation == Transformation::Scaling,
+            Self::ToggleFrame => match view.subject {
+                Subject::Camera => {
+                    let pose = scene.selected_camera(view).pose.now();
+                    pose.mode_with(view.object) != CameraMode::Fly
+                }
+                Subject::Object => view.frame == Frame::Global,
+                Subject::Light => false,
+            },
+            Self::ToggleVisible => match state.selected()? {
+                ItemId::Object(id) => scene.objects.get(id)?.visible,
+                ItemId::Camera(id) => scene.cameras.get(id)?.visible,
+                ItemId::Light(id) => scene.lights.get(id)?.on,
+            },
+            Self::ToggleEdges => view.fill == Fill::Edges,
+            Self::ToggleEdgesOverFill => view.edges_over_fill,
+            Self::TogglePolygons => view.polygons.is_some(),
+            Self::ToggleOthers => match view.polygons {
+                Some(_) => !view.polygons_stay,
+                None => view.only_selected,
+            },
+            Self::ToggleBackFaces => view.back_faces,
+            Self::ToggleFaceNormals => view.face_normals,
+            Self::ToggleVertexNormals => view.vertex_normals,
+            Self::ToggleNormalLength => view.normal_length == NormalLength::BySize,
+            Self::ToggleMarks => view.marks,
+            Self::ToggleCoarse => view.coarse_while_moving,
+            Self::ToggleLightNormals => view.normals == Normals::Face,
+            Self::ToggleProjection => view.projection == Projection::Orthographic,
+            Self::ToggleObserver => view.observer == Observer::Object,
+            Self::CheatSheet => panels.cheat_sheet,
+            Self::ToggleOutline => panels.outline,
+            Self::ToggleProperties => panels.properties,
+            Self::ToggleViewPanel => panels.view,
+            Self::ToggleStatistics => panels.statistics,
+            Self::TogglePlan => panels.plan,
+            Self::MeasurePlan => state.plan.measuring,
+            Self::ToggleLeaveOut => state.settings.leave_out == LeaveOut::HalfStep,
+            Self::ToggleLaboratory => panels.laboratory,
+            Self::ThemeSystem => state.theme == ThemePreference::System,
+            Self::ThemeLight => state.theme == ThemePreference::Light,
+            Self::ThemeDark => state.theme == ThemePreference::Dark,
+            Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
+                return None;
+            }
+            Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
+            Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
+                return None;
+            }
+            Self::AddBulb | Self::AddSpot | Self::AddObjectSpot | Self::AddCameraSpot => {
+                return None;
+            }
+            Self::NextItem | Self::NextPolygon | Self::NextSubject => return None,
+            Self::StepXUp | Self::StepXDown | Self::StepYUp | Self::StepYDown => return None,
+            Self::StepZUp | Self::StepZDown | Self::FrameSelection | Self::FrameAll => return None,
+            Self::LookFront | Self::LookRight | Self::LookTop => return None,
+            Self::ApertureUp | Self::ApertureDown | Self::RedUp | Self::RedDown => return None,
+            Self::GreenUp | Self::GreenDown | Self::BlueUp | Self::BlueDown => return None,
+            Self::ToPanels | Self::Light0 | Self::Light1 | Self::Light2 | Self::Light3 => {
+                return None;
+            }
+            Self::Light4 | Self::Light5 | Self::Light6 | Self::Light7 => return None,
+            Self::Light8 | Self::Light9 => return None,
+        })
+    }
+}

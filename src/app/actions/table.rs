@@ -1,0 +1,364 @@
+//! The table of actions: labels, hints, keys and groups.
+//!
+//! Keys, menus, buttons and the cheat sheet all read [`Action::info`] and return an [`Action`];
+//! none of them changes anything. What an action means for a scene stands in one place too, and
+//! whether it can be done now is asked there.
+
+use egui::Key;
+
+use super::chord::Chord;
+use super::chord::Chord::{Command, CommandShift, Either, Lower, Named, Text, Upper};
+
+/// How an action appears.
+#[derive(Clone, Copy, Debug)]
+pub struct ActionInfo {
+    /// On menus and buttons.
+    pub label: &'static str,
+    /// Over them: one sentence.
+    pub hint: &'static str,
+    /// Every way to press it; the first is the one that is shown.
+    pub keys: &'static [Chord],
+    /// Its group in menus and in the cheat sheet.
+    pub group: Group,
+    /// Whether a held key asks for it again and again.
+    pub repeats: bool,
+}
+
+/// Actions that stand together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Group {
+    /// Files and the program itself.
+    File,
+    /// Changes to the selection, undo and redo.
+    Edit,
+    /// New things.
+    Add,
+    /// What the keys act on.
+    Select,
+    /// Moving, turning, scaling.
+    Transform,
+    /// What is shown, and how.
+    Show,
+    /// Who looks, and from where.
+    Camera,
+    /// Lights on and off, colours, apertures.
+    Light,
+    /// Panels and help.
+    Window,
+}
+
+impl Group {
+    /// All of them, in the order of menus and cheat sheet.
+    pub const ALL: [Self; 9] = [
+        Self::File,
+        Self::Edit,
+        Self::Add,
+        Self::Select,
+        Self::Transform,
+        Self::Show,
+        Self::Camera,
+        Self::Light,
+        Self::Window,
+    ];
+
+    /// Its heading.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::File => "File",
+            Self::Edit => "Edit",
+            Self::Add => "Add",
+            Self::Select => "Select",
+            Self::Transform => "Transform",
+            Self::Show => "Show",
+            Self::Camera => "Camera",
+            Self::Light => "Light",
+            Self::Window => "Window",
+        }
+    }
+
+    /// Its actions, in order.
+    pub fn actions(self) -> impl Iterator<Item = Action> {
+        Action::ALL.iter().copied().filter(move |action| action.info().group == self)
+    }
+}
+
+/// What a held key does: it asks once, or again and again.
+const ONCE: bool = false;
+const REPEATS: bool = true;
+
+macro_rules! actions {
+    ($(
+        $name:ident $group:ident $repeats:ident [$($key:expr),*]
+            $label:literal $hint:literal;
+    )+) => {
+        /// Something a user can ask for that needs no further words.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Action {
+            $(#[doc = $hint] $name,)+
+        }
+
+        impl Action {
+            /// Every action, in the order in which menus and cheat sheet show them.
+            pub const ALL: &'static [Self] = &[$(Self::$name),+];
+
+            /// How the action appears.
+            #[must_use]
+            pub const fn info(self) -> ActionInfo {
+                match self {
+                    $(Self::$name => ActionInfo {
+                        label: $label,
+                        hint: $hint,
+                        keys: &[$($key),*],
+                        group: Group::$group,
+                        repeats: $repeats,
+                    },)+
+                }
+            }
+        }
+    };
+}
+
+actions! {
+    New File ONCE [Command(Key::N)]
+        "New scene" "Starts over with the default scene.";
+    Open File ONCE [Command(Key::O)]
+        "Open scene..." "Opens a scene file instead of this scene.";
+    Load File ONCE [Lower(Key::F)]
+        "Load model..." "Loads an .obj file, asks for its material and places it at the origin.";
+    Save File ONCE [Command(Key::S)]
+        "Save scene" "Saves the scene to its file.";
+    SaveAs File ONCE [CommandShift(Key::S)]
+        "Save scene as..." "Saves the scene to a new file.";
+    SavePicture File ONCE [Named(Key::F12)]
+        "Save picture..." "Saves the picture in the viewport as PNG, JPEG, WebP or PPM.";
+    Quit File ONCE [Named(Key::Escape), Command(Key::Q)]
+        "Quit" "Closes the program; asks first if there are unsaved changes.";
+
+    Undo Edit ONCE [Command(Key::Z)]
+        "Undo" "Undoes the last change to the scene.";
+    Redo Edit ONCE [CommandShift(Key::Z), Command(Key::Y)]
+        "Redo" "Redoes the change that was undone last.";
+    TakeBack Edit ONCE [Either(Key::U)]
+        "Undo transformation" "Undoes the last transformation of the selected item.";
+    Rename Edit ONCE [Named(Key::F2)]
+        "Rename" "Renames the selected item.";
+    Duplicate Edit ONCE [Command(Key::D)]
+        "Duplicate" "Adds a copy of the selected item and selects it.";
+    Delete Edit ONCE [Named(Key::Delete)]
+        "Delete" "Deletes the selected item and the spots attached to it.";
+    Split Edit ONCE []
+        "Split into parts" "Turns each part of the selected object into an object of its own.";
+    ToggleVisible Edit ONCE []
+        "Visible" "Shows or hides the selected object or camera.";
+
+    AddCamera Add ONCE [Upper(Key::F)]
+        "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z.";
+    AddSun Add ONCE []
+        "Sun" "Adds a light that is infinitely far away.";
+    AddBulb Add ONCE []
+        "Bulb" "Adds a light that shines from a point in all directions.";
+    AddSpot Add ONCE []
+        "Spot" "Adds a light that shines from a point of its own in a cone.";
+    AddObjectSpot Add ONCE []
+        "Spot on the object" "Adds a spot that shines from the selected object.";
+    AddCameraSpot Add ONCE []
+        "Spot on the camera" "Adds a spot that shines from the selected camera.";
+
+    NextItem Select REPEATS [Named(Key::Tab)]
+        "Next item" "Selects the next camera, object or light of the subject.";
+    NextPolygon Select REPEATS [Named(Key::Enter)]
+        "Next polygon" "Selects the next polygon of the selected object in polygon mode.";
+    NextSubject Select ONCE [Lower(Key::C)]
+        "Next subject" "Changes what the keys act on, from camera to object to light.";
+    SubjectCamera Select ONCE []
+        "Cameras" "Makes the keys act on the selected camera.";
+    SubjectObject Select ONCE []
+        "Objects" "Makes the keys act on the selected object.";
+    SubjectLight Select ONCE []
+        "Lights" "Makes the keys act on the selected light.";
+
+    Translate Transform ONCE [Either(Key::T)]
+        "Move" "Makes the keys x, y and z move.";
+    Rotate Transform ONCE [Either(Key::R)]
+        "Rotate" "Makes the keys x, y and z rotate.";
+    Scale Transform ONCE [Either(Key::S)]
+        "Scale" "Makes the keys x, y and z scale the selected object.";
+    ToggleFrame Transform ONCE [Either(Key::G)]
+        "Analysis / global"
+        "Makes cameras fly or orbit, and objects use their own axes or the world's.";
+    StepXUp Transform REPEATS [Lower(Key::X)]
+        "Step along or about +X" "Transforms the selected item one step along or about +X.";
+    StepXDown Transform REPEATS [Upper(Key::X)]
+        "Step along or about -X" "Transforms the selected item one step along or about -X.";
+    StepYUp Transform REPEATS [Lower(Key::Y)]
+        "Step along or about +Y" "Transforms the selected item one step along or about +Y.";
+    StepYDown Transform REPEATS [Upper(Key::Y)]
+        "Step along or about -Y" "Transforms the selected item one step along or about -Y.";
+    StepZUp Transform REPEATS [Lower(Key::Z)]
+        "Step along or about +Z" "Transforms the selected item one step along or about +Z.";
+    StepZDown Transform REPEATS [Upper(Key::Z)]
+        "Step along or about -Z" "Transforms the selected item one step along or about -Z.";
+
+    ToggleEdges Show ONCE [Either(Key::L)]
+        "Wireframe" "Draws the edges of polygons instead of filling them.";
+    ToggleEdgesOverFill Show ONCE []
+        "Edges over faces" "Draws the edges of polygons over the filled polygons.";
+    TogglePolygons Show ONCE [Either(Key::O)]
+        "Polygon by polygon"
+        "Shows a single polygon of the selected object instead of whole objects.";
+    ToggleOthers Show ONCE [Either(Key::D)]
+        "Isolate selection" "Hides everything but the selected object or polygon.";
+    ToggleBackFaces Show ONCE [Either(Key::B)]
+        "Back faces" "Draws back faces in red instead of culling them.";
+    ToggleFaceNormals Show ONCE [Either(Key::N)]
+        "Face normals" "Draws the normal of each polygon.";
+    ToggleVertexNormals Show ONCE [Either(Key::M)]
+        "Vertex normals" "Draws the normal of each vertex.";
+    ToggleNormalLength Show ONCE []
+        "Normals by size" "Draws normals in proportion to the object instead of 5 units long.";
+    ToggleLeaveOut Show ONCE []
+        "Leave out faint light" "Skips lights that together add less than half a step of a byte.";
+    ToggleMarks Show ONCE []
+        "Camera and light models" "Draws the models of the other cameras and of bulbs.";
+    ToggleCoarse Show ONCE []
+        "Coarser while moving" "Draws slow scenes at reduced quality while something moves.";
+    ToggleLightNormals Show ONCE [Either(Key::I)]
+        "Flat shading (face normals)"
+        "Lights polygons with face normals instead of vertex normals.";
+
+    ToggleProjection Camera ONCE [Either(Key::P)]
+        "Orthographic" "Switches between orthographic and perspective projection.";
+    ToggleObserver Camera ONCE [Upper(Key::C)]
+        "Look from the object"
+        "Looks from the selected object instead of through the selected camera.";
+    FrameSelection Camera ONCE [Text(".")]
+        "Frame selection" "Moves the camera so that the selected item fills the picture.";
+    FrameAll Camera ONCE [Named(Key::Home)]
+        "Frame all" "Moves the camera so that everything visible fills the picture.";
+    LookFront Camera ONCE [Command(Key::Num1)]
+        "Front view" "Looks from the front, along -Z.";
+    LookRight Camera ONCE [Command(Key::Num3)]
+        "Right view" "Looks from the right, along -X.";
+    LookTop Camera ONCE [Command(Key::Num7)]
+        "Top view" "Looks from above, along -Y.";
+
+    Light0 Light ONCE [Lower(Key::Num0)]
+        "Light 0" "Switches light 0 on or off.";
+    Light1 Light ONCE [Lower(Key::Num1)]
+        "Light 1" "Switches light 1 on or off.";
+    Light2 Light ONCE [Lower(Key::Num2)]
+        "Light 2" "Switches light 2 on or off.";
+    Light3 Light ONCE [Lower(Key::Num3)]
+        "Light 3" "Switches light 3 on or off.";
+    Light4 Light ONCE [Lower(Key::Num4)]
+        "Light 4" "Switches light 4 on or off.";
+    Light5 Light ONCE [Lower(Key::Num5)]
+        "Light 5" "Switches light 5 on or off.";
+    Light6 Light ONCE [Lower(Key::Num6)]
+        "Light 6" "Switches light 6 on or off.";
+    Light7 Light ONCE [Lower(Key::Num7)]
+        "Light 7" "Switches light 7 on or off.";
+    Light8 Light ONCE [Lower(Key::Num8)]
+        "Light 8" "Switches light 8 on or off.";
+    Light9 Light ONCE [Lower(Key::Num9)]
+        "Light 9" "Switches light 9 on or off.";
+    ApertureUp Light REPEATS [Text("+")]
+        "Wider spot" "Opens the selected spot by 5 degrees.";
+    ApertureDown Light REPEATS [Text("-")]
+        "Narrower spot" "Closes the selected spot by 5 degrees.";
+    RedUp Light REPEATS [Lower(Key::Q)]
+        "More red" "Adds 1 to the selected light's red.";
+    RedDown Light REPEATS [Upper(Key::Q)]
+        "Less red" "Subtracts 1 from the selected light's red.";
+    GreenUp Light REPEATS [Lower(Key::V)]
+        "More green" "Adds 1 to the selected light's green.";
+    GreenDown Light REPEATS [Upper(Key::V)]
+        "Less green" "Subtracts 1 from the selected light's green.";
+    BlueUp Light REPEATS [Lower(Key::A)]
+        "More blue" "Adds 1 to the selected light's blue.";
+    BlueDown Light REPEATS [Upper(Key::A)]
+        "Less blue" "Subtracts 1 from the selected light's blue.";
+
+    CheatSheet Window ONCE [Either(Key::H), Text("?"), Named(Key::F1)]
+        "Keys" "Lists every key and what it would do now.";
+    ToPanels Window ONCE [Named(Key::F6)]
+        "Keyboard to the panels"
+        "Moves keyboard focus to the panels; Esc returns it to the viewport.";
+    ToggleOutline Window ONCE []
+        "Outline" "Shows or hides the list of objects, cameras and lights.";
+    ToggleProperties Window ONCE []
+        "Properties" "Shows or hides the properties of the selected item.";
+    ToggleViewPanel Window ONCE []
+        "View switches" "Shows or hides the switches of the view.";
+    ToggleStatistics Window ONCE []
+        "Statistics" "Shows or hides how much is drawn and how long it takes.";
+    TogglePlan Window ONCE [Named(Key::F3)]
+        "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost.";
+    MeasurePlan Window ONCE [Named(Key::F4)]
+        "Measure effects" "Measures the time of a picture with and without each of its effects.";
+    ToggleLaboratory Window ONCE [Named(Key::F5)]
+        "Laboratory"
+        "Shows or hides the laboratory, which measures what accuracy costs in time.";
+    ThemeSystem Window ONCE []
+        "Follow the system" "Makes the window light or dark as the system is.";
+    ThemeLight Window ONCE []
+        "Light" "Shows dark text on light panels.";
+    ThemeDark Window ONCE []
+        "Dark" "Shows light text on dark panels.";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_actions_share_a_key() {
+        let all: Vec<(Action, Chord)> = Action::ALL
+            .iter()
+            .flat_map(|action| action.info().keys.iter().map(|key| (*action, *key)))
+            .collect();
+        for (i, (a, key)) in all.iter().enumerate() {
+            for (b, other) in &all[i + 1..] {
+                assert!(!key.clashes_with(*other), "{a:?} and {b:?} are both on {key}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_key_of_the_specification_has_an_action() {
+        let letters = "f F l L o O d D t T r R s S g G x X y Y z Z u U c C p P b B n N m M i I \
+                       q Q v V a A 0 1 2 3 4 5 6 7 8 9 + - . ? h Tab Enter Esc Home Delete F1 F2 \
+                       F12 Ctrl+Z Ctrl+Shift+Z Ctrl+Y Ctrl+S Ctrl+Shift+S Ctrl+O Ctrl+N Ctrl+D \
+                       Ctrl+Q Ctrl+1 Ctrl+3 Ctrl+7";
+        for name in letters.split_whitespace() {
+            let named = |action: &&Action| {
+                action.info().keys.iter().any(|key| key.names().iter().any(|text| text == name))
+            };
+            assert!(Action::ALL.iter().any(|action| named(&action)), "nothing is on {name}");
+        }
+    }
+
+    #[test]
+    fn only_what_the_specification_names_repeats() {
+        let repeating: Vec<String> = Action::ALL
+            .iter()
+            .filter(|action| action.info().repeats)
+            .flat_map(|action| action.info().keys.iter().flat_map(|key| key.names()))
+            .collect();
+        let expected = "Tab Enter x X y Y z Z + - q Q v V a A";
+        assert_eq!(repeating.join(" "), expected);
+    }
+
+    #[test]
+    fn every_hint_is_a_sentence_and_no_two_labels_are_alike_in_a_group() {
+        for (i, action) in Action::ALL.iter().enumerate() {
+            let info = action.info();
+            assert!(info.hint.ends_with('.'), "{action:?}");
+            for other in &Action::ALL[i + 1..] {
+                let same = other.info().label == info.label;
+                assert!(!same, "{action:?} and {other:?} are both called {}", info.label);
+            }
+        }
+    }
+}

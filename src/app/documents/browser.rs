@@ -1,0 +1,250 @@
+//! A simple file browser for systems without a file dialog.
+//!
+//! A path can be typed or pasted as a whole; the list below follows it.
+
+use std::path::{Path, PathBuf};
+
+use egui::text::{CCursor, CCursorRange};
+use egui::{Key, Ui};
+
+/// Whether the file is to be read or to be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mode {
+    Open,
+    Save,
+}
+
+/// The choice of a file.
+#[derive(Debug)]
+pub(crate) struct Browser {
+    title: &'static str,
+    mode: Mode,
+    /// Endings without the dot, the first being the one that a name without any gets.
+    endings: &'static [&'static str],
+    /// What stands in the path field.
+    path: String,
+    folder: PathBuf,
+    entries: Vec<Entry>,
+    /// Why the folder cannot be listed, or the file not be chosen.
+    fault: Option<String>,
+    shown_once: bool,
+}
+
+#[derive(Debug)]
+struct Entry {
+    name: String,
+    is_folder: bool,
+}
+
+/// How a choice ends.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Choice {
+    Chosen(PathBuf),
+    Cancelled,
+}
+
+impl Browser {
+    /// A choice that begins in `folder`, with `name` in the path field.
+    pub(crate) fn new(
+        title: &'static str,
+        mode: Mode,
+        endings: &'static [&'static str],
+        folder: &Path,
+        name: &str,
+    ) -> Self {
+        let mut browser = Self {
+            title,
+            mode,
+            endings,
+            path: String::new(),
+            folder: PathBuf::new(),
+            entries: Vec::new(),
+            fault: None,
+            shown_once: false,
+        };
+        browser.enter(folder);
+        browser.path = browser.folder.join(name).display().to_string();
+        browser
+    }
+
+    /// Shows the choice. Gives how it ended, once it has.
+    pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<Choice> {
+        ui.set_width(ui.available_width().clamp(240.0, 520.0));
+        ui.heading(self.title);
+        let label = ui.label("Path");
+        let output = egui::TextEdit::singleline(&mut self.path)
+            .desired_width(f32::INFINITY)
+            .align(egui::Align2::LEFT_CENTER)
+            .show(ui);
+        let field = output.response.response.labelled_by(label.id);
+        if !self.shown_once {
+            field.request_focus();
+            // A name can be typed at once behind the folder.
+            let end = CCursorRange::one(CCursor::new(self.path.chars().count()));
+            let mut editing = output.state;
+            editing.cursor.set_char_range(Some(end));
+            editing.store(ui.ctx(), field.id);
+            self.shown_once = true;
+        }
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if field.changed() {
+            self.follow();
+        }
+        let mut choice = if entered { self.take() } else { None };
+        choice = choice.or_else(|| self.list_ui(ui));
+        if let Some(fault) = &self.fault {
+            ui.colored_label(ui.visuals().error_fg_color, fault);
+        }
+        ui.add_space(4.0);
+        ui.horizontal(|ui| {
+            if ui.button(self.verb()).clicked() {
+                choice = choice.take().or_else(|| self.take());
+            }
+            if ui.button("Cancel").clicked() {
+                choice = Some(Choice::Cancelled);
+            }
+        });
+        choice
+    }
+
+    fn list_ui(&mut self, ui: &mut Ui) -> Option<Choice> {
+        let mut clicked = None;
+        let list = egui::ScrollArea::vertical().max_height(260.0).auto_shrink([false, true]);
+        list.show(ui, |ui| {
+            if self.folder.parent().is_some() && ui.selectable_label(false, "..").clicked() {
+                clicked = self.folder.parent().map(Path::to_owned);
+            }
+            for entry in &self.entries {
+                let path = self.folder.join(&entry.name);
+                let chosen = Path::new(&self.path) == path;
+                let text = match entry.is_folder {
+                    true => format!("{}/", entry.name),
+                    false => entry.name.clone(),
+                };
+                let row = ui.selectable_label(chosen, text);
+                if row.clicked() || row.double_clicked() {
+                    clicked = Some(path);
+                }
+                if row.double_clicked() && !entry.is_folder {
+                    self.fault = None;
+                }
+            }
+        });
+        let clicked = clicked?;
+        let again = Path::new(&self.path) == clicked;
+        self.path = clicked.display().to_string();
+        if clicked.is_dir() {
+            self.enter(&clicked);
+            None
+        } else {
+            // A second click on the chosen file takes it.
+            again.then(|| self.take()).flatten()
+        }
+    }
+
+    /// What the button that ends the choice says.
+    fn verb(&self) -> &'static str {
+        match self.mode {
+            Mode::Open => "Open",
+            Mode::Save if self.named().is_file() => "Replace the file",
+            Mode::Save => "Save",
+        }
+    }
+
+    /// The file that the path field names, with an ending.
+    fn named(&self) -> PathBuf {
+        let path = self.folder.join(self.path.trim());
+        match self.endings.first() {
+            Some(ending) if self.mode == Mode::Save && path.extension().is_none() => {
+                path.with_extension(ending)
+            }
+            _ => path,
+        }
+    }
+
+    fn take(&mut self) -> Option<Choice> {
+        let typed = self.folder.join(self.path.trim());
+        if typed.is_dir() {
+            self.enter(&typed);
+            return None;
+        }
+        let path = self.named();
+        if path.file_name().is_none() || (self.mode == Mode::Open && !path.exists()) {
+            self.fault = Some("There is no such file.".to_owned());
+            return None;
+        }
+        Some(Choice::Chosen(path))
+    }
+
+    /// Lists the folder that the typed path is in.
+    fn follow(&mut self) {
+        let path = PathBuf::from(self.path.trim());
+        let folder = if path.is_dir() { Some(path) } else { path.parent().map(Path::to_owned) };
+        if let Some(folder) = folder.filter(|folder| folder.is_dir() && *folder != self.folder) {
+            self.enter(&folder);
+        }
+        self.fault = None;
+    }
+
+    fn enter(&mut self, folder: &Path) {
+        self.folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        self.entries.clear();
+        self.fault = None;
+        match std::fs::read_dir(&self.folder) {
+            Ok(entries) => {
+                self.entries = entries
+                    .flatten()
+                    .map(|entry| Entry {
+                        name: entry.file_name().to_string_lossy().into_owned(),
+                        is_folder: entry.path().is_dir(),
+                    })
+                    .filter(|entry| !entry.name.starts_with('.'))
+                    .filter(|entry| entry.is_folder || self.fits(&entry.name))
+                    .collect();
+                self.entries.sort_by_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
+            }
+            Err(error) => self.fault = Some(format!("This folder cannot be listed: {error}.")),
+        }
+    }
+
+    fn fits(&self, name: &str) -> bool {
+        let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy());
+        ending
+            .is_some_and(|ending| self.endings.iter().any(|own| own.eq_ignore_ascii_case(&ending)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_without_an_ending_gets_the_first_one_only_where_it_is_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let named = |mode| {
+            let browser = Browser::new("", mode, &["png", "ppm"], folder.path(), "view");
+            browser.named().file_name().unwrap().to_string_lossy().into_owned()
+        };
+        assert_eq!(named(Mode::Save), "view.png");
+        assert_eq!(named(Mode::Open), "view");
+    }
+
+    #[test]
+    fn the_list_has_folders_first_and_only_files_of_the_endings() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("b.OBJ"), "").unwrap();
+        std::fs::write(folder.path().join("a.txt"), "").unwrap();
+        std::fs::create_dir(folder.path().join("z")).unwrap();
+        let browser = Browser::new("", Mode::Open, &["obj"], folder.path(), "");
+        let names: Vec<&str> = browser.entries.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(names, ["z", "b.OBJ"]);
+    }
+
+    #[test]
+    fn a_path_that_does_not_exist_is_not_opened() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut browser = Browser::new("", Mode::Open, &["obj"], folder.path(), "none.obj");
+        assert_eq!(browser.take(), None);
+        assert!(browser.fault.is_some());
+    }
+}

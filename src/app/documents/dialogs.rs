@@ -1,0 +1,343 @@
+//! The dialogs over the window: files, materials, unsaved changes, errors.
+//!
+//! Files are asked for with the system's own dialog, on a thread of its own. A system that has none
+//! answers at once, as no hand could; then a plain choice of our own stands in.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use egui::{Context, Id, Modal, Ui};
+
+use super::browser::{Browser, Choice, Mode};
+use super::material_dialog::{self, MaterialChoices, MaterialDialog};
+use crate::app::tasks::{Outcome, Task};
+use crate::app::widgets::controls::take_focus;
+use crate::scene::ObjectId;
+
+/// A system's dialog that is gone within this time was never there.
+const AT_ONCE: Duration = Duration::from_millis(400);
+
+/// The purpose of a file dialog.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Models to be loaded.
+    Model,
+    /// A scene in place of this one.
+    Scene,
+    /// Where to save the scene, and what to do then.
+    SceneTo(Option<After>),
+    /// Where to save the picture.
+    PictureTo,
+    /// A texture for this object.
+    Texture(ObjectId),
+    /// A texture for the model whose material is being chosen.
+    TextureOfModel,
+    /// The new location of a missing model of a scene.
+    Missing(PathBuf),
+}
+
+/// What to do once the scene is saved or discarded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum After {
+    Quit,
+    New,
+    Open(Option<PathBuf>),
+    /// The scene of a lesson, by the key of its axis.
+    Lesson(&'static str),
+}
+
+/// What the user has answered.
+#[derive(Debug)]
+pub(crate) enum Answer {
+    /// These files, for this.
+    Files(Wanted, Vec<PathBuf>),
+    /// No file.
+    NoFile(Wanted),
+    /// Save first.
+    Save(After),
+    /// Do it without saving.
+    Discard(After),
+    /// This material.
+    Material(Box<MaterialDialog>, MaterialChoices),
+    /// A texture is wanted for the model whose material is being chosen.
+    ChooseTexture,
+}
+
+/// All dialogs that are open.
+#[derive(Debug, Default)]
+pub(crate) struct Dialogs {
+    /// Whether to use the system's file dialogs.
+    pub(crate) native: bool,
+    /// The folder of the last file.
+    folder: PathBuf,
+    system: Option<SystemDialog>,
+    /// The last one is on top.
+    open: Vec<Dialog>,
+}
+
+/// A dialog of the system's, on its thread.
+#[derive(Debug)]
+struct SystemDialog {
+    wanted: Wanted,
+    /// The suggested name.
+    name: String,
+    begun: Instant,
+    task: Task<Option<Vec<PathBuf>>>,
+}
+
+#[derive(Debug)]
+enum Dialog {
+    Browser(Wanted, Box<Browser>),
+    Unsaved(After),
+    Material(Box<MaterialDialog>),
+    Fault(String),
+    Details(String, Vec<String>),
+}
+
+impl Dialogs {
+    /// Says in one sentence what went wrong.
+    pub(crate) fn tell_fault(&mut self, sentence: String) {
+        self.open.push(Dialog::Fault(sentence));
+    }
+
+    /// Lists more about a notice.
+    pub(crate) fn tell_details(&mut self, title: String, lines: Vec<String>) {
+        self.open.push(Dialog::Details(title, lines));
+    }
+
+    /// Asks whether unsaved work is to be saved.
+    pub(crate) fn ask_unsaved(&mut self, after: After) {
+        if !self.open.iter().any(|dialog| matches!(dialog, Dialog::Unsaved(_))) {
+            self.open.push(Dialog::Unsaved(after));
+        }
+    }
+
+    /// Asks for a material.
+    pub(crate) fn ask_material(&mut self, dialog: MaterialDialog) {
+        self.open.push(Dialog::Material(Box::new(dialog)));
+    }
+
+    /// Gives the model whose material is being chosen a texture.
+    pub(crate) fn set_texture(&mut self, path: PathBuf) {
+        for dialog in self.open.iter_mut().rev() {
+            if let Dialog::Material(material) = dialog {
+                return material.set_texture(path);
+            }
+        }
+    }
+
+    /// Whether a material is being chosen.
+    pub(crate) fn asks_material(&self) -> bool {
+        self.open.iter().any(|dialog| matches!(dialog, Dialog::Material(_)))
+    }
+
+    /// Asks for a file; `name` is offered.
+    pub(crate) fn ask_file(&mut self, ctx: &Context, wanted: Wanted, name: &str) {
+        if self.system.is_some() {
+            return;
+        }
+        let (title, mode, endings) = wanted.description();
+        let folder = self.folder();
+        let own_name = name.to_owned();
+        if self.native {
+            let task = Task::start(ctx, title.to_owned(), move |_| {
+                let mut dialog = rfd::FileDialog::new()
+                    .set_title(title)
+                    .add_filter(endings.join(", "), endings)
+                    .set_directory(folder);
+                if !own_name.is_empty() {
+                    dialog = dialog.set_file_name(own_name);
+                }
+                match mode {
+                    Mode::Open => dialog.pick_files(),
+                    Mode::Save => dialog.save_file().map(|path| vec![path]),
+                }
+            });
+            if let Ok(task) = task {
+                let (begun, name) = (Instant::now(), name.to_owned());
+                self.system = Some(SystemDialog { wanted, name, begun, task });
+                return;
+            }
+        }
+        self.browse(wanted, name);
+    }
+
+    /// Shows the open dialogs. Returns the answer, if any.
+    pub(crate) fn ui(&mut self, ctx: &Context) -> Option<Answer> {
+        if let Some(answer) = self.hear_system() {
+            return Some(answer);
+        }
+        let number = self.open.len();
+        let dialog = self.open.last_mut()?;
+        let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
+        let modal = Modal::new(Id::unique(("dialog", number))).frame(frame);
+        let response = modal.show(ctx, |ui| dialog.ui(ui));
+        let ended = match response.inner {
+            Some(end) => end,
+            None if response.should_close() => End::Cancelled,
+            None => return None,
+        };
+        ctx.request_repaint();
+        if matches!(ended, End::Asked) {
+            return Some(Answer::ChooseTexture);
+        }
+        let dialog = self.open.pop()?;
+        self.close(dialog, ended)
+    }
+
+    fn close(&mut self, dialog: Dialog, end: End) -> Option<Answer> {
+        match dialog {
+            Dialog::Browser(wanted, _) => Some(match end {
+                End::File(path) => self.chosen(wanted, vec![path]),
+                End::Cancelled | End::Save | End::Discard | End::Material(_) | End::Asked => {
+                    Answer::NoFile(wanted)
+                }
+            }),
+            Dialog::Unsaved(after) => match end {
+                End::Save => Some(Answer::Save(after)),
+                End::Discard => Some(Answer::Discard(after)),
+                End::Cancelled | End::File(_) | End::Material(_) | End::Asked => None,
+            },
+            Dialog::Material(dialog) => match end {
+                End::Material(choices) => Some(Answer::Material(dialog, choices)),
+                End::Cancelled | End::File(_) | End::Save | End::Discard | End::Asked => None,
+            },
+            Dialog::Fault(_) | Dialog::Details(..) => None,
+        }
+    }
+
+    fn hear_system(&mut self) -> Option<Answer> {
+        let outcome = match self.system.as_ref()?.task.outcome() {
+            Outcome::Running => return None,
+            Outcome::Done(paths) => Some(paths),
+            Outcome::Lost => None,
+        };
+        let SystemDialog { wanted, name, begun, .. } = self.system.take()?;
+        match outcome {
+            Some(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
+            Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
+            Some(_) | None => {
+                // The system has none: it is not asked again.
+                self.native = false;
+                self.browse(wanted, &name);
+                None
+            }
+        }
+    }
+
+    fn chosen(&mut self, wanted: Wanted, paths: Vec<PathBuf>) -> Answer {
+        if let Some(folder) = paths.first().and_then(|path| path.parent()) {
+            folder.clone_into(&mut self.folder);
+        }
+        Answer::Files(wanted, paths)
+    }
+
+    fn browse(&mut self, wanted: Wanted, name: &str) {
+        let (title, mode, endings) = wanted.description();
+        let browser = Browser::new(title, mode, endings, &self.folder(), name);
+        self.open.push(Dialog::Browser(wanted, Box::new(browser)));
+    }
+
+    fn folder(&self) -> PathBuf {
+        if self.folder.as_os_str().is_empty() {
+            std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"))
+        } else {
+            self.folder.clone()
+        }
+    }
+}
+
+impl Wanted {
+    fn description(&self) -> (&'static str, Mode, &'static [&'static str]) {
+        const MODELS: &[&str] = &["obj", "gz"];
+        const PICTURES: &[&str] =
+            &["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "gif"];
+        match self {
+            Self::Model => ("Load a model", Mode::Open, MODELS),
+            Self::Scene => ("Open a scene", Mode::Open, &["marraztu"]),
+            Self::SceneTo(_) => ("Save the scene", Mode::Save, &["marraztu"]),
+            Self::PictureTo => ("Save the picture", Mode::Save, &["png", "jpg", "webp", "ppm"]),
+            Self::Texture(_) | Self::TextureOfModel => ("Choose a texture", Mode::Open, PICTURES),
+            Self::Missing(_) => ("Where is the missing model?", Mode::Open, MODELS),
+        }
+    }
+}
+
+/// How a dialog ends.
+enum End {
+    Cancelled,
+    File(PathBuf),
+    Save,
+    Discard,
+    Material(MaterialChoices),
+    /// It stays open, and asks for a texture.
+    Asked,
+}
+
+impl Dialog {
+    fn ui(&mut self, ui: &mut Ui) -> Option<End> {
+        match self {
+            Self::Browser(_, browser) => browser.ui(ui).map(|choice| match choice {
+                Choice::Chosen(path) => End::File(path),
+                Choice::Cancelled => End::Cancelled,
+            }),
+            Self::Unsaved(after) => unsaved_ui(ui, after),
+            Self::Material(dialog) => dialog.ui(ui).map(|end| match end {
+                material_dialog::End::Taken(choices) => End::Material(choices),
+                material_dialog::End::Texture => End::Asked,
+                material_dialog::End::Cancelled => End::Cancelled,
+            }),
+            Self::Fault(sentence) => {
+                ui.set_max_width(420.0);
+                ui.heading("Something went wrong");
+                ui.label(sentence.as_str());
+                ui.add_space(4.0);
+                close_ui(ui)
+            }
+            Self::Details(title, lines) => {
+                ui.set_max_width(560.0);
+                ui.heading(title.as_str());
+                egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+                    for line in lines {
+                        ui.label(line.as_str());
+                    }
+                });
+                ui.add_space(4.0);
+                close_ui(ui)
+            }
+        }
+    }
+}
+
+fn close_ui(ui: &mut Ui) -> Option<End> {
+    let button = ui.button("Close");
+    take_focus(ui, &button);
+    button.clicked().then_some(End::Cancelled)
+}
+
+fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
+    ui.set_max_width(420.0);
+    ui.heading("Save the scene?");
+    ui.label(match after {
+        After::Quit => "It has unsaved changes, which are lost unless you save them.",
+        After::New => "A new scene will replace this one, which has unsaved changes.",
+        After::Lesson(_) => {
+            "The scene of the lesson will replace this one, which has unsaved changes."
+        }
+        After::Open(_) => "Another scene will replace this one, which has unsaved changes.",
+    });
+    ui.add_space(4.0);
+    let buttons = ui.horizontal(|ui| {
+        let save = ui.button("Save");
+        take_focus(ui, &save);
+        let discard = ui.button("Discard").clicked();
+        let cancel = ui.button("Cancel").clicked();
+        match (save.clicked(), discard, cancel) {
+            (true, ..) => Some(End::Save),
+            (_, true, _) => Some(End::Discard),
+            (.., true) => Some(End::Cancelled),
+            _ => None,
+        }
+    });
+    buttons.inner
+}

@@ -1,0 +1,81 @@
+//! Files that are being read, and what was read.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::app::tasks::Task;
+use crate::base::Shared;
+use crate::io::{self, Finding, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError};
+use crate::scene::{LoadOptions, MaterialChoice, ObjectId, Texture};
+
+/// A file that is being read.
+#[derive(Debug)]
+pub(crate) struct Loading {
+    pub(crate) task: Task<Fetched>,
+    /// Whether a question follows, for which others have to be answered first.
+    pub(crate) asks: bool,
+}
+
+/// A file that is read once others have been.
+pub(crate) struct Queued {
+    pub(crate) label: String,
+    pub(crate) asks: bool,
+    pub(crate) work: Box<dyn FnOnce(&io::Progress) -> Fetched + Send>,
+}
+
+impl std::fmt::Debug for Queued {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { label, asks, work: _ } = self;
+        f.debug_struct("Queued").field("label", label).field("asks", asks).finish_non_exhaustive()
+    }
+}
+
+/// A file that was read.
+#[derive(Debug)]
+pub(crate) enum Fetched {
+    /// A model; asks for the material if it is not known.
+    Model(Box<FetchedModel>),
+    /// A texture for an object.
+    Texture(ObjectId, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
+    /// A scene.
+    Scene(Box<Opening>),
+}
+
+/// A model that was read, or could not be.
+#[derive(Debug)]
+pub(crate) struct FetchedModel {
+    pub(crate) path: PathBuf,
+    pub(crate) material: Option<MaterialChoice>,
+    pub(crate) keeps_saved: bool,
+    pub(crate) result: Result<(Loaded, Option<Shared<Texture>>), LoadError>,
+}
+
+/// How a model is to be loaded.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Wish {
+    pub(crate) options: LoadOptions,
+    pub(crate) material: Option<MaterialChoice>,
+    pub(crate) texture: Option<PathBuf>,
+    /// Whether a scene that is saved counts as saved afterwards.
+    pub(crate) keeps_saved: bool,
+}
+
+/// A scene that was read, or could not be.
+#[derive(Debug)]
+pub(crate) struct Opening {
+    pub(crate) path: PathBuf,
+    pub(crate) relocated: BTreeMap<PathBuf, PathBuf>,
+    pub(crate) result: Result<Opened, SceneFileError>,
+}
+
+/// Whether a path names a scene.
+pub(crate) fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(SCENE_ENDING))
+}
+
+/// A scene that waits for the user to show where its models are.
+#[derive(Debug)]
+pub(crate) struct Waiting {
+    pub(crate) path: PathBuf,
+    pub(crate) relocated: BTreeMap<PathBuf, PathBuf>,
+}

@@ -1,0 +1,230 @@
+//! The dialog that asks for the material of a new item, and how its file is read.
+
+use std::path::PathBuf;
+
+use egui::Ui;
+
+use crate::app::widgets::color_picker::swatch;
+use crate::app::widgets::controls::take_focus;
+use crate::app::widgets::spheres::{self, Sphere};
+use crate::app::widgets::text::{file_name, grouped};
+use crate::base::color::Color;
+use crate::edit::items;
+use crate::io::Loaded;
+use crate::scene::{
+    Crease, LoadOptions, Material, MaterialChoice, PresetId, Scale, UpAxis, Winding,
+};
+
+/// The choice of a material.
+#[derive(Debug)]
+pub(crate) struct MaterialDialog {
+    /// The model that was loaded, with its file; `None` if a camera gets the material.
+    pub(crate) loaded: Option<(PathBuf, Loaded)>,
+    choices: MaterialChoices,
+    own: Material,
+    scale: f64,
+    crease: f64,
+}
+
+/// The choices made.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MaterialChoices {
+    pub(crate) material: MaterialChoice,
+    pub(crate) options: LoadOptions,
+    pub(crate) texture: Option<PathBuf>,
+}
+
+/// How the choice ends.
+pub(crate) enum End {
+    Taken(MaterialChoices),
+    Texture,
+    Cancelled,
+}
+
+impl MaterialDialog {
+    /// For a camera's mark.
+    pub(crate) fn of_camera() -> Self {
+        Self::new(None, MaterialChoice::Preset(PresetId::OBSIDIAN), LoadOptions::default())
+    }
+
+    /// For a model that was loaded. The file's own material is preselected if it has one.
+    pub(crate) fn of_model(path: PathBuf, loaded: Loaded) -> Self {
+        let material = own_or_silver(&loaded);
+        let options = loaded.model.options;
+        Self::new(Some((path, loaded)), material, options)
+    }
+
+    fn new(
+        loaded: Option<(PathBuf, Loaded)>,
+        material: MaterialChoice,
+        options: LoadOptions,
+    ) -> Self {
+        let (scale, crease) = (options.scale.get(), options.crease.get());
+        let choices = MaterialChoices { material, options, texture: None };
+        Self { loaded, choices, own: Material::default(), scale, crease }
+    }
+
+    pub(crate) fn set_texture(&mut self, path: PathBuf) {
+        self.choices.texture = Some(path);
+    }
+
+    /// Shows the choice. Gives how it ended, once it has.
+    pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<End> {
+        ui.set_width(ui.available_width().clamp(240.0, 460.0));
+        match &self.loaded {
+            Some((path, loaded)) => {
+                ui.heading(format!("Material of {}", file_name(path)));
+                ui.label(summary(loaded));
+            }
+            None => {
+                ui.heading("Material of the new camera");
+            }
+        }
+        self.materials_ui(ui);
+        let mut end = None;
+        if self.loaded.is_some() {
+            ui.add_space(4.0);
+            end = self.options_ui(ui);
+        }
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            let take = ui.button(if self.loaded.is_some() { "Load" } else { "Add" });
+            take_focus(ui, &take);
+            if take.clicked() {
+                end = Some(End::Taken(self.choices.clone()));
+            }
+            if ui.button("Cancel").clicked() {
+                end = Some(End::Cancelled);
+            }
+        });
+        end
+    }
+
+    fn materials_ui(&mut self, ui: &mut Ui) {
+        let now = &mut self.choices.material;
+        if let Some((_, loaded)) = &self.loaded {
+            let count = loaded.model.materials.len();
+            let text = match count {
+                0 => "The file's own (it has none)".to_owned(),
+                1 => "The file's own".to_owned(),
+                _ => format!("The file's own ({count} materials)"),
+            };
+            let chosen = *now == MaterialChoice::File;
+            if ui.add_enabled(count > 0, egui::Button::selectable(chosen, text)).clicked() {
+                *now = MaterialChoice::File;
+            }
+        }
+        egui::Grid::new("presets").num_columns(3).spacing([6.0, 2.0]).show(ui, |ui| {
+            for (at, id) in PresetId::all().enumerate() {
+                let choice = MaterialChoice::Preset(id);
+                ui.horizontal(|ui| {
+                    let (_, rect) = ui.allocate_space(egui::vec2(22.0, 22.0));
+                    spheres::paint(ui, rect, Sphere::Preset(id));
+                    if ui.selectable_label(*now == choice, id.get().name).clicked() {
+                        *now = choice;
+                    }
+                });
+                if at % 3 == 2 {
+                    ui.end_row();
+                }
+            }
+        });
+        let mut own = matches!(now, MaterialChoice::Own(_));
+        if ui.toggle_value(&mut own, "My own").clicked() {
+            *now = MaterialChoice::Own(self.own);
+        }
+        if let MaterialChoice::Own(material) = now {
+            own_ui(ui, material);
+            self.own = *material;
+        }
+    }
+
+    fn options_ui(&mut self, ui: &mut Ui) -> Option<End> {
+        let idle = self.loaded.as_ref().and_then(|(_, loaded)| {
+            let why = items::why_no_crease(&loaded.model, true)?;
+            Some(format!("Off: {why}"))
+        });
+        let options = &mut self.choices.options;
+        let mut end = None;
+        egui::CollapsingHeader::new("How the file is read").show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label("Up axis");
+                for up in UpAxis::ALL {
+                    ui.selectable_value(&mut options.up, up, up.word().to_uppercase());
+                }
+            });
+            ui.horizontal(|ui| {
+                let label = ui.label("Scale");
+                let value = egui::DragValue::new(&mut self.scale).speed(0.01).range(1e-9..=1e9);
+                ui.add(value).labelled_by(label.id);
+                options.scale = Scale::new(self.scale).unwrap_or_default();
+            });
+            let mut turned = options.winding == Winding::Turned;
+            ui.checkbox(&mut turned, "Flip faces (they are inside out)");
+            options.winding = if turned { Winding::Turned } else { Winding::Kept };
+            ui.horizontal(|ui| {
+                let label = ui.label("Crease angle");
+                let value = egui::DragValue::new(&mut self.crease).speed(0.5).range(0.0..=180.0);
+                let field = ui.add_enabled(idle.is_none(), value.suffix(" deg"));
+                let hint = "Edges are sharp if their faces differ by more than this angle";
+                field
+                    .labelled_by(label.id)
+                    .on_hover_text(hint)
+                    .on_disabled_hover_text(idle.as_deref().unwrap_or(hint));
+                options.crease = Crease::new(self.crease).unwrap_or_default();
+            });
+            ui.horizontal(|ui| {
+                let texture = self.choices.texture.as_deref().map(file_name);
+                ui.label(format!("Texture: {}", texture.as_deref().unwrap_or("the file's own")));
+                if ui.button("Choose...").clicked() {
+                    end = Some(End::Texture);
+                }
+                if texture.is_some() && ui.button("Remove").clicked() {
+                    self.choices.texture = None;
+                }
+            });
+        });
+        end
+    }
+}
+
+/// The file's own material if it has one, otherwise silver.
+pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
+    if loaded.model.materials.is_empty() {
+        MaterialChoice::Preset(PresetId::SILVER)
+    } else {
+        MaterialChoice::File
+    }
+}
+
+/// "6,320 faces, 3,644 vertices; 2 things mended".
+pub(crate) fn summary(loaded: &Loaded) -> String {
+    let mesh = &loaded.model.mesh;
+    let faces = mesh.polygon_count();
+    let counts = format!("{} faces, {} vertices", grouped(faces), grouped(mesh.positions().len()));
+    match loaded.findings.as_slice() {
+        [] => counts,
+        [one] => format!("{counts}; {one}"),
+        more => format!("{counts}; {} findings", more.len()),
+    }
+}
+
+/// Ka, Kd, Ks and Ns of one's own.
+fn own_ui(ui: &mut Ui, material: &mut Material) {
+    ui.horizontal(|ui| {
+        let parts = [
+            ("Ambient", &mut material.ambient),
+            ("Diffuse", &mut material.diffuse),
+            ("Specular", &mut material.specular),
+        ];
+        for (name, factors) in parts {
+            ui.label(name);
+            if let Some((color, _)) = swatch(ui, name, name, Color::from_factors(*factors)) {
+                *factors = color.factors();
+            }
+        }
+        let label = ui.label("Exponent");
+        let value = egui::DragValue::new(&mut material.exponent).range(0.0..=1000.0).speed(0.5);
+        ui.add(value).labelled_by(label.id);
+    });
+}

@@ -1,0 +1,6 @@
+//! Dialogs over the window: files, materials, unsaved work.
+
+pub(crate) mod browser;
+pub(crate) mod dialogs;
+pub(crate) mod loading;
+pub(crate) mod material_dialog;

@@ -1,0 +1,56 @@
+//! The border of the visible part of an item in a picture.
+
+use crate::base::image::Size;
+use crate::scene::ItemId;
+
+/// The border of the visible part of an item in a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Border {
+    pub(crate) item: ItemId,
+    /// Its own pixels along the border, in runs from left to right.
+    pub(crate) inner: Vec<Run>,
+    /// The pixels beside them that are not its own.
+    pub(crate) outer: Vec<Run>,
+    /// How large the picture is.
+    pub(crate) size: Size,
+}
+
+/// Pixels beside one another in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Run {
+    pub(crate) x: usize,
+    pub(crate) y: usize,
+    pub(crate) length: usize,
+}
+
+impl Border {
+    /// The border of the pixels that are `own`, row by row.
+    pub(crate) fn of(item: ItemId, size: Size, own: &[bool]) -> Self {
+        let is_own =
+            |x: usize, y: usize| x < size.width && y < size.height && own[y * size.width + x];
+        // Beyond the left and upper sides x - 1 and y - 1 wrap to what is beyond the others.
+        let beside = |x: usize, y: usize, own: bool| {
+            is_own(x.wrapping_sub(1), y) == own
+                || is_own(x + 1, y) == own
+                || is_own(x, y.wrapping_sub(1)) == own
+                || is_own(x, y + 1) == own
+        };
+        let inner = runs(size, |x, y| is_own(x, y) && beside(x, y, false));
+        let outer = runs(size, |x, y| !is_own(x, y) && beside(x, y, true));
+        Self { item, inner, outer, size }
+    }
+}
+
+/// The pixels that are `chosen`, in runs.
+fn runs(size: Size, chosen: impl Fn(usize, usize) -> bool) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for y in 0..size.height {
+        for x in (0..size.width).filter(|x| chosen(*x, y)) {
+            match runs.last_mut() {
+                Some(run) if run.y == y && run.x + run.length == x => run.length += 1,
+                _ => runs.push(Run { x, y, length: 1 }),
+            }
+        }
+    }
+    runs
+}

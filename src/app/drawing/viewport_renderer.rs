@@ -1,0 +1,362 @@
+//! Draws the pictures of the viewport, and answers what is seen in them.
+//!
+//! A picture is drawn with as much as the hand leaves time for (see
+//! [`pace`](super::adaptive_quality)), and only what has changed of the one before is drawn again.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::ColorImage;
+
+use super::adaptive_quality::{AdaptiveQuality, Applicable, Attempt, Reduction};
+use super::border::Border;
+use super::snapshot::Snapshot;
+use crate::accuracy::Shot;
+use crate::base::image::{Picture, Size};
+use crate::lab::cost::{self, Explained};
+use crate::render::plan_frame;
+use crate::render::{Changes, FramePlan, GivenUp, Hit, Renderer};
+use crate::scene::{ItemId, Surface};
+
+/// A drawn picture.
+#[derive(Clone, Debug)]
+pub(crate) struct Drawn {
+    pub(crate) image: Arc<ColorImage>,
+    /// From the snapshot to the finished picture in memory.
+    pub(crate) time: Duration,
+    pub(crate) triangles: usize,
+    /// What it does without.
+    pub(crate) reduction: Reduction,
+    /// What of it was drawn anew, and why.
+    pub(crate) changes: Changes,
+}
+
+/// What is wanted while a frame is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Asked {
+    /// Still this frame.
+    This,
+    /// Another one.
+    Newer,
+    /// None any more.
+    Nothing,
+}
+
+/// The renderer, and the memory that its pictures are shown from.
+#[derive(Debug)]
+pub(crate) struct ViewportRenderer {
+    renderer: Renderer,
+    /// The time: tests have one that they turn by hand.
+    clock: fn() -> Instant,
+    quality: AdaptiveQuality,
+    /// What the last finished picture does without; `None` before the first.
+    shown: Option<Reduction>,
+    /// Whether the last frame was cancelled.
+    gave_up: bool,
+    /// What was said last of what the picture is made of.
+    explained: Option<Arc<Explained>>,
+    /// One is shown while the other is drawn.
+    images: [Arc<ColorImage>; 2],
+}
+
+impl ViewportRenderer {
+    pub(crate) fn new(clock: fn() -> Instant) -> Self {
+        Self {
+            renderer: Renderer::default(),
+            clock,
+            quality: AdaptiveQuality::default(),
+            shown: None,
+            gave_up: false,
+            explained: None,
+            images: <[Arc<ColorImage>; 2]>::default(),
+        }
+    }
+
+    /// Draws the picture; `None` where it is the one that was drawn last, or was given up for what
+    /// is asked for by then.
+    pub(crate) fn draw(
+        &mut self,
+        wanted: &Snapshot,
+        asked: &(dyn Fn() -> Asked + Sync),
+    ) -> Option<Drawn> {
+        let begun = (self.clock)();
+        let mut plan = planned(wanted, Reduction::NONE);
+        let mut changes = self.renderer.changes(&plan);
+        let share = share(&changes);
+        let reduction = self.quality.choose(wanted.moving, share, applicable(wanted));
+        if reduction != Reduction::NONE && !changes.is_nothing() {
+            plan = planned(wanted, reduction);
+            changes = self.renderer.changes(&plan);
+        }
+        if changes.is_nothing() {
+            return None;
+        }
+        let expected = self.quality.expected(reduction, share);
+        let attempt = Attempt { reduction, expected, second: self.gave_up };
+        let clock = self.clock;
+        let wanted = || match asked() {
+            Asked::This => true,
+            Asked::Newer => !attempt.gives_way(clock().duration_since(begun)),
+            Asked::Nothing => false,
+        };
+        let drawn = self.renderer.redraw(&plan, &wanted);
+        self.gave_up = drawn == Err(GivenUp);
+        if self.gave_up {
+            self.quality.record_given_up(share, clock().duration_since(begun));
+            return None;
+        }
+        let image = Arc::make_mut(&mut self.images[0]);
+        show(self.renderer.picture(), image);
+        self.images.swap(0, 1);
+        self.shown = Some(reduction);
+        let time = clock().duration_since(begun);
+        self.quality.record(reduction, share, time);
+        Some(Drawn {
+            image: Arc::clone(&self.images[1]),
+            time,
+            triangles: self.renderer.triangles_drawn(),
+            reduction,
+            changes,
+        })
+    }
+
+    /// What the picture that was finished last is made of; `None` where that is not wanted, or was
+    /// said.
+    pub(crate) fn explain(&mut self, wanted: &Snapshot) -> Option<Arc<Explained>> {
+        if !wanted.explain {
+            self.explained = None;
+            return None;
+        }
+        if self.gave_up {
+            return None;
+        }
+        let (settings, size) = self.shown?.applied(wanted.settings, wanted.size);
+        let of = Shot::new(&wanted.scene, &wanted.view, &settings, size);
+        let explained = cost::explain_with(&mut self.renderer, &of);
+        if self.explained.as_deref() == Some(&explained) {
+            return None;
+        }
+        self.explained = Some(Arc::new(explained));
+        self.explained.clone()
+    }
+
+    /// The hit at a pixel of the picture at full size.
+    pub(crate) fn hit(&mut self, [x, y]: [usize; 2]) -> Option<Hit> {
+        let [x, y] = if self.shown?.half_size { [x / 2, y / 2] } else { [x, y] };
+        self.renderer.hit(x, y)
+    }
+}
+
+fn planned(wanted: &Snapshot, reduction: Reduction) -> FramePlan {
+    let (settings, size) = reduction.applied(wanted.settings, wanted.size);
+    plan_frame(&Shot::new(&wanted.scene, &wanted.view, &settings, size))
+}
+
+/// Which part of the picture is drawn again, from 0 to 1.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 tiles")]
+fn share(changes: &Changes) -> f64 {
+    changes.tiles() as f64 / changes.tiles_in_all() as f64
+}
+
+fn applicable(wanted: &Snapshot) -> Applicable {
+    let textured = wanted.scene.objects.iter().any(|(_, object)| {
+        let own = object.model.materials.iter().any(|material| material.texture.is_some());
+        object.visible && object.surface != Surface::Material && (own || object.texture.is_some())
+    });
+    Applicable { settings: wanted.settings, textured }
+}
+
+impl ViewportRenderer {
+    /// The border of the visible part of an item.
+    pub(crate) fn border(&mut self, item: ItemId) -> Option<Border> {
+        self.shown?;
+        let [width, height] = self.images[1].size;
+        let own = self.renderer.pixels_of(item);
+        Some(Border::of(item, Size::new(width, height), &own))
+    }
+}
+
+/// Copies opaque pixels; those are the same with and without multiplication by alpha.
+fn show(picture: &Picture, image: &mut ColorImage) {
+    let Size { width, height } = picture.size();
+    if image.size != [width, height] {
+        *image = ColorImage::filled([width, height], egui::Color32::BLACK);
+    }
+    let bytes: &mut [[u8; 4]] = bytemuck::cast_slice_mut(&mut image.pixels);
+    bytes.copy_from_slice(picture.pixels());
+}
+
+/// The picture that an image of the viewport shows.
+pub(crate) fn picture(image: &ColorImage) -> Option<Picture> {
+    let [width, height] = image.size;
+    let pixels: &[[u8; 4]] = bytemuck::cast_slice(&image.pixels);
+    Picture::from_pixels(Size::new(width, height), pixels.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+    use std::sync::OnceLock;
+
+    use super::*;
+    use crate::accuracy::Settings;
+    use crate::app::drawing::border::Run;
+    use crate::base::color::Color;
+    use crate::io;
+    use crate::scene::Command;
+
+    fn snapshot(size: Size) -> Snapshot {
+        let (scene, view) = io::default_scene();
+        Snapshot { scene, view, settings: Settings::default(), size, moving: false, explain: false }
+    }
+
+    /// The same in another colour, for which everything has to be drawn.
+    fn recolored(snapshot: &Snapshot, gray: u8) -> Snapshot {
+        let mut other = snapshot.clone();
+        Command::Background(Color([gray; 3])).apply(&mut other.scene).unwrap();
+        other
+    }
+
+    thread_local! {
+        static NOW: Cell<Duration> = const { Cell::new(Duration::ZERO) };
+    }
+
+    /// A clock that goes on by 40 ms whenever it is looked at: that is what every frame takes.
+    fn slow() -> Instant {
+        static BEGINNING: OnceLock<Instant> = OnceLock::new();
+        let now = NOW.get() + Duration::from_millis(40);
+        NOW.set(now);
+        *crate::base::once::get_or_compute(&BEGINNING, Instant::now) + now
+    }
+
+    fn this() -> Asked {
+        Asked::This
+    }
+
+    fn newer() -> Asked {
+        Asked::Newer
+    }
+
+    #[test]
+    fn a_border_runs_round_all_pixels_of_an_item_and_no_others() {
+        let wanted = snapshot(Size::new(160, 120));
+        let (size, item) = (wanted.size, ItemId::Object(wanted.view.object.unwrap()));
+        let mut renderer = ViewportRenderer::new(Instant::now);
+        renderer.draw(&wanted, &this).unwrap();
+        let places = || (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
+        let own: Vec<bool> = places()
+            .map(|(x, y)| renderer.hit([x, y]).is_some_and(|hit| hit.item == item))
+            .collect();
+        assert_eq!(own, renderer.renderer.pixels_of(item));
+        let is_own = |x: usize, y: usize| own[y * size.width + x];
+        let border = renderer.border(item).unwrap();
+        let pixels = |runs: &[Run]| -> Vec<(usize, usize)> {
+            runs.iter().flat_map(|run| (0..run.length).map(|i| (run.x + i, run.y))).collect()
+        };
+        let (inner, outer) = (pixels(&border.inner), pixels(&border.outer));
+        assert!(!inner.is_empty());
+        assert!(outer.iter().all(|(x, y)| !is_own(*x, *y)));
+        // Nothing of the item lies at the picture's edge.
+        for (x, y) in (1..159).flat_map(|x| (1..119).map(move |y| (x, y))) {
+            let others = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
+            let beside = others.iter().any(|(x, y)| !is_own(*x, *y));
+            assert_eq!(inner.contains(&(x, y)), is_own(x, y) && beside, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn a_snapshot_whose_picture_is_the_same_is_not_drawn_again() {
+        let mut renderer = ViewportRenderer::new(Instant::now);
+        let mut wanted = snapshot(Size::new(16, 12));
+        assert!(renderer.draw(&wanted, &this).is_some());
+        wanted.view.subject = crate::scene::Subject::Light;
+        assert!(renderer.draw(&wanted, &this).is_none());
+        wanted.moving = true;
+        assert!(renderer.draw(&wanted, &this).is_none());
+        wanted.view.back_faces = true;
+        assert!(renderer.draw(&wanted, &this).is_some());
+    }
+
+    #[test]
+    fn while_a_slow_scene_moves_it_is_drawn_with_less_and_when_it_is_still_with_all() {
+        let mut renderer = ViewportRenderer::new(slow);
+        let still = snapshot(Size::new(161, 120));
+        let first = renderer.draw(&still, &this).unwrap();
+        assert_eq!((first.reduction, first.image.size), (Reduction::NONE, [161, 120]));
+        for i in 0..9 {
+            let moving = Snapshot { moving: true, ..recolored(&still, i) };
+            let drawn = renderer.draw(&moving, &this).unwrap();
+            // Every frame takes 40 ms: each reduction is tried twice, and no one helps.
+            let words = ["light per vertex", "half size", "light per vertex, half size", ""];
+            let step = usize::from(i / 2).min(3);
+            assert_eq!(drawn.reduction.words(), words[step], "frame {i}");
+            let half = drawn.reduction.half_size;
+            assert_eq!(drawn.image.size, if half { [81, 60] } else { [161, 120] });
+            assert_eq!(drawn.time, Duration::from_millis(40));
+        }
+        let last = renderer.draw(&still, &this).unwrap();
+        assert_eq!(last.reduction, Reduction::NONE);
+        assert!(last.image.pixels == first.image.pixels);
+    }
+
+    #[test]
+    fn a_picture_of_half_the_size_is_asked_at_the_pixels_of_the_whole() {
+        let mut renderer = ViewportRenderer::new(slow);
+        let still = snapshot(Size::new(160, 120));
+        renderer.draw(&still, &this).unwrap();
+        let item = ItemId::Object(still.view.object.unwrap());
+        let places = |renderer: &mut ViewportRenderer| {
+            let all = (0..120).flat_map(|y| (0..160).map(move |x| [x, y]));
+            let own = all.filter(|at| renderer.hit(*at).is_some_and(|hit| hit.item == item));
+            own.fold([0, 0, 0], |[n, x, y], at| [n + 1, x + at[0], y + at[1]])
+        };
+        let [count, x, y] = places(&mut renderer);
+        let mut moving = Snapshot { moving: true, ..still.clone() };
+        let mut drawn = None;
+        for gray in 0..3 {
+            moving = recolored(&moving, gray);
+            drawn = renderer.draw(&moving, &this);
+        }
+        assert!(drawn.unwrap().reduction.half_size);
+        let [half_count, half_x, half_y] = places(&mut renderer);
+        // As many pixels in the same place, but for the border.
+        let near = |a: usize, b: usize, by: usize| a.abs_diff(b) <= by;
+        assert!(near(count, half_count, count / 5), "{count} {half_count}");
+        assert!(near(x / count, half_x / half_count, 2) && near(y / count, half_y / half_count, 2));
+        assert_eq!(renderer.border(item).unwrap().size, Size::new(80, 60));
+    }
+
+    #[test]
+    fn a_slow_frame_gives_way_to_a_newer_one_and_in_a_stream_every_second_is_finished() {
+        let mut renderer = ViewportRenderer::new(slow);
+        let wanted = snapshot(Size::new(160, 120));
+        let first = renderer.draw(&wanted, &newer);
+        // How long it takes was not known: it may have been finished or not.
+        if first.is_none() {
+            renderer.draw(&wanted, &newer).unwrap();
+        }
+        let seen = renderer.hit([80, 60]);
+        for gray in 0..6 {
+            let finished = renderer.draw(&recolored(&wanted, gray), &newer).is_some();
+            assert_eq!(finished, gray % 2 == 1, "frame {gray}");
+            assert_eq!(renderer.hit([80, 60]), seen, "the picture that is seen is asked");
+        }
+        assert!(renderer.draw(&recolored(&wanted, 99), &|| Asked::Nothing).is_none());
+    }
+
+    #[test]
+    fn only_what_changed_is_drawn_again() {
+        let mut renderer = ViewportRenderer::new(Instant::now);
+        let mut wanted = snapshot(Size::new(640, 480));
+        renderer.draw(&wanted, &this).unwrap();
+        let (id, _) = wanted.scene.objects.iter().next().unwrap();
+        let command = crate::edit::items::toggle_shown(&wanted.scene, ItemId::Object(id)).unwrap();
+        command.apply(&mut wanted.scene).unwrap();
+        let drawn = renderer.draw(&wanted, &this).unwrap();
+        assert!((1..40).contains(&drawn.changes.tiles()), "{:?}", drawn.changes);
+        let mut fresh = ViewportRenderer::new(Instant::now);
+        let all = fresh.draw(&wanted, &this).unwrap();
+        assert_eq!(all.changes.tiles(), 80);
+        assert!(all.image.pixels == drawn.image.pixels);
+    }
+}

@@ -1,0 +1,218 @@
+//! The thread that draws, so that the window stays responsive however long a picture takes.
+//!
+//! The newest wish is drawn and older ones are forgotten, also one that is being drawn where it
+//! keeps the newer one waiting (see [`adaptive_quality`](super::adaptive_quality)). What is seen at
+//! a pixel is asked of the picture that was finished last, before the next one is begun: that is
+//! the one the user clicked on.
+
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use super::border::Border;
+use super::snapshot::Snapshot;
+use super::viewport_renderer::{Asked, Drawn, ViewportRenderer};
+use crate::lab::cost::Explained;
+use crate::render::Hit;
+use crate::scene::ItemId;
+
+/// A pick: which item is seen at a pixel, and the purpose of the question.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pick<P> {
+    pub(crate) at: [usize; 2],
+    pub(crate) purpose: P,
+}
+
+/// What the worker has to tell.
+#[derive(Debug)]
+pub(crate) struct News<P> {
+    pub(crate) border: Option<Border>,
+    pub(crate) drawn: Option<Drawn>,
+    pub(crate) explained: Option<Arc<Explained>>,
+    pub(crate) picked: Vec<(Pick<P>, Option<Hit>)>,
+    pub(crate) failed: bool,
+}
+
+/// The thread that draws.
+#[derive(Debug)]
+pub(crate) struct Worker<P> {
+    shared: Arc<Shared<P>>,
+    last: Option<Snapshot>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared<P> {
+    desk: Mutex<Desk<P>>,
+    changed: Condvar,
+    /// Whether a newer picture is wanted; asked between tiles.
+    newer: AtomicBool,
+    /// Whether nothing is wanted any more.
+    over: AtomicBool,
+}
+
+#[derive(Debug)]
+struct Desk<P> {
+    wanted: Option<Snapshot>,
+    picks: VecDeque<Pick<P>>,
+    /// The item whose border is wanted.
+    border: Option<ItemId>,
+    news: News<P>,
+    busy: bool,
+    closed: bool,
+}
+
+impl<P: Copy + Send + 'static> Worker<P> {
+    /// Starts the thread; `wake` is called whenever there is news.
+    pub(crate) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let news = News::none();
+        let (wanted, picks, border) = (None, VecDeque::new(), None);
+        let desk = Desk { wanted, picks, border, news, busy: false, closed: false };
+        let (newer, over) = (AtomicBool::new(false), AtomicBool::new(false));
+        let shared =
+            Arc::new(Shared { desk: Mutex::new(desk), changed: Condvar::new(), newer, over });
+        let theirs = Arc::clone(&shared);
+        let thread = std::thread::Builder::new()
+            .name("painter".to_owned())
+            .spawn(move || work(&theirs, &wake))?;
+        Ok(Self { shared, last: None, thread: Some(thread) })
+    }
+
+    /// Wants this picture, unless it is the one that was wanted last.
+    pub(crate) fn draw(&mut self, snapshot: Snapshot) {
+        if self.last.as_ref() == Some(&snapshot) {
+            return;
+        }
+        self.last = Some(snapshot.clone());
+        let mut desk = self.shared.lock();
+        desk.wanted = Some(snapshot);
+        self.shared.newer.store(true, Ordering::Relaxed);
+        drop(desk);
+        self.shared.changed.notify_all();
+    }
+
+    /// Whether something is being drawn or answered.
+    pub(crate) fn is_drawing(&self) -> bool {
+        let desk = self.shared.lock();
+        desk.busy || desk.has_work()
+    }
+
+    /// What was wanted last.
+    pub(crate) const fn last(&self) -> Option<&Snapshot> {
+        self.last.as_ref()
+    }
+
+    /// Picks a pixel of the last picture.
+    pub(crate) fn pick(&self, pick: Pick<P>) {
+        self.shared.lock().picks.push_back(pick);
+        self.shared.changed.notify_all();
+    }
+
+    /// Asks for the border of an item in the last picture.
+    pub(crate) fn border(&self, item: ItemId) {
+        self.shared.lock().border = Some(item);
+        self.shared.changed.notify_all();
+    }
+
+    /// What there is to tell since it was last asked.
+    pub(crate) fn news(&self) -> News<P> {
+        let mut desk = self.shared.lock();
+        std::mem::replace(&mut desk.news, News::none())
+    }
+
+    /// Waits until everything that was asked is done.
+    pub(crate) fn wait(&self) {
+        let mut desk = self.shared.lock();
+        while desk.busy || desk.has_work() {
+            desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl<P> Drop for Worker<P> {
+    fn drop(&mut self) {
+        self.shared.lock().closed = true;
+        self.shared.over.store(true, Ordering::Relaxed);
+        self.shared.changed.notify_all();
+        if let Some(thread) = self.thread.take() {
+            // It has told its failure already, if it had any.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl<P> News<P> {
+    const fn none() -> Self {
+        Self { border: None, drawn: None, explained: None, picked: Vec::new(), failed: false }
+    }
+}
+
+impl<P> Desk<P> {
+    fn has_work(&self) -> bool {
+        self.wanted.is_some() || !self.picks.is_empty() || self.border.is_some()
+    }
+}
+
+impl<P> Shared<P> {
+    fn lock(&self) -> MutexGuard<'_, Desk<P>> {
+        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Draws and answers until the desk is closed.
+fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
+    let mut painter = ViewportRenderer::new(Instant::now);
+    loop {
+        let (picks, border, wanted) = {
+            let mut desk = shared.lock();
+            desk.busy = false;
+            shared.changed.notify_all();
+            while !desk.has_work() && !desk.closed {
+                desk = shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+            }
+            if desk.closed {
+                return;
+            }
+            desk.busy = true;
+            shared.newer.store(false, Ordering::Relaxed);
+            (std::mem::take(&mut desk.picks), desk.border.take(), desk.wanted.take())
+        };
+        let picked: Vec<_> = picks.into_iter().map(|pick| (pick, painter.hit(pick.at))).collect();
+        let border = border.and_then(|item| painter.border(item));
+        if !picked.is_empty() || border.is_some() {
+            let mut desk = shared.lock();
+            desk.news.picked.extend(picked);
+            desk.news.border = border.or(desk.news.border.take());
+            drop(desk);
+            wake();
+        }
+        let Some(wanted) = wanted else { continue };
+        let asked = || match shared.over.load(Ordering::Relaxed) {
+            true => Asked::Nothing,
+            false if shared.newer.load(Ordering::Relaxed) => Asked::Newer,
+            false => Asked::This,
+        };
+        // A fault of the renderer costs a picture, not the user's work.
+        match catch_unwind(AssertUnwindSafe(|| painter.draw(&wanted, &asked))) {
+            Ok(None) => {}
+            Ok(Some(drawn)) => {
+                shared.lock().news.drawn = Some(drawn);
+                wake();
+            }
+            Err(_) => {
+                painter = ViewportRenderer::new(Instant::now);
+                shared.lock().news.failed = true;
+                wake();
+                continue;
+            }
+        }
+        // After the picture, so that it is not delayed.
+        if let Ok(Some(explained)) = catch_unwind(AssertUnwindSafe(|| painter.explain(&wanted))) {
+            shared.lock().news.explained = Some(explained);
+            wake();
+        }
+    }
+}

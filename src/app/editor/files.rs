@@ -1,0 +1,338 @@
+//! Loads models and textures, and saves pictures.
+//!
+//! Loading goes on in threads of its own; the scene is changed when a file has been read whole, so
+//! that a bad file leaves it as it was.
+
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use super::App;
+use super::unseen::out_of_sight;
+use crate::accuracy::Shot;
+use crate::app::documents::dialogs::{After, Answer, Wanted};
+use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
+use crate::app::documents::material_dialog::{
+    MaterialChoices, MaterialDialog, own_or_silver, summary,
+};
+use crate::app::drawing::viewport_renderer;
+use crate::app::state::{Notice, Offer, Reduction, State};
+use crate::app::tasks::{Outcome, Task};
+use crate::app::widgets::text::file_name;
+use crate::base::Shared;
+use crate::base::image::{Picture, Size};
+use crate::edit::{Gesture, items};
+use crate::io::{self, Finding, LoadError, Loaded};
+use crate::render::Renderer;
+use crate::render::plan_frame;
+use crate::scene::{MaterialChoice, Object, ObjectId, Texture};
+
+/// How many files are read at the same time, however many are named.
+const MOST_LOADING: usize = 8;
+
+impl App {
+    /// Loads these models as the key `f` does, or opens the scene among them.
+    pub(crate) fn load_files(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        for path in paths {
+            if is_scene(&path) {
+                self.unless_unsaved(ctx, After::Open(Some(path)));
+            } else {
+                self.load_model(ctx, path, Wish::default());
+            }
+        }
+    }
+
+    /// Loads what the command line names: models with their files' own materials, else silver. They
+    /// are no work that could be lost.
+    pub fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        for path in paths {
+            if is_scene(&path) {
+                self.open_scene(ctx, path);
+            } else {
+                let material = Some(MaterialChoice::File);
+                let wish = Wish { material, keeps_saved: true, ..Wish::default() };
+                self.load_model(ctx, path, wish);
+            }
+        }
+    }
+
+    /// Files that were dropped onto the window.
+    pub(crate) fn take_dropped(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
+        if !paths.is_empty() {
+            self.load_files(ctx, paths);
+        }
+    }
+
+    /// What the user has answered to a dialog.
+    pub(crate) fn take_answer(&mut self, ctx: &Context, answer: Answer) {
+        match answer {
+            Answer::Files(wanted, paths) => self.take_files(ctx, wanted, paths),
+            Answer::NoFile(Wanted::Missing(old)) => self.give_up_missing(&old),
+            Answer::NoFile(_) => {}
+            Answer::Save(after) => self.save(ctx, Some(after)),
+            Answer::Discard(after) => self.after(ctx, after),
+            Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
+            Answer::ChooseTexture => self.dialogs.ask_file(ctx, Wanted::TextureOfModel, ""),
+        }
+    }
+
+    fn take_files(&mut self, ctx: &Context, wanted: Wanted, paths: Vec<PathBuf>) {
+        let mut paths = paths.into_iter();
+        match wanted {
+            Wanted::Model => self.load_files(ctx, paths.collect()),
+            Wanted::Texture(id) => {
+                if let Some(path) = paths.next() {
+                    self.load_texture(ctx, id, path);
+                }
+            }
+            Wanted::TextureOfModel => {
+                if let Some(path) = paths.next() {
+                    self.dialogs.set_texture(path);
+                }
+            }
+            Wanted::PictureTo => {
+                if let Some(path) = paths.next() {
+                    self.save_picture(&path);
+                }
+            }
+            Wanted::Scene => {
+                if let Some(path) = paths.next() {
+                    self.open_scene(ctx, path);
+                }
+            }
+            Wanted::SceneTo(after) => {
+                if let Some(path) = paths.next() {
+                    self.save_to(ctx, path, after);
+                }
+            }
+            Wanted::Missing(old) => {
+                if let Some(path) = paths.next() {
+                    self.found_missing(ctx, old, path);
+                }
+            }
+        }
+    }
+
+    fn take_material(&mut self, ctx: &Context, dialog: MaterialDialog, choices: MaterialChoices) {
+        let MaterialChoices { material, options, texture } = choices;
+        let Some((path, loaded)) = dialog.loaded else {
+            let model = io::cam_model();
+            let command = items::insert_camera(&self.state.scene, model, material);
+            self.change(command, Gesture::Whole, "Add a camera");
+            return;
+        };
+        if loaded.model.options == options && texture.is_none() {
+            self.insert(ctx, loaded, material, None);
+        } else {
+            self.load_model(
+                ctx,
+                path,
+                Wish { options, material: Some(material), texture, keeps_saved: false },
+            );
+        }
+    }
+
+    fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
+        let label = format!("Loading {}", file_name(&path));
+        let asks = wish.material.is_none();
+        self.begin_loading(ctx, label, asks, move |progress| {
+            let result = io::load(&path, &wish.options, progress).and_then(|mut loaded| {
+                let mut load = |path| io::load_texture_with(path, &mut loaded.findings);
+                let texture = wish.texture.as_deref().map(&mut load).transpose()?;
+                Ok((loaded, texture))
+            });
+            let Wish { material, keeps_saved, .. } = wish;
+            Fetched::Model(Box::new(FetchedModel { path, material, keeps_saved, result }))
+        });
+    }
+
+    fn load_texture(&mut self, ctx: &Context, id: ObjectId, path: PathBuf) {
+        let label = format!("Loading {}", file_name(&path));
+        self.begin_loading(ctx, label, false, move |_| {
+            let mut findings = Vec::new();
+            let texture = io::load_texture_with(&path, &mut findings);
+            Fetched::Texture(id, texture.map(|texture| (texture, findings)))
+        });
+    }
+
+    /// Reads a file on a thread of its own.
+    pub(crate) fn begin_loading(
+        &mut self,
+        ctx: &Context,
+        label: String,
+        asks: bool,
+        work: impl FnOnce(&io::Progress) -> Fetched + Send + 'static,
+    ) {
+        self.queued.push_back(Queued { label, asks, work: Box::new(work) });
+        self.begin_queued(ctx);
+    }
+
+    /// Begins to read what waits, as far as there is room.
+    fn begin_queued(&mut self, ctx: &Context) {
+        while self.loading.len() < MOST_LOADING
+            && let Some(Queued { label, asks, work }) = self.queued.pop_front()
+        {
+            match Task::start(ctx, label, work) {
+                Ok(task) => self.loading.push(Loading { task, asks }),
+                Err(error) => {
+                    self.dialogs.tell_fault(format!("Cannot start a thread to load: {error}."));
+                }
+            }
+        }
+    }
+
+    /// Takes what was read meanwhile.
+    pub(crate) fn hear_loading(&mut self, ctx: &Context) {
+        // In the order of the requests, however long each file takes.
+        while let Some(loading) = self.loading.first() {
+            // One question at a time: further models wait for theirs.
+            if loading.asks && self.dialogs.asks_material() {
+                return;
+            }
+            let fetched = match loading.task.outcome() {
+                Outcome::Running => return,
+                Outcome::Done(fetched) => Some(fetched),
+                Outcome::Lost => None,
+            };
+            let Loading { task, .. } = self.loading.remove(0);
+            self.begin_queued(ctx);
+            ctx.request_repaint();
+            match fetched {
+                Some(fetched) => self.take_fetched(ctx, fetched),
+                None => self.dialogs.tell_fault(format!(
+                    "{} failed because of a bug in the program; nothing has changed.",
+                    task.label
+                )),
+            }
+        }
+    }
+
+    fn take_fetched(&mut self, ctx: &Context, fetched: Fetched) {
+        match fetched {
+            Fetched::Model(model) => {
+                let FetchedModel { path, material, keeps_saved, result } = *model;
+                match (result, material) {
+                    (Err(error), _) => self.tell_load_error(&error),
+                    (Ok((loaded, texture)), Some(material)) => {
+                        let keeps_saved = keeps_saved && self.state.history.is_saved();
+                        self.insert(ctx, loaded, material, texture);
+                        if keeps_saved {
+                            self.state.history.mark_saved();
+                        }
+                    }
+                    (Ok((loaded, _)), None) => {
+                        self.dialogs.ask_material(MaterialDialog::of_model(path, loaded));
+                    }
+                }
+            }
+            Fetched::Texture(_, Err(error)) => self.tell_load_error(&error),
+            Fetched::Texture(id, Ok((texture, findings))) => {
+                let notice = |finding: Finding| Notice {
+                    text: finding.to_string(),
+                    details: Vec::new(),
+                    offer: None,
+                };
+                self.state.notices.extend(findings.into_iter().map(notice));
+                let set = |object: &mut Object| object.texture = Some(texture);
+                match items::change_object(&self.state.scene, id, set) {
+                    Ok(command) => self.change(command, Gesture::Whole, "Choose a texture"),
+                    Err(refusal) => self.refuse(refusal.to_string()),
+                }
+            }
+            Fetched::Scene(opening) => self.take_scene(ctx, *opening),
+        }
+    }
+
+    fn tell_load_error(&mut self, error: &LoadError) {
+        match error {
+            LoadError::Cancelled => self.state.tell(Some("Loading was cancelled".to_owned())),
+            LoadError::File { .. } | LoadError::Line { .. } => {
+                self.dialogs.tell_fault(format!("{error}."));
+            }
+        }
+    }
+
+    /// Puts a loaded model into the scene, and tells what was found in its file.
+    fn insert(
+        &mut self,
+        ctx: &Context,
+        loaded: Loaded,
+        material: MaterialChoice,
+        texture: Option<Shared<Texture>>,
+    ) {
+        let found = summary(&loaded);
+        let material = settled(material, &loaded);
+        let details = loaded.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let mut object = Object::new(Shared::new(loaded.model), material);
+        object.texture = texture;
+        let name = object.name.clone();
+        let size = self.viewport.size().unwrap_or(Size::new(800, 600));
+        let unseen = out_of_sight(&self.state, &object, size);
+        let command = items::insert_object(&self.state.scene, object);
+        self.change(command, Gesture::Whole, &format!("Load {name}"));
+        let Some(id) = self.state.view.object else { return };
+        self.state.tell(Some(format!("Loaded {name}: {found}")));
+        // Two notices, for one is done with when the object is framed and the other is not.
+        if !details.is_empty() {
+            let text = format!("{name}: {found}");
+            self.state.notices.push(Notice { text, details, offer: None });
+        }
+        if unseen {
+            let text = format!("{name} is out of view or too small to see");
+            let offer = Some(Offer::Frame(id));
+            self.state.notices.push(Notice { text, details: Vec::new(), offer });
+        } else {
+            self.look_for_unseen(ctx, vec![id]);
+        }
+    }
+
+    fn save_picture(&mut self, path: &Path) {
+        let Some(picture) = self.picture() else {
+            self.refuse("no picture has been drawn yet".to_owned());
+            return;
+        };
+        match io::save_picture(path, &picture) {
+            Ok(()) => self.state.tell(Some(format!("Saved {}", path.display()))),
+            Err(error) => self.dialogs.tell_fault(format!("{error}.")),
+        }
+    }
+
+    /// What the viewport shows, with all that the picture has.
+    fn picture(&self) -> Option<Picture> {
+        let State { scene, view, settings, statistics, .. } = &self.state;
+        if statistics.reduction == Reduction::NONE {
+            return self.viewport.image().and_then(|image| viewport_renderer::picture(image));
+        }
+        let plan = plan_frame(&Shot::new(scene, view, settings, self.viewport.size()?));
+        Some(Renderer::default().render(&plan).clone())
+    }
+
+    /// Does what the user asked for, now that the scene is saved or discarded.
+    pub(crate) fn after(&mut self, ctx: &Context, after: After) {
+        match after {
+            After::Quit => self.leave(ctx),
+            After::New => {
+                let (scene, view) = io::default_scene();
+                self.replace(State::new(scene, view));
+            }
+            After::Lesson(key) => self.show_lesson(key),
+            After::Open(Some(path)) => self.open_scene(ctx, path),
+            After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
+        }
+    }
+
+    /// Edits something else from now on; which panels are shown stays.
+    pub(crate) fn replace(&mut self, state: State) {
+        let State { panels, theme, .. } = self.state;
+        let statistics = self.state.statistics.clone();
+        self.end_measuring();
+        self.state = State { panels, theme, statistics, ..state };
+    }
+}
+
+/// The file's own material if it has one, otherwise silver.
+fn settled(material: MaterialChoice, loaded: &Loaded) -> MaterialChoice {
+    if material == MaterialChoice::File { own_or_silver(loaded) } else { material }
+}

@@ -1,0 +1,274 @@
+//! Answers requests to the laboratory, and runs its measurements on threads of their own.
+//!
+//! Measuring has a thread of its own, and so has the comparison with the exact picture; the window
+//! only asks how far they are. While it is measured, the window is drawn at most four times a
+//! second, and a pair of pictures that was measured meanwhile is thrown away.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use egui::Context;
+
+use super::App;
+use crate::accuracy::Shot;
+use crate::accuracy::{AXES, Axis, Settings};
+use crate::app::actions::LabRequest;
+use crate::app::state::State;
+use crate::app::state::laboratory::{Compare, Side};
+use crate::app::tasks::{Outcome, Task};
+use crate::base::image::Size;
+use crate::edit::selection;
+use crate::io;
+use crate::lab::attribution::{Attribution, attribute};
+use crate::lab::candidates::{Thoroughness, all_axes};
+use crate::lab::pairs::{Touch, Unmeasured, Watch};
+use crate::lab::picture_source::{PictureSource as _, Studio};
+use crate::lab::report::Report;
+use crate::lab::sweep::{Findings, Question, sweep};
+use crate::lab::timing::WallClock;
+
+/// What works for the laboratory.
+#[derive(Debug, Default)]
+pub(crate) struct Work {
+    watch: Watch,
+    sweep: Option<Task<Result<Findings, Unmeasured>>>,
+    /// What there is while it is measured.
+    so_far: Arc<Mutex<Option<Findings>>>,
+    blame: Option<Task<Option<Explained>>>,
+    /// The command that repeats the measurement.
+    command: String,
+    /// When the window was drawn last.
+    drawn_at: Option<Instant>,
+}
+
+/// An attribution of the error at a pixel, with the item seen there; `None` for the background.
+type Explained = (Attribution, Option<String>);
+
+/// While it is measured, the window is drawn no sooner than so long after the last time, and so
+/// seldom that one pair of pictures at least is measured in between.
+const REST: Duration = Duration::from_millis(250);
+
+/// How many pairs have room between two drawings of the window.
+const PAIRS_BETWEEN: u32 = 3;
+
+impl Work {
+    /// How long the window is not drawn by itself.
+    fn rest_now(&self) -> Duration {
+        REST.max(PAIRS_BETWEEN * self.watch.pair())
+    }
+
+    /// The window is being drawn as long as this lives.
+    pub(crate) fn touch(&self) -> Touch {
+        self.watch.touch()
+    }
+
+    /// Says that something was drawn on another thread.
+    pub(crate) fn watch(&self) -> Watch {
+        self.watch.clone()
+    }
+
+    /// Waits until the window may be drawn again: a measurement shall have some peace.
+    pub(crate) fn rest(&mut self) {
+        if self.sweep.is_some()
+            && let Some(rest) = self.drawn_at.and_then(|at| REST.checked_sub(at.elapsed()))
+        {
+            std::thread::sleep(rest);
+        }
+        self.drawn_at = Some(Instant::now());
+    }
+}
+
+/// The command that measures a scene again on the command line.
+fn command(state: &State, size: Size, thoroughness: &Thoroughness) -> String {
+    let file = match (&state.path, state.history.is_saved()) {
+        (Some(path), true) => format!(" '{}'", path.display()),
+        // The first scene, as it was, needs no file.
+        (None, true) => String::new(),
+        _ => " SCENE.marraztu".to_owned(),
+    };
+    let mut command = format!("marraztu lab{file} --size {}x{}", size.width, size.height);
+    if *thoroughness == Thoroughness::QUICK {
+        command += " --quick";
+    }
+    for axis in AXES {
+        let chosen = axis.chosen(&state.settings).word;
+        if chosen != axis.default_choice().word {
+            command += &format!(" --{} {chosen}", axis.key);
+        }
+    }
+    command
+}
+
+impl App {
+    /// Does what the panel of the laboratory asks for.
+    pub(crate) fn answer_lab(&mut self, ctx: &Context, ask: LabRequest) {
+        let lab = &mut self.state.lab;
+        match ask {
+            LabRequest::Measure(thoroughness) => self.sweep(ctx, thoroughness),
+            LabRequest::Cancel => {
+                if let Some(task) = &self.lab.sweep {
+                    task.progress.cancel();
+                }
+            }
+            LabRequest::Judge(measure) => {
+                lab.measure = measure;
+                lab.budgets.error = None;
+                self.tell_report();
+            }
+            LabRequest::Budgets(budgets) => {
+                lab.budgets = budgets;
+                self.tell_report();
+            }
+            LabRequest::Compare(compare) => lab.compare = compare,
+            LabRequest::Pick(picking) => lab.picking = picking,
+            LabRequest::Attribute(at) => self.explain(ctx, at),
+            LabRequest::Side(side) => lab.side = side,
+            LabRequest::Lesson(key) => {
+                lab.lesson = Axis::named(key).unwrap_or(lab.lesson);
+                lab.side = Side::Lessons;
+                self.state.panels.laboratory = true;
+            }
+            LabRequest::ShowLesson(key) => {
+                self.unless_unsaved(ctx, crate::app::documents::dialogs::After::Lesson(key));
+            }
+        }
+    }
+
+    /// Starts to measure the picture in the viewport.
+    fn sweep(&mut self, ctx: &Context, thoroughness: Thoroughness) {
+        let Some(size) = self.viewport.size().filter(|_| self.lab.sweep.is_none()) else { return };
+        let State { scene, view, settings, .. } = &self.state;
+        let shot = Shot::new(scene, view, settings, size);
+        let measured = Some((scene.clone(), view.clone(), size));
+        let question = Question { current: *settings, axes: all_axes(), thoroughness };
+        // A cancelled sweep may still report findings: it has a cell of its own.
+        self.lab.so_far = Arc::default();
+        let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
+        let mut studio = Studio::new(shot);
+        let work = move |progress: &io::Progress| {
+            let watch = watch.with(progress);
+            let mut tell = |findings: &Findings| {
+                *so_far.lock().unwrap_or_else(PoisonError::into_inner) = Some(findings.clone());
+            };
+            sweep(&mut studio, &question, &mut WallClock::default(), &watch, &mut tell)
+        };
+        match Task::start(ctx, "Measuring".to_owned(), work) {
+            Ok(task) => {
+                self.lab.sweep = Some(task);
+                let command = command(&self.state, size, &thoroughness);
+                let lab = &mut self.state.lab;
+                (lab.running, lab.failed, lab.report) = (Some(0.0), None, None);
+                lab.measured = measured;
+                self.lab.command = command;
+            }
+            Err(error) => self.refuse(format!("cannot start a thread to measure: {error}")),
+        }
+    }
+
+    /// Cancels everything that is measured for a scene that is gone.
+    pub(crate) fn end_measuring(&mut self) {
+        if let Some(task) = self.lab.sweep.take() {
+            task.progress.cancel();
+        }
+        self.lab.blame = None;
+    }
+
+    /// Explains a pixel of the picture as it is drawn now.
+    fn explain(&mut self, ctx: &Context, at: [usize; 2]) {
+        self.state.lab.picking = false;
+        let Some(size) = self.viewport.size() else { return };
+        let State { scene, view, settings, .. } = &self.state;
+        let (mut studio, settings) =
+            (Studio::new(Shot::new(scene, view, settings, size)), *settings);
+        let work = move |_: &io::Progress| {
+            let blame = attribute(&mut studio, &settings, at)?;
+            studio.draw(&settings);
+            let seen =
+                studio.seen(at).map(|(name, polygon)| format!("polygon {polygon} of {name}"));
+            Some((blame, seen))
+        };
+        match Task::start(ctx, "Explaining a pixel".to_owned(), work) {
+            Ok(task) => self.lab.blame = Some(task),
+            Err(error) => self.refuse(format!("cannot start a thread to draw: {error}")),
+        }
+    }
+
+    /// What has become of what was begun.
+    pub(crate) fn hear_laboratory(&mut self, ctx: &Context) {
+        self.hear_blame();
+        let Some(task) = &self.lab.sweep else { return };
+        self.state.lab.running = Some(task.progress.fraction());
+        let outcome = task.outcome();
+        let so_far = self.lab.so_far.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(findings) = so_far {
+            self.show_findings(findings);
+        }
+        match outcome {
+            Outcome::Running => return ctx.request_repaint_after(self.lab.rest_now()),
+            Outcome::Done(Ok(findings)) => self.show_findings(findings),
+            Outcome::Done(Err(Unmeasured::Cancelled)) => {
+                self.state.tell(Some("Measuring was cancelled".to_owned()));
+            }
+            Outcome::Done(Err(why)) => self.state.lab.failed = Some(why.to_string()),
+            Outcome::Lost => {
+                self.state.lab.failed = Some("this is a bug in the program".to_owned());
+            }
+        }
+        self.lab.sweep = None;
+        self.state.lab.running = None;
+    }
+
+    fn hear_blame(&mut self) {
+        let Some(task) = &self.lab.blame else { return };
+        match task.outcome() {
+            Outcome::Running => return,
+            Outcome::Done(Some((blame, seen))) => {
+                let mut lines = blame.lines();
+                lines
+                    .insert(1, format!("  shows  {}", seen.as_deref().unwrap_or("the background")));
+                self.state.lab.attribution = Some(lines);
+            }
+            Outcome::Done(None) | Outcome::Lost => {
+                self.refuse("the error of this pixel could not be attributed".to_owned());
+            }
+        }
+        self.lab.blame = None;
+    }
+
+    fn show_findings(&mut self, findings: Findings) {
+        let scene = self.state.file_name();
+        let lab = &mut self.state.lab;
+        lab.report = Some(Report {
+            scene,
+            command: self.lab.command.clone(),
+            measure: lab.measure,
+            budgets: lab.budgets,
+            findings,
+        });
+    }
+
+    /// Updates the report to the chosen error metric and budgets.
+    fn tell_report(&mut self) {
+        let lab = &mut self.state.lab;
+        if let Some(report) = &mut lab.report {
+            (report.measure, report.budgets) = (lab.measure, lab.budgets);
+        }
+    }
+
+    /// Opens the scene of a lesson, with the most telling settings.
+    pub(crate) fn show_lesson(&mut self, key: &str) {
+        let Some(axis) = Axis::named(key) else { return };
+        match io::lesson_scene(axis.lesson.scene) {
+            Ok(opened) => {
+                let settings = axis.lesson_choice().of(&Settings::default());
+                let mut state = State { settings, ..State::new(opened.scene, opened.view) };
+                selection::settle(&state.scene, &mut state.view);
+                (state.lab.lesson, state.lab.side) = (axis, Side::Lessons);
+                state.lab.compare = Compare::Split(0.5);
+                state.tell(Some(format!("Lesson: {}", axis.lesson.title)));
+                self.replace(state);
+            }
+            Err(error) => self.dialogs.tell_fault(format!("{error}.")),
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Measures the cost of effects on a thread of its own, so that the window stays responsive.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui::Context;
+
+use super::App;
+use crate::accuracy::Shot;
+use crate::app::drawing::snapshot::Snapshot;
+use crate::app::state::Measured;
+use crate::app::tasks::{Outcome, Task};
+use crate::lab::cost::{self, Costs};
+
+/// About how long measuring takes.
+const BUDGET: Duration = Duration::from_secs(3);
+
+/// Effects that are being measured, and in which picture.
+#[derive(Debug)]
+pub(crate) struct Measuring {
+    task: Task<Costs>,
+    of: Snapshot,
+}
+
+impl Drop for Measuring {
+    fn drop(&mut self) {
+        self.task.progress.cancel();
+    }
+}
+
+impl App {
+    /// Starts to measure the cost of each effect, or cancels a measurement in progress.
+    pub(crate) fn measure(&mut self, ctx: &Context) {
+        self.state.panels.plan = true;
+        if let Some(measuring) = &self.measuring {
+            return measuring.task.progress.cancel();
+        }
+        let Some(size) = self.viewport.size() else { return };
+        let (scene, view) = (self.state.scene.clone(), self.state.view.clone());
+        let settings = self.state.settings;
+        let of = Snapshot { scene, view, settings, size, moving: false, explain: true };
+        let theirs = of.clone();
+        let task = Task::start(ctx, "measure effects".to_owned(), move |progress| {
+            let of = Shot::new(&theirs.scene, &theirs.view, &theirs.settings, theirs.size);
+            cost::measure(&of, BUDGET, || progress.is_cancelled())
+        });
+        match task {
+            Ok(task) => {
+                self.state.plan.measuring = true;
+                self.measuring = Some(Measuring { task, of });
+            }
+            Err(error) => self.refuse(format!("cannot start a thread to measure: {error}")),
+        }
+    }
+
+    /// Takes what was measured meanwhile.
+    pub(crate) fn hear_measuring(&mut self) {
+        let Some(Measuring { task, .. }) = &self.measuring else { return };
+        let cancelled = task.progress.is_cancelled();
+        let costs = match task.outcome() {
+            Outcome::Running => return,
+            Outcome::Done(costs) => Some(costs),
+            Outcome::Lost => None,
+        };
+        self.state.plan.measuring = false;
+        let Some(of) = self.measuring.take().map(|measuring| measuring.of.clone()) else { return };
+        match costs {
+            Some(_) if cancelled => {}
+            Some(costs) => {
+                let Snapshot { scene, view, settings, .. } = of;
+                let measured = Measured { costs, scene, view, settings };
+                self.state.plan.costs = Some(Arc::new(measured));
+            }
+            None => self
+                .refuse("the effects could not be measured: this is a bug in the program".into()),
+        }
+    }
+}

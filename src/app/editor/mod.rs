@@ -1,0 +1,285 @@
+//! The editor: shows everything, and answers all requests at the end of the frame.
+//!
+//! [`App::perform`] alone makes of an action a command or another view, and [`App::change`] alone
+//! writes the scene.
+
+mod comparing;
+mod files;
+mod laboratory;
+mod measuring;
+mod requests;
+mod scenes;
+mod unseen;
+
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui::{CentralPanel, Context, Frame, ViewportCommand};
+
+use crate::app::actions::{Action, Request};
+use crate::app::documents::dialogs::{After, Dialogs};
+use crate::app::documents::loading::{Loading, Queued, Waiting};
+use crate::app::drawing::adaptive_quality::{Happening, Motion};
+use crate::app::drawing::snapshot::Snapshot;
+use crate::app::drawing::worker::Worker;
+use crate::app::input::keyboard::Keyboard;
+use crate::app::panels::{self, notices};
+use crate::app::state::State;
+use crate::app::viewport::comparison::Comparison;
+use crate::app::viewport::{Purpose, Viewport};
+use crate::scene::{Scene, View};
+use laboratory::Work;
+use measuring::Measuring;
+use unseen::Search;
+
+/// The editor.
+#[derive(Debug)]
+pub struct App {
+    pub(crate) state: State,
+    pub(crate) dialogs: Dialogs,
+    pub(crate) loading: Vec<Loading>,
+    pub(crate) searches: Vec<Search>,
+    /// Files that are read after these.
+    pub(crate) queued: VecDeque<Queued>,
+    /// A scene that waits for the user to locate its missing models.
+    pub(crate) waiting: Option<Waiting>,
+    pub(crate) viewport: Viewport,
+    pub(crate) lab: Work,
+    pub(crate) comparison: Comparison,
+    worker: Option<Worker<Purpose>>,
+    /// The measuring of effects that goes on.
+    pub(crate) measuring: Option<Measuring>,
+    /// It was decided to leave: nothing more is asked.
+    leaving: bool,
+    /// Whether the picture is changing.
+    motion: Motion,
+    /// When the last frame was shown in which something moved by itself.
+    moved_at: Option<f64>,
+    /// When the pictures of the last second were shown.
+    shown_at: VecDeque<f64>,
+    title: String,
+    /// How many frames failed one after the other.
+    faults: u32,
+}
+
+impl App {
+    /// An editor of this scene.
+    #[must_use]
+    pub fn new(scene: Scene, view: View) -> Self {
+        Self {
+            state: State::new(scene, view),
+            dialogs: Dialogs::default(),
+            loading: Vec::new(),
+            searches: Vec::new(),
+            queued: VecDeque::new(),
+            waiting: None,
+            viewport: Viewport::default(),
+            lab: Work::default(),
+            comparison: Comparison::default(),
+            worker: None,
+            measuring: None,
+            leaving: false,
+            motion: Motion::default(),
+            moved_at: None,
+            shown_at: VecDeque::new(),
+            title: String::new(),
+            faults: 0,
+        }
+    }
+
+    /// The scene being edited, and everything shown about it.
+    #[must_use]
+    pub const fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Uses the system's file dialogs, if it has any.
+    pub(crate) const fn use_system_dialogs(&mut self) {
+        self.dialogs.native = true;
+    }
+
+    /// Shows the editor, and does what the user asks of it.
+    pub fn editor_ui(&mut self, ui: &mut egui::Ui) {
+        let ctx = ui.ctx().clone();
+        let mut requests = Vec::new();
+        let _touch = self.lab.touch();
+        Keyboard::begin(&ctx);
+        self.begin(&ctx, &mut requests);
+        panels::show(ui, &self.state, &mut requests);
+        if let Some(worker) = &self.worker {
+            CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+                self.viewport.ui(ui, &self.state, worker, &mut requests);
+                if let Some(rect) = self.viewport.rect() {
+                    self.comparison.ui(ui, rect, &self.state, &mut requests);
+                }
+            });
+        }
+        notices::show(&ctx, &self.state, &self.loading, &mut requests);
+        let answer = self.dialogs.ui(&ctx);
+        let pressed = Action::pressed(&ctx);
+
+        // Last, so that everything that is shown in a frame shows the same scene.
+        if !requests.is_empty() || !pressed.is_empty() || answer.is_some() {
+            ctx.request_repaint();
+        }
+        for press in pressed {
+            self.press(&ctx, press);
+        }
+        for request in requests {
+            self.answer(&ctx, request);
+        }
+        if let Some(answer) = answer {
+            self.take_answer(&ctx, answer);
+        }
+        self.hear_loading(&ctx);
+        self.hear_searches();
+        self.hear_measuring();
+        self.hear_laboratory(&ctx);
+        self.compare(&ctx);
+        self.take_dropped(&ctx);
+        self.close_requested(&ctx);
+        self.draw(&ctx);
+        self.name_window(&ctx);
+    }
+
+    /// Waits until the picture of the current scene is drawn and all its picks are answered.
+    /// The next frame shows it.
+    pub fn wait_for_picture(&self) {
+        if let Some(worker) = &self.worker {
+            worker.wait();
+        }
+    }
+
+    /// What comes before anything is shown: the thread's news, the clock, the screen.
+    fn begin(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
+        if self.worker.is_none() {
+            Keyboard::install(ctx);
+            // Leaving is an action like the others.
+            ctx.options_mut(|options| options.quit_shortcuts.clear());
+            let waker = ctx.clone();
+            let watch = self.lab.watch();
+            let wake = move || {
+                // A picture was drawn: what was measured meanwhile means nothing.
+                drop(watch.touch());
+                waker.request_repaint();
+            };
+            match Worker::start(wake) {
+                Ok(worker) => self.worker = Some(worker),
+                Err(error) => self.refuse(format!("cannot start a thread to draw: {error}")),
+            }
+        }
+        if let Some(worker) = &self.worker {
+            let news = worker.news();
+            if let Some(drawn) = &news.drawn {
+                let now = ctx.input(|input| input.time);
+                self.shown_at.push_back(now);
+                self.shown_at.retain(|then| now - then < 1.0);
+                let rate = u32::try_from(self.shown_at.len()).unwrap_or(u32::MAX);
+                self.state.statistics.note(drawn, rate);
+            }
+            if let Some(explained) = &news.explained {
+                self.state.plan.explained = Some(Arc::clone(explained));
+            }
+            let failed = news.failed;
+            self.viewport.hear(ctx, &self.state, news, requests);
+            if failed {
+                self.refuse("the picture could not be drawn: this is a bug in the program".into());
+            }
+        }
+        self.tick(ctx);
+        // On a screen of high density a line of one pixel can hardly be seen.
+        self.state.view.wide_lines = ctx.pixels_per_point() >= 1.5;
+    }
+
+    /// Lets the scene's clock go on while anything moves by itself. The next picture wakes the
+    /// window again, so that it runs no faster than pictures can be drawn.
+    fn tick(&mut self, ctx: &Context) {
+        let now = ctx.input(|input| input.time);
+        let last = self.moved_at.take();
+        if self.state.is_animated() {
+            self.state.view.time += last.map_or(0.0, |last| (now - last).max(0.0));
+            self.moved_at = Some(now);
+        }
+    }
+
+    /// Wants the picture of what there is now; while it moves, and soon after, a coarser one will
+    /// do.
+    fn draw(&mut self, ctx: &Context) {
+        let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
+        let State { scene, view, settings, .. } = &self.state;
+        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
+        let explain = self.state.panels.plan;
+        let mut wanted = Snapshot { scene, view, settings, size, moving: false, explain };
+        let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
+        let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
+        // What moves by itself is always being drawn.
+        let drawing = worker.is_drawing() && !self.state.is_animated();
+        let happening = Happening { changed, held, drawing };
+        let moving = self.motion.notice(now, happening);
+        wanted.moving = moving && wanted.view.coarse_while_moving;
+        if let Some(rest) = self.motion.rest(now) {
+            ctx.request_repaint_after(Duration::from_secs_f64(rest));
+        }
+        worker.draw(wanted);
+    }
+
+    fn name_window(&mut self, ctx: &Context) {
+        let mark = if self.state.history.is_saved() { "" } else { "*" };
+        let title = format!("{}{mark} - Marraztu", self.state.file_name());
+        if title != self.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
+    /// Does it, after asking where work is not saved.
+    pub(crate) fn unless_unsaved(&mut self, ctx: &Context, after: After) {
+        if self.state.history.is_saved() {
+            self.after(ctx, after);
+        } else {
+            self.dialogs.ask_unsaved(after);
+        }
+    }
+
+    /// Leaves the program.
+    pub(crate) fn leave(&mut self, ctx: &Context) {
+        self.leaving = true;
+        ctx.send_viewport_cmd(ViewportCommand::Close);
+    }
+
+    /// The window's cross.
+    fn close_requested(&mut self, ctx: &Context) {
+        if ctx.input(|input| input.viewport().close_requested())
+            && !self.leaving
+            && !self.state.history.is_saved()
+        {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.dialogs.ask_unsaved(After::Quit);
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.lab.rest();
+        // A fault of the program costs a frame, not the user's work. One that comes in every frame
+        // cannot be lived with.
+        match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
+            Ok(()) => self.faults = 0,
+            Err(fault) if self.faults >= MOST_FAULTS => resume_unwind(fault),
+            Err(_) => {
+                self.faults += 1;
+                self.dialogs.tell_fault(FAULT.to_owned());
+                ui.ctx().request_repaint();
+            }
+        }
+    }
+}
+
+/// The number of consecutive failed frames after which the program gives up.
+const MOST_FAULTS: u32 = 10;
+
+const FAULT: &str = "This is a bug in the program. Your last action may not have been done; \
+    everything else is unchanged. Save the scene now.";

@@ -1,0 +1,196 @@
+//! Answers requests: what keys, panels, menus and the viewport ask for is done here.
+//!
+//! [`App::perform`] alone turns an action into a command or another view, and [`App::change`] alone
+//! writes the scene.
+
+use egui::{Context, Key};
+
+use super::App;
+use crate::app::actions::{Action, Chord, FileIntent, Intent, Request, resolve};
+use crate::app::documents::dialogs::{After, Wanted};
+use crate::app::documents::material_dialog::MaterialDialog;
+use crate::app::input::keyboard::{Keyboard, Press};
+use crate::app::state::{Message, Offer, State, Tone};
+use crate::edit::selection::{self, Selection};
+use crate::edit::{Gesture, items};
+use crate::scene::{Command, Subject, View};
+
+impl App {
+    /// Performs the action of a key. Esc first closes whatever is open.
+    pub(crate) fn press(&mut self, ctx: &Context, press: Press) {
+        if press.chord == Chord::Named(Key::Escape) {
+            let mut requests = Vec::new();
+            if self.viewport.cancel_drag(&mut requests) {
+                return requests.into_iter().for_each(|request| self.answer(ctx, request));
+            }
+            if std::mem::take(&mut self.state.panels.cheat_sheet)
+                || self.state.renaming.take().is_some()
+            {
+                return;
+            }
+        }
+        self.perform(ctx, press.action, press.gesture);
+    }
+
+    /// Does what a panel asks for.
+    pub fn answer(&mut self, ctx: &Context, request: Request) {
+        let state = &mut self.state;
+        match request {
+            Request::Do(action) => self.perform(ctx, action, Gesture::Whole),
+            Request::Change { command, gesture, label } => self.change(command, gesture, &label),
+            Request::View(view) => self.show_view(*view),
+            Request::Settings(settings) => state.settings = settings,
+            Request::Lab(request) => self.answer_lab(ctx, request),
+            Request::Select(id) => match selection::pick(&state.scene, &state.view, id) {
+                Ok(selection) => self.select(selection, Gesture::Whole),
+                Err(refusal) => self.refuse(refusal.to_string()),
+            },
+            Request::SelectPolygon(polygon) => {
+                let mut view = state.view.clone();
+                match selection::go_to_polygon(&state.scene, &mut view, polygon) {
+                    Ok(()) => self.show_view(view),
+                    Err(refusal) => self.refuse(refusal.to_string()),
+                }
+            }
+            Request::GoTo(position) => {
+                self.walk(|state| state.history.go_to(&mut state.scene, position));
+            }
+            Request::Abandon(gesture) => {
+                self.walk(|state| {
+                    state.history.abandon(&mut state.scene, gesture);
+                });
+            }
+            Request::BeginRename(id) => state.renaming = Some(id),
+            Request::EndRename(name) => self.end_rename(name),
+            Request::ChooseTexture(id) => self.dialogs.ask_file(ctx, Wanted::Texture(id), ""),
+            Request::LoadFiles(paths) => self.load_files(ctx, paths),
+            Request::Details(at) => {
+                if let Some(notice) = state.notices.get(at) {
+                    self.dialogs.tell_details(notice.text.clone(), notice.details.clone());
+                }
+            }
+            Request::PutAway(at) => {
+                if at < state.notices.len() {
+                    state.notices.remove(at);
+                }
+            }
+            Request::CancelLoading(at) => {
+                if let Some(loading) = self.loading.get(at) {
+                    loading.task.progress.cancel();
+                }
+            }
+            Request::Refuse(why) => self.refuse(why),
+        }
+    }
+
+    /// Does what stands in the table of actions. Every key, menu entry and button ends here.
+    pub fn perform(&mut self, ctx: &Context, action: Action, gesture: Gesture) {
+        let label = action.step_label(&self.state);
+        // What a notice offers is done by any key or button, and then there is no more to offer.
+        if action == Action::FrameSelection {
+            let framed = self.state.view.object.map(Offer::Frame);
+            self.state.notices.retain(|notice| notice.offer.is_none() || notice.offer != framed);
+        }
+        match resolve(action, &self.state, self.state.phase(gesture)) {
+            Err(refusal) => self.refuse(refusal.to_string()),
+            Ok(Intent::Change(command)) => self.change(command, gesture, &label),
+            Ok(Intent::Add(command, subject)) => self.add(command, subject, &label),
+            Ok(Intent::View(view)) => self.show_view(*view),
+            Ok(Intent::Select(selection)) => self.select(*selection, gesture),
+            Ok(Intent::Settings(settings)) => self.state.settings = settings,
+            Ok(Intent::Panels(panels)) => self.state.panels = panels,
+            Ok(Intent::Theme(theme)) => {
+                self.state.theme = theme;
+                ctx.set_theme(theme);
+            }
+            Ok(Intent::Rename(id)) => {
+                self.state.panels.outline = true;
+                self.state.renaming = Some(id);
+            }
+            Ok(Intent::Undo) => self.walk(|state| {
+                let label = state.history.undo(&mut state.scene);
+                state.tell(label.map(|label| format!("Undone: {label}")));
+            }),
+            Ok(Intent::Redo) => self.walk(|state| {
+                let label = state.history.redo(&mut state.scene);
+                state.tell(label.map(|label| format!("Redone: {label}")));
+            }),
+            Ok(Intent::File(intent)) => self.file(ctx, intent),
+            Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
+            Ok(Intent::Measure) => self.measure(ctx),
+            Ok(Intent::ChangeKeyboardOwner) => Keyboard::change_owner(ctx),
+        }
+    }
+
+    fn file(&mut self, ctx: &Context, intent: FileIntent) {
+        match intent {
+            FileIntent::New => self.unless_unsaved(ctx, After::New),
+            FileIntent::Open => self.unless_unsaved(ctx, After::Open(None)),
+            FileIntent::Quit => self.unless_unsaved(ctx, After::Quit),
+            FileIntent::Load => self.dialogs.ask_file(ctx, Wanted::Model, ""),
+            FileIntent::Save => self.save(ctx, None),
+            FileIntent::SaveAs => self.save_as(ctx, None),
+            FileIntent::SavePicture => self.dialogs.ask_file(ctx, Wanted::PictureTo, "picture.png"),
+        }
+    }
+
+    fn end_rename(&mut self, name: Option<String>) {
+        let Some(id) = self.state.renaming.take() else { return };
+        let Some(name) = name else { return };
+        if self.state.name(id) == Some(name.trim()) {
+            return;
+        }
+        match items::rename(&self.state.scene, id, &name) {
+            Ok(command) => self.change(command, Gesture::Whole, "Rename"),
+            Err(refusal) => self.refuse(refusal.to_string()),
+        }
+    }
+
+    /// Shows the scene otherwise.
+    fn show_view(&mut self, view: View) {
+        self.state.message = None;
+        self.state.view = view;
+        selection::settle(&self.state.scene, &mut self.state.view);
+    }
+
+    fn select(&mut self, selection: Selection, gesture: Gesture) {
+        if let Some(command) = selection.command {
+            self.change(command, gesture, "Aim the camera");
+        }
+        self.show_view(selection.view);
+    }
+
+    /// Adds an item, which becomes the subject.
+    pub(crate) fn add(&mut self, command: Command, subject: Subject, label: &str) {
+        self.change(command, Gesture::Whole, label);
+        selection::set_subject(&mut self.state.view, subject);
+    }
+
+    /// Changes the scene. Every change of it but walking through the history ends here.
+    pub(crate) fn change(&mut self, command: Command, gesture: Gesture, label: &str) {
+        let state = &mut self.state;
+        let before = state.scene.clone();
+        match state.history.perform(&mut state.scene, command, gesture, label) {
+            Ok(()) => {
+                state.gesture = gesture;
+                state.message = None;
+                selection::follow(&before, &state.scene, &mut state.view);
+            }
+            Err(error) => self.refuse(error.to_string()),
+        }
+    }
+
+    /// Walks through the history.
+    fn walk(&mut self, steps: impl FnOnce(&mut State)) {
+        let before = self.state.scene.clone();
+        self.state.message = None;
+        steps(&mut self.state);
+        self.state.gesture = Gesture::Whole;
+        selection::follow(&before, &self.state.scene, &mut self.state.view);
+    }
+
+    /// Says in the status line why something is not done.
+    pub(crate) fn refuse(&mut self, why: String) {
+        self.state.message = Some(Message { text: why, tone: Tone::Refused });
+    }
+}

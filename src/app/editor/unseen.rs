@@ -1,0 +1,122 @@
+//! Reports loaded objects of which nothing is visible, and why.
+//!
+//! It is found on a thread of its own, with pictures of its own: the window does not wait for it.
+
+use egui::Context;
+
+use super::App;
+use crate::accuracy::Shot;
+use crate::app::state::{Notice, Offer, State};
+use crate::app::tasks::{Outcome, Task};
+use crate::base::image::Size;
+use crate::render::plan_frame;
+use crate::render::{Renderer, Unseen, unseen};
+use crate::scene::{Object, ObjectId, Projection};
+
+/// A search for the reasons why nothing of some objects is seen.
+pub(crate) type Search = Task<Vec<(ObjectId, Unseen)>>;
+
+/// The size of the picture before the window has one.
+const SIZE: Size = Size::new(800, 600);
+
+impl App {
+    /// Begins to find out which of these objects are not seen in the picture of the present scene.
+    pub(crate) fn look_for_unseen(&mut self, ctx: &Context, ids: Vec<ObjectId>) {
+        let State { scene, view, settings, .. } = &self.state;
+        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
+        let size = self.viewport.size().unwrap_or(SIZE);
+        let search = Task::start(ctx, "looking for objects".to_owned(), move |_| {
+            let shot = Shot::new(&scene, &view, &settings, size);
+            let plan = plan_frame(&shot);
+            let mut renderer = Renderer::default();
+            renderer.render(&plan);
+            let mut all = unseen(&mut renderer, &shot);
+            all.retain(|(id, _)| ids.contains(id));
+            all
+        });
+        // Without a thread there is no notice, and nothing is lost.
+        self.searches.extend(search);
+    }
+
+    /// Tells what has been found out.
+    pub(crate) fn hear_searches(&mut self) {
+        let mut found = Vec::new();
+        self.searches.retain(|search| match search.outcome() {
+            Outcome::Running => true,
+            Outcome::Done(all) => {
+                found.extend(all);
+                false
+            }
+            Outcome::Lost => false,
+        });
+        let notices = found.into_iter().filter_map(|(id, why)| notice(&self.state, id, &why));
+        let notices: Vec<Notice> = notices.collect();
+        self.state.notices.extend(notices);
+    }
+}
+
+/// The notice about an object; `None` if it is gone or was reported before.
+fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
+    let object = state.scene.objects.get(id)?;
+    let name = &object.name;
+    let offer = match why {
+        Unseen::TurnedAway { .. } => Some(Offer::TwoSides(id)),
+        Unseen::Covered { .. } | Unseen::BetweenPixels => Some(Offer::Frame(id)),
+        Unseen::Transparent | Unseen::LeftOut(_) | Unseen::Unexamined => None,
+    };
+    let turned_away = matches!(why, Unseen::TurnedAway { .. });
+    let (text, offer) = if !turned_away && out_of_sight(state, object, SIZE) {
+        (format!("{name} is out of view or too small to see"), Some(Offer::Frame(id)))
+    } else {
+        (format!("Nothing of {name} is visible: {why}"), offer)
+    };
+    let told = state.notices.iter().any(|notice| offer.is_some() && notice.offer == offer);
+    (!told).then(|| Notice { text, details: Vec::new(), offer })
+}
+
+/// Whether an object would be outside the picture, or too small to notice.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+pub(crate) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
+    let Some((centre, radius)) = object.bounding_sphere(0.0) else { return false };
+    let (view, scene) = (&state.view, &state.scene);
+    let centre = scene.observer_frame(view).inverse().transform_point3(centre);
+    let lens = scene.selected_camera(view).lens;
+    let (width, height) = (size.width as f64, size.height as f64);
+    let shorter = width.min(height);
+    let before = -centre.z;
+    let (near, far, half) = match view.projection {
+        Projection::Perspective => {
+            let slope = libm::tan(lens.half_angle.to_radians());
+            (lens.near, lens.far, slope * before.max(lens.near))
+        }
+        Projection::Orthographic => (lens.parallel_near, lens.parallel_far, lens.half_size),
+    };
+    let aside = centre.x.abs() - radius > half * width / shorter
+        || centre.y.abs() - radius > half * height / shorter;
+    let pixels = radius / half * shorter / 2.0;
+    before + radius < near || before - radius > far || aside || pixels < 4.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io;
+    use glam::{DMat4, DVec3};
+
+    #[test]
+    fn what_is_behind_beside_or_tiny_is_out_of_sight() {
+        let (scene, view) = io::default_scene();
+        let (_, object) = scene.objects.iter().next().unwrap();
+        let mut object = object.clone();
+        let state = State::new(scene.clone(), view);
+        let mut at = |m: DMat4| {
+            object.placement = crate::scene::Tracked::new(m);
+            out_of_sight(&state, &object, Size::new(800, 600))
+        };
+        assert!(!at(DMat4::IDENTITY));
+        assert!(at(DMat4::from_translation(DVec3::Z * 900.0)), "behind the camera");
+        assert!(at(DMat4::from_translation(DVec3::X * 900.0)), "beside what it sees");
+        assert!(at(DMat4::from_scale(DVec3::splat(0.001))), "smaller than a few pixels");
+        assert!(at(DMat4::from_translation(DVec3::Z * -4000.0)), "beyond the far plane");
+    }
+}

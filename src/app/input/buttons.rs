@@ -1,0 +1,132 @@
+//! Actions as buttons, switches and entries of menus.
+//!
+//! Each tells by its tooltip what it does, on which key it is, and why it cannot be done now.
+
+use egui::{Atom, Context, IdSalt, Response, RichText, Role, Ui, WidgetInfo};
+
+use super::keyboard::{Keyboard, Press};
+use crate::app::actions::{Action, Request};
+use crate::app::state::State;
+use crate::app::widgets::controls::{Choice, Switch, icon_button};
+use crate::app::widgets::icons::Icon;
+
+impl Action {
+    /// What was pressed on the keyboard in this frame, in order.
+    #[must_use]
+    pub fn pressed(ctx: &Context) -> Vec<Press> {
+        Keyboard::take(ctx)
+    }
+
+    /// A button for the action. Gives it back when clicked.
+    pub fn button(self, ui: &mut Ui, state: &State) -> Option<Self> {
+        self.add(ui, state, egui::Button::new(self.info().label))
+    }
+
+    /// A button that looks pressed while the action's switch is on. Gives it back when clicked.
+    pub fn switch(self, ui: &mut Ui, state: &State) -> Option<Self> {
+        let on = self.is_on(state).unwrap_or(false);
+        self.add(ui, state, egui::Button::selectable(on, self.info().label))
+    }
+
+    /// An entry of a menu with its key at the right and, while its switch is on, a tick at the
+    /// left. Gives the action back when clicked.
+    pub fn menu_item(self, ui: &mut Ui, state: &State) -> Option<Self> {
+        let info = self.info();
+        let key = info.keys.first().map(|key| key.name()).unwrap_or_default();
+        let tick = IdSalt::new("tick");
+        let atoms = (Atom::custom(tick, egui::vec2(12.0, 12.0)), info.label);
+        let button = egui::Button::new(atoms).shortcut_text(key);
+        let enabled = self.availability(state).is_ok();
+        let shown = ui.add_enabled_ui(enabled, |ui| button.atom_ui(ui)).inner;
+        if self.is_on(state) == Some(true) {
+            for (_, rect) in shown.custom_rects().filter(|(id, _)| *id == tick) {
+                Icon::Tick.paint(ui.painter(), rect, 10.0, ui.visuals().text_color());
+            }
+        }
+        shown.response.widget_info(|| match self.is_on(state) {
+            Some(on) => WidgetInfo::selected(Role::MenuItemCheckBox, enabled, on, info.label),
+            None => WidgetInfo::labeled(Role::MenuItem, enabled, info.label),
+        });
+        let clicked = self.explain(shown.response, state).clicked().then_some(self);
+        if clicked.is_some() {
+            ui.close();
+        }
+        clicked
+    }
+
+    /// The tooltip of whatever stands for the action: its hint and its keys, and why it cannot be
+    /// done now.
+    pub fn explain(self, response: Response, state: &State) -> Response {
+        let tip = |ui: &mut Ui| {
+            let info = self.info();
+            ui.label(info.hint);
+            if !info.keys.is_empty() {
+                let keys: Vec<String> = info.keys.iter().map(|key| key.name()).collect();
+                ui.label(RichText::new(format!("Key: {}", keys.join(" or "))).weak());
+            }
+            if let Err(why) = self.availability(state) {
+                ui.label(format!("Not now: {why}."));
+            }
+        };
+        response.on_hover_ui(tip).on_disabled_hover_ui(tip)
+    }
+
+    fn add(self, ui: &mut Ui, state: &State, button: egui::Button<'_>) -> Option<Self> {
+        let response = ui.add_enabled(self.availability(state).is_ok(), button);
+        if let Some(on) = self.is_on(state) {
+            let enabled = response.enabled();
+            response.widget_info(|| {
+                WidgetInfo::selected(Role::CheckBox, enabled, on, self.info().label)
+            });
+        }
+        self.explain(response, state).clicked().then_some(self)
+    }
+}
+
+/// The switch of an action, with its key and its explanation.
+pub(crate) fn action_switch(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    action: Action,
+) {
+    let info = action.info();
+    let switch = Switch {
+        label: info.label,
+        key: info.keys.first().map(|key| key.name()),
+        on: action.is_on(state).unwrap_or(false),
+        enabled: action.availability(state).is_ok(),
+    };
+    if action.explain(switch.ui(ui), state).clicked() {
+        requests.push(action.into());
+    }
+}
+
+/// The small button of an action.
+pub(crate) fn action_icon(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    icon: Icon,
+    action: Action,
+) {
+    let enabled = action.availability(state).is_ok();
+    let response = icon_button(ui, icon, action.info().label, enabled);
+    if action.explain(response, state).clicked() {
+        requests.push(action.into());
+    }
+}
+
+/// The choice that an action makes. While it is on it asks for nothing.
+pub(crate) fn action_choice<'a>(
+    of: &str,
+    label: &'a str,
+    on: bool,
+    action: Action,
+    state: &State,
+) -> Choice<'a> {
+    let info = action.info();
+    let refused = if on { None } else { action.availability(state).err() };
+    let key = info.keys.first().map(|key| key.name());
+    Choice { key, refused, ..Choice::new(of, label, on, info.hint) }
+}

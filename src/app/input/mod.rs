@@ -1,0 +1,4 @@
+//! Keyboard and buttons: both return actions.
+
+pub(crate) mod buttons;
+pub(crate) mod keyboard;

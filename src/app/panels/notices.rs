@@ -1,0 +1,62 @@
+//! Notices over the picture: files being loaded, and findings about them.
+
+use egui::{Align2, Area, Context, Frame, Id, Order, Ui, vec2};
+
+use crate::app::actions::Request;
+use crate::app::documents::loading::Loading;
+use crate::app::state::{Notice, State};
+use crate::edit::Gesture;
+
+/// Shows them at the top of the picture; their requests are added to `requests`.
+pub(crate) fn show(ctx: &Context, state: &State, loading: &[Loading], requests: &mut Vec<Request>) {
+    if loading.is_empty() && state.notices.is_empty() {
+        return;
+    }
+    let corner = Area::new(Id::unique("notices"))
+        .order(Order::Middle)
+        .anchor(Align2::CENTER_TOP, vec2(0.0, 40.0));
+    corner.show(ctx, |ui| {
+        ui.set_max_width(420.0);
+        for (at, loading) in loading.iter().enumerate() {
+            Frame::popup(ui.style()).show(ui, |ui| loading_ui(ui, at, loading, requests));
+        }
+        for (at, notice) in state.notices.iter().enumerate() {
+            Frame::popup(ui.style()).show(ui, |ui| notice_ui(ui, at, notice, state, requests));
+        }
+    });
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
+fn loading_ui(ui: &mut Ui, at: usize, loading: &Loading, requests: &mut Vec<Request>) {
+    ui.label(&loading.task.label);
+    ui.horizontal(|ui| {
+        let fraction = loading.task.progress.fraction() as f32;
+        ui.add(egui::ProgressBar::new(fraction).desired_width(220.0).show_percentage());
+        if ui.button("Cancel").clicked() {
+            requests.push(Request::CancelLoading(at));
+        }
+    });
+    // The bar has to move although nothing else does.
+    ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+}
+
+fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &mut Vec<Request>) {
+    ui.label(&notice.text);
+    ui.horizontal(|ui| {
+        if let Some(offer) = notice.offer
+            && ui.button(offer.label()).clicked()
+        {
+            requests.push(match offer.command(&state.scene, &state.view) {
+                Ok((command, label)) => Request::Change { command, gesture: Gesture::Whole, label },
+                Err(refusal) => Request::Refuse(refusal.to_string()),
+            });
+            requests.push(Request::PutAway(at));
+        }
+        if !notice.details.is_empty() && ui.button("Details").clicked() {
+            requests.push(Request::Details(at));
+        }
+        if ui.button("Dismiss").clicked() {
+            requests.push(Request::PutAway(at));
+        }
+    });
+}

@@ -1,0 +1,215 @@
+//! The outline: the list of objects, cameras and lights.
+//!
+//! All its lines are of one height, so that only those in sight are made, however many parts a
+//! model has. The selection here is that of the keys.
+
+mod order;
+mod row;
+
+use std::collections::BTreeSet;
+
+use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+
+use crate::app::actions::{Action, Request};
+use crate::app::input::buttons::action_icon;
+use crate::app::state::State;
+use crate::app::theme;
+use crate::app::widgets::controls::{self, icon_button};
+use crate::app::widgets::icons::Icon;
+use crate::scene::{ItemId, ObjectId, Subject};
+use order::{place, reorder};
+
+/// One line of the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Line {
+    /// The name of a list.
+    Header(Subject),
+    /// An item.
+    Item(ItemId),
+    /// A part of an object.
+    Part(ObjectId, u32),
+}
+
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    egui::Panel::bottom("outline tools")
+        .show_separator_line(false)
+        .frame(egui::Frame::NONE.inner_margin(theme::SCROLL_MARGIN))
+        .show(ui, |ui| tools_ui(ui, state, requests));
+    if state.renaming.is_none() {
+        row::forget_new_name(ui);
+    }
+    let id = Id::unique("unfolded objects");
+    let mut unfolded: BTreeSet<ObjectId> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let lines = lines(state, &unfolded);
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let area = ScrollArea::vertical().auto_shrink(false).content_margin(theme::SCROLL_MARGIN);
+    area.show_viewport(ui, |ui, seen| {
+        let count = u16::try_from(lines.len()).unwrap_or(u16::MAX);
+        let size = vec2(ui.available_width(), f32::from(count) * theme::ROW);
+        let (all, _) = ui.allocate_exact_size(size, Sense::hover());
+        // Other lines come to the same places when the list is scrolled or unfolded.
+        ui.ctx().allow_widget_id_changes_in(all);
+        for (i, line) in (0..count).zip(&lines) {
+            let top = all.top() + f32::from(i) * theme::ROW;
+            let rect = Rect::from_min_size(pos2(all.left(), top), vec2(all.width(), theme::ROW));
+            follow_selection(ui, state, *line, rect);
+            let (y, bottom) = (rect.top() - all.top(), rect.bottom() - all.top());
+            if bottom >= seen.top() && y <= seen.bottom() {
+                line_ui(ui, state, requests, *line, rect, &mut unfolded);
+            }
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, unfolded));
+}
+
+/// The lines, from the top.
+fn lines(state: &State, unfolded: &BTreeSet<ObjectId>) -> Vec<Line> {
+    let scene = &state.scene;
+    let mut lines = vec![Line::Header(Subject::Object)];
+    for (id, object) in scene.objects.iter() {
+        lines.push(Line::Item(ItemId::Object(id)));
+        if unfolded.contains(&id) {
+            let parts = object.model.mesh.parts().len();
+            lines.extend((0..u32::try_from(parts).unwrap_or(0)).map(|part| Line::Part(id, part)));
+        }
+    }
+    lines.push(Line::Header(Subject::Camera));
+    lines.extend(scene.cameras.ids().map(|id| Line::Item(ItemId::Camera(id))));
+    lines.push(Line::Header(Subject::Light));
+    lines.extend(scene.lights.ids().map(|id| Line::Item(ItemId::Light(id))));
+    lines
+}
+
+/// Brings the selected item into sight once, when it becomes the selected one.
+fn follow_selection(ui: &Ui, state: &State, line: Line, rect: Rect) {
+    let Line::Item(item) = line else { return };
+    if state.selected() != Some(item) {
+        return;
+    }
+    let id = Id::unique("selected in the outline");
+    if ui.data(|data| data.get_temp(id)) != Some(item) {
+        ui.data_mut(|data| data.insert_temp(id, item));
+        ui.scroll_to_rect(rect, None);
+    }
+}
+
+fn line_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    line: Line,
+    rect: Rect,
+    unfolded: &mut BTreeSet<ObjectId>,
+) {
+    match line {
+        Line::Header(subject) => header_ui(ui, state, requests, subject, rect),
+        Line::Item(item) => {
+            if row::item_ui(ui, state, requests, item, rect, unfolded_of(unfolded, item))
+                && let ItemId::Object(id) = item
+                && !unfolded.remove(&id)
+            {
+                unfolded.insert(id);
+            }
+        }
+        Line::Part(id, part) => row::part_ui(ui, state, requests, id, part, rect),
+    }
+}
+
+fn unfolded_of(unfolded: &BTreeSet<ObjectId>, item: ItemId) -> bool {
+    matches!(item, ItemId::Object(id) if unfolded.contains(&id))
+}
+
+fn header_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    subject: Subject,
+    rect: Rect,
+) {
+    let scene = &state.scene;
+    let (action, name, count) = match subject {
+        Subject::Object => (Action::SubjectObject, "Objects", scene.objects.len()),
+        Subject::Camera => (Action::SubjectCamera, "Cameras", scene.cameras.len()),
+        Subject::Light => (Action::SubjectLight, "Lights", scene.lights.len()),
+    };
+    let is_subject = state.view.subject == subject;
+    let response = ui.interact(rect, ui.scope_id().with(("list", name)), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_subject, name));
+    let weak = ui.visuals().weak_text_color();
+    let color = if is_subject { ui.visuals().strong_text_color() } else { weak };
+    let left = rect.with_min_x(rect.left() + 6.0);
+    let title = controls::text(ui, name, TextStyle::Body, left.width());
+    let end = left.left() + title.size().x + 8.0;
+    controls::put_text(ui, left, title, color);
+    let count = controls::text(ui, count.to_string(), TextStyle::Small, 60.0);
+    controls::put_text(ui, rect.with_min_x(end), count, weak);
+    if is_subject {
+        // An underline as well: the keys act here.
+        let line = Rect::from_min_max(
+            pos2(left.left(), rect.bottom() - 3.0),
+            pos2(end - 8.0, rect.bottom() - 1.5),
+        );
+        ui.painter().rect_filled(line, 1.0, theme::accent(ui.visuals()));
+    }
+    controls::focus_ring(ui, rect, &response);
+    if action.explain(response, state).clicked() && !is_subject {
+        requests.push(action.into());
+    }
+    let button = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
+    ui.scope_builder(egui::UiBuilder::new().max_rect(button), |ui| {
+        add_ui(ui, state, requests, subject);
+    });
+}
+
+/// The button that adds an item to a list.
+fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subject) {
+    match subject {
+        Subject::Object => action_icon(ui, state, requests, Icon::Plus, Action::Load),
+        Subject::Camera => action_icon(ui, state, requests, Icon::Plus, Action::AddCamera),
+        Subject::Light => {
+            let response = icon_button(ui, Icon::Plus, "Add a light", true);
+            Popup::menu(&response).show(|ui| {
+                ui.set_min_width(160.0);
+                for action in [
+                    Action::AddSun,
+                    Action::AddBulb,
+                    Action::AddSpot,
+                    Action::AddObjectSpot,
+                    Action::AddCameraSpot,
+                ] {
+                    requests.extend(action.menu_item(ui, state).map(Request::from));
+                }
+            });
+            response.on_hover_text("Adds a light");
+        }
+    }
+}
+
+/// What can be done with the selected item, at the foot of the list.
+fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    ui.add_space(theme::GAP);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        move_ui(ui, state, requests, Icon::Up, "Move up the list");
+        move_ui(ui, state, requests, Icon::Down, "Move down the list");
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            action_icon(ui, state, requests, Icon::Bin, Action::Delete);
+            action_icon(ui, state, requests, Icon::Copy, Action::Duplicate);
+            action_icon(ui, state, requests, Icon::Pen, Action::Rename);
+        });
+    });
+}
+
+fn move_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, icon: Icon, name: &str) {
+    let place = state.selected().and_then(|id| Some((id, place(state, id)?)));
+    let to = place.and_then(|(id, (at, count))| {
+        let to = if icon == Icon::Up { at.checked_sub(1)? } else { at + 1 };
+        (to < count).then_some((id, to))
+    });
+    let response = icon_button(ui, icon, name, to.is_some());
+    let response = response.on_hover_text(format!("{name}; dragging the line does the same"));
+    if let Some((id, to)) = to.filter(|_| response.clicked()) {
+        reorder(state, requests, id, to);
+    }
+}

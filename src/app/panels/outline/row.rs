@@ -1,0 +1,249 @@
+//! One line of the outline: an item, or a part of one.
+
+use egui::{
+    Color32, Id, Key, Popup, Pos2, Rect, Response, Role, Sense, StrokeKind, TextEdit, TextStyle,
+    Ui, WidgetInfo, pos2, text::CCursorRange, vec2,
+};
+
+use super::order::take_dragged;
+use crate::app::actions::{Action, Request, change};
+use crate::app::state::State;
+use crate::app::theme;
+use crate::app::widgets::controls::{self, icon_at};
+use crate::app::widgets::icons::Icon;
+use crate::edit::{Gesture, items};
+use crate::scene::{ItemId, ObjectId, Scene};
+
+/// Where icons of items begin, from the left end of the line.
+const INDENT: f32 = 20.0;
+
+/// Shows an item in `rect`. Says whether its parts are to be folded or unfolded.
+pub(crate) fn item_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    item: ItemId,
+    rect: Rect,
+    unfolded: bool,
+) -> bool {
+    let name = state.name(item).unwrap_or_default();
+    let response = ui.interact(rect, ui.scope_id().with(("item", item)), Sense::click_and_drag());
+    let is_subject = state.selected() == Some(item);
+    response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, true, is_subject, name));
+    ground(ui, state, item, rect, &response);
+    response.dnd_set_drag_payload(item);
+    take_dragged(ui, state, requests, &response, item);
+    let shown = is_shown(&state.scene, item);
+    let color = ground_color(ui, is_subject, shown);
+    let icon = Rect::from_min_size(rect.min + vec2(INDENT, 0.0), vec2(16.0, rect.height()));
+    Icon::of(&state.scene, item).paint(ui.painter(), icon, 13.0, color);
+    let mut right = shown_ui(ui, state, requests, item, rect, shown);
+    if let ItemId::Light(id) = item
+        && let Some(light) = state.scene.lights.get(id)
+    {
+        right = light_ui(ui, light.color.opaque(), light.slot, pos2(right, rect.center().y));
+    }
+    let text = Rect::from_x_y_ranges(icon.right() + 5.0..=right - theme::GAP, rect.y_range());
+    if state.renaming == Some(item) {
+        rename_ui(ui, requests, text, name);
+    } else {
+        let galley = controls::text(ui, name, TextStyle::Body, text.width());
+        controls::put_text(ui, text, galley, color);
+    }
+    controls::focus_ring(ui, rect, &response);
+    clicks(state, requests, item, &response);
+    fold_ui(ui, state, item, rect, unfolded, color)
+}
+
+/// The line's ground: filled for the item that the keys act on, marked at the left for the selected
+/// one of each list.
+fn ground(ui: &Ui, state: &State, item: ItemId, rect: Rect, response: &Response) {
+    let view = &state.view;
+    let selected = match item {
+        ItemId::Object(id) => view.object == Some(id),
+        ItemId::Camera(id) => view.camera == id,
+        ItemId::Light(id) => view.light == Some(id),
+    };
+    let visuals = ui.visuals();
+    if state.selected() == Some(item) {
+        ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill);
+    } else if response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, visuals.widgets.inactive.bg_fill);
+    }
+    if selected {
+        let bar = Rect::from_min_size(rect.min + vec2(0.0, 3.0), vec2(3.0, rect.height() - 6.0));
+        ui.painter().rect_filled(bar, 1.5, theme::accent(visuals));
+    }
+}
+
+fn ground_color(ui: &Ui, selected: bool, shown: bool) -> Color32 {
+    let visuals = ui.visuals();
+    match (selected, shown) {
+        (true, _) => visuals.selection.stroke.color,
+        (false, true) => visuals.text_color(),
+        (false, false) => visuals.weak_text_color(),
+    }
+}
+
+/// Whether an object or a camera's mark is drawn, or a light shines.
+fn is_shown(scene: &Scene, item: ItemId) -> bool {
+    match item {
+        ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
+        ItemId::Camera(id) => scene.cameras.get(id).is_some_and(|camera| camera.visible),
+        ItemId::Light(id) => scene.lights.get(id).is_some_and(|light| light.on),
+    }
+}
+
+/// The eye, or the switch of a light. Gives where its left end is.
+fn shown_ui(
+    ui: &Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    item: ItemId,
+    rect: Rect,
+    shown: bool,
+) -> f32 {
+    let (icon, verb) = match (item, shown) {
+        (ItemId::Light(_), true) => (Icon::On, "Switch off"),
+        (ItemId::Light(_), false) => (Icon::Off, "Switch on"),
+        (_, true) => (Icon::Eye, "Hide"),
+        (_, false) => (Icon::EyeClosed, "Show"),
+    };
+    let label = format!("{verb} {}", state.name(item).unwrap_or_default());
+    let rect = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
+    let response = ui.interact(rect, ui.scope_id().with(("shown", item)), Sense::click());
+    icon_at(ui, rect, &response, icon, &label, true);
+    let key = match item {
+        ItemId::Light(id) => state.scene.lights.get(id).map(|light| light.slot),
+        ItemId::Object(_) | ItemId::Camera(_) => None,
+    };
+    let clicked = response.clicked();
+    response.on_hover_ui(|ui| {
+        ui.label(&label);
+        if let Some(key) = key.filter(|key| *key < 10) {
+            ui.weak(format!("Key: {key}"));
+        }
+    });
+    if clicked {
+        change(requests, label, Gesture::Whole, items::toggle_shown(&state.scene, item));
+    }
+    rect.left()
+}
+
+/// The colour of a light and its key, right end at `at`. Gives where their left end is.
+fn light_ui(ui: &Ui, color: [u8; 4], slot: u32, at: Pos2) -> f32 {
+    let left = controls::key_cap(ui, at, &slot.to_string(), true) - theme::GAP;
+    let rect = Rect::from_center_size(pos2(left - 6.0, at.y), vec2(12.0, 12.0));
+    let [r, g, b, _] = color;
+    ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
+    let line = egui::Stroke::new(1.0, ui.visuals().weak_text_color());
+    ui.painter().rect_stroke(rect, 2.0, line, StrokeKind::Inside);
+    rect.left()
+}
+
+/// The id of the name that is being typed.
+fn new_name() -> Id {
+    Id::unique("new name")
+}
+
+/// Forgets a name that was typed but not confirmed.
+pub(crate) fn forget_new_name(ui: &Ui) {
+    ui.data_mut(|data| data.remove_temp::<String>(new_name()));
+}
+
+/// A field for another name. It is left with Enter, by Esc without a new name, by a click
+/// elsewhere.
+fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
+    let id = new_name();
+    let begun: Option<String> = ui.data(|data| data.get_temp(id));
+    let mut text = begun.clone().unwrap_or_else(|| name.to_owned());
+    let field = TextEdit::singleline(&mut text).id(id).margin(vec2(3.0, 1.0));
+    let response = ui.put(rect.shrink2(vec2(0.0, 1.0)), field).accessible_name("New name");
+    if begun.is_none() {
+        response.request_focus();
+        let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+        state.cursor.set_char_range(Some(CCursorRange::select_all_str(&text)));
+        state.store(ui.ctx(), id);
+    } else if !response.has_focus() {
+        let given_up = ui.input(|input| input.key_pressed(Key::Escape));
+        ui.data_mut(|data| data.remove_temp::<String>(id));
+        requests.push(Request::EndRename((!given_up).then_some(text)));
+        return;
+    }
+    ui.data_mut(|data| data.insert_temp(id, text));
+}
+
+/// What clicks on the line ask for.
+fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &Response) {
+    if response.double_clicked() {
+        requests.push(Request::BeginRename(item));
+    } else if response.clicked() || response.secondary_clicked() {
+        requests.push(Request::Select(item));
+    }
+    Popup::context_menu(response).show(|ui| {
+        ui.set_min_width(160.0);
+        let mut actions = vec![Action::Rename, Action::Duplicate, Action::Delete];
+        if !matches!(item, ItemId::Light(_)) {
+            actions.push(Action::ToggleVisible);
+        }
+        if matches!(item, ItemId::Object(_)) {
+            actions.extend([Action::FrameSelection, Action::Split]);
+        }
+        for action in actions {
+            requests.extend(action.menu_item(ui, state).map(Request::from));
+        }
+    });
+}
+
+/// The arrow before an object of several parts. Says whether it was clicked.
+fn fold_ui(
+    ui: &Ui,
+    state: &State,
+    item: ItemId,
+    rect: Rect,
+    unfolded: bool,
+    color: Color32,
+) -> bool {
+    let ItemId::Object(id) = item else { return false };
+    let Some(object) = state.scene.objects.get(id) else { return false };
+    if object.model.mesh.parts().len() < 2 {
+        return false;
+    }
+    let rect = Rect::from_min_size(rect.min + vec2(4.0, 0.0), vec2(15.0, rect.height()));
+    let response = ui.interact(rect, ui.scope_id().with(("parts", item)), Sense::click());
+    let label = format!("Parts of {}", object.name);
+    response.widget_info(|| WidgetInfo::selected(Role::DisclosureTriangle, true, unfolded, &label));
+    let icon = if unfolded { Icon::Down } else { Icon::Right };
+    icon.paint(ui.painter(), rect, 8.0, color);
+    controls::focus_ring(ui, rect, &response);
+    response.on_hover_text("Shows the parts of the model, which can be hidden one by one").clicked()
+}
+
+/// Shows a part of an object in `rect`.
+pub(crate) fn part_ui(
+    ui: &Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    id: ObjectId,
+    part: u32,
+    rect: Rect,
+) {
+    let Some(object) = state.scene.objects.get(id) else { return };
+    let parts = object.model.mesh.parts();
+    let Some(name) = usize::try_from(part).ok().and_then(|part| parts.get(part)) else { return };
+    let name = if name.name.is_empty() { "(without a name)" } else { &name.name };
+    let shown = !object.hidden_parts.contains(&part);
+    let (icon, verb) = if shown { (Icon::Eye, "Hide") } else { (Icon::EyeClosed, "Show") };
+    let label = format!("{verb} part {name}");
+    let button = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
+    let response = ui.interact(button, ui.scope_id().with(("part", id, part)), Sense::click());
+    icon_at(ui, button, &response, icon, &label, true);
+    let color = ground_color(ui, false, shown && object.visible);
+    let mark = Rect::from_min_size(rect.min + vec2(INDENT + 16.0, 0.0), vec2(12.0, rect.height()));
+    Icon::Part.paint(ui.painter(), mark, 9.0, color);
+    let text = Rect::from_x_y_ranges(mark.right() + 5.0..=button.left(), rect.y_range());
+    controls::put_text(ui, text, controls::text(ui, name, TextStyle::Body, text.width()), color);
+    if response.on_hover_text(&label).clicked() {
+        change(requests, label, Gesture::Whole, items::toggle_part(&state.scene, id, part));
+    }
+}

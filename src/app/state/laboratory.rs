@@ -1,0 +1,117 @@
+//! The state of the laboratory panel and of the comparison with the exact picture.
+
+use super::State;
+use crate::accuracy::{AXES, Axis, Settings};
+use crate::base::image::Size;
+use crate::lab::error::{Error, Measure};
+use crate::lab::report::{Budgets, Report, brief};
+use crate::scene::{Scene, View};
+
+/// What the panel of the laboratory shows.
+#[derive(Debug)]
+pub struct Laboratory {
+    /// What was measured last, or has been measured so far.
+    pub report: Option<Report>,
+    /// How far the measuring is that goes on, from 0 to 1.
+    pub running: Option<f64>,
+    /// Why there is nothing, where measuring failed.
+    pub failed: Option<String>,
+    /// What stands for an error.
+    pub measure: Measure,
+    /// What the user can bear.
+    pub budgets: Budgets,
+    /// How the picture is compared with the exact one.
+    pub compare: Compare,
+    /// How far the picture is from the exact one, as it was compared last.
+    pub judged: Option<Judged>,
+    /// Whether the next click on the picture picks a pixel to be explained.
+    pub picking: bool,
+    /// The pixel that was explained last, in lines.
+    pub attribution: Option<Vec<String>>,
+    /// The axis whose lesson is shown.
+    pub lesson: &'static Axis,
+    /// The panel beside the scatter.
+    pub side: Side,
+    /// The scene, the view and the size that were measured.
+    pub(crate) measured: Option<(Scene, View, Size)>,
+}
+
+impl Default for Laboratory {
+    fn default() -> Self {
+        Self {
+            report: None,
+            running: None,
+            failed: None,
+            measure: Measure::default(),
+            budgets: Budgets::default(),
+            compare: Compare::Off,
+            judged: None,
+            picking: false,
+            attribution: None,
+            lesson: &AXES[0],
+            side: Side::Table,
+            measured: None,
+        }
+    }
+}
+
+/// The panel beside the scatter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Every choice with its figures.
+    #[default]
+    Table,
+    /// What each axis teaches.
+    Lessons,
+}
+
+impl Laboratory {
+    /// Whether the measurement is not of the picture in the viewport any more.
+    #[must_use]
+    pub fn is_stale(&self, state: &State) -> bool {
+        self.measured.as_ref().is_some_and(|(scene, view, size)| {
+            let same_view = View { panels: view.panels, ..state.view.clone() } == *view;
+            let same_size = state.statistics.size == *size;
+            !same_view || !same_size || *scene != state.scene
+        })
+    }
+}
+
+/// How the picture is compared with the exact one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Compare {
+    /// Not at all.
+    #[default]
+    Off,
+    /// The exact picture at the left of this part of the width.
+    Split(f32),
+    /// The error instead of the picture, amplified by this factor.
+    Error(u16),
+}
+
+/// How far a picture is from the exact one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// The error.
+    pub error: Error,
+    /// Of the picture that these settings draw.
+    pub settings: Settings,
+}
+
+/// An error in words: "largest 3 steps, RMSE 0.02, 1.2 % of the bytes differ".
+pub(crate) fn in_words(error: &Error) -> String {
+    if error.largest == 0 && error.coverage == 0 {
+        return "none, every byte is exact".to_owned();
+    }
+    let steps = if error.largest == 1 { "step" } else { "steps" };
+    let mut text = format!(
+        "largest {} {steps}, RMSE {}, {} % of the bytes differ",
+        error.largest,
+        brief(error.rmse),
+        brief(error.differing * 100.0)
+    );
+    if error.coverage > 0 {
+        text += &format!(", {} pixels show another triangle", error.coverage);
+    }
+    text
+}

@@ -1,0 +1,269 @@
+//! Everything that panels read. Only the app writes it.
+
+pub mod laboratory;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui::ThemePreference;
+
+use crate::accuracy::Settings;
+pub use crate::app::drawing::adaptive_quality::Reduction;
+use crate::app::drawing::viewport_renderer::Drawn;
+use crate::base::image::Size;
+use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
+use crate::lab::cost::{Costs, Explained};
+use crate::render::Changes;
+use crate::scene::{
+    Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Sides, View,
+};
+use laboratory::Laboratory;
+
+/// The scene being edited, and everything shown about it.
+#[derive(Debug)]
+pub struct State {
+    /// What there is to draw.
+    pub scene: Scene,
+    /// How it is looked at.
+    pub view: View,
+    /// How exactly it is drawn.
+    pub settings: Settings,
+    /// What was done to the scene.
+    pub history: History,
+    /// The scene's file, if it has one.
+    pub path: Option<PathBuf>,
+    /// The last word to the user, for the status line.
+    pub message: Option<Message>,
+    /// Notices that stay until the user dismisses them.
+    pub notices: Vec<Notice>,
+    /// What the last picture took.
+    pub statistics: Statistics,
+    /// What the last picture is made of, while somebody wants to see that.
+    pub plan: Plan,
+    /// Which panels are shown.
+    pub panels: Panels,
+    /// Whether the window is light or dark.
+    pub theme: ThemePreference,
+    /// What the laboratory has found out.
+    pub lab: Laboratory,
+    /// The item that is being given a name.
+    pub renaming: Option<ItemId>,
+    /// What the last change of the scene was part of.
+    pub(crate) gesture: Gesture,
+}
+
+/// A word to the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// One sentence.
+    pub text: String,
+    /// How it is meant.
+    pub tone: Tone,
+}
+
+/// How a word to the user is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// It was done.
+    Done,
+    /// It was not done, for this reason.
+    Refused,
+}
+
+/// Something that is told until the user puts it away.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// One line.
+    pub text: String,
+    /// More, one line each, for those who want to see it.
+    pub details: Vec<String>,
+    /// An offer shown with it as a button.
+    pub offer: Option<Offer>,
+}
+
+/// What a notice offers to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Offer {
+    /// To bring an object into view.
+    Frame(ObjectId),
+    /// To draw both sides of an object's faces.
+    TwoSides(ObjectId),
+}
+
+impl Offer {
+    /// The label of its button.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Frame(_) => "Frame",
+            Self::TwoSides(_) => "Draw both sides",
+        }
+    }
+
+    /// What it does to the scene, and what the history calls that.
+    ///
+    /// # Errors
+    /// If the object is gone, or an object looks.
+    pub fn command(self, scene: &Scene, view: &View) -> Result<(Command, String), Refusal> {
+        let (Self::Frame(id) | Self::TwoSides(id)) = self;
+        let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
+        Ok(match self {
+            Self::Frame(_) => (framing::objects(scene, view, &[id])?, format!("Frame {name}")),
+            Self::TwoSides(_) => {
+                let two = |object: &mut Object| object.sides = Sides::Two;
+                (items::change_object(scene, id, two)?, format!("Draw both sides of {name}"))
+            }
+        })
+    }
+}
+
+/// What the last picture took.
+#[derive(Clone, Debug)]
+pub struct Statistics {
+    /// From the snapshot to the finished picture in memory, on the thread that draws.
+    pub time: Duration,
+    /// How large the picture is.
+    pub size: Size,
+    /// How many pictures have been drawn.
+    pub pictures: u64,
+    /// How many of them were shown in the last second.
+    pub rate: u32,
+    /// How many triangles of the picture faced the observer inside the view.
+    pub triangles: usize,
+    /// What it does without.
+    pub reduction: Reduction,
+    /// What of it was drawn anew, and why.
+    pub changes: Option<Changes>,
+}
+
+impl Default for Statistics {
+    fn default() -> Self {
+        Self {
+            time: Duration::ZERO,
+            size: Size::new(0, 0),
+            pictures: 0,
+            rate: 0,
+            triangles: 0,
+            reduction: Reduction::NONE,
+            changes: None,
+        }
+    }
+}
+
+impl Statistics {
+    /// Notes a picture, the `rate`th in the last second.
+    pub(crate) fn note(&mut self, drawn: &Drawn, rate: u32) {
+        let [width, height] = drawn.image.size;
+        *self = Self {
+            time: drawn.time,
+            size: Size::new(width, height),
+            pictures: self.pictures + 1,
+            rate,
+            triangles: drawn.triangles,
+            reduction: drawn.reduction,
+            changes: Some(drawn.changes.clone()),
+        };
+    }
+}
+
+/// What the last picture is made of.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// Its effects.
+    pub explained: Option<Arc<Explained>>,
+    /// What they cost in time, when that was measured last.
+    pub costs: Option<Arc<Measured>>,
+    /// Whether it is being measured.
+    pub measuring: bool,
+}
+
+/// What effects cost, and in which picture.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// What was measured.
+    pub costs: Costs,
+    /// What there was to draw.
+    pub scene: Scene,
+    /// How it was looked at.
+    pub view: View,
+    /// How exactly it was drawn.
+    pub settings: Settings,
+}
+
+impl State {
+    /// A scene that nothing was done to.
+    #[must_use]
+    pub fn new(scene: Scene, view: View) -> Self {
+        Self {
+            scene,
+            view,
+            settings: Settings::default(),
+            history: History::default(),
+            path: None,
+            message: None,
+            notices: Vec::new(),
+            statistics: Statistics::default(),
+            plan: Plan::default(),
+            panels: Panels::DEFAULT,
+            theme: ThemePreference::System,
+            lab: Laboratory::default(),
+            renaming: None,
+            gesture: Gesture::Whole,
+        }
+    }
+
+    /// The item that the keys act on.
+    #[must_use]
+    pub fn selected(&self) -> Option<ItemId> {
+        selection::selected(&self.view)
+    }
+
+    /// Its name; empty if nothing is selected.
+    #[must_use]
+    pub fn selected_name(&self) -> &str {
+        self.selected().and_then(|id| self.name(id)).unwrap_or_default()
+    }
+
+    /// As the outline calls an item.
+    #[must_use]
+    pub fn name(&self, id: ItemId) -> Option<&str> {
+        let scene = &self.scene;
+        Some(match id {
+            ItemId::Object(id) => &scene.objects.get(id)?.name,
+            ItemId::Camera(id) => &scene.cameras.get(id)?.name,
+            ItemId::Light(id) => &scene.lights.get(id)?.name,
+        })
+    }
+
+    /// The scene's file without folders, or what stands in for it.
+    #[must_use]
+    pub fn file_name(&self) -> String {
+        let name = self.path.as_deref().and_then(Path::file_name);
+        name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Says in the status line what was done.
+    pub(crate) fn tell(&mut self, text: Option<String>) {
+        self.message = text.map(|text| Message { text, tone: Tone::Done });
+    }
+
+    /// Whether anything in the scene moves by itself.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        let circles =
+            |light: &Light| matches!(&light.kind, LightKind::Bulb { orbit, .. } if orbit.on);
+        self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
+            || self.scene.lights.iter().any(|(_, light)| circles(light))
+    }
+
+    /// Where in `gesture` the next change stands: its first one pushes what the item was.
+    #[must_use]
+    pub fn phase(&self, gesture: Gesture) -> GesturePhase {
+        if gesture != Gesture::Whole && gesture == self.gesture {
+            GesturePhase::Continued
+        } else {
+            GesturePhase::First
+        }
+    }
+}

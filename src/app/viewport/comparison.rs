@@ -1,0 +1,153 @@
+//! Compares the picture with the exact one: a split viewport, or the amplified error.
+//!
+//! Both pictures are drawn on a thread of its own whenever what is shown has changed, so that the
+//! two always show the same moment.
+
+use std::sync::Arc;
+
+use egui::{Align2, ColorImage, Context, CursorIcon, Id, Pos2, Rect, Sense, Stroke, TextureHandle};
+use egui::{TextureOptions, Ui, pos2, vec2};
+
+use crate::accuracy::Settings;
+use crate::accuracy::Shot;
+use crate::app::actions::{LabRequest, Request};
+use crate::app::state::State;
+use crate::app::state::laboratory::{Compare, in_words};
+use crate::app::tasks::Task;
+use crate::app::theme;
+use crate::app::widgets::plate::plate_ui;
+use crate::base::image::{Picture, Size};
+use crate::lab::error::{Error, amplified};
+use crate::lab::picture_source::{PictureSource as _, Studio};
+use crate::scene::{Scene, View};
+
+/// Everything that the two pictures depend on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Compared {
+    pub(crate) scene: Scene,
+    pub(crate) view: View,
+    pub(crate) settings: Settings,
+    pub(crate) size: Size,
+}
+
+/// The picture and the exact one, with the error between them.
+pub(crate) struct Pair {
+    pub(crate) of: Compared,
+    pub(crate) exact: Picture,
+    pub(crate) ours: Picture,
+    pub(crate) error: Error,
+}
+
+/// Draws both.
+pub(crate) fn draw(of: Compared) -> Pair {
+    let mut studio = Studio::new(Shot::new(&of.scene, &of.view, &of.settings, of.size));
+    let exact = studio.rendering(&of.settings.reference());
+    let ours = studio.rendering(&of.settings);
+    let error = ours.error(&exact);
+    Pair { of, exact: exact.picture().clone(), ours: ours.picture().clone(), error }
+}
+
+/// The pictures, and the thread that draws them.
+#[derive(Default)]
+pub(crate) struct Comparison {
+    pub(crate) task: Option<Task<Box<Pair>>>,
+    pub(crate) drawn: Option<Box<Pair>>,
+    exact: Option<TextureHandle>,
+    /// The error, and how many times as large it is.
+    error: Option<(u16, TextureHandle)>,
+}
+
+impl std::fmt::Debug for Comparison {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Comparison").field("drawing", &self.task.is_some()).finish_non_exhaustive()
+    }
+}
+
+impl Comparison {
+    /// Shows a pair from now on.
+    pub(crate) fn take(&mut self, ctx: &Context, drawn: Box<Pair>) {
+        load(ctx, &mut self.exact, "exact", &drawn.exact);
+        self.error = None;
+        self.drawn = Some(drawn);
+    }
+
+    /// Shows the comparison over the picture in `rect`.
+    pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
+        match state.lab.compare {
+            Compare::Off => {}
+            Compare::Split(part) => self.split_ui(ui, rect, part, requests),
+            Compare::Error(factor) => self.error_ui(ui, rect, factor),
+        }
+    }
+
+    fn split_ui(&self, ui: &Ui, rect: Rect, part: f32, requests: &mut Vec<Request>) {
+        let Some(exact) = &self.exact else { return };
+        let scale = ui.ctx().pixels_per_point();
+        let x = ((rect.left() + part * rect.width()) * scale).round() / scale;
+        let left = rect.with_max_x(x);
+        ui.painter().with_clip_rect(left).image(exact.id(), rect, whole(), egui::Color32::WHITE);
+        let (dark, light) = (egui::Color32::from_black_alpha(160), egui::Color32::WHITE);
+        ui.painter().vline(x, rect.y_range(), Stroke::new(3.0, dark));
+        ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, light));
+        // At the lower end, so that it does not cover the picture.
+        let low = pos2(x, rect.bottom() - HANDLE.y);
+        let handle = Rect::from_center_size(low, HANDLE);
+        let response = ui.interact(grip_at(rect, part), Id::unique("split"), Sense::drag());
+        let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
+        response.widget_info(|| {
+            egui::WidgetInfo::slider(true, f64::from(part), "Split between exact and drawn")
+        });
+        ui.painter().rect_filled(handle, 4.0, theme::accent(ui.visuals()));
+        if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+            let part = ((at.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
+            requests.push(Request::Lab(LabRequest::Compare(Compare::Split(part))));
+        }
+        plate_ui(ui, left.with_max_x(x - 4.0), Align2::RIGHT_TOP, "exact".to_owned());
+        plate_ui(ui, rect.with_min_x(x + 4.0), Align2::LEFT_TOP, "drawn".to_owned());
+    }
+
+    fn error_ui(&mut self, ui: &Ui, rect: Rect, factor: u16) {
+        let Some(drawn) = &self.drawn else { return };
+        if self.error.as_ref().is_none_or(|(last, _)| *last != factor) {
+            let mut texture = self.error.take().map(|(_, texture)| texture);
+            let picture = amplified(&drawn.ours, &drawn.exact, factor);
+            load(ui.ctx(), &mut texture, "error", &picture);
+            self.error = texture.map(|texture| (factor, texture));
+        }
+        let Some((_, texture)) = &self.error else { return };
+        ui.painter().image(texture.id(), rect, whole(), egui::Color32::WHITE);
+        let text = format!("Error x {factor}: {}", in_words(&drawn.error));
+        plate_ui(ui, rect, Align2::LEFT_TOP, text);
+    }
+}
+
+/// The size of what the slider shows to be held by.
+const HANDLE: egui::Vec2 = vec2(12.0, 34.0);
+
+/// The grip of the slider between the two pictures; a press there is not a press on the picture.
+pub(crate) fn grip(state: &State, rect: Rect) -> Option<Rect> {
+    match state.lab.compare {
+        Compare::Split(part) => Some(grip_at(rect, part)),
+        Compare::Off | Compare::Error(_) => None,
+    }
+}
+
+fn grip_at(rect: Rect, part: f32) -> Rect {
+    let x = rect.left() + part * rect.width();
+    Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, rect.height()))
+}
+
+fn whole() -> Rect {
+    Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0))
+}
+
+/// Puts a picture into a texture, unfiltered.
+fn load(ctx: &Context, texture: &mut Option<TextureHandle>, name: &str, picture: &Picture) {
+    let Size { width, height } = picture.size();
+    let bytes = picture.pixels().as_flattened();
+    let image = Arc::new(ColorImage::from_rgba_unmultiplied([width, height], bytes));
+    match texture {
+        Some(texture) => texture.set(image, TextureOptions::NEAREST),
+        None => *texture = Some(ctx.load_texture(name, image, TextureOptions::NEAREST)),
+    }
+}

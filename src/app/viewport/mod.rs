@@ -1,0 +1,385 @@
+//! The viewport: the picture, with mouse and keyboard input over it.
+//!
+//! The picture has as many pixels as the screen has there, stands on a whole pixel and is shown
+//! unfiltered, so that what the renderer drew is what is seen.
+
+pub(crate) mod comparison;
+mod mouse;
+mod overlay;
+mod picking;
+
+use std::sync::Arc;
+
+use egui::{
+    ColorImage, Context, Id, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, pos2,
+    vec2,
+};
+use glam::DMat4;
+
+use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::drawing::worker::{News, Pick, Worker};
+use crate::app::drawing::{border::Border, viewport_renderer::Drawn};
+use crate::app::input::keyboard::Keyboard;
+use crate::app::state::State;
+use crate::app::widgets::plate::plate_ui;
+use crate::base::image::Size;
+use crate::render::Hit;
+use crate::scene::ItemId;
+use mouse::{Mouse, Under};
+
+/// The purpose of a pick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Purpose {
+    /// What the pointer is over.
+    Hover,
+    /// A click: select it.
+    Select,
+    /// A double click: frame it.
+    Frame,
+    /// A right click there: its menu.
+    Menu(Pos2),
+}
+
+/// The picture with what it takes to show and to ask it.
+#[derive(Default)]
+pub(crate) struct Viewport {
+    texture: Option<TextureHandle>,
+    image: Option<Arc<ColorImage>>,
+    /// Where in the window it is, and how many pixels it has.
+    place: Option<(Rect, Size)>,
+    mouse: Mouse,
+    /// The pixel under the pointer, and the hit there if known.
+    hovered: Option<([usize; 2], Option<Hit>)>,
+    menu: Option<Menu>,
+    /// The border of the item under the pointer.
+    border: Option<Border>,
+    /// Whether the picture has changed since the pointer was asked about.
+    stale: bool,
+    /// The item whose border was requested for this picture.
+    asked: Option<ItemId>,
+    /// The pixel of the last click, and from where it was seen: a click on it again goes deeper.
+    clicked: Option<([usize; 2], DMat4)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Menu {
+    at: Pos2,
+    item: Option<ItemId>,
+}
+
+impl std::fmt::Debug for Viewport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Viewport").field("place", &self.place).finish_non_exhaustive()
+    }
+}
+
+impl Viewport {
+    /// As many pixels as there are to be drawn; `None` before it was shown.
+    pub(crate) fn size(&self) -> Option<Size> {
+        self.place.map(|(_, size)| size)
+    }
+
+    /// Where in the window it is; `None` before it was shown.
+    pub(crate) fn rect(&self) -> Option<Rect> {
+        self.place.map(|(rect, _)| rect)
+    }
+
+    /// What it shows.
+    pub(crate) fn image(&self) -> Option<&Arc<ColorImage>> {
+        self.image.as_ref()
+    }
+
+    /// The drag that is going on is taken back. Says whether there was one.
+    pub(crate) fn cancel_drag(&mut self, requests: &mut Vec<Request>) -> bool {
+        self.mouse.cancel(requests)
+    }
+
+    /// Takes what the worker has to tell; what that asks for is added to `asks`.
+    pub(crate) fn hear(
+        &mut self,
+        ctx: &Context,
+        state: &State,
+        news: News<Purpose>,
+        requests: &mut Vec<Request>,
+    ) {
+        if news.border.is_some() {
+            self.border = news.border;
+        }
+        for (pick, hit) in news.picked {
+            self.answer(ctx, state, pick, hit, requests);
+        }
+        if let Some(drawn) = news.drawn {
+            self.take(ctx, drawn);
+        }
+    }
+
+    /// Shows the picture in all of `ui`.
+    pub(crate) fn ui(
+        &mut self,
+        ui: &Ui,
+        state: &State,
+        worker: &Worker<Purpose>,
+        requests: &mut Vec<Request>,
+    ) {
+        let (rect, size) = whole_pixels(ui);
+        self.place = Some((rect, size));
+        let id = Id::unique("viewport");
+        let response = ui.interact(rect, id, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Viewport"));
+        keep_focus(ui.ctx(), &response);
+        if let Some(texture) = &self.texture {
+            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(texture.id(), rect, all, egui::Color32::WHITE);
+        }
+        let hit = self.hovered.and_then(|(_, hit)| hit);
+        let under = Under { rect, size, hit };
+        let picks = self.mouse.ui(ui, &response, state, under, requests);
+        Keyboard::set_viewport(ui.ctx(), id, self.mouse.is_flying());
+        for (at, purpose) in picks {
+            let at = self.pixel(at);
+            if state.lab.picking && purpose == Purpose::Select {
+                requests.push(Request::Lab(LabRequest::Attribute(at)));
+            } else {
+                worker.pick(Pick { at, purpose });
+            }
+        }
+        self.hover(&response, worker);
+        self.border_ui(ui, worker);
+        self.overlay(ui, state);
+        if state.panels.statistics {
+            overlay::statistics_ui(ui, state, rect);
+        }
+        self.menu_ui(ui, state, requests);
+    }
+
+    /// Picks the pixel under the pointer, once for each pixel it enters.
+    fn hover(&mut self, response: &Response, worker: &Worker<Purpose>) {
+        let Some(pointer) = response.hover_pos().filter(|_| !self.mouse.is_dragging()) else {
+            self.hovered = None;
+            return;
+        };
+        let at = self.pixel(pointer);
+        if std::mem::take(&mut self.stale) || self.hovered.is_none_or(|(last, _)| last != at) {
+            // What was seen one pixel aside is the best guess until the answer comes.
+            self.hovered = Some((at, self.hovered.and_then(|(_, hit)| hit)));
+            worker.pick(Pick { at, purpose: Purpose::Hover });
+        }
+    }
+
+    fn answer(
+        &mut self,
+        ctx: &Context,
+        state: &State,
+        pick: Pick<Purpose>,
+        hit: Option<Hit>,
+        requests: &mut Vec<Request>,
+    ) {
+        let item = hit.map(|hit| hit.item);
+        match pick.purpose {
+            Purpose::Hover => {
+                if let Some((at, seen)) = &mut self.hovered
+                    && *at == pick.at
+                {
+                    *seen = hit;
+                }
+            }
+            Purpose::Select => requests.extend(hit.map(|hit| self.selecting(state, pick.at, hit))),
+            Purpose::Frame => match item {
+                Some(item) => {
+                    requests.extend([Request::Select(item), Request::Do(Action::FrameSelection)]);
+                }
+                None => requests.push(Request::Do(Action::FrameAll)),
+            },
+            Purpose::Menu(at) => {
+                requests.extend(item.map(Request::Select));
+                self.menu = Some(Menu { at, item });
+                egui::Popup::open_id(ctx, menu_id());
+            }
+        }
+    }
+
+    /// What a click on `hit` asks for: the polygon while polygons of that object are shown one at
+    /// a time, else the item; on the pixel of the last click, the object behind the selected one.
+    fn selecting(&mut self, state: &State, at: [usize; 2], hit: Hit) -> Request {
+        let click = (at, state.scene.observer_frame(&state.view));
+        let again = self.clicked.replace(click) == Some(click);
+        let selected = state.selected();
+        match hit.item {
+            ItemId::Object(id)
+                if state.view.polygons.is_some() && state.view.object == Some(id) =>
+            {
+                Request::SelectPolygon(hit.polygon)
+            }
+            ItemId::Object(_) if again && state.view.polygons.is_none() => {
+                let all = self.size().map(|size| picking::objects_at(state, at, size));
+                let all = all.unwrap_or_default();
+                let here = all.iter().position(|id| selected == Some(ItemId::Object(*id)));
+                let next = here.and_then(|here| all.get((here + 1) % all.len()));
+                Request::Select(next.map_or(hit.item, |id| ItemId::Object(*id)))
+            }
+            item => Request::Select(item),
+        }
+    }
+
+    /// The outline of what the pointer is over.
+    fn border_ui(&mut self, ui: &Ui, worker: &Worker<Purpose>) {
+        let over = self.hovered.and_then(|(_, hit)| hit).map(|hit| hit.item);
+        if let Some(item) = over.filter(|_| over != self.asked) {
+            worker.border(item);
+            self.asked = over;
+        }
+        if let (Some(border), Some((rect, _))) = (&self.border, self.place)
+            && Some(border.item) == over
+        {
+            overlay::border_ui(ui, rect, border);
+        }
+    }
+
+    fn take(&mut self, ctx: &Context, drawn: Drawn) {
+        let image = drawn.image;
+        let nearest = TextureOptions::NEAREST;
+        match &mut self.texture {
+            Some(texture) if texture.size() == image.size => {
+                texture.set_partial([0, 0], Arc::clone(&image), nearest);
+            }
+            Some(texture) => texture.set(Arc::clone(&image), nearest),
+            None => {
+                self.texture = Some(ctx.load_texture("viewport", Arc::clone(&image), nearest));
+            }
+        }
+        self.image = Some(image);
+        // Another picture may show something else there. What was seen before is the best guess
+        // until that is known.
+        self.stale = true;
+        self.asked = None;
+    }
+
+    /// The pixel of the picture under a point of the window.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "brought to the picture's borders, which are small"
+    )]
+    fn pixel(&self, at: Pos2) -> [usize; 2] {
+        let Some((rect, size)) = self.place else { return [0, 0] };
+        let part = (at - rect.min) / rect.size();
+        let along = |part: f32, count: usize| {
+            ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
+        };
+        [along(part.x, size.width), along(part.y, size.height)]
+    }
+
+    /// What stands over the picture: the name of what the pointer is over, the speed of flight.
+    fn overlay(&self, ui: &Ui, state: &State) {
+        let name = self.hovered.and_then(|(_, hit)| hit).and_then(|hit| state.name(hit.item));
+        let text = match (self.mouse.flight(), name) {
+            (Some(speed), _) => {
+                format!("Fly: W A S D Q E, Shift fast, Alt slow, wheel: speed x {speed:.2}")
+            }
+            (None, Some(name)) => name.to_owned(),
+            (None, None) => return,
+        };
+        let Some((rect, _)) = self.place else { return };
+        plate_ui(ui, rect, egui::Align2::LEFT_BOTTOM, text);
+    }
+
+    fn menu_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+        let Some(menu) = self.menu else { return };
+        let popup = egui::Popup::new(menu_id(), ui.ctx().clone(), menu.at, ui.layer_id())
+            .kind(egui::PopupKind::Menu)
+            .layout(egui::Layout::top_down_justified(egui::Align::Min))
+            .style(egui::containers::menu::menu_style)
+            .accessible_name("Viewport menu")
+            .open_memory(None);
+        popup.show(|ui| {
+            let actions = match menu.item.filter(|item| state.scene.contains(*item)) {
+                Some(item) => {
+                    ui.weak(state.name(item).unwrap_or_default());
+                    ui.separator();
+                    actions_on(item)
+                }
+                None => ON_NOTHING,
+            };
+            for action in actions {
+                requests.extend(action.menu_item(ui, state).map(Request::Do));
+            }
+        });
+    }
+}
+
+/// What the menu of nothing offers.
+const ON_NOTHING: &[Action] = &[
+    Action::FrameAll,
+    Action::Load,
+    Action::AddCamera,
+    Action::AddSun,
+    Action::AddBulb,
+    Action::AddSpot,
+];
+
+/// What the menu of an item offers.
+const fn actions_on(item: ItemId) -> &'static [Action] {
+    match item {
+        ItemId::Object(_) => &[
+            Action::FrameSelection,
+            Action::TogglePolygons,
+            Action::ToggleOthers,
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::Split,
+            Action::AddObjectSpot,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+        ItemId::Camera(_) => &[
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::AddCameraSpot,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+        ItemId::Light(_) => &[
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+    }
+}
+
+fn menu_id() -> Id {
+    Id::unique("viewport menu")
+}
+
+/// The rest of `ui`, moved to whole pixels, and its size in pixels.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "rounded, and brought to what a texture can have"
+)]
+fn whole_pixels(ui: &Ui) -> (Rect, Size) {
+    let scale = ui.ctx().pixels_per_point();
+    let most = ui.input(|input| input.max_texture_side);
+    let left = ui.available_rect_before_wrap();
+    let min = ((left.min.to_vec2() * scale).round() / scale).to_pos2();
+    let count = |points: f32| ((points * scale).round().max(1.0) as usize).min(most);
+    let size = Size::new(count(left.width()), count(left.height()));
+    let points = vec2(size.width as f32, size.height as f32) / scale;
+    (Rect::from_min_size(min, points), size)
+}
+
+/// Gives the viewport keyboard focus if it is clicked or no other widget has it.
+fn keep_focus(ctx: &Context, response: &Response) {
+    let pressed = ctx.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
+    let free =
+        ctx.memory(|memory| memory.focused().is_none() && memory.top_modal_layer().is_none());
+    let free = free && !Keyboard::is_leaving(ctx);
+    if (pressed || free) && !response.has_focus() && !egui::Popup::is_any_open(ctx) {
+        response.request_focus();
+    }
+}

@@ -1,0 +1,361 @@
+//! Turns mouse input over the picture into requests.
+//!
+//! | input | does |
+//! |---|---|
+//! | left drag | analysis: orbit; fly: look. With Alt always orbit, with Shift pan |
+//! | middle drag | pan |
+//! | right held | look, and fly with W A S D Q E; a right click within 4 points is a menu |
+//! | wheel, pinch | zoom towards the pointer; while flying, the speed |
+//! | right press or Esc during another drag | back to where it began |
+//!
+//! Each drag is one gesture. So are the turns of the wheel while the pointer rests.
+
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Ui, Vec2};
+use glam::{DVec2, DVec3};
+
+use super::Purpose;
+use super::comparison;
+use crate::app::actions::Request;
+use crate::app::state::State;
+use crate::app::widgets::gestures;
+use crate::base::image::Size;
+use crate::edit::{Gesture, Refusal, navigation};
+use crate::render::Hit;
+use crate::scene::{CameraMode, Command, Projection};
+
+/// A drag that stays within this distance of its start, in points, is a click.
+const CLICK: f32 = 4.0;
+
+/// Points that a touchpad scrolls for one notch of a wheel.
+const POINTS_A_NOTCH: f32 = 50.0;
+
+/// The mouse over the picture.
+#[derive(Debug)]
+pub(crate) struct Mouse {
+    drag: Option<Drag>,
+    /// Times the speed of flight that suits the scene.
+    speed: f64,
+    count: u64,
+}
+
+/// The picture under the mouse.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Under {
+    /// Where in the window the picture is.
+    pub(crate) rect: Rect,
+    /// How many pixels it has.
+    pub(crate) size: Size,
+    /// The hit under the pointer, if known.
+    pub(crate) hit: Option<Hit>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Drag {
+    motion: Motion,
+    button: PointerButton,
+    gesture: Gesture,
+    from: Pos2,
+    /// How far it was acted on, and how far it has come.
+    at: Pos2,
+    to: Pos2,
+    /// Whether it has moved farther than a click may.
+    moved: bool,
+    /// Taken back: it does nothing more until the button is let go.
+    over: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Motion {
+    Look,
+    Orbit,
+    Pan,
+    Fly,
+}
+
+impl Default for Mouse {
+    fn default() -> Self {
+        Self { drag: None, speed: 1.0, count: 0 }
+    }
+}
+
+impl Mouse {
+    /// Whether a button is held.
+    pub(crate) const fn is_dragging(&self) -> bool {
+        self.drag.is_some()
+    }
+
+    /// Whether letters steer.
+    pub(crate) fn is_flying(&self) -> bool {
+        self.drag.is_some_and(|drag| drag.motion == Motion::Fly && !drag.over)
+    }
+
+    /// The speed of flight, while it flies.
+    pub(crate) fn flight(&self) -> Option<f64> {
+        self.is_flying().then_some(self.speed)
+    }
+
+    /// The drag that is going on is taken back. Says whether there was one.
+    pub(crate) fn cancel(&mut self, requests: &mut Vec<Request>) -> bool {
+        match &mut self.drag {
+            Some(drag) if !drag.over => {
+                drag.over = true;
+                requests.push(Request::Abandon(drag.gesture));
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Adds the requests of this frame; returns the points of the picture to pick.
+    pub(crate) fn ui(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        state: &State,
+        under: Under,
+        requests: &mut Vec<Request>,
+    ) -> Vec<(Pos2, Purpose)> {
+        let mut picks = Vec::new();
+        // Event by event: on a slow machine a whole click fits into one frame.
+        for event in ui.input(|input| input.events.clone()) {
+            match event {
+                Event::PointerButton { pos, button, pressed: true, modifiers } => {
+                    self.press(ui, response, state, (pos, button, modifiers), requests);
+                }
+                Event::PointerMoved(at) => {
+                    if let Some(drag) = &mut self.drag {
+                        drag.to = at;
+                    }
+                }
+                Event::PointerButton { pos, button, pressed: false, .. } => {
+                    self.release(ui, state, under.size, (pos, button), requests, &mut picks);
+                }
+                _ => {}
+            }
+        }
+        self.go_on(ui, state, under.size, requests);
+        if self.drag.is_some_and(|drag| !ui.input(|input| input.pointer.button_down(drag.button))) {
+            // It was released outside the window.
+            self.drag = None;
+        }
+        if response.double_clicked_by(PointerButton::Primary) {
+            picks.extend(response.interact_pointer_pos().map(|at| (at, Purpose::Frame)));
+        }
+        if response.contains_pointer() {
+            self.wheel(ui, state, under, requests);
+        }
+        picks
+    }
+
+    fn press(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        state: &State,
+        (from, button, modifiers): (Pos2, PointerButton, Modifiers),
+        requests: &mut Vec<Request>,
+    ) {
+        if self.drag.is_some() {
+            if button == PointerButton::Secondary {
+                self.cancel(requests);
+            }
+            return;
+        }
+        if comparison::grip(state, response.rect).is_some_and(|grip| grip.contains(from)) {
+            return;
+        }
+        // A press that closes a menu does no more than that.
+        if !response.contains_pointer() || egui::Popup::is_any_open(ui.ctx()) {
+            return;
+        }
+        let pose = state.scene.selected_camera(&state.view).pose.now();
+        let motion = match button {
+            PointerButton::Secondary => Motion::Fly,
+            PointerButton::Middle => Motion::Pan,
+            PointerButton::Primary if modifiers.alt => Motion::Orbit,
+            PointerButton::Primary if modifiers.shift => Motion::Pan,
+            PointerButton::Primary => match pose.mode_with(state.view.object) {
+                CameraMode::Fly => Motion::Look,
+                CameraMode::Analysis { .. } => Motion::Orbit,
+            },
+            PointerButton::Extra1 | PointerButton::Extra2 => return,
+        };
+        let gesture = self.gesture("drag");
+        let (to, at) = (from, from);
+        let (moved, over) = (false, false);
+        self.drag = Some(Drag { motion, button, gesture, from, at, to, moved, over });
+    }
+
+    /// Does what the pointer's way since the last time means.
+    fn go_on(&mut self, ui: &Ui, state: &State, size: Size, requests: &mut Vec<Request>) {
+        let Some(drag) = &mut self.drag else { return };
+        // What was not acted on while it could still become a click is made up for.
+        drag.moved |= (drag.to - drag.from).length() > CLICK;
+        let by = if drag.moved { drag.to - drag.at } else { Vec2::ZERO };
+        if drag.moved {
+            drag.at = drag.to;
+        }
+        let drag = *drag;
+        if drag.over {
+            return;
+        }
+        if by != Vec2::ZERO {
+            let pixels = by * ui.ctx().pixels_per_point();
+            let command = moving(drag, state, pixels, size);
+            requests.push(changing(command, drag.gesture, "Move the view"));
+        }
+        if drag.motion == Motion::Fly {
+            self.fly(ui, drag, state, requests);
+        }
+    }
+
+    fn release(
+        &mut self,
+        ui: &Ui,
+        state: &State,
+        size: Size,
+        (to, button): (Pos2, PointerButton),
+        requests: &mut Vec<Request>,
+        picks: &mut Vec<(Pos2, Purpose)>,
+    ) {
+        match &mut self.drag {
+            Some(drag) if drag.button == button => drag.to = to,
+            _ => return,
+        }
+        self.go_on(ui, state, size, requests);
+        let Some(drag) = self.drag.take() else { return };
+        if drag.moved || drag.over {
+            return;
+        }
+        match drag.button {
+            PointerButton::Primary => picks.push((drag.from, Purpose::Select)),
+            PointerButton::Secondary => picks.push((drag.from, Purpose::Menu(drag.from))),
+            _ => {}
+        }
+    }
+
+    /// The keys that steer while the right button is held.
+    fn fly(&mut self, ui: &Ui, drag: Drag, state: &State, requests: &mut Vec<Request>) {
+        let held = |key| ui.input(|input| f64::from(u8::from(input.key_down(key))));
+        let along = |back, forth| held(forth) - held(back);
+        let way = DVec3::new(along(Key::A, Key::D), along(Key::Q, Key::E), along(Key::W, Key::S));
+        if way == DVec3::ZERO {
+            return;
+        }
+        if let Some(drag) = &mut self.drag {
+            drag.moved = true;
+        }
+        let (dt, modifiers) = ui.input(|input| (input.stable_dt.min(0.1), input.modifiers));
+        let haste = match (modifiers.shift, modifiers.alt) {
+            (true, false) => 4.0,
+            (false, true) => 0.25,
+            _ => 1.0,
+        };
+        // Ten steps of the keys in a second.
+        let distance = step(state) * 10.0 * self.speed * haste * f64::from(dt);
+        let command = navigation::fly(
+            &state.scene,
+            &state.view,
+            way.clamp_length_max(1.0) * distance,
+            state.phase(drag.gesture),
+        );
+        requests.push(changing(command, drag.gesture, "Fly"));
+        ui.ctx().request_repaint();
+    }
+
+    fn wheel(&mut self, ui: &Ui, state: &State, under: Under, requests: &mut Vec<Request>) {
+        let Under { rect, size, hit } = under;
+        let (notches, moved, at) = ui.input(|input| {
+            let notches = input.events.iter().map(notches).sum::<f64>();
+            (notches, input.pointer.delta() != Vec2::ZERO, input.pointer.latest_pos())
+        });
+        if moved || !ui.input(|input| input.keys_down.is_empty()) {
+            self.count += 1;
+        }
+        let (Some(at), true) = (at, notches != 0.0) else { return };
+        if self.is_flying() {
+            self.speed = (self.speed * libm::pow(1.2, notches)).clamp(1e-3, 1e3);
+            return;
+        }
+        if self.is_dragging() {
+            return;
+        }
+        let gesture = gestures::numbered(self.count, "wheel");
+        let at = (at - rect.min) * ui.ctx().pixels_per_point();
+        let pointer = navigation::Pointer {
+            at: DVec2::new(f64::from(at.x), f64::from(at.y)),
+            depth: hit.and_then(|hit| distance(state, hit.depth)),
+        };
+        let phase = state.phase(gesture);
+        let command = navigation::zoom(&state.scene, &state.view, notches, pointer, size, phase);
+        requests.push(changing(command, gesture, "Zoom"));
+    }
+
+    fn gesture(&mut self, source: &str) -> Gesture {
+        self.count += 1;
+        gestures::numbered(self.count, source)
+    }
+}
+
+/// The command for a movement of the pointer, in pixels.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command, Refusal> {
+    let (scene, view) = (&state.scene, &state.view);
+    let phase = state.phase(drag.gesture);
+    let (dx, dy) = (f64::from(pixels.x), f64::from(pixels.y));
+    let shorter = size.width.min(size.height) as f64;
+    match drag.motion {
+        Motion::Pan => navigation::pan(scene, view, DVec2::new(dx, dy), size, phase),
+        Motion::Orbit => {
+            // Half a turn across the picture.
+            let angle = std::f64::consts::PI / shorter;
+            navigation::orbit(scene, view, -dx * angle, -dy * angle, phase)
+        }
+        Motion::Look | Motion::Fly => {
+            let lens = scene.selected_camera(view).lens;
+            let angle = 2.0 * lens.half_angle.to_radians() / shorter;
+            navigation::look(scene, view, -dx * angle, -dy * angle, phase)
+        }
+    }
+}
+
+fn changing(command: Result<Command, Refusal>, gesture: Gesture, label: &str) -> Request {
+    match command {
+        Ok(command) => Request::Change { command, gesture, label: label.to_owned() },
+        Err(refusal) => Request::Refuse(refusal.to_string()),
+    }
+}
+
+/// Notches of the wheel, positive towards the picture.
+fn notches(event: &Event) -> f64 {
+    match event {
+        Event::MouseWheel { unit, delta, .. } => f64::from(match unit {
+            MouseWheelUnit::Line => delta.y,
+            MouseWheelUnit::Point => delta.y / POINTS_A_NOTCH,
+            MouseWheelUnit::Page => delta.y * 10.0,
+        }),
+        Event::Zoom(factor) if *factor > 0.0 => {
+            -libm::log(f64::from(*factor)) / libm::log(navigation::NOTCH)
+        }
+        _ => 0.0,
+    }
+}
+
+/// How far a step of translation goes.
+fn step(state: &State) -> f64 {
+    let steps = &state.view.steps;
+    let object = state.view.object.and_then(|id| state.scene.objects.get(id));
+    match object {
+        Some(object) if steps.by_size => object.largest_extent() / 20.0,
+        _ => steps.translation,
+    }
+}
+
+/// How far before the camera lies what has this depth in the picture: the projection's depth
+/// z = n (f - d) / (d (f - n)), solved for d.
+fn distance(state: &State, depth: f32) -> Option<f64> {
+    let lens = state.scene.selected_camera(&state.view).lens;
+    let (near, far) = (lens.near, lens.far);
+    (state.view.projection == Projection::Perspective)
+        .then(|| near * far / (f64::from(depth) * (far - near) + near))
+}

@@ -1,0 +1,118 @@
+//! Draws over the picture: statistics, and the border of the item under the pointer.
+
+use egui::{Align2, Color32, Mesh, Rect, Ui, vec2};
+
+use crate::app::drawing::border::Border;
+use crate::app::state::State;
+use crate::app::widgets::plate::plate_ui;
+use crate::app::widgets::text::grouped;
+use crate::render::{Cause, Change, Changes};
+use crate::scene::ItemId;
+
+/// How much is drawn, and how long it takes.
+pub(crate) fn statistics_ui(ui: &Ui, state: &State, rect: Rect) {
+    let statistics = &state.statistics;
+    let shown = || state.scene.objects.iter().filter(|(_, object)| object.visible);
+    let sum = |count: fn(&crate::scene::Mesh) -> usize| {
+        grouped(shown().map(|(_, object)| count(&object.model.mesh)).sum())
+    };
+    let text = format!(
+        "{} pictures in the last second, {:.1} ms each\n{} x {} pixels{}\n{}\n\
+        {} objects, {} vertices, {} faces\n{} of {} triangles drawn",
+        statistics.rate,
+        statistics.time.as_secs_f64() * 1e3,
+        statistics.size.width,
+        statistics.size.height,
+        if statistics.reduction.half_size { ", each shown as four" } else { "" },
+        statistics.changes.as_ref().map_or_else(String::new, |changes| redrawn(state, changes)),
+        shown().count(),
+        sum(|mesh| mesh.positions().len()),
+        sum(crate::scene::Mesh::polygon_count),
+        grouped(statistics.triangles),
+        sum(|mesh| mesh.triangle_count()),
+    );
+    plate_ui(ui, rect, Align2::LEFT_TOP, text);
+}
+
+/// Of how many names a reason is made at most.
+const NAMES: usize = 2;
+
+/// How much of the last picture was drawn anew, and why: "14 of 169 tiles drawn: teapot moved".
+fn redrawn(state: &State, changes: &Changes) -> String {
+    let why = match changes.cause() {
+        Cause::First => "a new picture".to_owned(),
+        Cause::Size => "another size".to_owned(),
+        Cause::Camera => "seen from elsewhere".to_owned(),
+        Cause::Background => "another background".to_owned(),
+        Cause::Settings => "drawn in another way".to_owned(),
+        Cause::Order => "another order".to_owned(),
+        Cause::Items(items) => reasons(items, |item| state.name(item)),
+    };
+    format!("{} of {} tiles drawn: {why}", changes.tiles(), changes.tiles_in_all())
+}
+
+/// What became of some items, those alike together: "teapot moved, cube and 2 more look different".
+fn reasons<'a>(items: &[(ItemId, Change)], name: impl Fn(ItemId) -> Option<&'a str>) -> String {
+    let all = [
+        (Change::Moved, "moved"),
+        (Change::Shape, "changed in shape"),
+        (Change::Look, "changed in colour or light"),
+        (Change::Came, "came"),
+        (Change::Went, "went"),
+    ];
+    let reason = |(change, verb): (Change, &str)| {
+        let alike: Vec<ItemId> =
+            items.iter().filter(|(_, other)| *other == change).map(|(item, _)| *item).collect();
+        let named = |item: &ItemId| name(*item).unwrap_or("what is gone").to_owned();
+        let mut names: Vec<String> = alike.iter().take(NAMES).map(named).collect();
+        if alike.len() > NAMES {
+            names.truncate(NAMES - 1);
+            names.push(format!("{} more", alike.len() + 1 - NAMES));
+        }
+        (!names.is_empty()).then(|| format!("{} {verb}", names.join(" and ")))
+    };
+    all.into_iter().filter_map(reason).collect::<Vec<_>>().join(", ")
+}
+
+/// The outline of an item, light with a dark border, so that it is seen on any background.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
+pub(crate) fn border_ui(ui: &Ui, rect: Rect, border: &Border) {
+    let pixel = rect.size() / vec2(border.size.width as f32, border.size.height as f32);
+    let mut mesh = Mesh::default();
+    let colors = [Color32::from_black_alpha(160), Color32::WHITE];
+    for (runs, color) in [&border.outer, &border.inner].into_iter().zip(colors) {
+        for run in runs {
+            let min = rect.min + vec2(run.x as f32, run.y as f32) * pixel;
+            let size = vec2(run.length as f32, 1.0) * pixel;
+            mesh.add_colored_rect(Rect::from_min_size(min, size), color);
+        }
+    }
+    ui.painter().with_clip_rect(rect).add(mesh);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::ObjectId;
+
+    #[test]
+    fn a_reason_names_two_at_most_and_puts_those_together_that_changed_alike() {
+        let object = |id| ItemId::Object(ObjectId(id));
+        let names = ["teapot", "cube", "ball"];
+        let name = |item| match item {
+            ItemId::Object(ObjectId(id)) => names.get(id as usize).copied(),
+            ItemId::Camera(_) | ItemId::Light(_) => None,
+        };
+        let items = |changes: &[Change]| -> Vec<(ItemId, Change)> {
+            (0..).map(object).zip(changes.iter().copied()).collect()
+        };
+        let moved = items(&[Change::Look, Change::Moved, Change::Look]);
+        let reason = "cube moved, teapot and ball changed in colour or light";
+        assert_eq!(reasons(&moved, name), reason);
+        assert_eq!(
+            reasons(&items(&[Change::Look; 3]), name),
+            "teapot and 2 more changed in colour or light"
+        );
+        assert_eq!(reasons(&[(object(9), Change::Went)], name), "what is gone went");
+    }
+}

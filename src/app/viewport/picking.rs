@@ -1,0 +1,133 @@
+//! Finds all objects under the pointer, nearest first; the picture holds only the nearest.
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+use crate::app::state::State;
+use crate::base::image::Size;
+use crate::scene::{Object, ObjectId, dvec3};
+
+/// How an object is brought onto the picture.
+struct Onto {
+    view_from_object: DMat4,
+    clip_from_view: DMat4,
+    size: Size,
+}
+
+impl Onto {
+    fn new(state: &State, object: &Object, size: Size) -> Self {
+        let (scene, view) = (&state.scene, &state.view);
+        let view_from_world = scene.observer_frame(view).inverse();
+        let lens = scene.selected_camera(view).lens;
+        Self {
+            view_from_object: view_from_world * object.world_from_object(view.time),
+            clip_from_view: lens.clip_from_view(view.projection, size),
+            size,
+        }
+    }
+
+    /// The pixel of a point in clip space.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn pixel(&self, clip: DVec4) -> DVec2 {
+        let (width, height) = (self.size.width as f64, self.size.height as f64);
+        DVec2::new((clip.x / clip.w + 1.0) * 0.5 * width, (1.0 - clip.y / clip.w) * 0.5 * height)
+    }
+
+    fn clip(&self, position: [f32; 3]) -> DVec4 {
+        let view = self.view_from_object.transform_point3(dvec3(position));
+        self.clip_from_view * view.extend(1.0)
+    }
+}
+
+/// The visible objects that a pixel looks at, the nearest first.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<ObjectId> {
+    let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+    let mut found: Vec<(f64, ObjectId)> = Vec::new();
+    for (id, object) in state.scene.objects.iter().filter(|(_, object)| object.visible) {
+        let onto = Onto::new(state, object, size);
+        let nearest = nearest_depth(&onto, object, at);
+        found.extend(nearest.map(|depth| (depth, id)));
+    }
+    // Depth is 1 at the near plane.
+    found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    found.into_iter().map(|(_, id)| id).collect()
+}
+
+/// The depth of the nearest triangle that is wholly before the near plane and covers a place.
+fn nearest_depth(onto: &Onto, object: &Object, at: DVec2) -> Option<f64> {
+    let mesh = &object.model.mesh;
+    let points: Vec<Option<DVec3>> = mesh
+        .positions()
+        .iter()
+        .map(|position| {
+            let clip = onto.clip(*position);
+            let seen = clip.w > 0.0 && clip.z <= clip.w && clip.z >= 0.0;
+            seen.then(|| onto.pixel(clip).extend(clip.z / clip.w))
+        })
+        .collect();
+    let triangles = mesh.triangles().iter().filter(|triangle| {
+        let part = mesh.polygon_parts()[triangle.polygon as usize];
+        !object.hidden_parts.contains(&part)
+    });
+    let depths = triangles.filter_map(|triangle| {
+        let [a, b, c] = triangle
+            .corners
+            .map(|corner| points[mesh.corners()[corner as usize].position as usize]);
+        depth_in(at, [a?, b?, c?])
+    });
+    depths.max_by(f64::total_cmp)
+}
+
+/// The depth at a place inside of a triangle on the picture; depth after division is linear there.
+fn depth_in(at: DVec2, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+    let side = |p: DVec3, q: DVec3| (q - p).truncate().perp_dot(at - p.truncate());
+    let [u, v, w] = [side(b, c), side(c, a), side(a, b)];
+    let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+    let area = u + v + w;
+    (inside && area != 0.0).then(|| (u * a.z + v * b.z + w * c.z) / area)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::Shared;
+    use crate::io;
+    use crate::scene::{Command, Item, LoadOptions, MaterialChoice, Tracked};
+
+    const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\n\
+        v 1 1 1\nv -1 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+    /// Cubes of ten units a side, one behind the other along the view.
+    fn state(depths: &[f64]) -> State {
+        let options = LoadOptions::default();
+        let progress = io::Progress::new();
+        let loaded = io::parse(CUBE.as_bytes(), "cube", None, &options, &progress).unwrap();
+        let model = Shared::new(loaded.model);
+        let (mut scene, view) = io::default_scene();
+        for id in scene.objects.ids().collect::<Vec<_>>() {
+            Command::Remove(crate::scene::ItemId::Object(id)).apply(&mut scene).unwrap();
+        }
+        for (id, depth) in (100..).zip(depths) {
+            let mut object = Object::new(model.clone(), MaterialChoice::File);
+            let placement =
+                DMat4::from_translation(DVec3::Z * *depth) * DMat4::from_scale(DVec3::splat(5.0));
+            object.placement = Tracked::new(placement);
+            let item = Item::Object(ObjectId(id), Box::new(object));
+            Command::Insert { at: 0, item }.apply(&mut scene).unwrap();
+        }
+        State::new(scene, view)
+    }
+
+    #[test]
+    fn what_is_behind_the_observer_is_not_found() {
+        let state = state(&[500.0]);
+        assert!(objects_at(&state, [400, 300], Size::new(800, 600)).is_empty());
+    }
+
+    #[test]
+    fn objects_one_behind_the_other_are_found_from_near_to_far() {
+        let state = state(&[-50.0, 100.0, 0.0]);
+        let found = objects_at(&state, [400, 300], Size::new(800, 600));
+        assert_eq!(found, [ObjectId(101), ObjectId(102), ObjectId(100)]);
+    }
+}

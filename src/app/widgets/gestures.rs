@@ -1,0 +1,42 @@
+//! Which changes belong to one gesture, so that one drag is one step of undo.
+//!
+//! A gesture of the mouse lasts from the press of a button until it is let go, that frame included:
+//! a slider's value can change once more in it.
+
+use std::hash::{DefaultHasher, Hash, Hasher as _};
+
+use egui::{Context, Id, Response};
+
+use crate::edit::Gesture;
+
+/// The gesture that a change of this widget's value belongs to: part of the drag while a button of
+/// the mouse is down, whole for a typed value or an arrow key.
+#[must_use]
+pub fn of(response: &Response) -> Gesture {
+    let pressing = |pointer: &egui::PointerState| pointer.any_down() || pointer.any_released();
+    if response.ctx.input(|input| pressing(&input.pointer)) {
+        numbered(presses(&response.ctx), response.id)
+    } else {
+        Gesture::Whole
+    }
+}
+
+/// Gesture number `number` of the source called `salt`.
+pub(crate) fn numbered(number: u64, salt: impl Hash) -> Gesture {
+    let mut hasher = DefaultHasher::new();
+    (number, salt).hash(&mut hasher);
+    Gesture::Part(hasher.finish())
+}
+
+/// Notes that a button of the mouse went down.
+pub(crate) fn count_press(ctx: &Context) {
+    ctx.data_mut(|data| *data.get_temp_mut_or_default::<u64>(id()) += 1);
+}
+
+fn presses(ctx: &Context) -> u64 {
+    ctx.data(|data| data.get_temp(id()).unwrap_or(0))
+}
+
+fn id() -> Id {
+    Id::unique("presses of the mouse")
+}

@@ -1,0 +1,105 @@
+//! The icons of the window: symbols of the Material Symbols font.
+
+use egui::{Align2, Color32, FontId, Painter, Rect};
+use egui_material_icons::{MaterialIcon, icons};
+
+use crate::scene::{ItemId, Light, LightKind, Scene};
+
+/// An icon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Icon {
+    /// An object.
+    Object,
+    /// A part of an object.
+    Part,
+    /// A camera.
+    Camera,
+    /// Ambient light.
+    Ambient,
+    /// A sun.
+    Sun,
+    /// A bulb.
+    Bulb,
+    /// A spot.
+    Spot,
+    /// Visible.
+    Eye,
+    /// Hidden.
+    EyeClosed,
+    /// A light that is on.
+    On,
+    /// A light that is off.
+    Off,
+    /// Add.
+    Plus,
+    /// Duplicate.
+    Copy,
+    /// Rename.
+    Pen,
+    /// Delete.
+    Bin,
+    /// Up.
+    Up,
+    /// Down.
+    Down,
+    /// Folded.
+    Right,
+    /// On, or done.
+    Tick,
+    /// A refusal or an error.
+    Warning,
+}
+
+impl Icon {
+    /// The icon of an item.
+    pub(crate) fn of(scene: &Scene, id: ItemId) -> Self {
+        match id {
+            ItemId::Object(_) => Self::Object,
+            ItemId::Camera(_) => Self::Camera,
+            ItemId::Light(id) => scene.lights.get(id).map_or(Self::Bulb, Self::of_light),
+        }
+    }
+
+    /// The icon of a light.
+    pub(crate) const fn of_light(light: &Light) -> Self {
+        match light.kind {
+            LightKind::Ambient => Self::Ambient,
+            LightKind::Sun { .. } => Self::Sun,
+            LightKind::Bulb { .. } => Self::Bulb,
+            LightKind::Spot { .. } => Self::Spot,
+        }
+    }
+
+    /// Draws the icon in the middle of `rect`, `side` points wide.
+    pub(crate) fn paint(self, painter: &Painter, rect: Rect, side: f32, color: Color32) {
+        let symbol = self.symbol();
+        // Symbols fill about 3/4 of their em square.
+        let font = FontId::new((side * 4.0 / 3.0).round(), symbol.font_family());
+        painter.text(rect.center(), Align2::CENTER_CENTER, symbol.codepoint, font, color);
+    }
+
+    const fn symbol(self) -> MaterialIcon {
+        match self {
+            Self::Object => icons::ICON_DEPLOYED_CODE,
+            Self::Part => icons::ICON_CHANGE_HISTORY,
+            Self::Camera => icons::ICON_VIDEOCAM,
+            Self::Ambient => icons::ICON_FLARE,
+            Self::Sun => icons::ICON_LIGHT_MODE,
+            Self::Bulb => icons::ICON_LIGHTBULB,
+            Self::Spot => icons::ICON_HIGHLIGHT,
+            Self::Eye => icons::ICON_VISIBILITY,
+            Self::EyeClosed => icons::ICON_VISIBILITY_OFF,
+            Self::On => icons::ICON_RADIO_BUTTON_CHECKED,
+            Self::Off => icons::ICON_RADIO_BUTTON_UNCHECKED,
+            Self::Plus => icons::ICON_ADD,
+            Self::Copy => icons::ICON_CONTENT_COPY,
+            Self::Pen => icons::ICON_EDIT,
+            Self::Bin => icons::ICON_DELETE,
+            Self::Up => icons::ICON_KEYBOARD_ARROW_UP,
+            Self::Down => icons::ICON_KEYBOARD_ARROW_DOWN,
+            Self::Right => icons::ICON_KEYBOARD_ARROW_RIGHT,
+            Self::Tick => icons::ICON_CHECK,
+            Self::Warning => icons::ICON_WARNING,
+        }
+    }
+}

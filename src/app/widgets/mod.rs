@@ -1,0 +1,11 @@
+//! Controls that panels are made of. They know nothing of the scene that is edited.
+
+pub(crate) mod color_picker;
+pub(crate) mod controls;
+mod expression;
+pub mod gestures;
+pub(crate) mod icons;
+pub(crate) mod number;
+pub(crate) mod plate;
+pub(crate) mod spheres;
+pub(crate) mod text;

@@ -1,0 +1,253 @@
+//! Number fields: the value can be dragged, typed, or given as an expression.
+//!
+//! At rest a field shows as many digits as it has room for; while it is edited, all of them. A
+//! field that is left without another number typed into it asks for nothing, so that walking
+//! through the fields rounds nothing.
+
+use std::ops::RangeInclusive;
+
+use egui::text::CCursorRange;
+use egui::{DragValue, RichText, TextEdit, TextStyle, Ui, vec2};
+use glam::DVec3;
+
+use super::expression;
+use super::gestures;
+use crate::app::theme;
+use crate::base::math::Axis;
+use crate::edit::Gesture;
+
+/// As many characters as a number at rest has at most.
+const ROOM: usize = 8;
+
+/// The width of a digit, in parts of the font's size.
+const DIGIT: f32 = 0.53;
+
+/// From the border of a field to what stands in it.
+const PADDING: f32 = 3.0;
+
+const LETTERS: [&str; 3] = ["X", "Y", "Z"];
+
+/// A field for a number.
+#[derive(Clone, Debug)]
+pub(crate) struct Number<'a> {
+    name: String,
+    hint: &'a str,
+    letter: &'static str,
+    axis: Option<Axis>,
+    suffix: &'static str,
+    speed: f64,
+    range: RangeInclusive<f64>,
+    whole: bool,
+}
+
+impl<'a> Number<'a> {
+    /// A field called `name` by screen readers, with what it means when the pointer rests on it.
+    pub(crate) fn new(name: impl Into<String>, hint: &'a str) -> Self {
+        Self {
+            name: name.into(),
+            hint,
+            letter: "",
+            axis: None,
+            suffix: "",
+            speed: 1.0,
+            range: f64::NEG_INFINITY..=f64::INFINITY,
+            whole: false,
+        }
+    }
+
+    /// The letter of an axis stands before the number, and behind its name.
+    fn axis(self, axis: Axis) -> Self {
+        let name = format!("{} {}", self.name, LETTERS[axis.index()]);
+        Self { axis: Some(axis), name, letter: LETTERS[axis.index()], ..self }
+    }
+
+    /// A letter stands before the number.
+    pub(crate) fn letter(self, letter: &'static str) -> Self {
+        Self { letter, ..self }
+    }
+
+    /// A unit stands behind the number.
+    pub(crate) fn suffix(self, suffix: &'static str) -> Self {
+        Self { suffix, ..self }
+    }
+
+    /// How much a drag by one point changes it.
+    pub(crate) fn speed(self, speed: f64) -> Self {
+        Self { speed, ..self }
+    }
+
+    /// Values outside are clamped.
+    pub(crate) fn range(self, range: RangeInclusive<f64>) -> Self {
+        Self { range, ..self }
+    }
+
+    /// Only whole numbers.
+    pub(crate) fn whole(self) -> Self {
+        Self { whole: true, ..self }
+    }
+
+    /// As many characters as there is room for beside the letter and the unit.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 3 and 8")]
+    fn room(&self, width: f32) -> usize {
+        let signs =
+            if self.letter.is_empty() { 0.0 } else { 1.8 } + self.suffix.chars().count() as f32;
+        let room = (width - 2.0 * PADDING) / (DIGIT * theme::BODY) - signs;
+        room.clamp(3.0, ROOM as f32) as usize
+    }
+
+    /// Shows it, `width` points wide. Gives the number that it should become.
+    pub(crate) fn ui(self, ui: &mut Ui, width: f32, value: f64) -> Option<(f64, Gesture)> {
+        let id = ui.next_auto_id();
+        let mut to = value;
+        // Asked when the text is made, for Tab gives the field the keyboard just before that.
+        let (ctx, room) = (ui.ctx().clone(), self.room(width));
+        let edited = move || ctx.memory(|memory| memory.has_focus(id));
+        let format =
+            move |number: f64, _| if edited() { exact(number) } else { short_in(number, room) };
+        let mut field = DragValue::new(&mut to)
+            .speed(self.speed)
+            .range(self.range)
+            .clamp_existing_to_range(false)
+            .update_while_editing(false)
+            .min_size(vec2(width, theme::ROW))
+            .clip_text(true)
+            .custom_formatter(format)
+            .custom_parser(expression::value);
+        if self.whole {
+            field = field.max_decimals(0);
+        }
+        if !self.letter.is_empty() {
+            let letter = self.letter;
+            let weak = ui.visuals().weak_text_color();
+            let color = self.axis.map_or(weak, |axis| theme::axis(ui.visuals(), axis));
+            field = field.prefix(
+                RichText::new(format!("{letter} ")).text_style(TextStyle::Small).color(color),
+            );
+        }
+        if !self.suffix.is_empty() {
+            field = field.suffix(RichText::new(self.suffix).weak());
+        }
+        // A scope would give the field another id.
+        let padding = std::mem::replace(&mut ui.spacing_mut().button_padding.x, PADDING);
+        let response = ui.add(field).accessible_name(&self.name);
+        ui.spacing_mut().button_padding.x = padding;
+        if response.clicked() {
+            // egui marks as much of the text as the field showed at rest.
+            let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+            state.cursor.set_char_range(Some(CCursorRange::select_all_str(&exact(value))));
+            state.store(ui.ctx(), id);
+        }
+        let response = response.on_disabled_hover_text(self.hint).on_hover_ui(|ui| {
+            ui.label(self.hint);
+            ui.label(RichText::new("Drag, or click and type a number or a sum").weak());
+        });
+        let to = if self.whole { to.round() } else { to };
+        let changed = response.changed() && (response.dragged() || exact(to) != exact(value));
+        changed.then(|| (to, gestures::of(&response)))
+    }
+}
+
+/// Three fields like `field` in a row, one for each axis. Gives the vector that they should become.
+pub(crate) fn vector(ui: &mut Ui, field: &Number<'_>, value: DVec3) -> Option<(DVec3, Gesture)> {
+    ui.spacing_mut().item_spacing.x = theme::GAP;
+    let width = (ui.available_width() - 2.0 * theme::GAP) / 3.0;
+    let mut changed = None;
+    for axis in Axis::ALL {
+        let i = axis.index();
+        let number = field.clone().axis(axis);
+        if let Some((to, gesture)) = number.ui(ui, width, value[i]) {
+            let mut vector = value;
+            vector[i] = to;
+            changed = Some((vector, gesture));
+        }
+    }
+    changed
+}
+
+/// A number in few characters, with at most three decimals.
+pub(crate) fn short(number: f64) -> String {
+    short_in(number, ROOM)
+}
+
+fn short_in(number: f64, room: usize) -> String {
+    for decimals in (0..=3).rev() {
+        let text = trimmed(&format!("{number:.decimals$}"));
+        // Of a number that is not 0, something other than 0 is to be seen.
+        if text.chars().count() <= room && (text != "0" || number.abs() < 1e-12) {
+            return text;
+        }
+    }
+    let text = format!("{number:.1e}");
+    if text.len() <= room { text } else { format!("{number:.0e}") }
+}
+
+/// A number with all digits that a person could mean.
+fn exact(number: f64) -> String {
+    let size = number.abs();
+    if size != 0.0 && !(1e-6..1e15).contains(&size) {
+        return format!("{number:e}");
+    }
+    trimmed(&format!("{number:.9}"))
+}
+
+fn trimmed(text: &str) -> String {
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// Angles as the user gave them, for as long as they still say how the thing stands: otherwise 95
+/// degrees about Y would turn into 180, 85 and 180 while they are dragged.
+pub(crate) fn kept_angles(
+    ui: &Ui,
+    name: &'static str,
+    canonical: DVec3,
+    same: impl Fn(DVec3) -> bool,
+) -> DVec3 {
+    let id = ui.scope_id().with(name);
+    let given = ui.data(|data| data.get_temp::<[f64; 3]>(id)).map(DVec3::from_array);
+    given.filter(|given| same(*given)).unwrap_or(canonical)
+}
+
+/// Keeps angles that the user gave, for [`kept_angles`].
+pub(crate) fn keep_angles(ui: &Ui, name: &'static str, given: DVec3) {
+    ui.data_mut(|data| data.insert_temp(ui.scope_id().with(name), given.to_array()));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_at_rest_fit_their_field_and_end_without_zeros() {
+        for (number, expected) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (10.0, "10"),
+            (-200.0, "-200"),
+            (1.2, "1.2"),
+            (33.333_333, "33.333"),
+            (-1234.5678, "-1234.57"),
+            (12_345_678.0, "12345678"),
+            (5e-6, "5.0e-6"),
+            (123_456_789.0, "1.2e8"),
+            (1e-300, "0"),
+        ] {
+            assert_eq!(short(number), expected);
+        }
+        let narrow = [-0.000_12, 33.333_333, -1234.5678, 123_456.0, -123_456.0];
+        assert_eq!(
+            narrow.map(|number| short_in(number, 5)),
+            ["-1e-4", "33.33", "-1235", "1.2e5", "-1e5"]
+        );
+    }
+
+    #[test]
+    fn a_number_that_is_edited_reads_back_as_itself() {
+        for number in [0.1, 1.0 / 3.0, -98.7, 5e-6, 1e300, 1e-300, 123_456.789] {
+            let back = expression::value(&exact(number)).unwrap();
+            assert!((back - number).abs() <= 1e-8 * number.abs(), "{number} became {back}");
+            assert_eq!(exact(back), exact(number));
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Materials as small spheres, drawn by the program's own renderer.
+//!
+//! A sphere of radius 1 before an orthographic camera, lit by ambient light and by a sun from the
+//! upper left. It is drawn at twice its size and every four pixels become one. Its outline is not
+//! the renderer's, which covers a pixel or does not, but a disk whose border is as transparent as
+//! it covers its pixels; the sphere goes a little beyond it.
+
+use std::sync::Arc;
+
+use egui::mutex::Mutex;
+use egui::{Color32, ColorImage, Id, Rect, TextureHandle, TextureOptions, Ui, pos2};
+use fearless_simd::Level;
+use glam::DVec3;
+
+use crate::accuracy::Settings;
+use crate::accuracy::Shot;
+use crate::base::Shared;
+use crate::base::image::{Picture, Size};
+use crate::base::math;
+use crate::io::cam_model;
+use crate::render::Renderer;
+use crate::render::plan_frame;
+use crate::scene::{
+    Camera, Command, Item, Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice,
+    Mesh, MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Projection, Scene,
+    SourceCorner, Tracked,
+};
+
+/// Quarters of a pixel come from this many by this many.
+const FINER: usize = 2;
+
+/// What a sphere shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Sphere {
+    /// One of the nineteen.
+    Preset(PresetId),
+    /// What a file says.
+    File(Material),
+    /// The user's own.
+    Own(Material),
+}
+
+impl Sphere {
+    fn material(self) -> Material {
+        match self {
+            Self::Preset(id) => id.get().material,
+            Self::File(material) | Self::Own(material) => material,
+        }
+    }
+
+    /// Spheres in one place take turns in one texture.
+    fn place(self) -> usize {
+        match self {
+            Self::Preset(id) => PresetId::all().position(|other| other == id).unwrap_or(0),
+            Self::File(_) => PresetId::all().len(),
+            Self::Own(_) => PresetId::all().len() + 1,
+        }
+    }
+}
+
+/// Paints the sphere of a material into a square.
+pub(crate) fn paint(ui: &Ui, rect: Rect, sphere: Sphere) {
+    let side = (rect.width().min(rect.height()) * ui.pixels_per_point()).round();
+    // A dialog shows them in a size of its own.
+    let id = Id::unique(("spheres of materials", ui.layer_id()));
+    let all = ui.data_mut(|data| data.get_temp_mut_or_default::<Arc<Mutex<Spheres>>>(id).clone());
+    let texture = all.lock().texture(ui, sphere, pixels(side));
+    let rect =
+        Rect::from_center_size(rect.center(), egui::Vec2::splat(side / ui.pixels_per_point()));
+    let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    ui.painter().image(texture, rect, all, Color32::WHITE);
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "kept from 1 to 512")]
+fn pixels(side: f32) -> usize {
+    side.clamp(1.0, 512.0) as usize
+}
+
+/// What was drawn, and what it takes to draw another.
+#[derive(Default)]
+struct Spheres {
+    drawn: Vec<Option<Drawn>>,
+    studio: Option<(Scene, Renderer)>,
+}
+
+struct Drawn {
+    material: Material,
+    side: usize,
+    texture: TextureHandle,
+}
+
+impl Spheres {
+    fn texture(&mut self, ui: &Ui, sphere: Sphere, side: usize) -> egui::TextureId {
+        let (place, material) = (sphere.place(), sphere.material());
+        self.drawn.resize_with(self.drawn.len().max(place + 1), || None);
+        if let Some(drawn) = &self.drawn[place]
+            && drawn.material == material
+            && drawn.side == side
+        {
+            return drawn.texture.id();
+        }
+        let (scene, renderer) = self.studio.get_or_insert_with(studio);
+        let image = image(scene, renderer, material, side);
+        let texture =
+            ui.ctx().load_texture(format!("sphere {place}"), image, TextureOptions::LINEAR);
+        let id = texture.id();
+        self.drawn[place] = Some(Drawn { material, side, texture });
+        id
+    }
+}
+
+/// A sphere, a camera and two lights.
+fn studio() -> (Scene, Renderer) {
+    let mut scene = Scene::with_camera(Camera {
+        name: String::new(),
+        visible: false,
+        model: cam_model(),
+        material: MaterialChoice::File,
+        pose: Tracked::new(Pose::facing_minus_z(DVec3::Z * 5.0)),
+        lens: Lens { half_size: 0.95, parallel_far: 10.0, ..Lens::default() },
+    });
+    let direction = math::unit(DVec3::new(0.5, -0.6, -0.75)).unwrap_or(DVec3::NEG_Z);
+    let sun = LightKind::Sun { direction: Tracked::new(direction) };
+    let object = Object::new(ball(), MaterialChoice::File);
+    let items = [
+        Item::Object(ObjectId(1), Box::new(object)),
+        Item::Light(LightId(2), Box::new(Light::new("", 0, LightKind::Ambient))),
+        Item::Light(LightId(3), Box::new(Light::new("", 1, sun))),
+    ];
+    let inserts = items.map(|item| Command::Insert { at: 0, item });
+    let inserted = Command::Batch(inserts.into()).apply(&mut scene);
+    debug_assert!(inserted.is_ok(), "{inserted:?}");
+    (scene, Renderer::new(Level::new()))
+}
+
+/// The disk of `side` by `side` pixels that shows a material.
+fn image(
+    scene: &mut Scene,
+    renderer: &mut Renderer,
+    material: Material,
+    side: usize,
+) -> ColorImage {
+    if let Some(object) = scene.objects.get(ObjectId(1)) {
+        let object = Object { material: MaterialChoice::Own(material), ..object.clone() };
+        let item = Item::Object(ObjectId(1), Box::new(object));
+        let replaced = Command::Replace(item).apply(scene);
+        debug_assert!(replaced.is_ok(), "{replaced:?}");
+    }
+    let mut view = scene.first_view();
+    view.projection = Projection::Orthographic;
+    let size = Size::new(side * FINER, side * FINER);
+    let plan = plan_frame(&Shot::new(scene, &view, &Settings::default(), size));
+    disk(renderer.render(&plan), side)
+}
+
+/// The mean of every four pixels, within a disk.
+#[expect(clippy::cast_precision_loss, reason = "a sphere has a few hundred pixels at most")]
+fn disk(picture: &Picture, side: usize) -> ColorImage {
+    let radius = side as f32 / 2.0;
+    let mut pixels = Vec::with_capacity(side * side);
+    for y in 0..side {
+        for x in 0..side {
+            let mut sum = [0_u32; 3];
+            for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                let pixel = picture.pixel(x * FINER + dx, y * FINER + dy);
+                sum.iter_mut().zip(pixel).for_each(|(sum, part)| *sum += u32::from(part));
+            }
+            let [r, g, b] = sum.map(|sum| u8::try_from((sum + 2) / 4).unwrap_or(u8::MAX));
+            let away = (x as f32 + 0.5 - radius).hypot(y as f32 + 0.5 - radius);
+            let cover = crate::base::color::byte(f64::from(radius - 0.5 - away + 0.5));
+            pixels.push(Color32::from_rgba_unmultiplied(r, g, b, cover));
+        }
+    }
+    ColorImage::new([side, side], pixels)
+}
+
+/// A sphere of radius 1, its normals exact.
+fn ball() -> Shared<Model> {
+    const RINGS: u32 = 24;
+    const SECTORS: u32 = 48;
+    let mut source = MeshSource {
+        parts: vec![Part { name: String::new(), material: None }],
+        ..MeshSource::default()
+    };
+    for ring in 0..=RINGS {
+        let polar = std::f64::consts::PI * f64::from(ring) / f64::from(RINGS);
+        for sector in 0..SECTORS {
+            let angle = std::f64::consts::TAU * f64::from(sector) / f64::from(SECTORS);
+            let across = libm::sin(polar);
+            let place = [across * libm::sin(angle), libm::cos(polar), across * libm::cos(angle)];
+            source.positions.push(place.map(narrow));
+        }
+    }
+    source.normals.clone_from(&source.positions);
+    let corner = |ring: u32, sector: u32| {
+        let position = ring * SECTORS + sector % SECTORS;
+        SourceCorner { position, uv: NONE, normal: position }
+    };
+    for ring in 0..RINGS {
+        for sector in 0..SECTORS {
+            source.corners.extend([
+                corner(ring, sector),
+                corner(ring + 1, sector),
+                corner(ring + 1, sector + 1),
+                corner(ring, sector + 1),
+            ]);
+            source.arities.push(4);
+            source.polygon_parts.push(0);
+        }
+    }
+    Shared::new(Model {
+        name: "ball".to_owned(),
+        source: None,
+        options: LoadOptions::default(),
+        mesh: Mesh::new(source).expect("all places are finite and all indices in range"),
+        materials: Vec::new(),
+        edge_color: None,
+    })
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+fn narrow(number: f64) -> f32 {
+    number as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sphere_is_its_material_brightest_at_the_upper_left_and_clear_about_it() {
+        let (mut scene, mut renderer) = studio();
+        let red = Material {
+            ambient: [0.1, 0.0, 0.0],
+            diffuse: [0.8, 0.0, 0.0],
+            specular: [0.0; 3],
+            exponent: 1.0,
+        };
+        let image = image(&mut scene, &mut renderer, red, 32);
+        let at = |x: usize, y: usize| image.pixels[y * 32 + x];
+        assert_eq!(at(0, 0), Color32::TRANSPARENT);
+        assert_eq!(at(16, 16).a(), 255);
+        assert!(at(11, 9).r() > at(16, 16).r() && at(16, 16).r() > at(24, 26).r());
+        assert!(image.pixels.iter().all(|pixel| pixel.g() == 0 && pixel.b() == 0), "no background");
+        // The far side gets ambient light alone: 0.1 of 255.
+        assert_eq!(at(25, 27).r(), 26);
+    }
+}

@@ -1,0 +1,64 @@
+//! Whether a frame that is being drawn is still wanted.
+//!
+//! It is asked between chunks and tiles, by every thread. Once the answer was no, it stays no: a frame
+//! is given up as a whole.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// What asks.
+pub(crate) struct Cancellation<'a> {
+    wanted: &'a (dyn Fn() -> bool + Sync),
+    given_up: AtomicBool,
+    told: Option<Told<'a>>,
+}
+
+/// Who is told how many of how many tiles are painted.
+struct Told<'a> {
+    tell: &'a (dyn Fn(usize, usize) + Sync),
+    painted: AtomicUsize,
+    all: AtomicUsize,
+}
+
+impl<'a> Cancellation<'a> {
+    pub(crate) const fn new(wanted: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Self { wanted, given_up: AtomicBool::new(false), told: None }
+    }
+
+    /// The same, and `tell` is told how many of how many tiles are painted, over all passes.
+    pub(crate) const fn telling(self, tell: &'a (dyn Fn(usize, usize) + Sync)) -> Self {
+        let (painted, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        Self { told: Some(Told { tell, painted, all }), ..self }
+    }
+
+    /// Says how many tiles will be painted, over all passes.
+    pub(crate) fn expect_tiles(&self, all: usize) {
+        if let Some(told) = &self.told {
+            told.all.store(all, Ordering::Relaxed);
+        }
+    }
+
+    /// Says that another tile is painted.
+    pub(crate) fn tile_is_painted(&self) {
+        if let Some(told) = &self.told {
+            let painted = told.painted.fetch_add(1, Ordering::Relaxed) + 1;
+            (told.tell)(painted, told.all.load(Ordering::Relaxed));
+        }
+    }
+
+    /// Whether drawing goes on.
+    pub(crate) fn goes_on(&self) -> bool {
+        if self.is_given_up() {
+            return false;
+        }
+        let wanted = (self.wanted)();
+        if !wanted {
+            self.given_up.store(true, Ordering::Relaxed);
+        }
+        wanted
+    }
+
+    /// Whether the frame was given up.
+    pub(crate) fn is_given_up(&self) -> bool {
+        self.given_up.load(Ordering::Relaxed)
+    }
+}

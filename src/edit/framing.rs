@@ -1,0 +1,187 @@
+//! Framing: the camera position from which things fill the picture.
+//!
+//! ```text
+//! distance = r / sin(a)                                 r the bounding radius, a the half-angle
+//! near     = min(1, (distance - r) / 2, distance / 1000)
+//! far      = max(2000, distance + 2 r)
+//! in parallel projection: half-size = 1.1 r
+//! ```
+//!
+//! The camera keeps the direction in which it looks. In analysis it goes on looking at the mean of
+//! the object's vertices, so the sphere that is framed then has its centre there.
+
+use glam::{DMat3, DVec3};
+
+use super::{GesturePhase, Refusal, set_transform};
+use crate::base::math;
+use crate::scene::{
+    CameraMode, Command, Lens, Object, ObjectId, Observer, Pose, Scene, View, dvec3,
+};
+
+/// The bounding sphere to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its middle.
+    pub centre: DVec3,
+    /// Its radius: at least 0.
+    pub radius: f64,
+}
+
+/// A view along an axis of the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Along -Z.
+    Front,
+    /// From +X, along -X.
+    Right,
+    /// From +Y, along -Y, with -Z up.
+    Top,
+}
+
+impl Side {
+    /// The axes of a camera that looks from there.
+    #[must_use]
+    pub const fn axes(self) -> DMat3 {
+        match self {
+            Self::Front => DMat3::IDENTITY,
+            Self::Right => DMat3::from_cols(DVec3::NEG_Z, DVec3::Y, DVec3::X),
+            Self::Top => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
+        }
+    }
+}
+
+/// From where models alone are seen: degrees to the right of the front, and degrees up.
+pub const MODELS_FROM: [f64; 2] = [30.0, 20.0];
+
+/// How much farther away than necessary models alone are seen: their margin in the picture.
+const MARGIN: f64 = 1.0 / 20.0;
+
+/// The key `.`: the selected camera sees the selected object whole.
+///
+/// # Errors
+/// If there is no object, or it has no vertices.
+pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    let (id, _) = set_transform::selected_object(scene, view)?;
+    objects(scene, view, &[id])
+}
+
+/// The key Home: the selected camera sees everything that is shown.
+///
+/// # Errors
+/// If nothing is visible.
+pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    objects(scene, view, &shown(scene, view))
+}
+
+/// The objects that are shown.
+fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
+    let shown = |id: &ObjectId, object: &Object| {
+        object.visible && (!view.only_selected || view.object == Some(*id))
+    };
+    scene.objects.iter().filter(|(id, object)| shown(id, object)).map(|(id, _)| id).collect()
+}
+
+/// The selected camera sees these objects whole.
+///
+/// # Errors
+/// Where none of them has vertices.
+pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, Refusal> {
+    framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
+}
+
+/// Models that no scene says how to look at: the selected camera sees everything that is shown,
+/// with a margin of a twentieth, from `right` degrees to the right of the front and `up` degrees
+/// above.
+///
+/// # Errors
+/// If nothing is visible.
+pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Command, Refusal> {
+    let axes =
+        math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
+    framed(scene, view, &shown(scene, view), axes, MARGIN)
+}
+
+/// Ctrl+1, 3 and 7: the selected camera sees the selected object whole from a side.
+///
+/// # Errors
+/// If there is no object, or it has no vertices.
+pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
+    let (id, _) = set_transform::selected_object(scene, view)?;
+    framed(scene, view, &[id], side.axes(), 0.0)
+}
+
+/// A sphere about objects: of one object its own, of several about the box around theirs. `None`
+/// where none of them has vertices.
+#[must_use]
+pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
+    let spheres: Vec<(DVec3, f64)> = ids
+        .iter()
+        .filter_map(|id| scene.objects.get(*id)?.bounding_sphere(view.time))
+        .filter(|(centre, radius)| centre.is_finite() && radius.is_finite())
+        .collect();
+    if let [(centre, radius)] = spheres[..] {
+        return Some(Sphere { centre, radius });
+    }
+    let min = spheres.iter().map(|(centre, radius)| *centre - *radius).reduce(DVec3::min)?;
+    let max = spheres.iter().map(|(centre, radius)| *centre + *radius).reduce(DVec3::max)?;
+    let centre = (min + max) * 0.5;
+    let reach = |(other, radius): &(DVec3, f64)| other.distance(centre) + radius;
+    Some(Sphere { centre, radius: spheres.iter().map(reach).fold(0.0, f64::max) })
+}
+
+/// How far from the centre of a sphere of radius `r` the eye is, and the lens that sees it.
+#[must_use]
+pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
+    let distance = r / libm::sin(lens.half_angle.to_radians());
+    let near = 1.0_f64.min((distance - r) / 2.0).min(distance / 1000.0);
+    let far = 2000.0_f64.max(distance + 2.0 * r);
+    let framed = Lens {
+        half_angle: lens.half_angle,
+        near,
+        far,
+        half_size: 1.1 * r,
+        parallel_near: lens.parallel_near.min(near),
+        parallel_far: far,
+    };
+    (distance, framed)
+}
+
+/// The selected camera sees these objects whole along these axes, farther away than necessary by a
+/// part of the distance.
+fn framed(
+    scene: &Scene,
+    view: &View,
+    ids: &[ObjectId],
+    axes: DMat3,
+    margin: f64,
+) -> Result<Command, Refusal> {
+    if view.observer == Observer::Object && view.object.is_some() {
+        return Err(Refusal::ObjectLooks);
+    }
+    let camera = scene.selected_camera(view);
+    let mode = camera.pose.now().mode_with(view.object);
+    let analysed = match (mode, ids) {
+        (CameraMode::Analysis { target }, [id]) if target == *id => scene.objects.get(*id),
+        (CameraMode::Analysis { .. } | CameraMode::Fly, _) => None,
+    };
+    let (sphere, mode) = match analysed {
+        Some(object) => (Some(about_the_mean(object, view.time)), mode),
+        None => (sphere(scene, view, ids), CameraMode::Fly),
+    };
+    let Sphere { centre, radius } = sphere.ok_or(Refusal::NothingToFrame)?;
+    // A single point is looked at as if it were a sphere of one unit.
+    let radius = if radius > 0.0 { radius } else { 1.0 };
+    let (distance, lens) = lens(&camera.lens, radius * (1.0 + margin));
+    // In parallel projection a margin is there already.
+    let lens = Lens { half_size: 1.1 * radius, ..lens };
+    let pose = Pose { eye: centre + axes.z_axis * distance, axes, mode };
+    set_transform::pose_and_lens(scene, view.camera, pose, lens, GesturePhase::First)
+}
+
+/// The sphere about the mean of an object's vertices, through the one farthest from it.
+fn about_the_mean(object: &Object, time: f64) -> Sphere {
+    let (m, centre) = (object.world_from_object(time), object.centre(time));
+    let positions = object.model.mesh.positions().iter();
+    let squares = positions.map(|p| m.transform_point3(dvec3(*p)).distance_squared(centre));
+    Sphere { centre, radius: squares.fold(0.0, f64::max).sqrt() }
+}

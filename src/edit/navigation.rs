@@ -1,0 +1,203 @@
+//! Navigation: orbit, pan, zoom, look and fly with the selected camera.
+//!
+//! Drags yaw about the world's Y and pitch about the camera's X. Pixels are brought to units of the
+//! world at the depth of what is looked at, so that what is under the pointer stays there.
+
+use glam::{DVec2, DVec3};
+
+use super::transform::{effective_pose, moved, moved_about, orbited};
+use super::{GesturePhase, Refusal, set_transform};
+use crate::base::image::Size;
+use crate::scene::{CameraMode, Command, Lens, Observer, Pose, Projection, Scene, View};
+
+/// What a notch of the wheel towards the picture leaves of the distance.
+pub const NOTCH: f64 = 0.9;
+
+/// A place on the picture from which to zoom: in pixels, x to the right and y down from the upper
+/// left, with how far before the camera lies what is seen there, if known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pointer {
+    /// Pixels from the upper left.
+    pub at: DVec2,
+    /// Units along the view's axis.
+    pub depth: Option<f64>,
+}
+
+/// Turns the camera where it stands: `yaw` to the left, `pitch` upwards, in radians. In analysis,
+/// which cannot look aside, the camera orbits the other way round instead.
+///
+/// # Errors
+/// If the observer is an object.
+pub fn look(
+    scene: &Scene,
+    view: &View,
+    yaw: f64,
+    pitch: f64,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let pose = looking_pose(scene, view)?;
+    if pose.mode != CameraMode::Fly {
+        return orbit(scene, view, yaw, pitch, phase);
+    }
+    let turn = set_transform::turn(DVec3::Y, yaw)? * set_transform::turn(pose.axes.x_axis, pitch)?;
+    set_transform::pose(scene, view.camera, Pose { axes: turn * pose.axes, ..pose }, phase)
+}
+
+/// Takes the camera round the selected object's centre (the world's where there is no object), by
+/// `yaw` about the world's Y and `pitch` about the camera's X, in radians.
+///
+/// # Errors
+/// If the observer is an object.
+pub fn orbit(
+    scene: &Scene,
+    view: &View,
+    yaw: f64,
+    pitch: f64,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let pose = looking_pose(scene, view)?;
+    let turn = set_transform::turn(DVec3::Y, yaw)? * set_transform::turn(pose.axes.x_axis, pitch)?;
+    let pose = match set_transform::analysis_centre(scene, view) {
+        Some(centre) => orbited(&pose, turn, centre),
+        None => {
+            let centre = pivot(scene, view);
+            let eye = centre + turn * (pose.eye - centre);
+            Pose { eye, axes: turn * pose.axes, ..pose }
+        }
+    };
+    set_transform::pose(scene, view.camera, pose, phase)
+}
+
+/// Moves the camera across its view, so that what is at the selected object's depth follows a
+/// pointer that has moved by `pixels` (x to the right, y down). Returns to fly.
+///
+/// # Errors
+/// If the observer is an object.
+pub fn pan(
+    scene: &Scene,
+    view: &View,
+    pixels: DVec2,
+    size: Size,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let pose = looking_pose(scene, view)?;
+    let units = pixels * units_per_pixel(scene, view, size, depth(scene, view, &pose));
+    let pose = moved(&pose, DVec3::new(-units.x, units.y, 0.0));
+    set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
+}
+
+/// Moves the camera in its own frame, as the keys do that fly while the right button is held.
+/// Returns to fly.
+///
+/// # Errors
+/// If the observer is an object.
+pub fn fly(
+    scene: &Scene,
+    view: &View,
+    delta: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let pose = moved(&looking_pose(scene, view)?, delta);
+    set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
+}
+
+/// Zooms in by this number of notches of the wheel (out if negative).
+///
+/// In perspective the eye goes along the ray through the pointer, in parallel projection less of
+/// the world is seen; what is under the pointer stays there. In analysis the camera keeps to its
+/// axis, never nearer to the centre than the near plane.
+///
+/// # Errors
+/// If the observer is an object, or the camera is as near as it may be.
+pub fn zoom(
+    scene: &Scene,
+    view: &View,
+    notches: f64,
+    pointer: Pointer,
+    size: Size,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let pose = looking_pose(scene, view)?;
+    // The factor of the distance, within the range of f64.
+    let left = libm::pow(NOTCH, notches.clamp(-200.0, 200.0));
+    let centre = set_transform::analysis_centre(scene, view);
+    match (view.projection, centre) {
+        (Projection::Orthographic, _) => {
+            let camera = scene.selected_camera(view);
+            let lens = Lens { half_size: camera.lens.half_size * left, ..camera.lens };
+            let aside =
+                from_middle(pointer.at, size) * shown_per_pixel(camera.lens.half_size, size);
+            let aside = if centre.is_some() { DVec2::ZERO } else { aside * (1.0 - left) };
+            let pose = moved(&pose, aside.extend(0.0));
+            set_transform::pose_and_lens(scene, view.camera, pose, lens, phase)
+        }
+        (Projection::Perspective, Some(centre)) => {
+            let away = pose.eye.distance(centre) * (left - 1.0);
+            let pose = moved_about(scene, view, centre, DVec3::Z * away)?;
+            set_transform::pose(scene, view.camera, pose, phase)
+        }
+        (Projection::Perspective, None) => {
+            let lens = scene.selected_camera(view).lens;
+            let seen = pointer.depth.filter(|depth| *depth > 0.0 && depth.is_finite());
+            let depth = seen.unwrap_or_else(|| depth(scene, view, &pose));
+            let slope = libm::tan(lens.half_angle.to_radians());
+            let aside = from_middle(pointer.at, size) * shown_per_pixel(slope, size);
+            let ray = aside.extend(-1.0);
+            set_transform::pose(
+                scene,
+                view.camera,
+                moved(&pose, ray * (depth * (1.0 - left))),
+                phase,
+            )
+        }
+    }
+}
+
+/// How many units of the world, at `depth` before the camera, a pixel spans.
+#[must_use]
+pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f64 {
+    let lens = scene.selected_camera(view).lens;
+    match view.projection {
+        Projection::Orthographic => shown_per_pixel(lens.half_size, size),
+        Projection::Perspective => {
+            shown_per_pixel(depth * libm::tan(lens.half_angle.to_radians()), size)
+        }
+    }
+}
+
+/// The selected camera's pose, while it is the one that looks.
+fn looking_pose(scene: &Scene, view: &View) -> Result<Pose, Refusal> {
+    if view.observer == Observer::Object && view.object.is_some() {
+        return Err(Refusal::ObjectLooks);
+    }
+    Ok(effective_pose(scene, view))
+}
+
+/// What drags of the view go round: the selected object's centre, else the world's.
+fn pivot(scene: &Scene, view: &View) -> DVec3 {
+    let object = view.object.and_then(|id| scene.objects.get(id));
+    object.map_or(DVec3::ZERO, |object| object.centre(view.time))
+}
+
+/// How far before the camera what it looks at is: the pivot where it is before it, else as far as
+/// the pivot is in whatever direction, and never nearer than the near plane: so a drag always moves
+/// something, and a wheel goes through what it has come to.
+fn depth(scene: &Scene, view: &View, pose: &Pose) -> f64 {
+    let away = pose.eye - pivot(scene, view);
+    let ahead = away.dot(pose.axes.z_axis);
+    let near = scene.selected_camera(view).lens.near;
+    if ahead > near { ahead } else { away.length().max(near) }
+}
+
+/// Units in a pixel, where `half` of them are to each side of the axis across the shorter side.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+fn shown_per_pixel(half: f64, size: Size) -> f64 {
+    2.0 * half / size.width.min(size.height).max(1) as f64
+}
+
+/// Pixels from the middle of the picture, x to the right and y up.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+fn from_middle(at: DVec2, size: Size) -> DVec2 {
+    let middle = DVec2::new(size.width as f64, size.height as f64) / 2.0;
+    DVec2::new(at.x - middle.x, middle.y - at.y)
+}

@@ -1,0 +1,256 @@
+//! Placements as numbers: position, rotation, scale.
+//!
+//! An object's placement is a matrix, which need not be a product of one translation, rotation and
+//! scale. So each number is set without touching what the others say: a new turn is multiplied with
+//! what is left of the matrix when the old turn is taken out of it, and a shear stays.
+//!
+//! Angles are in degrees here: an object's are about X, Y and Z with `R = Rx Ry Rz`, a camera's are
+//! yaw, pitch and roll with `R = Ry Rx Rz`.
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::set_transform::{self, LightPlace};
+use super::transform::effective_pose;
+use super::{GesturePhase, Refusal};
+use crate::base::math::{self, Axis};
+use crate::scene::{Aim, CameraId, CameraMode, Command, LightId, ObjectId, Pose, Scene, View};
+
+/// The position of an object's origin.
+#[must_use]
+pub fn translation(placement: &DMat4) -> DVec3 {
+    placement.w_axis.truncate()
+}
+
+/// An object's turn as degrees about X, Y and Z, `R = Rx Ry Rz`.
+#[must_use]
+pub fn turn_degrees(placement: &DMat4) -> DVec3 {
+    let turn = turn(placement);
+    let [x, y, z] = [turn.x_axis, turn.y_axis, turn.z_axis];
+    // R = | cy cz,  -cy sz,   sy    |
+    //     |  ...      ...   -sx cy  |
+    //     |  ...      ...    cx cy  |
+    let about_y = libm::asin(z.x.clamp(-1.0, 1.0));
+    let (about_x, about_z) = if z.x.abs() < 1.0 - 1e-12 {
+        (libm::atan2(-z.y, z.z), libm::atan2(-y.x, x.x))
+    } else {
+        // X and Z turn about the same axis: all of it is given to X.
+        (libm::atan2(y.z, y.y), 0.0)
+    };
+    DVec3::new(about_x, about_y, about_z).map(f64::to_degrees)
+}
+
+/// How much longer an object's axes are than those of its model; X is negative where it is
+/// mirrored.
+#[must_use]
+pub fn scale(placement: &DMat4) -> DVec3 {
+    let m = DMat3::from_mat4(*placement);
+    let x = m.x_axis.length() * if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    DVec3::new(x, m.y_axis.length(), m.z_axis.length())
+}
+
+/// A camera's yaw, pitch and roll in degrees, `R = Ry Rx Rz`.
+#[must_use]
+pub fn camera_degrees(pose: &Pose) -> DVec3 {
+    let [x, y, z] = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
+    // R = |  ...     ...   sy cp |
+    //     | cp sr   cp cr   -sp  |
+    //     |  ...     ...   cy cp |
+    let pitch = libm::asin((-z.y).clamp(-1.0, 1.0));
+    let (yaw, roll) = if z.y.abs() < 1.0 - 1e-12 {
+        (libm::atan2(z.x, z.z), libm::atan2(x.y, y.y))
+    } else {
+        (libm::atan2(-x.z, x.x), 0.0)
+    };
+    DVec3::new(yaw, pitch, roll).map(f64::to_degrees)
+}
+
+/// Puts an object's origin at a place.
+///
+/// # Errors
+/// If the numbers are not finite, or the object is gone.
+pub fn object_translation(
+    scene: &Scene,
+    view: &View,
+    id: ObjectId,
+    to: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let m = placement(scene, id)?;
+    set_transform::object(scene, view, id, DMat4 { w_axis: to.extend(1.0), ..m }, phase)
+}
+
+/// Gives an object another turn, in degrees as [`turn_degrees`] shows it.
+///
+/// # Errors
+/// If the numbers are not finite, or the object is gone.
+pub fn object_turn(
+    scene: &Scene,
+    view: &View,
+    id: ObjectId,
+    degrees: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let m = placement(scene, id)?;
+    let [x, y, z] = turns(degrees)?;
+    let linear = x * y * z * turn(&m).transpose() * DMat3::from_mat4(m);
+    set_transform::object(scene, view, id, math::placed(linear, translation(&m)), phase)
+}
+
+/// Gives an object's axes other lengths, as [`scale`] shows them. Negative ones mirror.
+///
+/// # Errors
+/// If the object would become flat, a number is not finite, or the object is gone.
+pub fn object_scale(
+    scene: &Scene,
+    view: &View,
+    id: ObjectId,
+    to: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let m = placement(scene, id)?;
+    let (old, turn) = (scale(&m), turn(&m));
+    let linear = DMat3::from_mat4(m);
+    let column = |axis: Axis| {
+        let i = axis.index();
+        // A column of no length, from a file, takes its direction from the turn.
+        if old[i] == 0.0 { turn * axis.unit() * to[i] } else { linear.col(i) * (to[i] / old[i]) }
+    };
+    let [x, y, z] = Axis::ALL.map(column);
+    let linear = DMat3::from_cols(x, y, z);
+    if !linear.is_finite() {
+        return Err(Refusal::TooLarge);
+    }
+    if !math::has_full_rank(linear) {
+        return Err(Refusal::Flat);
+    }
+    set_transform::object(scene, view, id, math::placed(linear, translation(&m)), phase)
+}
+
+/// Gives an object a placement as a whole.
+///
+/// # Errors
+/// If it is not finite, or flat, or the object is gone.
+pub fn object(
+    scene: &Scene,
+    view: &View,
+    id: ObjectId,
+    to: DMat4,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    if to.is_finite() && !math::has_full_rank(DMat3::from_mat4(to)) {
+        return Err(Refusal::Flat);
+    }
+    set_transform::object(scene, view, id, to, phase)
+}
+
+/// Puts a camera's eye at a place. In analysis the camera goes on looking at its centre.
+///
+/// # Errors
+/// If the numbers are not finite, or the camera is gone.
+pub fn camera_eye(
+    scene: &Scene,
+    view: &View,
+    id: CameraId,
+    to: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let view = &View { camera: id, ..view.clone() };
+    let pose = effective_pose(scene, view);
+    let axes = match set_transform::analysis_centre(scene, view) {
+        Some(centre) => math::look_at(to, centre, pose.axes.y_axis, pose.axes),
+        None => pose.axes,
+    };
+    set_transform::pose(scene, id, Pose { eye: to, axes, ..pose }, phase)
+}
+
+/// Gives a camera yaw, pitch and roll, in degrees as [`camera_degrees`] shows them. In analysis it
+/// goes to where it sees its centre so, as far away as it was.
+///
+/// # Errors
+/// If the numbers are not finite, or the camera is gone.
+pub fn camera_turn(
+    scene: &Scene,
+    view: &View,
+    id: CameraId,
+    degrees: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let view = &View { camera: id, ..view.clone() };
+    let [pitch, yaw, roll] = turns(DVec3::new(degrees.y, degrees.x, degrees.z))?;
+    let axes = yaw * pitch * roll;
+    let pose = effective_pose(scene, view);
+    let eye = match set_transform::analysis_centre(scene, view) {
+        Some(centre) => centre + axes.z_axis * pose.eye.distance(centre),
+        None => pose.eye,
+    };
+    set_transform::pose(scene, id, Pose { eye, axes, ..pose }, phase)
+}
+
+/// Gives a camera a pose as a whole. It flies afterwards.
+///
+/// # Errors
+/// If the numbers are not finite, or the camera is gone.
+pub fn camera(
+    scene: &Scene,
+    id: CameraId,
+    eye: DVec3,
+    axes: DMat3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    set_transform::pose(scene, id, Pose { eye, axes, mode: CameraMode::Fly }, phase)
+}
+
+/// Puts a bulb, or a spot of its own, at a place.
+///
+/// # Errors
+/// If the light has no place of its own, or the numbers are not finite.
+pub fn light_position(
+    scene: &Scene,
+    id: LightId,
+    to: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
+    let place = match set_transform::place_of(light)? {
+        LightPlace::Aim(aim) => LightPlace::Aim(Aim { position: to, ..aim }),
+        LightPlace::Direction(_) | LightPlace::Position(_) => LightPlace::Position(to),
+    };
+    set_transform::light(scene, id, place, phase)
+}
+
+/// Gives a sun, or a spot of its own, a direction, of any length but 0.
+///
+/// # Errors
+/// If the light has no direction of its own, or the numbers give none.
+pub fn light_direction(
+    scene: &Scene,
+    id: LightId,
+    to: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
+    if to == DVec3::ZERO {
+        return Err(Refusal::NoDirection);
+    }
+    let place = match set_transform::place_of(light)? {
+        LightPlace::Aim(aim) => LightPlace::Aim(Aim { direction: to, ..aim }),
+        LightPlace::Direction(_) | LightPlace::Position(_) => LightPlace::Direction(to),
+    };
+    set_transform::light(scene, id, place, phase)
+}
+
+fn placement(scene: &Scene, id: ObjectId) -> Result<DMat4, Refusal> {
+    Ok(*scene.objects.get(id).ok_or(Refusal::Gone)?.placement.now())
+}
+
+/// The frame of a placement, without scale, shear and mirroring.
+fn turn(placement: &DMat4) -> DMat3 {
+    math::frame(placement.z_axis.truncate(), placement.y_axis.truncate(), DMat3::IDENTITY)
+}
+
+/// The turns about X, Y and Z by these degrees.
+fn turns(degrees: DVec3) -> Result<[DMat3; 3], Refusal> {
+    let [x, y, z] = Axis::ALL
+        .map(|axis| set_transform::turn(axis.unit(), (degrees[axis.index()] % 360.0).to_radians()));
+    Ok([x?, y?, z?])
+}

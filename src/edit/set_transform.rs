@@ -1,0 +1,185 @@
+//! Sets transforms: pushes the old one once a gesture, and keeps cameras in analysis aimed.
+//!
+//! A transformation pushes what the item was, once a gesture. A camera in analysis that looks at a
+//! moved object is aimed again in the same command; that pushes nothing on the camera.
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::{GesturePhase, Refusal};
+use crate::base::math;
+use crate::scene::{
+    Aim, CameraId, CameraMode, Command, CommandError, Item, Lens, Light, LightId, LightKind,
+    Object, ObjectId, Pose, Scene, SpotOwner, Tracked, View,
+};
+
+/// The selected object.
+pub(super) fn selected_object<'a>(
+    scene: &'a Scene,
+    view: &View,
+) -> Result<(ObjectId, &'a Object), Refusal> {
+    let id = view.object.ok_or(Refusal::NoObject)?;
+    Ok((id, scene.objects.get(id).ok_or(Refusal::NoObject)?))
+}
+
+/// The selected light.
+pub(super) fn selected_light<'a>(
+    scene: &'a Scene,
+    view: &View,
+) -> Result<(LightId, &'a Light), Refusal> {
+    let id = view.light.ok_or(Refusal::NoLight)?;
+    Ok((id, scene.lights.get(id).ok_or(Refusal::NoLight)?))
+}
+
+/// The object under `id` with another placement.
+pub(super) fn object(
+    scene: &Scene,
+    view: &View,
+    id: ObjectId,
+    placement: DMat4,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let before = scene.objects.get(id).ok_or(Refusal::Gone)?;
+    object_placed(scene, view, id, phase.apply(&before.placement, placement))
+}
+
+/// The object under `id` with another placement and stack, and the cameras that look at it.
+pub(super) fn object_placed(
+    scene: &Scene,
+    view: &View,
+    id: ObjectId,
+    placement: Tracked<DMat4>,
+) -> Result<Command, Refusal> {
+    if !placement.now().is_finite() {
+        return Err(Refusal::TooLarge);
+    }
+    let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
+    object.placement = placement;
+    let centre = object.centre(view.time);
+    let mut commands = vec![Command::Replace(Item::Object(id, Box::new(object)))];
+    for (camera_id, camera) in scene.cameras.iter() {
+        let pose = camera.pose.now();
+        if pose.mode_with(view.object) == (CameraMode::Analysis { target: id }) {
+            // Its own Y stays up: a camera that has orbited over the pole does not turn over.
+            let axes = math::look_at(pose.eye, centre, pose.axes.y_axis, pose.axes);
+            let mut camera = camera.clone();
+            camera.pose = camera.pose.replaced(Pose { axes, ..*camera.pose.now() });
+            commands.push(Command::Replace(Item::Camera(camera_id, Box::new(camera))));
+        }
+    }
+    Ok(if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) })
+}
+
+/// The camera under `id` with another pose, its axes made orthonormal.
+pub(super) fn pose(
+    scene: &Scene,
+    id: CameraId,
+    pose: Pose,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let lens = scene.cameras.get(id).ok_or(Refusal::Gone)?.lens;
+    pose_and_lens(scene, id, pose, lens, phase)
+}
+
+/// The camera under `id` with another pose, its axes made orthonormal, and another lens.
+pub(super) fn pose_and_lens(
+    scene: &Scene,
+    id: CameraId,
+    pose: Pose,
+    lens: Lens,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
+    if !(pose.eye.is_finite() && pose.axes.is_finite()) {
+        return Err(Refusal::TooLarge);
+    }
+    if lens != camera.lens && !lens.is_valid() {
+        return Err(CommandError::Lens.into());
+    }
+    let axes = math::frame(pose.axes.z_axis, pose.axes.y_axis, camera.pose.now().axes);
+    camera.pose = phase.apply(&camera.pose, Pose { axes, ..pose });
+    camera.lens = lens;
+    Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
+}
+
+/// The pose from which the selected object's centre is looked at, upright, in analysis.
+pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
+    Pose {
+        eye: pose.eye,
+        axes: math::look_at(pose.eye, centre, DVec3::Y, pose.axes),
+        mode: CameraMode::Analysis { target },
+    }
+}
+
+/// The centre of the selected camera in analysis; `None` in fly.
+pub(super) fn analysis_centre(scene: &Scene, view: &View) -> Option<DVec3> {
+    match scene.selected_camera(view).pose.now().mode_with(view.object) {
+        CameraMode::Fly => None,
+        CameraMode::Analysis { target } => Some(scene.objects.get(target)?.centre(view.time)),
+    }
+}
+
+/// What of a light can be placed.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum LightPlace {
+    Direction(DVec3),
+    Position(DVec3),
+    Aim(Aim),
+}
+
+/// What of the light can be placed, or why nothing can.
+pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
+    match &light.kind {
+        LightKind::Ambient => Err(Refusal::Ambient),
+        LightKind::Sun { direction } => Ok(LightPlace::Direction(*direction.now())),
+        LightKind::Bulb { position, .. } => Ok(LightPlace::Position(*position.now())),
+        LightKind::Spot { owner, .. } => match owner {
+            SpotOwner::Fixed(aim) => Ok(LightPlace::Aim(*aim.now())),
+            SpotOwner::SelectedObject | SpotOwner::Object(_) => Err(Refusal::SpotFollows("object")),
+            SpotOwner::SelectedCamera | SpotOwner::Camera(_) => Err(Refusal::SpotFollows("camera")),
+        },
+    }
+}
+
+/// The light under `id` at another place of its own kind.
+pub(super) fn light(
+    scene: &Scene,
+    id: LightId,
+    place: LightPlace,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let mut light = scene.lights.get(id).ok_or(Refusal::NoLight)?.clone();
+    // Checked before anything is placed: directions have length 1, places are finite.
+    let direction = |v: DVec3| math::unit(v).ok_or(Refusal::TooLarge);
+    let position = |v: DVec3| if v.is_finite() { Ok(v) } else { Err(Refusal::TooLarge) };
+    match (&mut light.kind, place) {
+        (LightKind::Sun { direction: placed }, LightPlace::Direction(to)) => {
+            *placed = phase.apply(placed, direction(to)?);
+        }
+        (LightKind::Bulb { position: placed, .. }, LightPlace::Position(to)) => {
+            *placed = phase.apply(placed, position(to)?);
+        }
+        (LightKind::Spot { owner: SpotOwner::Fixed(placed), .. }, LightPlace::Aim(to)) => {
+            let to = Aim { position: position(to.position)?, direction: direction(to.direction)? };
+            *placed = phase.apply(placed, to);
+        }
+        (LightKind::Ambient, _) => return Err(Refusal::Ambient),
+        (LightKind::Sun { .. }, _) => return Err(Refusal::SunMoved),
+        (LightKind::Bulb { .. }, _) => return Err(Refusal::BulbTurned),
+        (LightKind::Spot { .. }, _) => {
+            place_of(&light)?;
+            return Err(Refusal::Gone);
+        }
+    }
+    Ok(Command::Replace(Item::Light(id, Box::new(light))))
+}
+
+/// The turn by `radians` about `axis`, of any length; none about an axis of no length.
+///
+/// Whole turns are left to the sine: a remainder by the nearest number to 2 pi would lose 4e-11 at
+/// an angle of 1e6.
+pub(super) fn turn(axis: DVec3, radians: f64) -> Result<DMat3, Refusal> {
+    if !radians.is_finite() {
+        return Err(Refusal::TooLarge);
+    }
+    Ok(math::unit(axis).map_or(DMat3::IDENTITY, |axis| math::rotation(axis, radians)))
+}

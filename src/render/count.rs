@@ -1,0 +1,195 @@
+//! How many pixels each effect of a picture takes part in.
+//!
+//! A pixel with several samples counts for what most of them show.
+//!
+//! Counted afterwards, by looking once more at what is seen: so drawing counts nothing and pays nothing.
+
+use std::collections::BTreeMap;
+
+use fearless_simd::Level;
+use rayon::prelude::*;
+
+use crate::accuracy::LightAt;
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::Form;
+use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::plan::tile::TilePlan;
+use crate::render::plan::uses::{Effect, EffectUse};
+use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::lines::LineNumber;
+use crate::render::raster::tile::Visibility;
+use crate::render::raster::visibility_buffer::{Visible, seen};
+use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
+use crate::render::screen::coverage::{PixelBox, doubled_area};
+use crate::render::screen::tiles::tiles_of;
+use crate::render::shading::painter::bounds_of;
+use crate::scene::ItemId;
+
+/// The triangle that a word shows.
+fn triangle(word: u64) -> Option<u32> {
+    match seen(word) {
+        Visible::Triangle(number) => Some(number),
+        Visible::Background | Visible::Line(_) => None,
+    }
+}
+
+/// Pixels by effect and thing, and what the worst of them may be off by.
+#[derive(Debug, Default)]
+struct Counts {
+    pixels: BTreeMap<(Effect, ItemId), u64>,
+    off_by: f64,
+}
+
+impl Counts {
+    fn add(&mut self, effect: Effect, item: ItemId, pixels: u64) {
+        *self.pixels.entry((effect, item)).or_default() += pixels;
+    }
+
+    fn with(mut self, other: Self) -> Self {
+        for ((effect, item), pixels) in other.pixels {
+            self.add(effect, item, pixels);
+        }
+        Self { off_by: self.off_by.max(other.off_by), ..self }
+    }
+}
+
+impl FramePlan {
+    /// See [`Renderer::count`](crate::render::Renderer::count).
+    pub(crate) fn count(
+        &self,
+        level: Level,
+        frame: &ScreenGeometry,
+        uses: &mut [EffectUse],
+    ) -> f64 {
+        let [columns, rows] = tiles_of(self.size);
+        let tiles = usize::try_from(columns * rows).expect("not negative");
+        let counts = (0..tiles)
+            .into_par_iter()
+            .map_init(
+                || (Visibility::default(), TilePlan::default()),
+                |(visibility, tile_plan), tile| {
+                    let bounds = bounds_of(tile, self.size);
+                    visibility.draw(level, self, frame, (tile, bounds));
+                    tile_plan.begin(self, bounds, || visibility.depths(level));
+                    self.count_tile(level, frame, (visibility, bounds), tile_plan)
+                },
+            )
+            .reduce(Counts::default, Counts::with);
+        for one in uses.iter_mut().filter(|one| one.state.is_on()) {
+            let Some(thing) = &one.on else { continue };
+            one.pixels = Some(counts.pixels.get(&(one.effect, thing.item)).copied().unwrap_or(0));
+        }
+        counts.off_by
+    }
+
+    fn count_tile(
+        &self,
+        level: Level,
+        frame: &ScreenGeometry,
+        (visibility, bounds): (&mut Visibility, PixelBox),
+        tile: &mut TilePlan,
+    ) -> Counts {
+        let mut counts = Counts::default();
+        // By draw and pipeline.
+        let mut surfaces = BTreeMap::<(u32, u32), u64>::new();
+        let mut last = None;
+        let rows = bounds.top..bounds.bottom;
+        for (y, x) in rows.flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x))) {
+            // A surface that takes part in pixels of others counts for what it may be off by.
+            let (samples, count) = visibility.samples(level, x, y);
+            for number in samples[1..count].iter().filter_map(|word| triangle(*word)) {
+                let (draw, start) = frame.draw_of(number);
+                let pipeline = self.draws[draw as usize].pipeline_of(number - start.number);
+                surfaces.entry((draw, pipeline)).or_default();
+            }
+            match seen(visibility.word(level, x, y)) {
+                Visible::Background => {}
+                Visible::Line(line) => self.count_line(frame, line, &mut counts),
+                Visible::Triangle(number) => {
+                    let (draw, start) = frame.draw_of(number);
+                    let pipeline = self.draws[draw as usize].pipeline_of(number - start.number);
+                    *surfaces.entry((draw, pipeline)).or_default() += 1;
+                    let same = last.filter(|(other, _)| *other == number);
+                    let back = same.map_or_else(
+                        || self.is_back(frame, draw, number - start.number),
+                        |(_, back)| back,
+                    );
+                    last = Some((number, back));
+                    if back {
+                        counts.add(Effect::BackFaces, self.draws[draw as usize].item, 1);
+                    }
+                }
+            }
+        }
+        for ((draw, pipeline), pixels) in surfaces {
+            let item = self.draws[draw as usize].item;
+            counts.add(crate::render::plan::features::presence(item), item, pixels);
+            if let Pipeline::Shaded(shaded) = &self.pipelines[pipeline as usize] {
+                self.count_surface(item, pipeline, shaded, pixels, tile, &mut counts);
+            }
+        }
+        counts
+    }
+
+    /// Whether the observer sees the back of a triangle.
+    fn is_back(&self, frame: &ScreenGeometry, draw: u32, number: u32) -> bool {
+        let own = &self.draws[draw as usize];
+        let vertices = frame.corners_of(self, draw);
+        let order = own.model.mesh.draw_order();
+        let ids = order.vertices_of(number);
+        let corners = ids.map(|vertex| vertices[vertex as usize]);
+        let front = if corners.iter().all(ScreenVertex::is_inside) {
+            doubled_area(corners.map(|corner| corner.at())) < 0
+        } else {
+            let screen = Screen::new(own.clip_from_object, self.size);
+            faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
+        };
+        front == own.mirrored
+    }
+
+    /// Drawn normals of faces and of vertices are not told apart: each is given both.
+    fn count_line(&self, frame: &ScreenGeometry, line: LineNumber, counts: &mut Counts) {
+        let Some((draw, _)) = frame.line_seen(self, line) else { return };
+        let draw = &self.draws[draw as usize];
+        if frame.is_edge(line) {
+            return counts.add(Effect::Edges, draw.item, 1);
+        }
+        if draw.lines.face_normals.is_some() {
+            counts.add(Effect::FaceNormals, draw.item, 1);
+        }
+        if draw.lines.vertex_normals.is_some() {
+            counts.add(Effect::VertexNormals, draw.item, 1);
+        }
+    }
+
+    fn count_surface(
+        &self,
+        item: ItemId,
+        pipeline: u32,
+        shaded: &Shaded,
+        pixels: u64,
+        tile: &mut TilePlan,
+        counts: &mut Counts,
+    ) {
+        let light = tile.light(self, pipeline, shaded);
+        let stages: Vec<&Stage> = match light.kept {
+            None => light.stages.iter().collect(),
+            Some(kept) => kept.iter().map(|place| &light.stages[*place as usize]).collect(),
+        };
+        let mirrors = stages.iter().any(|stage| stage.highlight != Form::Plain);
+        for stage in stages {
+            counts.add(Effect::Light(self.lights[stage.lamp as usize]), item, pixels);
+        }
+        let features = [
+            (Effect::Highlights, mirrors),
+            (Effect::Normals, self.light_at == LightAt::Pixel && light.places),
+            (Effect::Texture, shaded.texture.is_some()),
+            (Effect::AlphaTest, shaded.cutout.is_some()),
+            (Effect::VertexColors, shaded.vertex_colors),
+        ];
+        for (effect, _) in features.into_iter().filter(|(_, there)| *there) {
+            counts.add(effect, item, pixels);
+        }
+        counts.off_by = counts.off_by.max(light.dropped + shaded.cut_off);
+    }
+}

@@ -1,0 +1,414 @@
+//! What of a picture another plan changes, and so which tiles have to be painted again.
+//!
+//! Plans alone are compared, no pixel is touched. A tile shows what it showed as long as everything
+//! that reaches into it is drawn as it was: so the tiles to paint are those in the old and in the new
+//! reach of every draw that changed. A reach is a box of pixels, at times too large, never too small.
+//!
+//! Numbers are compared by their bits. 0 and -0 are equal, but one divided by them is not.
+
+use std::collections::BTreeMap;
+
+use crate::base::Shared;
+use crate::base::image::Size;
+use crate::base::math::same_bits;
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::{Draw, Lines, Pipeline, Shaded};
+use crate::render::lights::{PhongMaterial, ViewLight};
+use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::tiles::{TILE, tiles_of};
+use crate::scene::ItemId;
+
+/// What is painted again, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Changes {
+    pub(crate) tiles: Tiles,
+    /// Whether the triangles and lines on the screen are others, or are numbered otherwise.
+    pub(crate) geometry: bool,
+    cause: Cause,
+}
+
+/// Why tiles are painted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// There is no finished picture to begin with.
+    First,
+    /// The picture has another size.
+    Size,
+    /// Nothing is where it was on the screen: another camera, lens or projection.
+    Camera,
+    /// The background has another colour.
+    Background,
+    /// How exactly pictures are drawn.
+    Settings,
+    /// What is drawn comes in another order, which decides between equal depths.
+    Order,
+    /// These are drawn otherwise than before; none where the picture stays.
+    Items(Vec<(ItemId, Change)>),
+}
+
+/// How something is drawn otherwise than before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// It was not drawn before.
+    Came,
+    /// It is no longer drawn.
+    Went,
+    /// It is elsewhere.
+    Moved,
+    /// More, less or other polygons and lines of it are drawn.
+    Shape,
+    /// Its colours, its texture or the light on it are others.
+    Look,
+}
+
+impl Changes {
+    /// Everything.
+    pub(crate) fn all(cause: Cause, size: Size) -> Self {
+        Self { tiles: Tiles::all(size), geometry: true, cause }
+    }
+
+    /// What changes from one plan to another.
+    pub(crate) fn between(before: &FramePlan, after: &FramePlan) -> Self {
+        if let Some(cause) = whole(before, after) {
+            return Self::all(cause, after.size);
+        }
+        let mut old: BTreeMap<ItemId, usize> = BTreeMap::new();
+        for (i, draw) in before.draws.iter().enumerate() {
+            old.insert(draw.item, i);
+        }
+        let mut compared = Compared { before, after, pipelines: BTreeMap::new() };
+        let mut tiles = Tiles::none(after.size);
+        let mut items = Vec::new();
+        let mut geometry = before.draws.len() != after.draws.len();
+        let mut next = 0;
+        for draw in &after.draws {
+            let Some(at) = old.remove(&draw.item) else {
+                items.push((draw.item, Change::Came));
+                tiles.add(reach(draw, after));
+                geometry = true;
+                continue;
+            };
+            if at < next {
+                return Self::all(Cause::Order, after.size);
+            }
+            next = at + 1;
+            let earlier = &before.draws[at];
+            let Some(change) = compared.change(earlier, draw) else { continue };
+            items.push((draw.item, change));
+            tiles.add(reach(earlier, before));
+            tiles.add(reach(draw, after));
+            geometry |= change != Change::Look;
+        }
+        for (item, at) in old {
+            items.push((item, Change::Went));
+            tiles.add(reach(&before.draws[at], before));
+            geometry = true;
+        }
+        Self { tiles, geometry, cause: Cause::Items(items) }
+    }
+
+    /// How many tiles of 64 x 64 pixels are painted.
+    #[must_use]
+    pub fn tiles(&self) -> usize {
+        self.tiles.count()
+    }
+
+    /// How many tiles the picture has.
+    #[must_use]
+    pub const fn tiles_in_all(&self) -> usize {
+        self.tiles.painted.len()
+    }
+
+    /// Whether the picture stays as it is.
+    #[must_use]
+    pub fn is_nothing(&self) -> bool {
+        self.tiles() == 0
+    }
+
+    /// Why.
+    #[must_use]
+    pub const fn cause(&self) -> &Cause {
+        &self.cause
+    }
+}
+
+/// Why everything has to be painted, where it has to.
+fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
+    // What is not here is compared draw by draw, or shows nowhere.
+    let FramePlan {
+        size,
+        background,
+        eye,
+        arithmetic,
+        light_at,
+        samples,
+        lit_by_sample,
+        shift: _,
+        filter,
+        variants,
+        view_from_world,
+        clip_from_view,
+        line_width,
+        lamps: _,
+        draws: _,
+        pipelines: _,
+        leave_out,
+        rules,
+        lights: _,
+    } = after;
+    let moved = *eye != before.eye
+        || !same_bits(view_from_world, &before.view_from_world)
+        || !same_bits(clip_from_view, &before.clip_from_view);
+    let settings = *arithmetic != before.arithmetic
+        || *light_at != before.light_at
+        || *samples != before.samples
+        || *lit_by_sample != before.lit_by_sample
+        || *filter != before.filter
+        || *variants != before.variants
+        || *line_width != before.line_width
+        || *leave_out != before.leave_out
+        || *rules != before.rules;
+    match () {
+        () if *size != before.size => Some(Cause::Size),
+        () if moved => Some(Cause::Camera),
+        () if settings => Some(Cause::Settings),
+        () if *background != before.background => Some(Cause::Background),
+        () => None,
+    }
+}
+
+/// Two plans whose draws are compared.
+struct Compared<'a> {
+    before: &'a FramePlan,
+    after: &'a FramePlan,
+    /// Which pairs of pipelines were found alike: parts share pipelines.
+    pipelines: BTreeMap<(u32, u32), bool>,
+}
+
+impl Compared<'_> {
+    fn change(&mut self, before: &Draw, after: &Draw) -> Option<Change> {
+        let Draw {
+            item: _,
+            model,
+            clip_from_object,
+            view_from_object,
+            view_from_normal,
+            mirrored,
+            back,
+            normals,
+            normal_source,
+            part_pipelines,
+            uniform: _,
+            polygons,
+            filled,
+            lines,
+        } = after;
+        let moved = !same_bits(clip_from_object, &before.clip_from_object)
+            || !same_bits(view_from_object, &before.view_from_object)
+            || !alike(&view_from_normal.to_cols_array(), &before.view_from_normal.to_cols_array())
+            || *mirrored != before.mirrored;
+        let shape = !Shared::same(model, &before.model)
+            || *back != before.back
+            || *polygons != before.polygons
+            || *filled != before.filled
+            || !alike_lines(lines, &before.lines)
+            || (lines.vertex_normals.is_some() && *normal_source != before.normal_source)
+            || self.kinds(part_pipelines, &before.part_pipelines);
+        let look = *normals != before.normals
+            || *normal_source != before.normal_source
+            || !self.alike_parts(&before.part_pipelines, part_pipelines);
+        match () {
+            () if moved => Some(Change::Moved),
+            () if shape => Some(Change::Shape),
+            () if look => Some(Change::Look),
+            () => None,
+        }
+    }
+
+    /// Whether other parts are drawn, or are drawn with holes.
+    fn kinds(&self, after: &[Option<u32>], before: &[Option<u32>]) -> bool {
+        let kinds = |plan: &FramePlan, parts: &[Option<u32>]| -> Vec<Option<bool>> {
+            let cutout = |pipeline: u32| plan.pipelines[pipeline as usize].is_cutout();
+            parts.iter().map(|pipeline| pipeline.map(cutout)).collect()
+        };
+        kinds(self.after, after) != kinds(self.before, before)
+    }
+
+    fn alike_parts(&mut self, before: &[Option<u32>], after: &[Option<u32>]) -> bool {
+        before.len() == after.len()
+            && before.iter().zip(after).all(|pair| match pair {
+                (Some(before), Some(after)) => self.alike_pipelines(*before, *after),
+                (None, None) => true,
+                _ => false,
+            })
+    }
+
+    fn alike_pipelines(&mut self, before: u32, after: u32) -> bool {
+        if let Some(alike) = self.pipelines.get(&(before, after)) {
+            return *alike;
+        }
+        let pair = (&self.before.pipelines[before as usize], &self.after.pipelines[after as usize]);
+        let alike = match pair {
+            (Pipeline::Flat(before), Pipeline::Flat(after)) => before == after,
+            (Pipeline::Shaded(before), Pipeline::Shaded(after)) => {
+                self.alike_surfaces(before, after)
+            }
+            _ => false,
+        };
+        self.pipelines.insert((before, after), alike);
+        alike
+    }
+
+    fn alike_surfaces(&self, before: &Shaded, after: &Shaded) -> bool {
+        let Shaded {
+            matter,
+            light,
+            places: _,
+            tiled,
+            dropped,
+            cut_off: _,
+            vertex_colors,
+            tint,
+            texture,
+            cutout,
+        } = after;
+        let textures = match (texture, &before.texture) {
+            (Some(after), Some(before)) => Shared::same(after, before),
+            (None, None) => true,
+            _ => false,
+        };
+        let stages = match (light, &before.light) {
+            (Some(after), Some(before)) => {
+                after.len() == before.len()
+                    && after.iter().zip(before).all(|(after, before)| {
+                        after.effect.name == before.effect.name
+                            && after.highlight == before.highlight
+                            && alike_lamps(
+                                &self.after.lamps[after.lamp as usize],
+                                &self.before.lamps[before.lamp as usize],
+                            )
+                    })
+            }
+            (None, None) => true,
+            _ => false,
+        };
+        textures
+            && stages
+            && (*tiled, dropped.to_bits()) == (before.tiled, before.dropped.to_bits())
+            && alike_matter(matter, &before.matter)
+            && *vertex_colors == before.vertex_colors
+            && alike(tint, &before.tint)
+            && alike(cutout.as_slice(), before.cutout.as_slice())
+    }
+}
+
+/// Whether all numbers have the same bits.
+pub(crate) fn alike(a: &[f64], b: &[f64]) -> bool {
+    a.iter().map(|a| a.to_bits()).eq(b.iter().map(|b| b.to_bits()))
+}
+
+fn alike_lines(a: &Lines, b: &Lines) -> bool {
+    let Lines { edges, face_normals, vertex_normals, color } = a;
+    *edges == b.edges
+        && *color == b.color
+        && alike(face_normals.as_slice(), b.face_normals.as_slice())
+        && alike(vertex_normals.as_slice(), b.vertex_normals.as_slice())
+}
+
+fn alike_lamps(a: &ViewLight, b: &ViewLight) -> bool {
+    let ViewLight { color, position, direction, attenuation, cos_half_aperture, exponent } = a;
+    alike(color, &b.color)
+        && alike(position, &b.position)
+        && alike(direction, &b.direction)
+        && alike(attenuation, &b.attenuation)
+        && alike(&[*cos_half_aperture, *exponent], &[b.cos_half_aperture, b.exponent])
+}
+
+fn alike_matter(a: &PhongMaterial, b: &PhongMaterial) -> bool {
+    let PhongMaterial { ambient, diffuse, specular, exponent, floor, least_cosine } = a;
+    alike(ambient, &b.ambient)
+        && alike(diffuse, &b.diffuse)
+        && alike(specular, &b.specular)
+        && alike(&[*exponent, *floor, *least_cosine], &[b.exponent, b.floor, b.least_cosine])
+}
+
+/// The pixels that a draw may take.
+///
+/// The projection of what lies before the near plane is within the projection of any box about it. Where
+/// the box reaches to the near plane, and where normals stand out of it, that is the whole picture.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "brought into the picture, which is small"
+)]
+fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
+    let [right, bottom] = [plan.size.width, plan.size.height]
+        .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+    let all = PixelBox { left: 0, top: 0, right, bottom };
+    let Lines { edges: _, face_normals, vertex_normals, color: _ } = draw.lines;
+    let Some(bounds) = draw.model.mesh.bounds() else { return all };
+    if face_normals.is_some() || vertex_normals.is_some() {
+        return all;
+    }
+    let (width, height) = (plan.size.width as f64, plan.size.height as f64);
+    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for corner in bounds.corners() {
+        let clip = draw.clip_from_object * corner.extend(1.0);
+        let before_the_near_plane = clip.w > 0.0 && clip.z <= clip.w;
+        let at = [(clip.x / clip.w + 1.0) * width / 2.0, (1.0 - clip.y / clip.w) * height / 2.0];
+        if !before_the_near_plane || !at.iter().all(|at| at.is_finite()) {
+            return all;
+        }
+        for axis in 0..2 {
+            (low[axis], high[axis]) = (low[axis].min(at[axis]), high[axis].max(at[axis]));
+        }
+    }
+    // A pixel for rounding and snapping, and what a line is wider than the edge that it is drawn along.
+    let margin = f64::from(1 + plan.line_width);
+    let [left, top] = low.map(|at| (at - margin).floor().clamp(-1e6, 1e6) as i32);
+    let [right, bottom] = high.map(|at| (at + margin).ceil().clamp(-1e6, 1e6) as i32);
+    PixelBox { left, top, right, bottom }.intersection(all)
+}
+
+/// Some of the tiles of a picture, along rows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Tiles {
+    columns: i32,
+    painted: Vec<bool>,
+}
+
+impl Tiles {
+    fn all(size: Size) -> Self {
+        let [columns, rows] = tiles_of(size);
+        let count = usize::try_from(columns * rows).expect("not negative");
+        Self { columns, painted: vec![true; count] }
+    }
+
+    fn none(size: Size) -> Self {
+        let mut tiles = Self::all(size);
+        tiles.painted.fill(false);
+        tiles
+    }
+
+    /// Adds the tiles that pixels of the picture lie in.
+    fn add(&mut self, pixels: PixelBox) {
+        if pixels.is_empty() {
+            return;
+        }
+        for row in pixels.top / TILE..=(pixels.bottom - 1) / TILE {
+            for column in pixels.left / TILE..=(pixels.right - 1) / TILE {
+                let tile = usize::try_from(row * self.columns + column).expect("not negative");
+                self.painted[tile] = true;
+            }
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.painted.iter().filter(|painted| **painted).count()
+    }
+
+    /// Whether a tile is among them.
+    pub(crate) fn contains(&self, tile: usize) -> bool {
+        self.painted[tile]
+    }
+}

@@ -1,0 +1,295 @@
+//! What is drawn, and by which stages.
+
+use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use glam::{DMat3, DMat4};
+
+use super::FramePlan;
+use crate::accuracy::LightAt;
+use crate::base::{Shared, color::Color};
+use crate::render::lights;
+use crate::render::lights::{LightRow, PhongMaterial};
+use crate::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
+
+/// One mesh of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Draw {
+    /// Whose it is.
+    pub(crate) item: ItemId,
+    /// Its shape.
+    pub(crate) model: Shared<Model>,
+    pub(crate) clip_from_object: DMat4,
+    pub(crate) view_from_object: DMat4,
+    /// What normals are multiplied by: sign(det) cof.
+    pub(crate) view_from_normal: DMat3,
+    /// Whether the placement mirrors: then fronts run clockwise.
+    pub(crate) mirrored: bool,
+    pub(crate) back: Back,
+    pub(crate) normals: Normals,
+    pub(crate) normal_source: NormalSource,
+    /// The pipeline of each part; `None` for parts that are not drawn.
+    pub(crate) part_pipelines: Vec<Option<u32>>,
+    /// The pipeline of all parts, where they share one.
+    pub(crate) uniform: Option<u32>,
+    /// The polygons that are drawn, where not all are.
+    pub(crate) polygons: Option<BTreeSet<u32>>,
+    pub(crate) filled: bool,
+    pub(crate) lines: Lines,
+}
+
+impl Draw {
+    /// Whether a polygon is shown at all: its part is, and it is among those chosen.
+    pub(crate) fn shows(&self, polygon: u32) -> bool {
+        let part = self.model.mesh.polygon_parts()[polygon as usize];
+        self.part_pipelines[part as usize].is_some()
+            && self.polygons.as_ref().is_none_or(|some| some.contains(&polygon))
+    }
+
+    /// Computes everything of the mesh that drawing reads, so that nothing is computed while threads
+    /// draw.
+    pub(crate) fn prepare(&self, plan: &FramePlan) {
+        let pipelines = self.part_pipelines.iter().flatten();
+        let shaded: Vec<&Shaded> = pipelines
+            .filter_map(|pipeline| match &plan.pipelines[*pipeline as usize] {
+                Pipeline::Shaded(shaded) => Some(shaded),
+                Pipeline::Flat(_) => None,
+            })
+            .collect();
+        let lit = shaded.iter().any(|shaded| shaded.light.is_some());
+        let flat = lit && plan.light_at == LightAt::Face;
+        let by_face = lit && self.normals == Normals::Face;
+        let placed = |shaded: &&Shaded| shaded.texture.is_some() || shaded.vertex_colors;
+        let by_corner = by_face || shaded.iter().any(placed);
+        let Lines { edges, face_normals, .. } = self.lines;
+        for (what, needed) in [
+            (Derived::DrawOrder, true),
+            (Derived::PolygonOf, true),
+            (Derived::EdgeOrder, edges),
+            (Derived::Facets, flat),
+            (Derived::PolygonNormals, by_face || face_normals.is_some()),
+            (Derived::Triangles, by_corner),
+            (Derived::Corners, by_corner || edges),
+        ] {
+            if needed {
+                self.model.mesh.prepare(what);
+            }
+        }
+    }
+
+    /// The pipeline of a triangle that is drawn.
+    #[inline(always)]
+    pub(crate) fn pipeline_of(&self, triangle: u32) -> u32 {
+        self.uniform.unwrap_or_else(|| {
+            let mesh = &self.model.mesh;
+            let polygon = mesh.polygon_of(triangle);
+            let part = mesh.polygon_parts()[polygon as usize];
+            self.part_pipelines[part as usize].unwrap_or(0)
+        })
+    }
+}
+
+/// What becomes of faces that are turned away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Back {
+    /// They are not drawn.
+    Left,
+    /// They are red, and not lit.
+    Red,
+    /// They are lit with their normals turned.
+    Lit,
+}
+
+/// The lines that a draw has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lines {
+    /// Whether the outlines of polygons are drawn.
+    pub(crate) edges: bool,
+    /// How long the normals of faces are drawn, in object space.
+    pub(crate) face_normals: Option<f64>,
+    /// How long the normals of vertices are drawn, in object space.
+    pub(crate) vertex_normals: Option<f64>,
+    /// Their colour.
+    pub(crate) color: Color,
+}
+
+/// The stages of one way of drawing a surface, in order.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Pipeline {
+    /// One colour, whatever the light.
+    Flat(Color),
+    /// Texture, tint and vertex colours, and light where it is lit.
+    Shaded(Shaded),
+}
+
+impl Pipeline {
+    /// See [`FramePlan::keys`](super::FramePlan::keys).
+    pub(crate) fn key(&self) -> String {
+        let Self::Shaded(shaded) = self else { return "flat".to_owned() };
+        let mut key = Vec::new();
+        let light = shaded.light.as_deref();
+        key.extend(light.is_none().then(|| "unlit".to_owned()));
+        key.extend(shaded.places.then(|| "places".to_owned()));
+        key.extend(light.unwrap_or_default().iter().map(|stage| match stage.highlight {
+            Form::Plain => stage.effect.name.to_owned(),
+            Form::Reflection => format!("{} R.V", stage.effect.name),
+            Form::HalfVector => format!("{} N.H", stage.effect.name),
+        }));
+        key.extend(shaded.texture.as_ref().map(|_| "texture".to_owned()));
+        key.extend(shaded.cutout.map(|_| "holes".to_owned()));
+        key.extend(shaded.vertex_colors.then(|| "vertex colours".to_owned()));
+        key.join(" + ")
+    }
+
+    /// A number that equal pipelines share, and different ones hardly ever.
+    pub(crate) fn fingerprint(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        match self {
+            Self::Flat(color) => color.0.hash(&mut hasher),
+            Self::Shaded(shaded) => shaded.hash_into(&mut hasher),
+        }
+        hasher.finish()
+    }
+
+    /// Whether a texture decides where it is drawn.
+    pub(crate) const fn is_cutout(&self) -> bool {
+        matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
+    }
+}
+
+/// See [`Pipeline::Shaded`].
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Shaded {
+    /// What reflects.
+    pub(crate) matter: PhongMaterial,
+    /// The lights that are evaluated; `None` where the surface is not lit.
+    pub(crate) light: Option<Vec<Stage>>,
+    /// Whether any of them looks at places and normals.
+    pub(crate) places: bool,
+    /// Whether what a pixel shows lies where its depth says: nothing of it is cut by the planes of the
+    /// view. Then lights may be left out tile by tile.
+    pub(crate) tiled: bool,
+    /// Lights that were left out add less than this, in steps of a byte.
+    pub(crate) dropped: f64,
+    /// Highlights that are cut off add less than this, in steps of a byte.
+    pub(crate) cut_off: f64,
+    /// Whether vertex colours are multiplied in.
+    pub(crate) vertex_colors: bool,
+    /// The tint as factors.
+    pub(crate) tint: [f64; 3],
+    /// The texture.
+    pub(crate) texture: Option<Shared<Texture>>,
+    /// The material's opacity where the texture's alpha may bring it below one half.
+    pub(crate) cutout: Option<f64>,
+}
+
+impl Shaded {
+    /// Hashes what equal surfaces have in common; of equal textures, where they came from.
+    fn hash_into(&self, hasher: &mut DefaultHasher) {
+        let Self {
+            matter,
+            light,
+            places,
+            tiled,
+            dropped,
+            cut_off,
+            vertex_colors,
+            tint,
+            texture,
+            cutout,
+        } = self;
+        let PhongMaterial { ambient, diffuse, specular, exponent, floor, least_cosine } = matter;
+        for color in [ambient, diffuse, specular, tint] {
+            color.map(bits).hash(hasher);
+        }
+        [*exponent, *floor, *least_cosine, *dropped, *cut_off].map(bits).hash(hasher);
+        (*places, *tiled, *vertex_colors, cutout.map(bits)).hash(hasher);
+        for stage in light.iter().flatten() {
+            (stage.effect.name, stage.lamp).hash(hasher);
+        }
+        texture.as_ref().map(|texture| &texture.source).hash(hasher);
+    }
+}
+
+/// The bits of a number, the same for 0 and -0, which are equal.
+fn bits(x: f64) -> u64 {
+    (x + 0.0).to_bits()
+}
+
+/// One light on one surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stage {
+    pub(crate) effect: &'static LightRow,
+    /// The place of its light among the lamps of the plan.
+    pub(crate) lamp: u32,
+    pub(crate) highlight: Form,
+}
+
+impl Stage {
+    /// The effect compiled for the stage's highlight.
+    pub(crate) const fn variant(&self) -> &'static lights::Variant {
+        match self.highlight {
+            Form::Plain => &self.effect.plain,
+            Form::Reflection => &self.effect.reflection,
+            Form::HalfVector => &self.effect.half_vector,
+        }
+    }
+}
+
+impl PartialEq for Stage {
+    fn eq(&self, other: &Self) -> bool {
+        let key = |stage: &Self| (stage.effect.name, stage.lamp, stage.highlight);
+        key(self) == key(other)
+    }
+}
+
+/// The highlight of a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// None: Ks is 0.
+    Plain,
+    /// (R.V)^Ns
+    Reflection,
+    /// (N.H)^Ns
+    HalfVector,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shaded(change: impl FnOnce(&mut Shaded)) -> u64 {
+        let mut shaded = Shaded {
+            matter: PhongMaterial::default(),
+            light: Some(Vec::new()),
+            places: false,
+            tiled: false,
+            dropped: 0.0,
+            cut_off: 0.0,
+            vertex_colors: false,
+            tint: [1.0; 3],
+            texture: None,
+            cutout: None,
+        };
+        change(&mut shaded);
+        Pipeline::Shaded(shaded).fingerprint()
+    }
+
+    #[test]
+    fn equal_pipelines_share_a_fingerprint_and_others_are_told_apart() {
+        let plain = shaded(|_| {});
+        assert_eq!(shaded(|shaded| shaded.dropped = -0.0), plain, "0 and -0 are equal");
+        let others = [
+            shaded(|shaded| shaded.matter.diffuse[1] = 0.5),
+            shaded(|shaded| shaded.matter.exponent = 9.0),
+            shaded(|shaded| shaded.matter.floor = -3.0),
+            shaded(|shaded| shaded.tint[2] = 0.5),
+            shaded(|shaded| shaded.cutout = Some(1.0)),
+            shaded(|shaded| shaded.vertex_colors = true),
+            Pipeline::Flat(Color::WHITE).fingerprint(),
+            Pipeline::Flat(Color::BACK_FACE).fingerprint(),
+        ];
+        let all: BTreeSet<u64> = others.into_iter().chain([plain]).collect();
+        assert_eq!(all.len(), 9);
+    }
+}

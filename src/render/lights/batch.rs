@@ -1,0 +1,100 @@
+//! Positions on surfaces on their way through the shaders of lights: an array for each quantity.
+
+use crate::render::simd::{BATCH, Lanes, Number, Vec3};
+
+/// Positions on surfaces on their way through the effects: an array for each quantity.
+#[derive(Clone, Debug)]
+pub struct Batch<T> {
+    /// How many places there are; what lies behind them is of no meaning.
+    pub len: usize,
+    /// Where they are, in view space.
+    pub position: [[T; BATCH]; 3],
+    /// Their normals: of length 1, or zero where there is none.
+    pub normal: [[T; BATCH]; 3],
+    /// The directions to the observer, of length 1: V.
+    pub to_eye: [[T; BATCH]; 3],
+    /// Light that takes the colour of the surface: ambient and diffuse.
+    pub diffuse: [[T; BATCH]; 3],
+    /// Light that keeps its own colour.
+    pub specular: [[T; BATCH]; 3],
+}
+
+impl<T: Copy + Default> Default for Batch<T> {
+    fn default() -> Self {
+        let zero = [[T::default(); BATCH]; 3];
+        Self { len: 0, position: zero, normal: zero, to_eye: zero, diffuse: zero, specular: zero }
+    }
+}
+
+impl<T: Copy + Default> Batch<T> {
+    /// Takes all light away.
+    pub(crate) fn darken(&mut self) {
+        for row in self.diffuse.iter_mut().chain(&mut self.specular) {
+            row.fill(T::default());
+        }
+    }
+}
+
+impl<T: Number> Batch<T> {
+    /// Puts some places in, from `at` on.
+    #[inline(always)]
+    pub(crate) fn put<M: Lanes<Number = T>>(&mut self, lanes: M, sample: Sample<M::R>, at: usize) {
+        store(lanes, sample.position, &mut self.position, at);
+        store(lanes, sample.normal, &mut self.normal, at);
+        store(lanes, sample.to_eye, &mut self.to_eye, at);
+    }
+}
+
+/// A place on a surface, or several.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<R> {
+    /// See [`Batch::position`].
+    pub position: Vec3<R>,
+    /// See [`Batch::normal`].
+    pub normal: Vec3<R>,
+    /// See [`Batch::to_eye`].
+    pub to_eye: Vec3<R>,
+}
+
+/// What the observer gets from a place by one effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Reflected<R> {
+    /// See [`Batch::diffuse`].
+    pub diffuse: Vec3<R>,
+    /// See [`Batch::specular`]; `None` where there is nothing of it.
+    pub specular: Option<Vec3<R>>,
+}
+
+/// Three numbers, the same for all lanes.
+#[inline(always)]
+pub(crate) fn set<M: Lanes>(lanes: M, numbers: [M::Number; 3]) -> Vec3<M::R> {
+    Vec3([lanes.set(numbers[0]), lanes.set(numbers[1]), lanes.set(numbers[2])])
+}
+
+/// Three rows of numbers.
+pub(crate) type Rows<T> = [[T; BATCH]; 3];
+
+/// Takes from three rows.
+#[inline(always)]
+pub(crate) fn load<M: Lanes>(lanes: M, [x, y, z]: &Rows<M::Number>, at: usize) -> Vec3<M::R> {
+    Vec3([lanes.load(x, at), lanes.load(y, at), lanes.load(z, at)])
+}
+
+/// Puts into three rows.
+#[inline(always)]
+pub(crate) fn store<M: Lanes>(
+    lanes: M,
+    value: Vec3<M::R>,
+    [x, y, z]: &mut Rows<M::Number>,
+    at: usize,
+) {
+    lanes.store(value.0[0], x, at);
+    lanes.store(value.0[1], y, at);
+    lanes.store(value.0[2], z, at);
+}
+
+#[inline(always)]
+pub(super) fn add<M: Lanes>(lanes: M, more: Vec3<M::R>, rows: &mut Rows<M::Number>, at: usize) {
+    let sum = load(lanes, rows, at).plus(more);
+    store(lanes, sum, rows, at);
+}

@@ -1,0 +1,39 @@
+//! The kinds of light, and the table of them.
+//!
+//! A kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. It says when a scene
+//! calls for it and how it lights a surface, once, over [`Real`](super::simd::Real); the row holds its
+//! compiled variants. A frame pays for the lights that it has and for no other.
+//!
+//! Light is computed in view space, for a batch of positions at a time: pixels, vertices or faces alike.
+
+mod ambient;
+mod batch;
+mod bulb;
+mod phong;
+pub(crate) mod region;
+mod shader;
+mod spot;
+mod sun;
+pub(crate) mod turning;
+
+pub use batch::{Batch, Reflected, Sample};
+pub(crate) use batch::{Rows, load, set, store};
+pub use phong::{HalfVector, Highlight, LightTerm, Nothing, PhongMaterial, Reflection, ViewLight};
+pub use region::Region;
+pub use shader::{Light, LightRow, LightShader, Variant};
+pub use turning::Turning;
+
+/// The row of ambient light.
+pub static AMBIENT: LightRow = LightRow::of::<ambient::Ambient>();
+/// The row of the sun.
+pub static SUN: LightRow = LightRow::of::<sun::Sun>();
+/// The row of bulbs.
+pub static BULB: LightRow = LightRow::of::<bulb::Bulb>();
+/// The row of spots.
+pub static SPOT: LightRow = LightRow::of::<spot::Spot>();
+
+/// Every kind of light.
+pub static LIGHT_SHADERS: &[&LightRow] = &[&AMBIENT, &SUN, &BULB, &SPOT];
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,240 @@
+//! The terms of Phong lighting: a light, a material, their products, and the forms of highlights.
+//!
+//! Phong, "Illumination for Computer Generated Pictures", CACM 1975.
+
+use super::batch::{Reflected, Sample, set};
+use super::region::Region;
+use crate::accuracy::{Normalising, SpecularPower};
+use crate::render::simd::power::least_cosine;
+use crate::render::simd::{Lanes, Number, Power, Real, Vec3};
+
+/// A light that shines in this frame, in view space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ViewLight {
+    /// Its colour as factors.
+    pub color: [f64; 3],
+    /// Where it is.
+    pub position: [f64; 3],
+    /// The way its light goes, of length 1.
+    pub direction: [f64; 3],
+    /// The coefficients of 1, d and d^2 by which it fades.
+    pub attenuation: [f64; 3],
+    /// The cosine at the border of its cone.
+    pub cos_half_aperture: f64,
+    /// How much its light is gathered along the axis.
+    pub exponent: f64,
+}
+
+/// What a surface does with light.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhongMaterial {
+    /// Ka.
+    pub ambient: [f64; 3],
+    /// Kd.
+    pub diffuse: [f64; 3],
+    /// Ks.
+    pub specular: [f64; 3],
+    /// Ns.
+    pub exponent: f64,
+    /// A power below 2^`floor` counts as 0.
+    pub floor: f64,
+    /// The power of every cosine up to this one counts as 0.
+    pub least_cosine: f64,
+}
+
+impl PhongMaterial {
+    /// Whether any of a lamp's light can come back as a highlight.
+    #[must_use]
+    pub fn mirrors(&self, lamp: &ViewLight) -> bool {
+        self.specular.iter().zip(lamp.color).any(|(ks, color)| ks * color != 0.0)
+    }
+
+    /// Sets from where on a power counts as 0, by the way that powers are taken.
+    #[must_use]
+    pub fn with_floor(self, floor: f64, way: SpecularPower) -> Self {
+        // The cosine whose power is the floor; a little less, so that rounding leaves nothing out.
+        let least = least_cosine(way, self.exponent, floor);
+        Self { floor, least_cosine: least * (1.0 - 1e-5), ..self }
+    }
+}
+
+/// A lamp on a surface, in the numbers that light is computed in.
+#[derive(Clone, Debug)]
+pub struct LightTerm<T> {
+    /// I Ka.
+    pub ambient: [T; 3],
+    /// I Kd.
+    pub diffuse: [T; 3],
+    /// I Ks.
+    pub specular: [T; 3],
+    /// See [`ViewLight::position`].
+    pub position: [T; 3],
+    /// Against the way its light goes.
+    pub axis: [T; 3],
+    /// See [`ViewLight::attenuation`].
+    pub attenuation: [T; 3],
+    /// Whether its light fades with distance.
+    pub fades: bool,
+    /// See [`ViewLight::cos_half_aperture`].
+    pub cos_half_aperture: T,
+    /// How much its light is gathered along the axis.
+    pub gathered: Power,
+    /// The power of the highlight.
+    pub highlight: Power,
+    /// See [`PhongMaterial::least_cosine`].
+    pub least_cosine: T,
+    /// By which rare way, where it is one.
+    pub(super) way: Option<Normalising>,
+}
+
+impl<T: Number> LightTerm<T> {
+    /// What a lamp does to a surface.
+    #[must_use]
+    pub fn new(lamp: &ViewLight, matter: &PhongMaterial) -> Self {
+        let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
+        let times = |k: [f64; 3]| all([0, 1, 2].map(|i| lamp.color[i] * k[i]));
+        Self {
+            ambient: times(matter.ambient),
+            diffuse: times(matter.diffuse),
+            specular: times(matter.specular),
+            position: all(lamp.position),
+            axis: all(lamp.direction.map(|x| -x)),
+            attenuation: all(lamp.attenuation),
+            fades: lamp.attenuation != [1.0, 0.0, 0.0],
+            cos_half_aperture: T::from_f64(lamp.cos_half_aperture),
+            gathered: Power::new(lamp.exponent, GATHERED_FLOOR),
+            highlight: Power::new(matter.exponent, matter.floor),
+            least_cosine: T::from_f64(matter.least_cosine),
+            way: None,
+        }
+    }
+
+    /// The same by a variant, if there is one, with the power of the material's highlight.
+    #[must_use]
+    pub(crate) fn by(
+        variant: Option<Normalising>,
+        lamp: &ViewLight,
+        matter: &PhongMaterial,
+        highlight: &Power,
+    ) -> Self {
+        match variant {
+            None => Self::new(lamp, matter),
+            way => Self { highlight: highlight.clone(), way, ..Self::new(lamp, matter) },
+        }
+    }
+}
+
+/// A cosine's power below 2^-24 counts as 0, where a spot gathers its light by it.
+const GATHERED_FLOOR: f64 = -24.0;
+
+/// The form of a highlight.
+pub trait Highlight {
+    /// The cosine whose power is the highlight, where there is one; `n_l` is N.L, more than 0.
+    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R>;
+}
+
+/// No highlight.
+#[derive(Debug)]
+pub struct Nothing;
+/// R.V with R = 2 (N.L) N - L: Phong, "Illumination for Computer Generated Pictures", CACM 1975.
+#[derive(Debug)]
+pub struct Reflection;
+/// N.H with H half-way between L and V: Blinn, "Models of Light Reflection for Computer Synthesized
+/// Pictures", SIGGRAPH 1977.
+#[derive(Debug)]
+pub struct HalfVector;
+
+impl Highlight for Nothing {
+    #[inline(always)]
+    fn cosine<R: Real>(_: Sample<R>, _: Vec3<R>, _: R) -> Option<R> {
+        None
+    }
+}
+
+impl Highlight for Reflection {
+    #[inline(always)]
+    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R> {
+        let n_v = sample.normal.dot(sample.to_eye);
+        let two = n_l.lift(2.0);
+        Some(two * n_l * n_v - to_light.dot(sample.to_eye))
+    }
+}
+
+impl Highlight for HalfVector {
+    #[inline(always)]
+    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, _: R) -> Option<R> {
+        Some(sample.normal.dot(to_light.plus(sample.to_eye).unit()))
+    }
+}
+
+/// Light that comes in along a surface, to this cosine of its angle to the normal, has no highlight.
+///
+/// A highlight begins at once where N.L comes above 0. A lamp in the very plane of a face, which is
+/// nothing rare, leaves N.L to rounding; without this, rounding would decide whether all of the face
+/// has a highlight. It is a hundred times the rounding error, and 0.0006 degrees.
+const GRAZING: f64 = 1e-5;
+
+/// What is left of a part of light.
+#[inline(always)]
+fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
+    match strength {
+        Some(strength) => part * strength,
+        None => part,
+    }
+}
+
+/// Light that arrives from a direction, reflected:
+///
+///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
+///
+/// with s the `strength` that is left of the lamp's light I (1 where it is `None`), L the direction `to_light`, and c the
+/// cosine of the [`Highlight`].
+#[inline(always)]
+pub(super) fn phong<M: Lanes, H: Highlight>(
+    lanes: M,
+    sample: Sample<M::R>,
+    to_light: Vec3<M::R>,
+    strength: Option<M::R>,
+    shine: &LightTerm<M::Number>,
+) -> Option<Reflected<M::R>> {
+    let zero = lanes.lift(0.0);
+    let n_l = sample.normal.dot(to_light);
+    if !lanes.any_more(n_l, zero) {
+        return None;
+    }
+    let diffuse = set(lanes, shine.diffuse).times(weakened(Real::max(n_l, zero), strength));
+    let mut specular = None;
+    if let Some(cosine) = H::cosine(sample, to_light, n_l) {
+        let lit = n_l.if_more(lanes.lift(GRAZING), cosine, zero);
+        if lanes.any_more(lit, lanes.set(shine.least_cosine)) {
+            // Rounding can bring a cosine above 1.
+            let power = Real::min(lit, lanes.lift(1.0)).power(&shine.highlight);
+            specular = Some(set(lanes, shine.specular).times(weakened(power, strength)));
+        }
+    }
+    Some(Reflected { diffuse, specular })
+}
+
+/// The largest of a surface's three channels under a light.
+pub(super) fn max_channel(color: [f64; 3], sent_back: [f64; 3]) -> f64 {
+    color.iter().zip(sent_back).map(|(color, part)| color * part).fold(0.0, f64::max)
+}
+
+/// The largest part of a lamp's light that is left at its distance from a region.
+pub(super) fn max_attenuation(lamp: &ViewLight, region: Option<&Region>) -> f64 {
+    let d = region.map_or(0.0, |region| region.least_distance(lamp.position.into()));
+    let [a0, a1, a2] = lamp.attenuation;
+    1.0 / (a0 + (a1 + a2 * d) * d)
+}
+
+/// Why a lamp needs not be looked at for a surface.
+pub(super) fn lamp_is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str> {
+    let zero = |color: [f64; 3]| color == [0.0; 3];
+    if zero(lamp.color) {
+        Some("its colour is black")
+    } else if zero(matter.diffuse) && zero(matter.specular) {
+        Some("Kd and Ks of the material are 0")
+    } else {
+        None
+    }
+}

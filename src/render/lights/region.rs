@@ -1,0 +1,186 @@
+//! Where in view space some places may be, so that it can be said of all of them at once what no
+//! light reaches.
+//!
+//! A region is the hull of eight points, and a distance by which a place that the renderer computes
+//! may lie outside of it. Whatever is said of a region holds of every place as it is computed, in 32
+//! bits or in 64: all bounds are rounded outwards.
+
+use glam::{DMat4, DVec3};
+
+/// The part of a place's own size by which its computed coordinates may be wrong, with what
+/// subtracting a lamp's place adds: some 10 times the rounding of 32 bits.
+const ROUNDING: f64 = 2e-6;
+
+/// What the computed cosine of an angle may be wrong by: some 10 times as much as was ever seen.
+const COSINE_ROUNDING: f64 = 4e-6;
+
+/// The part of its distance by which a region's middle has to lie off a cone's axis: nearer to it, the
+/// way there from the axis is rounding.
+const LEAST_ASIDE: f64 = 1e-6;
+
+/// The cosine up to which light along a face may be taken to come from either side of it.
+pub(crate) const EDGE_ON: f64 = 1e-4;
+
+/// See the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    corners: [DVec3; 8],
+    error: f64,
+    /// The largest distance of a corner from the origin.
+    reach: f64,
+}
+
+impl Region {
+    /// The hull of these points, where places may be wrong by `error`.
+    #[must_use]
+    pub fn new(corners: [DVec3; 8], error: f64) -> Self {
+        let reach = corners.iter().map(|corner| corner.length()).fold(0.0, f64::max);
+        Self { corners, error, reach }
+    }
+
+    /// The hull of points of object space.
+    pub(crate) fn placed(view_from_object: DMat4, corners: [DVec3; 8], error: f64) -> Self {
+        Self::new(corners.map(|corner| view_from_object.transform_point3(corner)), error)
+    }
+
+    /// The largest distance of a corner from the origin.
+    pub(crate) const fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// What the way from a lamp to a place may be wrong by.
+    fn error_from(&self, lamp: DVec3) -> f64 {
+        self.error + ROUNDING * (self.reach + lamp.length())
+    }
+
+    /// Whether a face with this normal (of length 1), at any place, is turned away from a lamp.
+    pub(crate) fn faces_away(&self, normal: DVec3, lamp: DVec3) -> bool {
+        let error = self.error_from(lamp);
+        self.corners.iter().all(|corner| {
+            let way = lamp - *corner;
+            normal.dot(way) < -(error + EDGE_ON * way.length())
+        })
+    }
+
+    /// At least so far is every place from a point; 0 where that is not known.
+    #[must_use]
+    pub fn least_distance(&self, from: DVec3) -> f64 {
+        let low = self.corners.iter().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
+        let high = self.corners.iter().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
+        let to_box = (from.clamp(low, high) - from).length();
+        let least = to_box - self.error_from(from);
+        // What is no number says nothing.
+        if least > 0.0 { least } else { 0.0 }
+    }
+
+    /// At most this is the cosine between `axis` (of length 1) and the way from `apex` to any place;
+    /// 1 where that is not known.
+    ///
+    /// With a ball about the corners, of radius r and at the distance d: the angle to its middle, less
+    /// asin(r / d).
+    #[must_use]
+    pub fn most_cosine(&self, apex: DVec3, axis: DVec3) -> f64 {
+        let middle = self.corners.iter().sum::<DVec3>() / 8.0;
+        let radius = self.corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
+        let (radius, way) = (radius + self.error_from(apex), middle - apex);
+        let distance = way.length();
+        if distance > radius {
+            let angle = libm::acos((axis.dot(way) / distance).clamp(-1.0, 1.0));
+            let least = (angle - libm::asin(radius / distance)).max(0.0);
+            (libm::cos(least) + COSINE_ROUNDING).min(1.0)
+        } else {
+            // Inside, or no number.
+            1.0
+        }
+    }
+
+    /// Whether no place lies in the cone of half-angle acos `border` about `axis` (of length 1) from
+    /// `apex`, its border taken to be outside.
+    ///
+    /// Either the bound of the cosine says so, or a plane through the apex that the cone touches and
+    /// all corners lie beyond.
+    #[must_use]
+    pub fn misses_cone(&self, apex: DVec3, axis: DVec3, border: f64) -> bool {
+        if self.most_cosine(apex, axis) <= border {
+            return true;
+        }
+        let wider = border - COSINE_ROUNDING;
+        if wider <= 0.0 {
+            // So wide a cone is not convex: no plane touches it.
+            return false;
+        }
+        let sine = (1.0 - wider * wider).max(0.0).sqrt();
+        let error = self.error_from(apex);
+        let beyond = |normal: DVec3| {
+            let apart = |corner: &DVec3| normal.dot(*corner - apex);
+            self.corners.iter().all(|corner| apart(corner) > error)
+        };
+        let middle = self.corners.iter().sum::<DVec3>() / 8.0 - apex;
+        let aside = middle - axis * axis.dot(middle);
+        let off_axis = aside.length() / middle.length();
+        beyond(-axis)
+            || off_axis > LEAST_ASIDE && beyond(aside.normalize_or_zero() * wider - axis * sine)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cube about `middle`, `half` to each side.
+    fn cube(middle: DVec3, half: f64) -> Region {
+        let corner = |i: u32| {
+            let side = |bit: u32| if i & bit == 0 { -half } else { half };
+            middle + DVec3::new(side(1), side(2), side(4))
+        };
+        Region::new([0, 1, 2, 3, 4, 5, 6, 7].map(corner), 0.0)
+    }
+
+    #[test]
+    fn a_cone_that_touches_a_cube_does_not_miss_it_and_one_a_little_narrower_does() {
+        // Seen from the origin along +X the nearest edge of the cube is at (9, 4): 23.96 degrees.
+        let region = cube(DVec3::new(10.0, 5.0, 0.0), 1.0);
+        let border = libm::cos(libm::atan2(4.0, 11.0));
+        assert!(!region.misses_cone(DVec3::ZERO, DVec3::X, border));
+        assert!(!region.misses_cone(DVec3::ZERO, DVec3::X, border - 1e-3));
+        assert!(region.misses_cone(DVec3::ZERO, DVec3::X, border + 1e-3));
+        assert!(region.misses_cone(DVec3::ZERO, -DVec3::X, 0.1), "it shines the other way");
+    }
+
+    #[test]
+    fn no_cone_whose_axis_goes_through_the_middle_misses() {
+        for i in 0..1000 {
+            let angle = |step: f64| (f64::from(i) * step).rem_euclid(6.0);
+            let axis =
+                DVec3::new(libm::cos(angle(0.7)), libm::sin(angle(0.7)), libm::sin(angle(1.3)));
+            let (axis, far) = (axis.normalize_or_zero(), 300.0);
+            let region = cube(axis * far, 0.5);
+            assert!(!region.misses_cone(DVec3::ZERO, axis, 0.9999), "{axis}");
+            // As much off the axis as rounding is, or more.
+            for off in [1e-13, 1e-10, 1e-7, 1e-3] {
+                let turned = (axis + DVec3::new(off, -off, off)).normalize_or_zero();
+                assert!(!region.misses_cone(DVec3::ZERO, turned, 0.9999), "{axis} {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_holds_a_lamp_is_missed_by_no_cone_and_at_no_distance() {
+        let region = cube(DVec3::ZERO, 1.0);
+        for apex in [DVec3::ZERO, DVec3::X, DVec3::new(0.3, -1.0, 0.2)] {
+            for axis in [DVec3::X, DVec3::Y, DVec3::NEG_Z] {
+                assert_eq!(region.most_cosine(apex, axis), 1.0);
+            }
+            assert_eq!(region.least_distance(apex), 0.0);
+        }
+        assert!((region.least_distance(DVec3::X * 3.0) - 2.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn what_is_no_number_says_nothing() {
+        let region = cube(DVec3::NAN, 1.0);
+        assert_eq!(region.most_cosine(DVec3::ZERO, DVec3::X), 1.0);
+        assert_eq!(region.least_distance(DVec3::ZERO), 0.0);
+        assert!(!region.misses_cone(DVec3::ZERO, DVec3::X, 0.9));
+    }
+}

@@ -1,0 +1,181 @@
+//! How one kind of light reaches a surface, and its compiled variants.
+
+use std::marker::PhantomData;
+
+use fearless_simd::Level;
+
+use super::batch::{Batch, Reflected, Sample, add, load};
+use super::phong::{
+    HalfVector, Highlight, LightTerm, Nothing, PhongMaterial, Reflection, ViewLight, max_channel,
+};
+use super::region::Region;
+use super::turning::Turning;
+use crate::render::simd::{Kernel, Lanes, Number};
+
+/// One way of lighting a surface.
+pub trait LightShader {
+    /// Its name in the plan.
+    const NAME: &'static str;
+    /// Whether it looks at where a place is, how it is turned, or from where it is seen.
+    const READS_POSITIONS: bool = true;
+    /// Whether it shines on a part of space only, so that `is_culled` may say so.
+    const HAS_REACH: bool = false;
+    /// Why the surface needs none of it, where it does not: leaving it out then changes no bit.
+    fn is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str>;
+    /// Why none of it arrives in a region, where that is so: leaving it out there then changes no bit.
+    fn is_culled(_: &ViewLight, _: &Region) -> Option<&'static str> {
+        None
+    }
+    /// Whether it comes from behind all faces of a region, which are turned as `turning` says: leaving
+    /// it out there then changes no bit.
+    fn is_behind(_: &ViewLight, _: &Region, _: &Turning) -> bool {
+        false
+    }
+    /// The largest part of the lamp's light that arrives in a region, anywhere where none is said.
+    fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
+        1.0
+    }
+    /// The most that it adds to a channel at any place of a region, with its highlight or without, as
+    /// a factor; a surface's texture takes away from that at most.
+    fn max_contribution(
+        lamp: &ViewLight,
+        matter: &PhongMaterial,
+        highlight: bool,
+        region: Option<&Region>,
+    ) -> f64 {
+        let mut sent_back = matter.diffuse;
+        if highlight {
+            for (kd, ks) in sent_back.iter_mut().zip(matter.specular) {
+                *kd += ks;
+            }
+        }
+        max_channel(lamp.color, sent_back) * Self::max_falloff(lamp, region)
+    }
+    /// What the observer gets from some places; `None` where that is nothing at all of them.
+    fn shade<M: Lanes, H: Highlight>(
+        lanes: M,
+        sample: Sample<M::R>,
+        shine: &LightTerm<M::Number>,
+    ) -> Option<Reflected<M::R>>;
+}
+
+/// An effect compiled for one form of highlight: for the reference, and for what the editor shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Variant {
+    reference: fn(Level, &mut Batch<f64>, &LightTerm<f64>),
+    fast: fn(Level, &mut Batch<f32>, &LightTerm<f32>),
+}
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct LightRow {
+    /// See [`LightShader::NAME`].
+    pub name: &'static str,
+    /// See [`LightShader::READS_POSITIONS`].
+    pub reads_positions: bool,
+    /// See [`LightShader::HAS_REACH`].
+    pub has_reach: bool,
+    /// See [`LightShader::is_noop`].
+    pub is_noop: fn(&ViewLight, &PhongMaterial) -> Option<&'static str>,
+    /// See [`LightShader::is_culled`].
+    pub is_culled: fn(&ViewLight, &Region) -> Option<&'static str>,
+    /// See [`LightShader::is_behind`].
+    pub is_behind: fn(&ViewLight, &Region, &Turning) -> bool,
+    /// See [`LightShader::max_falloff`].
+    pub max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
+    /// See [`LightShader::max_contribution`].
+    pub max_contribution: fn(&ViewLight, &PhongMaterial, bool, Option<&Region>) -> f64,
+    /// Without a highlight.
+    pub plain: Variant,
+    /// With [`Reflection`].
+    pub reflection: Variant,
+    /// With [`HalfVector`].
+    pub half_vector: Variant,
+}
+
+impl LightRow {
+    /// The row of a shader.
+    pub(super) const fn of<E: LightShader>() -> Self {
+        Self {
+            name: E::NAME,
+            reads_positions: E::READS_POSITIONS,
+            has_reach: E::HAS_REACH,
+            is_noop: E::is_noop,
+            is_culled: E::is_culled,
+            is_behind: E::is_behind,
+            max_falloff: E::max_falloff,
+            max_contribution: E::max_contribution,
+            plain: variant::<E, Nothing>(),
+            reflection: variant::<E, Reflection>(),
+            half_vector: variant::<E, HalfVector>(),
+        }
+    }
+}
+
+const fn variant<E: LightShader, H: Highlight>() -> Variant {
+    Variant { reference: shade::<f64, E, H>, fast: shade::<f32, E, H> }
+}
+
+/// Adds what an effect reflects at every place of a batch.
+fn shade<T: Number, E: LightShader, H: Highlight>(
+    level: Level,
+    batch: &mut Batch<T>,
+    shine: &LightTerm<T>,
+) {
+    T::run_by(level, shine.way, Shade::<T, E, H> { batch, shine, of: PhantomData });
+}
+
+struct Shade<'a, T, E, H> {
+    batch: &'a mut Batch<T>,
+    shine: &'a LightTerm<T>,
+    of: PhantomData<(E, H)>,
+}
+
+impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let batch = self.batch;
+        for at in (0..batch.len).step_by(M::LANES) {
+            let sample = Sample {
+                position: load(lanes, &batch.position, at),
+                normal: load(lanes, &batch.normal, at),
+                to_eye: load(lanes, &batch.to_eye, at),
+            };
+            let Some(reflected) = E::shade::<M, H>(lanes, sample, self.shine) else {
+                continue;
+            };
+            add(lanes, reflected.diffuse, &mut batch.diffuse, at);
+            if let Some(specular) = reflected.specular {
+                add(lanes, specular, &mut batch.specular, at);
+            }
+        }
+    }
+}
+
+/// Numbers that effects are compiled for.
+pub trait Light: Number {
+    /// Adds what an effect reflects at every place of the batch.
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &LightTerm<Self>);
+}
+
+impl Light for f64 {
+    fn add_light(
+        variant: &Variant,
+        level: Level,
+        batch: &mut Batch<Self>,
+        shine: &LightTerm<Self>,
+    ) {
+        (variant.reference)(level, batch, shine);
+    }
+}
+
+impl Light for f32 {
+    fn add_light(
+        variant: &Variant,
+        level: Level,
+        batch: &mut Batch<Self>,
+        shine: &LightTerm<Self>,
+    ) {
+        (variant.fast)(level, batch, shine);
+    }
+}

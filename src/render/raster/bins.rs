@@ -1,0 +1,135 @@
+//! What may be seen in which tile.
+//!
+//! Every thread that sets up triangles and lines has bins of its own, so that none waits for another.
+//! What is seen does not depend on the order in which a tile looks at them.
+
+use super::hits::Hits;
+use super::lines::{self, ScreenLine};
+use super::queue::{Queue, SMALL};
+use crate::base::image::Size;
+use crate::render::raster::unsnapped::UnsnappedTriangle;
+use crate::render::screen::clip::ScreenVertex;
+use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::sample_positions::SamplePositions;
+use crate::render::screen::tiles::{TILE, tiles_of};
+
+/// A triangle that is not small, or not simple.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LargeTriangle {
+    pub(crate) corners: [ScreenVertex; 3],
+    pub(crate) number: u32,
+    /// Whether its texture decides where it is drawn.
+    pub(crate) cutout: bool,
+}
+
+/// What one tile has to look at besides its hits.
+#[derive(Debug, Default)]
+pub(crate) struct Bin {
+    /// Triangles, as places in [`Bins::large`], or among those that are drawn one by one.
+    pub(crate) large: Vec<u32>,
+    /// Lines, as places in [`Bins::lines`].
+    pub(crate) lines: Vec<u32>,
+}
+
+/// The bins of one thread, in lines of the cache that no other thread's are in.
+#[derive(Debug, Default)]
+#[repr(align(128))]
+pub(crate) struct Bins {
+    columns: i32,
+    rows: i32,
+    /// Where pixels are looked at.
+    pub(crate) places: SamplePositions,
+    pub(crate) tiles: Vec<Bin>,
+    pub(crate) hits: Hits,
+    pub(crate) large: Vec<LargeTriangle>,
+    /// Triangles that are drawn one by one, with their boxes: then there are no others.
+    plain: Vec<(UnsnappedTriangle, PixelBox)>,
+    pub(crate) lines: Vec<ScreenLine>,
+    /// Small triangles that wait to be drawn together, by the size of their boxes.
+    pub(crate) queues: Box<[Queue; SMALL.len()]>,
+    /// How many triangles, or pieces of such, are in the bins.
+    pub(crate) drawn: usize,
+}
+
+impl Bins {
+    /// Empties the bins, for a picture of this size that is looked at in these places.
+    pub(crate) fn clear(&mut self, size: Size, places: SamplePositions) {
+        self.places = places;
+        [self.columns, self.rows] = tiles_of(size);
+        let count = usize::try_from(self.columns * self.rows).expect("not negative");
+        self.tiles.resize_with(count, Bin::default);
+        for bin in &mut self.tiles {
+            bin.large.clear();
+            bin.lines.clear();
+        }
+        let extent = [size.width, size.height]
+            .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+        self.hits.clear(extent, [self.columns, self.rows]);
+        self.large.clear();
+        self.plain.clear();
+        self.lines.clear();
+        // A frame that was given up leaves some behind.
+        for queue in self.queues.iter_mut() {
+            queue.clear();
+        }
+        self.drawn = 0;
+    }
+
+    /// Whether nothing reaches into a tile.
+    pub(crate) fn is_empty(&self, tile: usize) -> bool {
+        let bin = &self.tiles[tile];
+        self.hits.is_empty(tile) && bin.large.is_empty() && bin.lines.is_empty()
+    }
+
+    /// Adds a triangle of any size, whose box of pixels is this.
+    pub(crate) fn add_large(&mut self, triangle: LargeTriangle, bounds: PixelBox) {
+        let number = u32::try_from(self.large.len()).expect("fewer than 2^32 triangles");
+        self.drawn += 1;
+        self.large.push(triangle);
+        self.each(bounds, |bin| bin.large.push(number));
+    }
+
+    /// Adds a triangle that is drawn pixel by pixel, somewhere in a box.
+    pub(crate) fn add_plain(&mut self, triangle: UnsnappedTriangle, bounds: PixelBox) {
+        let number = u32::try_from(self.plain.len()).expect("fewer than 2^32 triangles");
+        self.drawn += 1;
+        self.plain.push((triangle, bounds));
+        self.each(bounds, |bin| bin.large.push(number));
+    }
+
+    /// A triangle that is drawn pixel by pixel, and its box.
+    pub(crate) fn plain(&self, number: u32) -> (&UnsnappedTriangle, PixelBox) {
+        let (plain, bounds) = &self.plain[number as usize];
+        (plain, *bounds)
+    }
+
+    /// Adds a line of so many pixels' width to the tiles that it crosses.
+    pub(crate) fn add_line(&mut self, line: ScreenLine, width: i32) {
+        let number = u32::try_from(self.lines.len()).expect("fewer than 2^32 lines");
+        self.lines.push(line);
+        let picture =
+            PixelBox { left: 0, top: 0, right: self.columns * TILE, bottom: self.rows * TILE };
+        // Seen from a place off the middle, it takes the next pixel at the most.
+        let width = if self.places.are_many() { width + 1 } else { width };
+        for bounds in lines::stretches(&line, width, picture) {
+            self.each(bounds, |bin| bin.lines.push(number));
+        }
+    }
+
+    fn each(&mut self, bounds: PixelBox, mut add: impl FnMut(&mut Bin)) {
+        if bounds.is_empty() {
+            return;
+        }
+        for row in tiles(bounds.top, bounds.bottom, self.rows) {
+            for column in tiles(bounds.left, bounds.right, self.columns) {
+                add(&mut self.tiles[(row * self.columns + column) as usize]);
+            }
+        }
+    }
+}
+
+/// The tiles of one direction that a range of pixels reaches into, of `count`.
+#[inline(always)]
+fn tiles(low: i32, high: i32, count: i32) -> std::ops::Range<i32> {
+    low.div_euclid(TILE).max(0)..((high - 1).div_euclid(TILE) + 1).min(count)
+}

@@ -1,0 +1,233 @@
+//! From edges of polygons and normals to lines in bins.
+//!
+//! Sixteen edges at a time: short ones become hits at once, the others go to the tiles that they
+//! cross. What has an end beyond the planes is cut.
+
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use fearless_simd::{
+    Bytes as _, Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16,
+};
+use glam::{DMat3, DVec3};
+
+use super::bins::Bins;
+use super::facing::Outline;
+use super::hits::PACK;
+use super::lines::{self, Ends, LineNumber, SHORT, ScreenLine, Short};
+use super::vertices::fetch_vertices;
+use crate::render::frame::draw::{Draw, Lines};
+use crate::render::screen::clip::{Screen, ScreenVertex};
+use crate::render::screen::sample_positions::FOUR;
+use crate::scene::{Corner, DrawEdge, NONE, NormalSource, dvec3};
+
+/// How many steps of depth lines are nearer than the surfaces that they lie on.
+const NEARER: u32 = 2;
+
+/// What setting up the lines of one draw reads.
+#[derive(Debug)]
+pub(crate) struct EdgeSetup<'a> {
+    pub(crate) draw: &'a Draw,
+    pub(crate) vertices: &'a [ScreenVertex],
+    pub(crate) screen: Screen,
+    /// An [`Outline`] for each polygon.
+    pub(crate) outlines: &'a [AtomicU8],
+    /// The number of the draw's first line in the frame.
+    pub(crate) first: u32,
+    /// In pixels.
+    pub(crate) width: i32,
+}
+
+impl EdgeSetup<'_> {
+    /// Puts some of the draw's edges into bins.
+    pub(crate) fn run(&self, level: Level, edges: &[DrawEdge], bins: &mut Bins) {
+        if bins.places.are_many() {
+            dispatch!(level, simd => self.all::<_, FOUR>(simd, edges, bins));
+        } else {
+            dispatch!(level, simd => self.all::<_, 1>(simd, edges, bins));
+        }
+    }
+
+    #[inline(always)]
+    fn all<S: Simd, const N: usize>(&self, simd: S, edges: &[DrawEdge], bins: &mut Bins) {
+        let (whole, rest) = edges.as_chunks::<PACK>();
+        for sixteen in whole {
+            self.sixteen::<S, N>(simd, sixteen, PACK, bins);
+        }
+        if let Some(last) = rest.last() {
+            let mut sixteen = [*last; PACK];
+            sixteen[..rest.len()].copy_from_slice(rest);
+            self.sixteen::<S, N>(simd, &sixteen, rest.len(), bins);
+        }
+    }
+
+    /// Sets up sixteen edges, of which the first `count` are meant.
+    #[inline(always)]
+    fn sixteen<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        edges: &[DrawEdge; PACK],
+        count: usize,
+        bins: &mut Bins,
+    ) {
+        let mut numbers = [0; PACK];
+        let (mut shown, mut odd) = (0_u64, 0_u64);
+        for (lane, edge) in edges[..count].iter().enumerate() {
+            let outline = outline_of(self.draw, edge, self.outlines);
+            shown |= u64::from(outline != Outline::Not) << lane;
+            odd |= u64::from(edge.vertices[0] == NONE || edge.vertices[1] == NONE) << lane;
+            numbers[lane] = self.number(edge, outline).bits().cast_signed();
+        }
+        if shown == 0 {
+            return;
+        }
+        let (a, b) = (self.ends(simd, edges, 0), self.ends(simd, edges, 1));
+        let beyond = a[0].simd_eq(ScreenVertex::BEYOND) | b[0].simd_eq(ScreenVertex::BEYOND);
+        odd = (odd | beyond.to_bitmask()) & shown;
+        shown &= !odd;
+        let ([xa, ya, _], [xb, yb, _]) = (a, b);
+        let short = (xb - xa).abs().simd_le(SHORT) & (yb - ya).abs().simd_le(SHORT);
+        let some = short & mask32x16::from_bitmask(simd, shown);
+        let number = i32x16::from_slice(simd, &numbers).bitcast();
+        for sample in 0..N {
+            let [x, y] = bins.places.shift::<N>(sample);
+            let seen = |[ex, ey, depth]: Ends<S>| [ex - x, ey - y, depth];
+            let (width, nearer) = (self.width, self.nearer());
+            let short = Short { some, number, width, nearer, sample };
+            lines::draw_short::<S, N>(seen(a), seen(b), &short, &mut bins.hits);
+        }
+        let mut long = shown & !some.to_bitmask();
+        while long != 0 {
+            let lane = long.trailing_zeros() as usize;
+            long &= long - 1;
+            let ends = edges[lane].vertices.map(|vertex| self.vertices[vertex as usize]);
+            self.add(ends, numbers[lane].cast_unsigned(), self.nearer(), bins);
+        }
+        while odd != 0 {
+            let lane = odd.trailing_zeros() as usize;
+            odd &= odd - 1;
+            self.add_odd(&edges[lane], numbers[lane].cast_unsigned(), bins);
+        }
+    }
+
+    #[inline(always)]
+    fn ends<S: Simd>(&self, simd: S, edges: &[DrawEdge; PACK], end: usize) -> Ends<S> {
+        let [x, y, depth, _] = fetch_vertices(
+            simd,
+            self.vertices,
+            #[inline(always)]
+            |lane| edges[lane].vertices[end],
+        );
+        [x, y, depth]
+    }
+
+    #[inline(always)]
+    fn number(&self, edge: &DrawEdge, outline: Outline) -> LineNumber {
+        LineNumber::new(self.first + edge.number, outline == Outline::Back)
+    }
+
+    /// How many steps of depth edges are nearer than they are.
+    const fn nearer(&self) -> u32 {
+        if self.draw.filled { NEARER } else { 0 }
+    }
+
+    /// Adds a line that may be of any length.
+    fn add(&self, ends: [ScreenVertex; 2], number: u32, nearer: u32, bins: &mut Bins) {
+        bins.add_line(ScreenLine { ends, number, nearer }, self.width);
+    }
+
+    /// Adds an edge that may have to be cut.
+    fn add_odd(&self, edge: &DrawEdge, number: u32, bins: &mut Bins) {
+        let mesh = &self.draw.model.mesh;
+        let ends = mesh.edges()[edge.number as usize].ends;
+        let ends = ends.map(|end| dvec3(mesh.positions()[end as usize]));
+        self.add_segment(ends, number, self.nearer(), bins);
+    }
+
+    fn add_segment(&self, ends: [DVec3; 2], number: u32, nearer: u32, bins: &mut Bins) {
+        let clip = ends.map(|end| self.screen.clip(end.to_array()));
+        if let Some(ends) = self.screen.segment(clip) {
+            self.add(ends, number, nearer, bins);
+        }
+    }
+
+    /// Puts the draw's normals into bins, and their polygons into a list; the number of the first
+    /// normal is `first`.
+    pub(crate) fn add_normals(&self, first: u32, bins: &mut Bins, polygons: &mut Vec<u32>) {
+        let begin = polygons.len();
+        normals(self.draw, |ends, polygon| {
+            let own = u32::try_from(polygons.len() - begin).expect("fewer than 2^30 lines");
+            let number = LineNumber::new(first + own, false);
+            self.add_segment(ends, number.bits(), NEARER, bins);
+            polygons.push(polygon);
+        });
+    }
+}
+
+/// The outline of an edge: the best that its polygons have.
+#[inline(always)]
+fn outline_of(draw: &Draw, edge: &DrawEdge, outlines: &[AtomicU8]) -> Outline {
+    let outline = |polygon: u32| outlines[polygon as usize].load(Ordering::Relaxed);
+    let [a, b] = edge.polygons;
+    if b != NONE {
+        return Outline::of(outline(a).max(outline(b)));
+    }
+    let mesh = &draw.model.mesh;
+    let all = mesh.edge_polygons(&mesh.edges()[edge.number as usize]);
+    Outline::of(all.iter().map(|polygon| outline(*polygon)).max().unwrap_or(0))
+}
+
+/// The polygon that an edge is drawn for: the first of those whose outline decides.
+pub(crate) fn polygon_of(draw: &Draw, edge: u32, outlines: &[AtomicU8]) -> Option<u32> {
+    let mesh = &draw.model.mesh;
+    let all = mesh.edge_polygons(&mesh.edges()[edge as usize]).iter().copied();
+    let outline = |polygon: u32| outlines[polygon as usize].load(Ordering::Relaxed);
+    all.min_by_key(|polygon| (u8::MAX - outline(*polygon), *polygon))
+}
+
+/// Calls `add` with the normals of polygons that are shown, whichever way they face, in object
+/// space.
+fn normals(draw: &Draw, mut add: impl FnMut([DVec3; 2], u32)) {
+    let Lines { face_normals, vertex_normals, .. } = draw.lines;
+    if face_normals.is_none() && vertex_normals.is_none() {
+        return;
+    }
+    let mesh = &draw.model.mesh;
+    let mut drawn = vec![false; mesh.points().len()];
+    let all = 0..u32::try_from(mesh.polygon_count()).expect("polygons have 32-bit numbers");
+    for polygon in all.filter(|polygon| draw.shows(*polygon)) {
+        let mut add = |from: DVec3, normal: [f32; 3], length: f64| {
+            let to = from + normal_in_object(draw, dvec3(normal), length);
+            add([from, to], polygon);
+        };
+        if let Some(length) = face_normals {
+            let normal = mesh.polygon_normals()[polygon as usize];
+            add(mesh.polygon_centre(polygon), normal, length);
+        }
+        let Some(length) = vertex_normals else { continue };
+        for corner in mesh.polygon(polygon) {
+            let point = point_of(draw, corner) as usize;
+            if !std::mem::replace(&mut drawn[point], true) {
+                let point = mesh.points()[point];
+                let from = mesh.positions()[point.position as usize];
+                add(dvec3(from), point.normal, length);
+            }
+        }
+    }
+}
+
+/// The point of a corner with the vertex normals that the draw uses.
+fn point_of(draw: &Draw, corner: &Corner) -> u32 {
+    match draw.normal_source {
+        NormalSource::File => corner.filed,
+        NormalSource::Computed => corner.smooth,
+    }
+}
+
+/// A drawn normal in object space: it stands on the placed surface, and is as long as `length` units
+/// of object space along the unplaced normal.
+fn normal_in_object(draw: &Draw, normal: DVec3, length: f64) -> DVec3 {
+    let linear = DMat3::from_mat4(draw.view_from_object);
+    let across = linear.inverse() * (draw.view_from_normal * normal);
+    let scale = (linear * normal).length() / (linear * across).length();
+    if scale.is_finite() { across * (scale * length) } else { normal * length }
+}

@@ -1,0 +1,360 @@
+//! A frame on the screen: its vertices, and its triangles and lines in bins.
+
+use std::sync::atomic::AtomicU8;
+use std::sync::{Mutex, PoisonError};
+
+use fearless_simd::Level;
+use glam::DMat4;
+use rayon::prelude::*;
+
+use super::bins::Bins;
+use super::edges;
+use super::lines::LineNumber;
+use super::parts::{Parts, share_out};
+use super::starts::{Start, number};
+use super::vertex_variants;
+use super::vertices;
+use super::work::{What, WorkList, piece_of};
+use crate::base::Shared;
+use crate::base::cancellation::Cancellation;
+use crate::base::color::Color;
+use crate::base::image::Size;
+use crate::base::math::same_bits;
+use crate::base::work_stealing::{WorkStealing, together};
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::Draw;
+use crate::render::frame::variants::Variants;
+use crate::render::screen::clip::{Screen, ScreenVertex};
+use crate::render::screen::coverage::SUBPIXELS;
+use crate::render::screen::interpolation;
+use crate::render::screen::sample_positions::SamplePositions;
+use crate::render::timings::{Laps, Stages};
+use crate::scene::Model;
+
+/// Everything of a frame that is on the screen.
+#[derive(Debug, Default)]
+pub(crate) struct ScreenGeometry {
+    /// The vertices of all draws, in the order in which their meshes are drawn.
+    vertices: Vec<ScreenVertex>,
+    /// The same in finer parts of a pixel, where triangles have them.
+    fine: Vec<ScreenVertex>,
+    /// What the vertices of each draw are of; nothing where they have yet to be brought there.
+    held: Vec<Option<Held>>,
+    starts: Vec<Start>,
+    /// For each polygon of the draws whose edges are drawn the number of an
+    /// [`Outline`](super::facing::Outline).
+    outlines: Vec<AtomicU8>,
+    /// The polygons of the normals that are drawn.
+    normals: Vec<u32>,
+    /// The vertices that are brought onto the screen.
+    placing: WorkList<()>,
+    /// The triangles that are put into bins, and the polygons whose outlines are.
+    set_up: WorkList<What>,
+    /// The edges that are.
+    lines: WorkList<What>,
+    bins: Vec<Bins>,
+    /// Where its pixels are looked at.
+    places: SamplePositions,
+}
+
+/// What the screen vertices of a draw were made of.
+#[derive(Debug)]
+struct Held {
+    model: Shared<Model>,
+    clip_from_object: DMat4,
+    size: Size,
+    variants: Variants,
+    shift: [i32; 2],
+    vertex: usize,
+}
+
+impl Held {
+    fn new(draw: &Draw, plan: &FramePlan, vertex: usize) -> Self {
+        let FramePlan { size, variants, shift, .. } = *plan;
+        let (model, clip_from_object) = (draw.model.clone(), draw.clip_from_object);
+        Self { model, clip_from_object, size, variants, shift, vertex }
+    }
+
+    fn is_of(&self, draw: &Draw, plan: &FramePlan, vertex: usize) -> bool {
+        Shared::same(&self.model, &draw.model)
+            && same_bits(&self.clip_from_object, &draw.clip_from_object)
+            && (self.size, self.variants, self.shift) == (plan.size, plan.variants, plan.shift)
+            && self.vertex == vertex
+    }
+}
+
+impl ScreenGeometry {
+    /// Forgets what it holds.
+    pub(crate) fn forget(&mut self) {
+        self.held.clear();
+    }
+
+    /// Brings everything that the plan draws onto the screen, to be looked at in some places of each
+    /// pixel, as long as that is wanted. Vertices that are there already stay. Says how long it took.
+    pub(crate) fn build(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        places: SamplePositions,
+        watch: &Cancellation<'_>,
+    ) -> Stages {
+        let mut laps = Laps::start();
+        self.places = places;
+        self.number(plan);
+        self.place(level, plan, watch);
+        let vertices = laps.lap();
+        self.set_up(level, plan, watch);
+        let set_up = laps.lap();
+        if !watch.is_given_up() {
+            self.add_lines(level, plan, watch);
+        }
+        Stages { vertices, set_up, lines: laps.lap(), ..Stages::default() }
+    }
+
+    /// Where the numbers of each draw begin.
+    fn number(&mut self, plan: &FramePlan) {
+        self.starts.clear();
+        let mut start = Start::default();
+        let (mut vertex, mut outline) = (0, 0);
+        for draw in &plan.draws {
+            let mesh = &draw.model.mesh;
+            (start.vertex, start.outline) = (vertex, outline);
+            start.number = start.end;
+            start.end += number(mesh.draw_order().triangles.len());
+            vertex += mesh.draw_order().x.len();
+            start.vertex_end = vertex;
+            outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
+            self.starts.push(start);
+        }
+        // What is not kept is overwritten from here on, whoever it belonged to.
+        self.held.resize_with(plan.draws.len(), || None);
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            *held = held.take().filter(|held| held.is_of(draw, plan, start.vertex));
+        }
+        self.vertices.resize(vertex, ScreenVertex::default());
+        self.outlines.resize_with(outline, AtomicU8::default);
+    }
+
+    /// Vertices to the screen, all draws' together.
+    fn place(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
+        self.placing.clear();
+        for (i, draw) in plan.draws.iter().enumerate().filter(|(i, _)| self.held[*i].is_none()) {
+            let order = draw.model.mesh.draw_order();
+            let position = |i| order.position(number(i));
+            self.placing.add((i, draw), ((), order.x.len()), plan.size, position);
+        }
+        // The pieces' parts of all vertices, as they were added.
+        let (mut rest, mut pieces) = (&mut self.vertices[..], Vec::new());
+        pieces.reserve_exact(self.placing.len());
+        for (start, held) in self.starts.iter().zip(&self.held) {
+            let (own, others) = rest.split_at_mut(start.vertex_end - start.vertex);
+            rest = others;
+            if held.is_none() {
+                pieces.extend(own.chunks_mut(piece_of(own.len())).map(Mutex::new));
+            }
+        }
+        let threads = self.placing.threads();
+        let work = self.placing.sorted();
+        let shares = WorkStealing::new(work.len(), threads);
+        together(threads, || {
+            while let Some(work) = shares.next().map(|i| &work[i]).filter(|_| watch.goes_on()) {
+                let draw = &plan.draws[work.draw];
+                let screen = Screen::new(draw.clip_from_object, plan.size);
+                let order = draw.model.mesh.draw_order();
+                let out = &mut *pieces[work.place].lock().unwrap_or_else(PoisonError::into_inner);
+                if plan.variants.has_plain_vertices() {
+                    vertices::transform(level, &screen, order, work.from, out);
+                } else {
+                    vertex_variants::transform(
+                        plan.variants,
+                        level,
+                        &screen,
+                        order,
+                        work.from,
+                        out,
+                    );
+                }
+                see_from(out, plan.shift);
+            }
+        });
+        drop(pieces);
+        self.place_finely(plan);
+        if watch.is_given_up() {
+            return;
+        }
+        for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
+            held.get_or_insert_with(|| Held::new(draw, plan, start.vertex));
+        }
+    }
+
+    /// Corners in finer parts of a pixel, where that is chosen.
+    fn place_finely(&mut self, plan: &FramePlan) {
+        self.fine.clear();
+        if !plan.variants.has_fine_corners() {
+            return;
+        }
+        self.fine.resize(self.vertices.len(), ScreenVertex::default());
+        for (draw, start) in plan.draws.iter().zip(&self.starts) {
+            let screen = Screen::new(draw.clip_from_object, plan.size);
+            let order = draw.model.mesh.draw_order();
+            let own = &mut self.fine[start.vertex..start.vertex_end];
+            let piece = piece_of(own.len());
+            own.par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
+                vertex_variants::transform_finely(plan.variants, &screen, order, i * piece, out);
+                see_from(
+                    out,
+                    plan.shift
+                        .map(|shift| shift * (interpolation::subpixels(plan.variants) / SUBPIXELS)),
+                );
+            });
+        }
+    }
+
+    /// Triangles into bins: one set of bins for each thread that takes part. And which polygons face
+    /// the observer, for their outlines.
+    fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
+        self.set_up.clear();
+        for (i, draw) in plan.draws.iter().enumerate() {
+            let mesh = &draw.model.mesh;
+            let triangles = mesh.draw_order().triangles.len();
+            let mut add = |what: What, count| {
+                let position = |i| what.position(draw, i);
+                self.set_up.add((i, draw), (what, count), plan.size, position);
+            };
+            if draw.filled {
+                add(What::Triangles, triangles);
+            }
+            if draw.lines.edges && mesh.edge_order().triangles {
+                add(What::Facing, triangles);
+            } else if draw.lines.edges {
+                add(What::FacingOneByOne, mesh.polygon_count());
+            }
+        }
+        self.bins.resize_with(self.set_up.threads(), Bins::default);
+        for bins in &mut self.bins {
+            bins.clear(plan.size, self.places);
+        }
+        let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+        share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
+    }
+
+    /// Lines into bins.
+    fn add_lines(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
+        self.lines.clear();
+        self.normals.clear();
+        let mut next = 0;
+        for (i, draw) in plan.draws.iter().enumerate() {
+            if !watch.goes_on() {
+                return;
+            }
+            let edges = if draw.lines.edges { draw.model.mesh.edge_order().edges.len() } else { 0 };
+            let start = &mut self.starts[i];
+            (start.line, start.normal) = (next, next + number(edges));
+            start.normal_place = self.normals.len();
+            let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+            let setup = parts.edge_setup(i);
+            let first = self.starts[i].normal;
+            setup.add_normals(first, &mut self.bins[0], &mut self.normals);
+            next = first + number(self.normals.len() - self.starts[i].normal_place);
+            self.starts[i].line_end = next;
+            let position = |edge| What::Edges.position(draw, edge);
+            self.lines.add((i, draw), (What::Edges, edges), plan.size, position);
+        }
+        if self.lines.len() > 0 {
+            let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+            share_out(level, self.lines.sorted(), &parts, &mut self.bins, watch);
+        }
+    }
+
+    /// The tiles of the picture, shared out so that each thread draws mostly what it has set up.
+    pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
+        self.set_up.shares_of_tiles(tiles)
+    }
+
+    /// The bins of all threads.
+    pub(crate) fn bins(&self) -> &[Bins] {
+        &self.bins
+    }
+
+    /// Where its pixels are looked at.
+    pub(crate) const fn places(&self) -> SamplePositions {
+        self.places
+    }
+
+    /// Whether nothing reaches into a tile.
+    pub(crate) fn is_empty(&self, tile: usize) -> bool {
+        self.bins.iter().all(|bins| bins.is_empty(tile))
+    }
+
+    /// The draw that a triangle belongs to, and where its numbers begin.
+    #[inline(always)]
+    pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
+        let draw = self.starts.partition_point(|start| start.end <= triangle);
+        (number(draw), self.starts[draw])
+    }
+
+    /// The vertices of a draw, in the order in which its mesh is drawn.
+    #[inline(always)]
+    pub(crate) fn vertices_of(&self, plan: &FramePlan, draw: u32) -> &[ScreenVertex] {
+        let count = plan.draws[draw as usize].model.mesh.draw_order().x.len();
+        &self.vertices[self.starts[draw as usize].vertex..][..count]
+    }
+
+    /// The corners that the triangles of a draw have.
+    pub(crate) fn corners_of(&self, plan: &FramePlan, draw: u32) -> &[ScreenVertex] {
+        if self.fine.is_empty() {
+            return self.vertices_of(plan, draw);
+        }
+        let Start { vertex, vertex_end, .. } = self.starts[draw as usize];
+        &self.fine[vertex..vertex_end]
+    }
+
+    /// The colour of a line.
+    pub(crate) fn line_color(&self, plan: &FramePlan, line: LineNumber) -> [u8; 4] {
+        if line.is_back() {
+            return Color::BACK_FACE.opaque();
+        }
+        plan.draws[self.draw_of_line(line)].lines.color.opaque()
+    }
+
+    /// Whether a line is an edge, and not a normal.
+    pub(crate) fn is_edge(&self, line: LineNumber) -> bool {
+        line.line() < self.starts[self.draw_of_line(line)].normal
+    }
+
+    /// The draw of a line, and the polygon that it is drawn for.
+    pub(crate) fn line_seen(&self, plan: &FramePlan, line: LineNumber) -> Option<(u32, u32)> {
+        let draw = self.draw_of_line(line);
+        let start = self.starts[draw];
+        let polygon = match line.line().checked_sub(start.normal) {
+            Some(normal) => self.normals[start.normal_place + normal as usize],
+            None => {
+                let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
+                edges::polygon_of(
+                    &plan.draws[draw],
+                    line.line() - start.line,
+                    parts.outlines_of(draw),
+                )?
+            }
+        };
+        Some((number(draw), polygon))
+    }
+
+    fn draw_of_line(&self, line: LineNumber) -> usize {
+        self.starts.partition_point(|start| start.line_end <= line.line())
+    }
+
+    /// How many triangles of the frame face the observer and may cover a pixel.
+    pub(crate) fn triangles(&self) -> usize {
+        self.bins.iter().map(|bins| bins.drawn).sum()
+    }
+}
+
+/// Moves vertices to where they are seen from a place that is shifted by so many parts of a pixel.
+fn see_from(vertices: &mut [ScreenVertex], shift: [i32; 2]) {
+    if shift != [0; 2] {
+        for vertex in vertices.iter_mut().filter(|vertex| vertex.is_inside()) {
+            *vertex = vertex.seen_from(shift);
+        }
+    }
+}

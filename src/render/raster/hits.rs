@@ -1,0 +1,222 @@
+//! Pixels that primitives cover, tile by tile.
+//!
+//! Small triangles and short lines are rasterised sixteen at a time before tiles are looked at, one
+//! in each lane. What they cover are hits. They are kept in pages, which are handed out to tiles as
+//! they are needed and used again in the next frame.
+
+use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
+
+use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::tiles::{TILE, lanes_place};
+
+/// Primitives that are rasterised at once.
+pub(crate) const PACK: usize = 16;
+
+/// Hits of a page.
+const PAGE: usize = 512;
+
+/// The page that is never written: it looks full, and ends every chain.
+const FULL: u32 = 0;
+
+/// Tiles that sixteen primitives may reach into to be drawn tile by tile.
+const FEW_TILES: i32 = 6;
+
+/// Some hits of one tile.
+#[derive(Clone, Debug)]
+struct Page {
+    /// Where the word of the pixel stands in its tile.
+    place: [u32; PAGE],
+    /// The bits of the depth.
+    depth: [u32; PAGE],
+    /// The number of the primitive.
+    number: [u32; PAGE],
+    count: usize,
+    /// The page before it of the same tile, or [`FULL`].
+    previous: u32,
+}
+
+impl Page {
+    const fn new(count: usize) -> Self {
+        Self { place: [0; PAGE], depth: [0; PAGE], number: [0; PAGE], count, previous: FULL }
+    }
+
+    /// Adds some of sixteen hits.
+    #[inline(always)]
+    fn add<S: Simd>(&mut self, place: u32x16<S>, pixels: &Pixels<S>, some: mask32x16<S>) {
+        let to = self.count..self.count + PACK;
+        place.compress(some).store_slice(&mut self.place[to.clone()]);
+        pixels.depth.compress(some).store_slice(&mut self.depth[to.clone()]);
+        pixels.number.compress(some).store_slice(&mut self.number[to]);
+        self.count += some.to_bitmask().count_ones() as usize;
+    }
+}
+
+/// A pixel of each of sixteen primitives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pixels<S: Simd> {
+    pub(crate) x: i32x16<S>,
+    pub(crate) y: i32x16<S>,
+    /// The bits of the depth.
+    pub(crate) depth: u32x16<S>,
+    /// The number of the primitive.
+    pub(crate) number: u32x16<S>,
+}
+
+/// Which tiles sixteen primitives may reach into.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Reach {
+    /// One, and nothing of them lies beyond the picture.
+    One(usize),
+    /// A few of them.
+    Few(PixelBox),
+    /// Many.
+    Many,
+}
+
+/// The hits that one thread has found.
+#[derive(Debug)]
+pub(crate) struct Hits {
+    /// Columns and rows of the picture.
+    extent: [i32; 2],
+    /// Columns and rows of tiles.
+    tiles: [i32; 2],
+    /// The last page of each tile.
+    last: Vec<u32>,
+    pages: Vec<Page>,
+    /// How many pages are handed out.
+    used: usize,
+}
+
+impl Default for Hits {
+    fn default() -> Self {
+        let pages = vec![Page::new(PAGE)];
+        Self { extent: [0; 2], tiles: [0; 2], last: Vec::new(), pages, used: 1 }
+    }
+}
+
+impl Hits {
+    /// Forgets all, for a picture of this many columns and rows of pixels and of tiles.
+    pub(crate) fn clear(&mut self, extent: [i32; 2], tiles: [i32; 2]) {
+        (self.extent, self.tiles) = (extent, tiles);
+        self.last.clear();
+        self.last.resize(usize::try_from(tiles[0] * tiles[1]).expect("not negative"), FULL);
+        self.used = 1;
+    }
+
+    /// Columns and rows of the picture.
+    #[inline(always)]
+    pub(crate) const fn extent(&self) -> [i32; 2] {
+        self.extent
+    }
+
+    /// Whether there are none in a tile.
+    #[inline(always)]
+    pub(crate) fn is_empty(&self, tile: usize) -> bool {
+        self.last[tile] == FULL
+    }
+
+    /// The tiles that a box of pixels reaches into; it may be empty, or reach beyond the picture.
+    #[inline(always)]
+    pub(crate) fn reach(&self, pixels: PixelBox) -> Reach {
+        let [columns, rows] = self.tiles;
+        let [width, height] = self.extent;
+        let tiles = PixelBox {
+            left: (pixels.left >> 6).max(0),
+            top: (pixels.top >> 6).max(0),
+            right: (((pixels.right - 1) >> 6) + 1).min(columns),
+            bottom: (((pixels.bottom - 1) >> 6) + 1).min(rows),
+        };
+        let whole =
+            pixels.left >= 0 && pixels.top >= 0 && pixels.right <= width && pixels.bottom <= height;
+        match (tiles.width(), tiles.height()) {
+            (1, 1) if whole => Reach::One((tiles.top * columns + tiles.left) as usize),
+            (columns, rows) if i64::from(columns) * i64::from(rows) <= i64::from(FEW_TILES) => {
+                Reach::Few(tiles)
+            }
+            _ => Reach::Many,
+        }
+    }
+
+    /// Adds those of sixteen pixels that are covered in one of their `N` samples and in the picture.
+    #[inline(always)]
+    pub(crate) fn add<S: Simd, const N: usize>(
+        &mut self,
+        reach: &Reach,
+        (pixels, sample): (&Pixels<S>, usize),
+        covered: mask32x16<S>,
+    ) {
+        let Pixels { x, y, .. } = *pixels;
+        let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
+        let (column, row) = (x >> 6, y >> 6);
+        let [width, height] = self.extent;
+        match *reach {
+            Reach::One(tile) => self.page(tile).add(place, pixels, covered),
+            Reach::Few(tiles) => {
+                let covered = covered & x.simd_lt(width) & y.simd_lt(height);
+                for own_row in tiles.top..tiles.bottom {
+                    for own_column in tiles.left..tiles.right {
+                        let some = covered & row.simd_eq(own_row) & column.simd_eq(own_column);
+                        if some.any_true() {
+                            let tile = (own_row * self.tiles[0] + own_column) as usize;
+                            self.page(tile).add(place, pixels, some);
+                        }
+                    }
+                }
+            }
+            Reach::Many => {
+                let inside = x.simd_ge(0) & y.simd_ge(0) & x.simd_lt(width) & y.simd_lt(height);
+                let tile = row * self.tiles[0] + column;
+                let mut left = (covered & inside).to_bitmask();
+                while left != 0 {
+                    let lane = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    let page = self.page(tile[lane] as usize);
+                    let at = page.count;
+                    page.place[at] = place[lane];
+                    page.depth[at] = pixels.depth[lane];
+                    page.number[at] = pixels.number[lane];
+                    page.count = at + 1;
+                }
+            }
+        }
+    }
+
+    /// A page of a tile that has room for sixteen hits.
+    #[inline(always)]
+    fn page(&mut self, tile: usize) -> &mut Page {
+        let page = self.last[tile] as usize;
+        if self.pages[page].count > PAGE - PACK {
+            return self.turn(tile);
+        }
+        &mut self.pages[page]
+    }
+
+    /// A new page for a tile.
+    #[cold]
+    #[inline(never)]
+    fn turn(&mut self, tile: usize) -> &mut Page {
+        if self.used == self.pages.len() {
+            self.pages.push(Page::new(0));
+        }
+        let new = u32::try_from(self.used).expect("fewer than 2^32 pages");
+        let page = &mut self.pages[self.used];
+        page.count = 0;
+        page.previous = std::mem::replace(&mut self.last[tile], new);
+        self.used += 1;
+        page
+    }
+
+    /// Calls `take` with place, bits of the depth and number of each hit in a tile.
+    #[inline(always)]
+    pub(crate) fn each(&self, tile: usize, mut take: impl FnMut(u32, u32, u32)) {
+        let mut page = self.last[tile];
+        while page != FULL {
+            let Page { place, depth, number, count, previous } = &self.pages[page as usize];
+            let rows = place[..*count].iter().zip(depth).zip(number);
+            for ((place, depth), number) in rows {
+                take(*place, *depth, *number);
+            }
+            page = *previous;
+        }
+    }
+}

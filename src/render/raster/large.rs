@@ -1,0 +1,236 @@
+//! A large triangle in one tile.
+//!
+//! Its edge functions are whole numbers of 64 bits. First all blocks of the tile are asked at once
+//! which of them it may touch and which it covers as a whole; then only blocks that it touches are
+//! looked at, a row of eight pixels at a time. So what is large costs by its blocks, not its pixels,
+//! until its depths are asked for.
+
+use fearless_simd::{
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
+    SimdNarrow as _, SimdWiden as _, f32x16, f64x8, i64x8, u32x16, u64x8,
+};
+
+use crate::base::math::each;
+use crate::render::raster::bins::LargeTriangle;
+use crate::render::screen::coverage::{PixelBox, Triangle};
+use crate::render::screen::sample_positions::SamplePositions;
+use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
+
+/// How much the depths of a block may lie beyond those at its corners, by rounding: a few steps of
+/// 2^-53, for all terms are at most 1 inside the triangle.
+const ROUNDING: f64 = 1e-14;
+
+/// A triangle as it is seen from a tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Large {
+    /// The edge functions at the first pixel of the tile.
+    edges: [i64; 3],
+    /// What they gain by a pixel to the right, and by one down.
+    right: [i64; 3],
+    down: [i64; 3],
+    /// Their least values at centres that are covered.
+    least: [i64; 3],
+    depth: f64,
+    to_second: f64,
+    to_third: f64,
+    low: f32,
+    /// The largest depth of its corners.
+    pub(crate) high: f32,
+    /// Its number in the frame.
+    pub(crate) number: u32,
+}
+
+/// Blocks of a tile, a bit for each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Touched {
+    /// In which some pixels may be covered.
+    pub(crate) some: u64,
+    /// In which all pixels are.
+    pub(crate) whole: u64,
+}
+
+impl Large {
+    /// The triangle as it is seen from the tile whose first pixel is this.
+    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+    pub(crate) fn new(large: &LargeTriangle, triangle: &Triangle, [x, y]: [i32; 2]) -> Self {
+        let [a, b, c] = each(large.corners, |corner| corner.depth);
+        let per_area = 1.0 / triangle.doubled_area() as f64;
+        let [right, down] = triangle.steps();
+        Self {
+            edges: triangle.edges_at(x, y),
+            right,
+            down,
+            least: triangle.least(),
+            depth: f64::from(a),
+            to_second: (f64::from(b) - f64::from(a)) * per_area,
+            to_third: (f64::from(c) - f64::from(a)) * per_area,
+            low: a.min(b).min(c),
+            high: a.max(b).max(c),
+            number: large.number,
+        }
+    }
+
+    /// What the edge functions gain by a shift by some parts of a pixel, all of them sixteenths.
+    #[inline(always)]
+    pub(crate) fn gain(&self, [x, y]: [i32; 2]) -> [i64; 3] {
+        let [x, y] = [x, y].map(|by| i64::from(by / 16));
+        let gain = |i: usize| (self.right[i] >> 4) * x + (self.down[i] >> 4) * y;
+        [gain(0), gain(1), gain(2)]
+    }
+
+    /// Which blocks of the tile the triangle touches in any of the `N` samples of their pixels, of
+    /// those that `area` reaches into (not empty; in pixels from the tile's first).
+    #[inline(always)]
+    pub(crate) fn blocks<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        area: PixelBox,
+        places: &SamplePositions,
+    ) -> Touched {
+        let mut touched = Touched::default();
+        let columns = eight_bits(area.left / BLOCK, (area.right - 1) / BLOCK);
+        let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
+        let side = i64::from(BLOCK);
+        // What the edge functions gain at the most and at the least from the middle to a sample.
+        let (mut most, mut least) = ([0; 3], [0; 3]);
+        if N > 1 {
+            (most, least) = ([i64::MIN; 3], [i64::MAX; 3]);
+            for sample in 0..N {
+                let gain = self.gain(places.shift::<N>(sample));
+                most = [0, 1, 2].map(|i: usize| most[i].max(gain[i]));
+                least = [0, 1, 2].map(|i: usize| least[i].min(gain[i]));
+            }
+        }
+        for row in area.top / BLOCK..(area.bottom - 1) / BLOCK + 1 {
+            let (mut some, mut whole) = (columns, columns);
+            for i in 0..3 {
+                let first = self.edges[i] + i64::from(row) * side * self.down[i] - self.least[i];
+                let (x, y) = (7 * self.right[i], 7 * self.down[i]);
+                let first = across * (side * self.right[i]) + first;
+                some &= (first + (x.max(0) + y.max(0) + most[i])).simd_ge(0).to_bitmask();
+                whole &= (first + (x.min(0) + y.min(0) + least[i])).simd_ge(0).to_bitmask();
+            }
+            touched.some |= some << (8 * row);
+            touched.whole |= (some & whole) << (8 * row);
+        }
+        touched
+    }
+
+    /// The edge functions at the first pixel of a block.
+    #[inline(always)]
+    fn edges_at(&self, block: usize) -> [i64; 3] {
+        let (x, y) = ((block % 8 * 8) as i64, (block / 8 * 8) as i64);
+        let at = |i: usize| self.edges[i] + x * self.right[i] + y * self.down[i];
+        [at(0), at(1), at(2)]
+    }
+
+    /// The least and the largest depth that it may have in the `N` samples of a block that it covers as
+    /// a whole.
+    #[inline(always)]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        reason = "the rounding is allowed for"
+    )]
+    pub(crate) fn depths<const N: usize>(&self, block: usize) -> [f32; 2] {
+        let [_, second, third] = self.edges_at(block);
+        let first = self.depth + second as f64 * self.to_second + third as f64 * self.to_third;
+        let gain = |steps: &[i64; 3]| {
+            7.0 * (steps[1] as f64 * self.to_second + steps[2] as f64 * self.to_third)
+        };
+        let (mut x, mut y) = (gain(&self.right), gain(&self.down));
+        let mut first = first;
+        if N > 1 {
+            // From half a pixel before the first middle to half a pixel behind the last.
+            first -= (x + y) / 14.0;
+            (x, y) = (x * (8.0 / 7.0), y * (8.0 / 7.0));
+        }
+        let low = (first + x.min(0.0) + y.min(0.0) - ROUNDING) as f32;
+        let high = (first + x.max(0.0) + y.max(0.0) + ROUNDING) as f32;
+        [low.max(self.low), high.min(self.high)]
+    }
+
+    /// Draws the triangle into the words that a block has for the samples with this shift; it covers all
+    /// of them or some.
+    #[inline(always)]
+    pub(crate) fn draw<S: Simd>(
+        &self,
+        simd: S,
+        (block, shift): (usize, [i32; 2]),
+        whole: bool,
+        words: &mut [u64; BLOCK_PIXELS],
+    ) {
+        let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
+        let (first, gain) = (self.edges_at(block), self.gain(shift));
+        let first = [first[0] + gain[0], first[1] + gain[1], first[2] + gain[2]];
+        let [a, b, c] = self.right;
+        let mut edges = [across * a + first[0], across * b + first[1], across * c + first[2]];
+        let (two, _) = words.as_chunks_mut::<16>();
+        for words in two {
+            let upper = edges;
+            let lower = self.below(upper);
+            edges = self.below(lower);
+            let covered =
+                if whole { [u64::MAX; 2] } else { [self.inside(upper), self.inside(lower)] };
+            if covered == [0; 2] {
+                continue;
+            }
+            let depth = self.depth_at(upper).narrow(self.depth_at(lower));
+            let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
+            let depth = depth.simd_gt(low).select(depth, low);
+            let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
+            let (upper, lower) = depth.bitcast::<u32x16<S>>().widen();
+            let (up, down) = words.split_at_mut(8);
+            self.put(simd, upper, covered[0], up);
+            self.put(simd, lower, covered[1], down);
+        }
+    }
+
+    #[inline(always)]
+    fn put<S: Simd>(&self, simd: S, depth: u64x8<S>, covered: u64, words: &mut [u64]) {
+        let new = (depth << 32) | u64::from(!self.number);
+        let covered = fearless_simd::mask64x8::from_bitmask(simd, covered & 0xff);
+        let new = covered.select(new, u64x8::splat(simd, 0));
+        new.max(u64x8::from_slice(simd, words)).store_slice(words);
+    }
+
+    #[inline(always)]
+    fn below<S: Simd>(&self, [a, b, c]: [i64x8<S>; 3]) -> [i64x8<S>; 3] {
+        [a + self.down[0], b + self.down[1], c + self.down[2]]
+    }
+
+    #[inline(always)]
+    fn inside<S: Simd>(&self, [a, b, c]: [i64x8<S>; 3]) -> u64 {
+        let [x, y, z] = self.least;
+        (a.simd_ge(x) & b.simd_ge(y) & c.simd_ge(z)).to_bitmask()
+    }
+
+    /// The depths where the edge functions have these values, before they are held to the corners'.
+    #[inline(always)]
+    fn depth_at<S: Simd>(&self, [_, second, third]: [i64x8<S>; 3]) -> f64x8<S> {
+        let (second, third) = (second.to_float::<f64x8<S>>(), third.to_float::<f64x8<S>>());
+        second * self.to_second + self.depth + third * self.to_third
+    }
+
+    /// The depth where the edge functions have these values.
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        reason = "the nearest number is meant"
+    )]
+    pub(crate) fn depth(&self, [_, second, third]: [i64; 3]) -> f32 {
+        let depth = self.depth + second as f64 * self.to_second + third as f64 * self.to_third;
+        let depth = depth as f32;
+        let depth = if depth > self.low { depth } else { self.low };
+        if depth < self.high { depth } else { self.high }
+    }
+}
+
+/// Numbers of columns.
+const UP_TO_EIGHT: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// The bits from `first` to `last`.
+#[inline(always)]
+const fn eight_bits(first: i32, last: i32) -> u64 {
+    (0xff << first) & (0xff >> (7 - last))
+}

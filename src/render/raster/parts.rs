@@ -1,0 +1,130 @@
+//! What all threads do while a frame is set up: triangles and lines into bins, each thread into its own.
+
+use std::sync::Mutex;
+use std::sync::atomic::AtomicU8;
+
+use fearless_simd::Level;
+
+use super::bins::Bins;
+use super::culling::Culling;
+use super::edges::EdgeSetup;
+use super::facing::Facing;
+use super::setup::{self, Setup};
+use super::setup_variants;
+use super::starts::{Start, number};
+use super::work::{What, Work};
+use crate::base::cancellation::Cancellation;
+use crate::base::work_stealing::{WorkStealing, own, together};
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::Draw;
+use crate::render::screen::clip::{Screen, ScreenVertex};
+use crate::scene::CLUSTER;
+
+/// Has all threads do the work, each into its own bins, as long as that is wanted.
+pub(crate) fn share_out(
+    level: Level,
+    work: &[Work<What>],
+    parts: &Parts<'_>,
+    bins: &mut [Bins],
+    watch: &Cancellation<'_>,
+) {
+    let shares = WorkStealing::new(work.len(), bins.len());
+    let all: Vec<Mutex<&mut Bins>> = bins.iter_mut().map(Mutex::new).collect();
+    together(all.len(), || {
+        let bins = &mut own(&all);
+        while let Some(work) = shares.next().map(|i| &work[i]) {
+            if !watch.goes_on() {
+                return;
+            }
+            parts.run(level, work, bins);
+        }
+        setup::finish(level, bins);
+    });
+}
+
+/// What all threads read while they fill their bins.
+#[derive(Debug)]
+pub(crate) struct Parts<'a> {
+    plan: &'a FramePlan,
+    vertices: &'a [ScreenVertex],
+    starts: &'a [Start],
+    outlines: &'a [AtomicU8],
+}
+
+impl<'a> Parts<'a> {
+    pub(crate) fn new(
+        plan: &'a FramePlan,
+        vertices: &'a [ScreenVertex],
+        starts: &'a [Start],
+        outlines: &'a [AtomicU8],
+    ) -> Self {
+        Self { plan, vertices, starts, outlines }
+    }
+
+    fn run(&self, level: Level, work: &Work<What>, bins: &mut Bins) {
+        let Work { draw: i, what, from, to, .. } = *work;
+        let draw = &self.plan.draws[i];
+        let mesh = &draw.model.mesh;
+        let (vertices, size) = (self.vertices_of(i), self.plan.size);
+        match what {
+            What::Triangles => {
+                let pipelines = &self.plan.pipelines;
+                let setup = Setup::new(draw, pipelines, vertices, size, self.starts[i].number);
+                let setup = setup.seen_from(self.plan.shift);
+                let order = mesh.draw_order();
+                let triangles = &order.triangles[from..to];
+                if self.plan.variants.draws_one_by_one() {
+                    setup_variants::set_up(
+                        self.plan.variants,
+                        &setup,
+                        triangles,
+                        pipelines,
+                        (size, bins),
+                    );
+                } else if order.clusters.is_empty() {
+                    setup.run(level, triangles, pipelines, bins);
+                } else {
+                    let clusters = &order.clusters[from / CLUSTER..];
+                    let culling = Culling::new(draw, setup.screen);
+                    culling.each_left(clusters, triangles, |some| {
+                        setup.run(level, some, pipelines, bins);
+                    });
+                }
+            }
+            What::Facing => {
+                let triangles = &mesh.draw_order().triangles[from..to];
+                let facing = Facing::new(draw, vertices, size);
+                facing.of_triangles(level, triangles, self.outlines_of(i));
+            }
+            What::FacingOneByOne => {
+                let facing = Facing::new(draw, vertices, size);
+                for polygon in from..to {
+                    facing.one(number(polygon), self.outlines_of(i));
+                }
+            }
+            What::Edges => {
+                self.edge_setup(i).run(level, &mesh.edge_order().edges[from..to], bins);
+            }
+        }
+    }
+
+    pub(crate) fn edge_setup(&self, i: usize) -> EdgeSetup<'a> {
+        let plan = self.plan;
+        let (draw, first) = (&plan.draws[i], self.starts[i].line);
+        let screen = Screen::new(draw.clip_from_object, plan.size).seen_from(plan.shift);
+        let (vertices, outlines) = (self.vertices_of(i), self.outlines_of(i));
+        EdgeSetup { draw, vertices, screen, outlines, first, width: plan.line_width }
+    }
+
+    fn vertices_of(&self, draw: usize) -> &'a [ScreenVertex] {
+        let count = self.plan.draws[draw].model.mesh.draw_order().x.len();
+        &self.vertices[self.starts[draw].vertex..][..count]
+    }
+
+    /// The outlines of a draw whose edges are drawn; none elsewhere.
+    pub(crate) fn outlines_of(&self, draw: usize) -> &'a [AtomicU8] {
+        let Draw { model, lines, .. } = &self.plan.draws[draw];
+        let count = if lines.edges { model.mesh.polygon_count() } else { 0 };
+        &self.outlines[self.starts[draw].outline..][..count]
+    }
+}

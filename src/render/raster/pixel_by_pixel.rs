@@ -1,0 +1,96 @@
+//! What is seen in a tile, pixel by pixel, by the way of covering and the format of depth that are
+//! chosen. Words come out as they do elsewhere, so all that follows goes on as it does.
+
+use crate::accuracy::{Coverage, DepthFormat};
+use crate::render::frame::FramePlan;
+use crate::render::frame::variants::Variants;
+use crate::render::raster::alpha_test::AlphaTest;
+use crate::render::raster::bins::Bins;
+use crate::render::raster::coverage_variants;
+use crate::render::raster::depth_format::key;
+use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::lines;
+use crate::render::reference::points;
+use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::interpolation::subpixels;
+use crate::render::screen::tiles::pixel_at;
+
+/// How many steps of a format of its own lines are nearer than the surfaces that they lie on.
+const LINES_NEARER: u32 = 2;
+
+/// Where a primitive is seen: column and row from the tile's first, what its word has above, its number.
+pub(crate) type Put<'a> = &'a mut dyn FnMut([i32; 2], u32, u32);
+
+/// Draws everything that reaches into a tile, as a sample of its pixels sees it: the sample's number,
+/// and how many parts of a pixel it lies from the middle.
+pub(crate) fn paint(
+    variants: Variants,
+    plan: &FramePlan,
+    frame: &ScreenGeometry,
+    (tile, bounds): (usize, PixelBox),
+    sample: (usize, [i32; 2]),
+    put: Put<'_>,
+) {
+    for bins in frame.bins() {
+        for number in &bins.tiles[tile].large {
+            paint_triangle(variants, plan, frame, (bins, *number), (bounds, sample.1), put);
+        }
+        paint_lines(variants, plan, bins, (tile, bounds), sample, put);
+    }
+}
+
+fn paint_triangle(
+    variants: Variants,
+    plan: &FramePlan,
+    frame: &ScreenGeometry,
+    (bins, number): (&Bins, u32),
+    (bounds, shift): (PixelBox, [i32; 2]),
+    put: Put<'_>,
+) {
+    let (plain, own) = bins.plain(number);
+    let plain = &plain.seen_from(shift, subpixels(variants));
+    let clip = own.intersection(bounds);
+    let holes = plain.cutout.then(|| AlphaTest::of(plan, frame, plain.number, shift)).flatten();
+    let mut take = |x: i32, y: i32, depth: f32| {
+        if holes.as_ref().is_none_or(|holes| holes.is_opaque([x, y])) {
+            put([x - bounds.left, y - bounds.top], key(variants.depth, depth), plain.number);
+        }
+    };
+    match variants.coverage {
+        Coverage::Exact => coverage_variants::exactly(plain, subpixels(variants), clip, &mut take),
+        Coverage::F32Edges => coverage_variants::in_32_bits(plain, clip, &mut take),
+        Coverage::ScanLines => coverage_variants::by_scan_lines(plain, clip, &mut take),
+        Coverage::Points => {
+            let (draw, start) = frame.draw_of(plain.number);
+            let draw = &plan.draws[draw as usize];
+            let number = plain.number - start.number;
+            let shift = [0, 1].map(|axis| shift[axis] + plan.shift[axis]);
+            points::cover(plan, draw, number, (clip, shift), &mut take);
+        }
+    }
+}
+
+fn paint_lines(
+    variants: Variants,
+    plan: &FramePlan,
+    bins: &Bins,
+    (tile, bounds): (usize, PixelBox),
+    (sample, shift): (usize, [i32; 2]),
+    put: Put<'_>,
+) {
+    let nearer = if variants.depth == DepthFormat::F32Reversed { 0 } else { LINES_NEARER };
+    let key = |depth: f32| key(variants.depth, depth) + nearer;
+    let samples = bins.places.count();
+    bins.hits.each(tile, |place, depth, number| {
+        let (at, own) = pixel_at(place as usize, samples);
+        if own == sample {
+            put(at, key(f32::from_bits(depth)), number);
+        }
+    });
+    for place in &bins.tiles[tile].lines {
+        let line = bins.lines[*place as usize].seen_from(shift);
+        lines::pixels(&line, plan.line_width, bounds, |x, y, depth| {
+            put([x - bounds.left, y - bounds.top], key(depth), line.number);
+        });
+    }
+}

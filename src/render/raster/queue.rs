@@ -1,0 +1,73 @@
+//! Queues of small triangles that wait to be drawn sixteen at a time.
+
+use fearless_simd::{Simd, SimdBase as _, i32x16, mask32x16};
+
+use super::hits::PACK;
+
+/// Pixels to a side of the boxes of the queues.
+pub(crate) const SMALL: [i32; 4] = [1, 2, 4, 8];
+
+/// Numbers kept of a triangle: x and y of its corners, their depths, its own number.
+pub(crate) const ROWS: usize = 10;
+
+/// Sixteen triangles, row by row.
+pub(crate) type Pack<S> = [i32x16<S>; ROWS];
+
+/// Triangles that wait until there are [`WAITING`] of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Queue {
+    rows: [[i32; WAITING + PACK]; ROWS],
+    pub(super) count: usize,
+}
+
+/// How many triangles wait at the most: so many that what is read has long been written.
+pub(super) const WAITING: usize = 128;
+
+impl Default for Queue {
+    fn default() -> Self {
+        Self { rows: [[0; WAITING + PACK]; ROWS], count: 0 }
+    }
+}
+
+impl Queue {
+    /// Adds some of sixteen triangles; says whether the queue is full.
+    #[inline(always)]
+    pub(crate) fn add<S: Simd>(
+        &mut self,
+        pack: &Pack<S>,
+        some: mask32x16<S>,
+        count: usize,
+    ) -> bool {
+        let at = self.count % WAITING;
+        for (row, values) in self.rows.iter_mut().zip(pack) {
+            values.compress(some).store_slice(&mut row[at..at + PACK]);
+        }
+        self.count = at + count;
+        self.count >= WAITING
+    }
+
+    /// Forgets all.
+    pub(crate) const fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Sixteen of them, from `at` on.
+    #[inline(always)]
+    pub(super) fn pack<S: Simd>(&self, simd: S, at: usize) -> Pack<S> {
+        let mut pack = [i32x16::splat(simd, 0); ROWS];
+        for (values, row) in pack.iter_mut().zip(&self.rows) {
+            *values = i32x16::from_slice(simd, &row[at..at + PACK]);
+        }
+        pack
+    }
+
+    /// Forgets the first [`WAITING`]; the others move up.
+    #[inline(always)]
+    pub(super) fn forget(&mut self) {
+        for row in &mut self.rows {
+            let (first, others) = row.split_at_mut(WAITING);
+            first[..PACK].copy_from_slice(others);
+        }
+        self.count -= WAITING;
+    }
+}

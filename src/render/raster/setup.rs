@@ -1,0 +1,303 @@
+//! From vertices on the screen to triangles in bins.
+//!
+//! Sixteen triangles at a time: those that face away, that reach no pixel's centre (or sample) or that miss
+//! the picture are dropped before anything of theirs is copied. What has a corner beyond the planes is
+//! cut, and what is so large that its area needs 64 bits is looked at one by one.
+
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16};
+
+use super::bins::{Bins, LargeTriangle};
+use super::hits::PACK;
+use super::queue::{Pack, SMALL};
+use super::small;
+use super::vertices::{fetch, fetch_vertices};
+use crate::base::image::Size;
+use crate::base::math::each;
+use crate::render::frame::draw::{Back, Draw, Pipeline};
+use crate::render::screen::clip::{Screen, ScreenVertex};
+use crate::render::screen::coverage::{PixelBox, SUBPIXELS, doubled_area};
+use crate::render::screen::sample_positions::FOUR;
+use crate::scene::{DrawOrder, DrawTriangle};
+
+/// The largest box, in parts of a pixel, whose doubled area fits 31 bits.
+pub(crate) const NARROW: i32 = 1 << 14;
+
+/// What setting up the triangles of one draw reads.
+#[derive(Debug)]
+pub(crate) struct Setup<'a> {
+    pub(crate) draw: &'a Draw,
+    pub(crate) order: &'a DrawOrder,
+    pub(crate) vertices: &'a [ScreenVertex],
+    pub(crate) screen: Screen,
+    /// The number of the draw's first triangle in the frame.
+    pub(crate) base: u32,
+    /// Whether some triangles are not drawn or have holes: then each is asked.
+    pub(crate) choosy: bool,
+}
+
+/// How a triangle is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Not,
+    UnsnappedTriangle,
+    Cutout,
+}
+
+impl<'a> Setup<'a> {
+    pub(crate) fn new(
+        draw: &'a Draw,
+        pipelines: &[Pipeline],
+        vertices: &'a [ScreenVertex],
+        size: Size,
+        base: u32,
+    ) -> Self {
+        let choosy = draw.polygons.is_some()
+            || draw.part_pipelines.iter().any(|pipeline| {
+                pipeline.is_none_or(|pipeline| pipelines[pipeline as usize].is_cutout())
+            });
+        let screen = Screen::new(draw.clip_from_object, size);
+        Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
+    }
+
+    /// The same for vertices as they are seen from a place that is shifted by so many parts of a pixel.
+    pub(crate) fn seen_from(self, shift: [i32; 2]) -> Self {
+        Self { screen: self.screen.seen_from(shift), ..self }
+    }
+
+    /// Puts some of the draw's triangles into bins.
+    pub(crate) fn run(
+        &self,
+        level: Level,
+        triangles: &[DrawTriangle],
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+    ) {
+        if bins.places.are_many() {
+            dispatch!(level, simd => self.all::<_, FOUR>(simd, triangles, pipelines, bins));
+        } else {
+            dispatch!(level, simd => self.all::<_, 1>(simd, triangles, pipelines, bins));
+        }
+    }
+
+    #[inline(always)]
+    fn all<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle],
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+    ) {
+        let (whole, rest) = triangles.as_chunks::<PACK>();
+        for sixteen in whole {
+            self.sixteen::<S, N>(simd, sixteen, PACK, pipelines, bins);
+        }
+        if let Some(last) = rest.last() {
+            let mut sixteen = [*last; PACK];
+            sixteen[..rest.len()].copy_from_slice(rest);
+            self.sixteen::<S, N>(simd, &sixteen, rest.len(), pipelines, bins);
+        }
+    }
+
+    /// Sets up sixteen triangles, of which the first `count` are meant.
+    #[inline(always)]
+    fn sixteen<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        count: usize,
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+    ) {
+        let [x0, y0, d0, _] = self.corners(simd, triangles, 0);
+        let [x1, y1, d1, _] = self.corners(simd, triangles, 1);
+        let [x2, y2, d2, _] = self.corners(simd, triangles, 2);
+        let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
+        let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
+
+        let half = SUBPIXELS / 2;
+        let [least, most] = bins.places.reach::<N>();
+        let left = (low_x + (half - 1 - most[0])) >> 8;
+        let right = ((high_x - (half + least[0])) >> 8) + 1;
+        let top = (low_y + (half - 1 - most[1])) >> 8;
+        let bottom = ((high_y - (half + least[1])) >> 8) + 1;
+        let [width, height] = bins.hits.extent();
+        let seen = left.simd_lt(right)
+            & top.simd_lt(bottom)
+            & right.simd_gt(0)
+            & bottom.simd_gt(0)
+            & left.simd_lt(width)
+            & top.simd_lt(height);
+        let beyond = low_x.simd_eq(ScreenVertex::BEYOND);
+        let wide = (high_x - low_x).simd_gt(NARROW) | (high_y - low_y).simd_gt(NARROW);
+        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+        let faces = match (self.draw.back, self.draw.mirrored) {
+            (Back::Left, false) => area.simd_lt(0),
+            (Back::Left, true) => area.simd_gt(0),
+            _ => !area.simd_eq(0),
+        };
+        let there = mask32x16::from_bitmask(simd, (1 << count) - 1);
+        let odd = (beyond | (wide & seen)) & there;
+        let plain = seen & faces & there & !odd;
+        if plain.any_true() {
+            let [_, _, _, number] = fetch(
+                simd,
+                #[inline(always)]
+                |lane| triangles[lane].row(),
+            );
+            let number = number + self.base.cast_signed();
+            let pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
+            let side = (right - left).max(bottom - top);
+            self.sort::<S, N>(simd, triangles, &pack, (plain, side), pipelines, bins);
+        }
+        let mut odd = odd.to_bitmask();
+        while odd != 0 {
+            let lane = odd.trailing_zeros() as usize;
+            odd &= odd - 1;
+            self.add_odd::<N>(&triangles[lane], pipelines, bins);
+        }
+    }
+
+    /// x, y, depth and one by w of one corner of sixteen triangles.
+    #[inline(always)]
+    fn corners<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        corner: usize,
+    ) -> [i32x16<S>; 4] {
+        fetch_vertices(
+            simd,
+            self.vertices,
+            #[inline(always)]
+            |lane| triangles[lane].vertices[corner],
+        )
+    }
+
+    /// Sorts triangles that are seen by the larger sides of their boxes: into the queues of small
+    /// ones, or to the large ones.
+    #[inline(always)]
+    fn sort<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        pack: &Pack<S>,
+        (mut plain, side): (mask32x16<S>, i32x16<S>),
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+    ) {
+        let mut cutout = 0;
+        if self.choosy {
+            let kinds = self.kinds(triangles, plain.to_bitmask(), pipelines);
+            plain = mask32x16::from_bitmask(simd, kinds[0]);
+            cutout = kinds[1];
+        }
+        let mut above = 0;
+        for (queue, limit) in SMALL.into_iter().enumerate() {
+            let some = plain & side.simd_gt(above) & side.simd_le(limit);
+            above = limit;
+            let count = some.to_bitmask().count_ones() as usize;
+            if count == 0 {
+                continue;
+            }
+            bins.drawn += count;
+            if bins.queues[queue].add(pack, some, count) {
+                small::draw_full::<S, N>(simd, queue, bins);
+            }
+        }
+        let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
+        while large != 0 {
+            let lane = large.trailing_zeros() as usize;
+            large &= large - 1;
+            let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
+            let number = self.base + triangles[lane].number;
+            let at = each(corners, |corner| corner.at());
+            let bounds = PixelBox::reached(at, bins.places.reach::<N>());
+            let cutout = cutout >> lane & 1 != 0;
+            bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
+        }
+    }
+
+    /// Which of some triangles are drawn plainly, and of which a texture decides where.
+    fn kinds(
+        &self,
+        triangles: &[DrawTriangle; PACK],
+        some: u64,
+        pipelines: &[Pipeline],
+    ) -> [u64; 2] {
+        let mut kinds = [0; 2];
+        let mut left = some;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            match self.kind(triangles[lane].number, pipelines) {
+                Kind::Not => {}
+                Kind::UnsnappedTriangle => kinds[0] |= 1 << lane,
+                Kind::Cutout => kinds[1] |= 1 << lane,
+            }
+        }
+        kinds
+    }
+
+    /// Adds a triangle that has to be cut, or whose area needs 64 bits.
+    fn add_odd<const N: usize>(
+        &self,
+        triangle: &DrawTriangle,
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+    ) {
+        let kind = self.kind(triangle.number, pipelines);
+        if kind == Kind::Not {
+            return;
+        }
+        let vertices = triangle.vertices.map(|vertex| self.vertices[vertex as usize]);
+        let pieces = if vertices.iter().all(ScreenVertex::is_inside) {
+            vertices.to_vec()
+        } else {
+            self.screen.cut(self.clip_corners(triangle.vertices))
+        };
+        for i in 2..pieces.len() {
+            let corners = [pieces[0], pieces[i - 1], pieces[i]];
+            let area = doubled_area(corners.map(|corner| corner.at()));
+            let front = (area < 0) != self.draw.mirrored;
+            if area == 0 || (!front && self.draw.back == Back::Left) {
+                continue;
+            }
+            let number = self.base + triangle.number;
+            let cutout = kind == Kind::Cutout;
+            let at = corners.map(|corner| corner.at());
+            let bounds = PixelBox::reached(at, bins.places.reach::<N>());
+            bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
+        }
+    }
+
+    /// The corners of a triangle in clip space.
+    fn clip_corners(&self, vertices: [u32; 3]) -> [crate::render::screen::clip::Clip; 3] {
+        vertices.map(|vertex| self.screen.clip(self.order.position(vertex)))
+    }
+
+    pub(crate) fn kind(&self, number: u32, pipelines: &[Pipeline]) -> Kind {
+        let mesh = &self.draw.model.mesh;
+        let polygon = mesh.polygon_of(number);
+        if self.draw.polygons.as_ref().is_some_and(|some| !some.contains(&polygon)) {
+            return Kind::Not;
+        }
+        match self.draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize] {
+            None => Kind::Not,
+            Some(pipeline) if pipelines[pipeline as usize].is_cutout() => Kind::Cutout,
+            Some(_) => Kind::UnsnappedTriangle,
+        }
+    }
+}
+
+/// Draws the small triangles that are still waiting.
+pub(crate) fn finish(level: Level, bins: &mut Bins) {
+    let many = bins.places.are_many();
+    dispatch!(level, simd => {
+        for queue in 0..SMALL.len() {
+            match many {
+                true => small::draw_rest::<_, FOUR>(simd, queue, bins),
+                false => small::draw_rest::<_, 1>(simd, queue, bins),
+            }
+        }
+    });
+}

@@ -1,0 +1,455 @@
+//! What is seen at each pixel of a tile.
+//!
+//! Each pixel has a word ([`words`](crate::render::raster::visibility_buffer)), and the larger word wins: what is nearer, and among
+//! what is equally near the primitive with the lower number, that is of the older object, the earlier
+//! face. The order in which primitives are drawn cannot show, so it is nobody's concern.
+//!
+//! Which pixels a triangle covers, and how near it is there, is computed in one of two ways, chosen
+//! by the triangle's own size alone: in f32 for boxes up to 8 x 8, where whole numbers below 2^24 are
+//! exact, sixteen triangles at once (`small`); and in 64 bits for all others, a block of 8 x 8 pixels
+//! at once (`large`). So neither tiles nor threads nor instructions show in the picture.
+//!
+//! A block that nothing reaches is never touched, and one that a single large triangle covers is not
+//! asked for its depths: that it is covered is all that is noted, until something else comes near.
+//!
+//! Where pixels are looked at in four places, a block has four planes of words, one for each place: what
+//! covers a pixel in a place is what covers its middle as seen from there.
+
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::large::Large;
+use super::pixel_by_pixel;
+use crate::base::math::each;
+use crate::render::frame::FramePlan;
+use crate::render::raster::alpha_test::AlphaTest;
+use crate::render::raster::bins::{Bins, LargeTriangle};
+use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::lines;
+use crate::render::raster::visibility_buffer::{Planes, depths_of, seen, word};
+use crate::render::screen::coverage::{Covered, PixelBox, Triangle};
+use crate::render::screen::sample_positions::{FOUR, SamplePositions};
+use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
+
+/// The words of one tile, block by block, in each block sample by sample, and these row by row.
+#[derive(Debug)]
+pub(crate) struct Visibility {
+    words: Box<[u64; FOUR * PIXELS]>,
+    /// Where pixels are looked at.
+    places: SamplePositions,
+    /// The blocks whose words are written, a bit for each.
+    written: u64,
+    /// The blocks that are known to show one triangle, and have no words yet.
+    whole: u64,
+    /// What they show, as places in `large`.
+    shown: [u32; BLOCK_PIXELS],
+    /// Triangles that cover a block as a whole.
+    large: Vec<Large>,
+    /// For each block a depth that all of its pixels are at least as near as.
+    farthest: [f32; BLOCK_PIXELS],
+    /// For each block that shows one triangle a depth that no pixel is nearer than.
+    nearest: [f32; BLOCK_PIXELS],
+    bounds: PixelBox,
+}
+
+impl Default for Visibility {
+    fn default() -> Self {
+        Self {
+            words: Box::new([0; FOUR * PIXELS]),
+            places: SamplePositions::default(),
+            written: 0,
+            whole: 0,
+            shown: [0; BLOCK_PIXELS],
+            large: Vec::new(),
+            farthest: [0.0; BLOCK_PIXELS],
+            nearest: [0.0; BLOCK_PIXELS],
+            bounds: PixelBox { left: 0, top: 0, right: 0, bottom: 0 },
+        }
+    }
+}
+
+impl Visibility {
+    /// Looks at everything that reaches into a tile: the bins of every thread at this place.
+    pub(crate) fn draw(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        frame: &ScreenGeometry,
+        (tile, bounds): (usize, PixelBox),
+    ) {
+        self.clear(bounds, frame.places());
+        if plan.variants.draws_one_by_one() {
+            return self.draw_one_by_one(plan, frame, (tile, bounds));
+        }
+        if self.places.are_many() {
+            self.draw_in::<FOUR>(level, plan, frame, tile);
+        } else {
+            self.draw_in::<1>(level, plan, frame, tile);
+        }
+    }
+
+    /// Draws in `N` samples a pixel.
+    fn draw_in<const N: usize>(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        frame: &ScreenGeometry,
+        tile: usize,
+    ) {
+        for bins in frame.bins() {
+            dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, tile));
+        }
+        for bins in frame.bins() {
+            dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
+            for &number in &bins.tiles[tile].large {
+                let large = &bins.large[number as usize];
+                if large.cutout {
+                    self.draw_cutout::<N>(level, plan, frame, large);
+                }
+            }
+            dispatch!(level, simd => self.draw_lines::<_, N>(simd, bins, plan.line_width, tile));
+        }
+    }
+
+    /// Draws everything by a rare way, pixel by pixel.
+    fn draw_one_by_one(
+        &mut self,
+        plan: &FramePlan,
+        frame: &ScreenGeometry,
+        (tile, bounds): (usize, PixelBox),
+    ) {
+        self.words.fill(0);
+        self.written = u64::MAX;
+        let (places, count) = (self.places, self.places.count());
+        for sample in 0..count {
+            let shift = if count == 1 { [0; 2] } else { places.shift::<FOUR>(sample) };
+            pixel_by_pixel::paint(
+                plan.variants,
+                plan,
+                frame,
+                (tile, bounds),
+                (sample, shift),
+                &mut |[x, y], key, number| {
+                    let plane = (block_at(x, y) * count + sample) * BLOCK_PIXELS;
+                    let word = &mut self.words[plane + within(x, y)];
+                    *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
+                },
+            );
+        }
+    }
+
+    fn clear(&mut self, bounds: PixelBox, places: SamplePositions) {
+        self.places = places;
+        (self.written, self.whole) = (0, 0);
+        self.large.clear();
+        self.farthest.fill(0.0);
+        self.bounds = bounds;
+    }
+
+    /// Whether a block shows anything; `block` counts along rows of blocks.
+    pub(crate) const fn shows(&self, block: usize) -> bool {
+        (self.written | self.whole) >> block & 1 != 0
+    }
+
+    /// Whether no block shows anything.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.written | self.whole == 0
+    }
+
+    /// The triangle that a block shows, where one is known to cover it as a whole; its words are of
+    /// no meaning then.
+    pub(crate) fn whole(&self, block: usize) -> Option<u32> {
+        (self.whole >> block & 1 != 0).then(|| self.large[self.shown[block] as usize].number)
+    }
+
+    /// The blocks that one triangle is known to cover as a whole, a bit for each.
+    pub(crate) const fn whole_blocks(&self) -> u64 {
+        self.whole
+    }
+
+    /// The words of a block that shows something, row by row, where pixels have one sample.
+    pub(crate) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
+        &self.words.as_chunks().0[block]
+    }
+
+    /// The words of a block that shows something, where pixels have four samples.
+    pub(crate) fn planes(&self, block: usize) -> &Planes {
+        &self.words.as_chunks().0.as_chunks().0[block]
+    }
+
+    /// All words of a block that shows something.
+    fn words(&self, block: usize) -> &[u64] {
+        let count = BLOCK_PIXELS * self.places.count();
+        &self.words[block * count..][..count]
+    }
+
+    /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
+    /// nearer than; `None` where no triangle is seen.
+    pub(crate) fn depths(&self, level: Level) -> Option<[f32; 2]> {
+        // Depths are not negative, so that their bits are in the order of the numbers.
+        let (mut low, mut high) = (u32::MAX, 0);
+        for block in (0..BLOCK_PIXELS).filter(|block| self.shows(*block)) {
+            let [own_low, own_high] = if self.whole(block).is_some() {
+                [self.farthest[block].to_bits(), self.nearest[block].to_bits()]
+            } else {
+                dispatch!(level, simd => depths_of(simd, self.words(block)))
+            };
+            (low, high) = (low.min(own_low), high.max(own_high));
+        }
+        (low <= high).then_some([low, high].map(f32::from_bits))
+    }
+
+    /// The upper left pixel of a block.
+    pub(crate) fn corner(&self, block: usize) -> [i32; 2] {
+        let at = i32::try_from(block).expect("a tile has few blocks");
+        [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
+    }
+
+    /// The word of a pixel of the tile: of its samples the one that shows what most of them show, the
+    /// first of equals.
+    pub(crate) fn word(&mut self, level: Level, x: i32, y: i32) -> u64 {
+        let (words, count) = self.samples(level, x, y);
+        let alike = |word: &u64| words.iter().filter(|other| seen(**other) == seen(*word)).count();
+        let mut most = words[0];
+        for word in &words[1..count] {
+            if alike(word) > alike(&most) {
+                most = *word;
+            }
+        }
+        most
+    }
+
+    /// The words of the samples of a pixel of the tile, and how many they are.
+    pub(crate) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; FOUR], usize) {
+        let count = self.places.count();
+        let (x, y) = (x - self.bounds.left, y - self.bounds.top);
+        let block = block_at(x, y);
+        let mut words = [0; FOUR];
+        if self.shows(block) {
+            match count {
+                1 => dispatch!(level, simd => self.write::<_, 1>(simd, block)),
+                _ => dispatch!(level, simd => self.write::<_, FOUR>(simd, block)),
+            }
+            for (sample, word) in words[..count].iter_mut().enumerate() {
+                *word = self.words(block)[sample * BLOCK_PIXELS + within(x, y)];
+            }
+        }
+        (words, count)
+    }
+
+    /// Sees to it that a block has words for `N` samples a pixel.
+    #[inline(always)]
+    fn write<S: Simd, const N: usize>(&mut self, simd: S, block: usize) {
+        let bit = 1 << block;
+        if self.written & bit == 0 {
+            self.written |= bit;
+            for sample in 0..N {
+                self.plane::<N>(block, sample).fill(0);
+            }
+            if self.whole & bit != 0 {
+                self.whole &= !bit;
+                let large = self.large[self.shown[block] as usize];
+                self.draw_planes::<S, N>(simd, &large, block, true);
+            }
+        }
+    }
+
+    /// The words of a block for one of `N` samples.
+    #[inline(always)]
+    fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
+        &mut self.words.as_chunks_mut().0[block * N + sample]
+    }
+
+    /// Draws a triangle into a block, of which it covers all or part.
+    #[inline(always)]
+    fn draw_planes<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        large: &Large,
+        block: usize,
+        whole: bool,
+    ) {
+        let places = self.places;
+        for sample in 0..N {
+            let shift = places.shift::<N>(sample);
+            large.draw(simd, (block, shift), whole, self.plane::<N>(block, sample));
+        }
+    }
+
+    /// Whether what is in a place already hides a triangle there.
+    #[inline(always)]
+    fn hides<const N: usize>(
+        &mut self,
+        (x, y, sample): (i32, i32, usize),
+        depth: f32,
+        number: u32,
+    ) -> bool {
+        let (x, y) = (x - self.bounds.left, y - self.bounds.top);
+        let block = block_at(x, y);
+        self.written >> block & 1 != 0
+            && self.plane::<N>(block, sample)[within(x, y)] >= word(depth, number)
+    }
+
+    #[inline(always)]
+    fn put<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        (x, y, sample): (i32, i32, usize),
+        depth: f32,
+        number: u32,
+    ) {
+        let (x, y) = (x - self.bounds.left, y - self.bounds.top);
+        self.write::<S, N>(simd, block_at(x, y));
+        let old = &mut self.plane::<N>(block_at(x, y), sample)[within(x, y)];
+        *old = word(depth, number).max(*old);
+    }
+
+    /// Draws the lines of a tile that are not short.
+    #[inline(always)]
+    fn draw_lines<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        bins: &Bins,
+        width: i32,
+        tile: usize,
+    ) {
+        for &place in &bins.tiles[tile].lines {
+            for sample in 0..N {
+                let line = bins.lines[place as usize].seen_from(self.places.shift::<N>(sample));
+                lines::pixels(
+                    &line,
+                    width,
+                    self.bounds,
+                    #[inline(always)]
+                    |x, y, depth| self.put::<S, N>(simd, (x, y, sample), depth, line.number),
+                );
+            }
+        }
+    }
+
+    /// Draws a triangle whose texture decides in each sample whether it is there.
+    fn draw_cutout<const N: usize>(
+        &mut self,
+        level: Level,
+        plan: &FramePlan,
+        frame: &ScreenGeometry,
+        large: &LargeTriangle,
+    ) {
+        for sample in 0..N {
+            let shift = self.places.shift::<N>(sample);
+            let corners = each(large.corners, |corner| corner.at().seen_from(shift));
+            let Some(triangle) = Triangle::new(corners) else { return };
+            let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
+            let holes = AlphaTest::of(plan, frame, large.number, shift);
+            dispatch!(level, simd => triangle.covered(
+                self.bounds,
+                #[inline(always)]
+                |Covered { x, y, edges }| {
+                    let (at, depth) = ((x, y, sample), seen.depth(edges));
+                    if !self.hides::<N>(at, depth, large.number)
+                        && holes.as_ref().is_none_or(|holes| holes.is_opaque([x, y]))
+                    {
+                        self.put::<_, N>(simd, at, depth, large.number);
+                    }
+                },
+            ));
+        }
+    }
+
+    /// Draws the small triangles of a tile, and lines that are short.
+    #[inline(always)]
+    fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
+        bins.hits.each(
+            tile,
+            #[inline(always)]
+            |place, depth, number| {
+                let place = place as usize % (N * PIXELS);
+                let block = place / (N * BLOCK_PIXELS);
+                if self.written >> block & 1 == 0 {
+                    self.write::<S, N>(simd, block);
+                }
+                let word = u64::from(depth) << 32 | u64::from(!number);
+                self.words[place] = self.words[place].max(word);
+            },
+        );
+    }
+
+    /// Draws the large triangles of a tile whose textures have no part in where they are.
+    #[inline(always)]
+    fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
+        for &number in &bins.tiles[tile].large {
+            let large = &bins.large[number as usize];
+            if !large.cutout {
+                self.draw_large::<S, N>(simd, large);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn draw_large<S: Simd, const N: usize>(&mut self, simd: S, large: &LargeTriangle) {
+        let corners = each(large.corners, |corner| corner.at());
+        let Some(triangle) = Triangle::new(corners) else {
+            return;
+        };
+        let reached = PixelBox::reached(corners, self.places.reach::<N>());
+        let area = reached.intersection(self.bounds);
+        if area.is_empty() {
+            return;
+        }
+        let (left, top) = (self.bounds.left, self.bounds.top);
+        let large = Large::new(large, &triangle, [left, top]);
+        let area = PixelBox {
+            left: area.left - left,
+            top: area.top - top,
+            right: area.right - left,
+            bottom: area.bottom - top,
+        };
+        let touched = large.blocks::<S, N>(simd, area, &self.places);
+        let mut some = touched.some;
+        let mut place = None;
+        while some != 0 {
+            let block = some.trailing_zeros() as usize;
+            some &= some - 1;
+            if large.high < self.farthest[block] {
+                continue;
+            }
+            if touched.whole >> block & 1 != 0 {
+                self.draw_whole::<S, N>(simd, &large, block, &mut place);
+            } else {
+                self.write::<S, N>(simd, block);
+                self.draw_planes::<S, N>(simd, &large, block, false);
+            }
+        }
+    }
+
+    /// Draws a triangle into a block that it covers; `place` is where it stands among those that do.
+    #[inline(always)]
+    fn draw_whole<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        large: &Large,
+        block: usize,
+        place: &mut Option<u32>,
+    ) {
+        let [low, high] = large.depths::<N>(block);
+        if high < self.farthest[block] {
+            return;
+        }
+        let bit = 1 << block;
+        let alone = (self.written | self.whole) & bit == 0;
+        if alone || (self.whole & bit != 0 && low > self.nearest[block]) {
+            self.shown[block] = *place.get_or_insert_with(|| {
+                self.large.push(*large);
+                u32::try_from(self.large.len() - 1).expect("fewer than 2^32 triangles")
+            });
+            self.whole |= bit;
+            self.nearest[block] = high;
+        } else {
+            self.write::<S, N>(simd, block);
+            self.draw_planes::<S, N>(simd, large, block, true);
+        }
+        self.farthest[block] = self.farthest[block].max(low);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,3 @@
+//! The algorithms of the two ancestors that no stage shares.
+
+pub(crate) mod points;

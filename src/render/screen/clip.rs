@@ -1,0 +1,269 @@
+//! From object space to the screen, and what becomes of what reaches beyond it.
+//!
+//! Placement is composed and applied in f64; clipping is done in homogeneous space, before any
+//! division, against the near and the far plane and a guard band of 2^20 pixels to each side; what is
+//! left is snapped to 1/256 of a pixel.
+//!
+//! Clipping: Blinn and Newell, "Clipping Using Homogeneous Coordinates", SIGGRAPH 1978; Sutherland
+//! and Hodgman, "Reentrant Polygon Clipping", CACM 1974. A cut is computed from the inner end of its
+//! edge, so that two triangles which share the edge get the same bits.
+
+use glam::{DMat4, DVec3};
+
+use super::coverage::{SUBPIXELS, Snapped};
+use crate::base::image::Size;
+
+/// The guard band: how far from the picture's middle coordinates may be, in pixels.
+const GUARD: f64 = 1_048_576.0;
+
+/// Added to a number below 2^51, this leaves the nearest whole number in the lowest bits.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// A vertex on the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(16))]
+pub(crate) struct ScreenVertex {
+    x: i32,
+    y: i32,
+    /// 1 at the near plane, 0 at the far one.
+    pub(crate) depth: f32,
+    /// One by the w of clip space.
+    pub(crate) inverse_w: f32,
+}
+
+impl ScreenVertex {
+    /// In place of x: the vertex is beyond the near plane, the far plane or the guard band.
+    pub(crate) const BEYOND: i32 = i32::MIN;
+
+    /// Its numbers as they lie in memory: x, y, and the bits of the depth and of one by w.
+    #[inline(always)]
+    pub(crate) const fn row(&self) -> [i32; 4] {
+        let (depth, inverse_w) = (self.depth.to_bits(), self.inverse_w.to_bits());
+        [self.x, self.y, depth.cast_signed(), inverse_w.cast_signed()]
+    }
+
+    /// Whether it is inside the planes that triangles are cut by; elsewhere its place is of no
+    /// meaning.
+    #[inline(always)]
+    pub(crate) const fn is_inside(&self) -> bool {
+        self.x != Self::BEYOND
+    }
+
+    /// A vertex at a place.
+    pub(crate) const fn placed(at: Snapped, depth: f32, inverse_w: f32) -> Self {
+        Self { x: at.x, y: at.y, depth, inverse_w }
+    }
+
+    /// The same beyond the planes.
+    pub(crate) const fn beyond(self) -> Self {
+        Self { x: Self::BEYOND, ..self }
+    }
+
+    /// A vertex at a place, for tests.
+    #[cfg(test)]
+    pub(crate) const fn new(at: Snapped, depth: f32) -> Self {
+        Self { x: at.x, y: at.y, depth, inverse_w: 1.0 }
+    }
+
+    /// The vertex as it is seen from a place that is shifted by so many parts of a pixel; it is
+    /// [inside](Self::is_inside).
+    #[inline(always)]
+    pub(crate) const fn seen_from(self, [x, y]: [i32; 2]) -> Self {
+        Self { x: self.x - x, y: self.y - y, ..self }
+    }
+
+    /// Its place in the picture.
+    #[inline(always)]
+    pub(crate) const fn at(&self) -> Snapped {
+        Snapped { x: self.x, y: self.y }
+    }
+}
+
+/// A place in clip space: x, y, z, w.
+pub(crate) type Clip = [f64; 4];
+
+/// From object space to the screen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Screen {
+    /// The rows of `clip_from_object`.
+    pub(crate) rows: [[f64; 4]; 4],
+    /// Half of the picture's width and height.
+    pub(crate) half: [f64; 2],
+    guard: [f64; 2],
+    /// By how many parts of a pixel what is cut is moved the other way once it is snapped.
+    shift: [i32; 2],
+}
+
+impl Screen {
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    pub(crate) fn new(clip_from_object: DMat4, size: Size) -> Self {
+        let half = [size.width as f64 / 2.0, size.height as f64 / 2.0];
+        Self {
+            rows: clip_from_object.transpose().to_cols_array_2d(),
+            half,
+            guard: half.map(|half| GUARD / half - 1.0),
+            shift: [0; 2],
+        }
+    }
+
+    /// The same, where what is cut is seen from a place that is shifted by so many parts of a pixel.
+    pub(crate) const fn seen_from(self, shift: [i32; 2]) -> Self {
+        Self { shift, ..self }
+    }
+
+    /// By how many parts of a pixel the place is shifted from which what is cut is seen.
+    pub(crate) const fn shift(&self) -> [i32; 2] {
+        self.shift
+    }
+
+    /// The same with a guard band of so many pixels.
+    pub(crate) fn guarded(self, pixels: f64) -> Self {
+        Self { guard: self.half.map(|half| pixels / half - 1.0), ..self }
+    }
+
+    /// The same with a guard band that ends so many pixels beyond the picture.
+    pub(crate) fn close_to_picture(self, pixels: f64) -> Self {
+        Self { guard: self.half.map(|half| 1.0 + pixels / half), ..self }
+    }
+
+    /// A place of object space in clip space.
+    #[inline(always)]
+    pub(crate) fn clip(&self, [x, y, z]: [f64; 3]) -> Clip {
+        let row = |i: usize| {
+            let [a, b, c, d] = self.rows[i];
+            a * x + b * y + c * z + d
+        };
+        [row(0), row(1), row(2), row(3)]
+    }
+
+    /// Signed distances to the near plane, the far plane and the four sides of the guard band; not
+    /// negative inside.
+    #[inline(always)]
+    pub(crate) fn distances(&self, [x, y, z, w]: Clip) -> [f64; 6] {
+        let [gx, gy] = self.guard;
+        [w - z, z, gx * w + x, gx * w - x, gy * w + y, gy * w - y]
+    }
+
+    /// The most that each of these distances changes on a way of length 1 in object space.
+    pub(crate) fn slopes(&self) -> [f64; 6] {
+        let along = |axis: usize| self.distances(self.rows.map(|row| row[axis]));
+        let [x, y, z] = [along(0), along(1), along(2)];
+        std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]).length())
+    }
+
+    /// Whether a place is inside the planes by more than rounding could make of it.
+    pub(crate) fn holds(&self, clip: Clip) -> bool {
+        let least = 1e-9 * clip.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        self.distances(clip).iter().all(|distance| *distance > least)
+    }
+
+    /// The place on the screen, or [beyond](ScreenVertex::BEYOND) it.
+    #[inline(always)]
+    pub(crate) fn vertex(&self, clip: Clip) -> ScreenVertex {
+        let [a, b, c, d, e, f] = self.distances(clip);
+        let inside = (a >= 0.0) & (b >= 0.0) & (c >= 0.0) & (d >= 0.0) & (e >= 0.0) & (f >= 0.0);
+        let vertex = self.project(clip);
+        ScreenVertex { x: if inside { vertex.x } else { ScreenVertex::BEYOND }, ..vertex }
+    }
+
+    /// The place on the screen of what is inside, or would be but for rounding.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lowest bits and the nearest f32")]
+    fn project(&self, [x, y, z, w]: Clip) -> ScreenVertex {
+        let inverse_w = 1.0 / w;
+        let parts = f64::from(SUBPIXELS);
+        let snap = |pixels: f64| ((pixels * parts + ROUND).to_bits() as u32).cast_signed();
+        let depth = z * inverse_w;
+        let depth = if depth > 0.0 { depth } else { 0.0 };
+        let depth = if depth < 1.0 { depth } else { 1.0 };
+        ScreenVertex {
+            x: snap((x * inverse_w + 1.0) * self.half[0]),
+            y: snap((1.0 - y * inverse_w) * self.half[1]),
+            depth: depth as f32,
+            inverse_w: inverse_w as f32,
+        }
+    }
+
+    /// Where a place inside is in the picture, in pixels.
+    pub(crate) fn pixels(&self, [x, y, _, w]: Clip) -> [f64; 2] {
+        let inverse_w = 1.0 / w;
+        [(x * inverse_w + 1.0) * self.half[0], (1.0 - y * inverse_w) * self.half[1]]
+    }
+
+    /// What is left of a triangle of clip space: the corners of a convex polygon.
+    pub(crate) fn cut(&self, corners: [Clip; 3]) -> Vec<ScreenVertex> {
+        let corners = self.cut_in_clip(corners).into_iter();
+        corners.map(|corner| self.project(corner).seen_from(self.shift)).collect()
+    }
+
+    /// The same before it is brought to the screen.
+    pub(crate) fn cut_in_clip(&self, corners: [Clip; 3]) -> Vec<Clip> {
+        let mut polygon = corners.to_vec();
+        if !polygon.as_flattened().iter().all(|x| x.is_finite()) {
+            return Vec::new();
+        }
+        for plane in 0..6 {
+            let inner = |corner: &Clip| self.distances(*corner)[plane];
+            let mut kept = Vec::with_capacity(polygon.len() + 1);
+            for (i, to) in polygon.iter().enumerate() {
+                let from = &polygon[(i + polygon.len() - 1) % polygon.len()];
+                let (df, dt) = (inner(from), inner(to));
+                match (df >= 0.0, dt >= 0.0) {
+                    (true, true) => kept.push(*to),
+                    (true, false) => kept.push(between(from, to, df / (df - dt))),
+                    (false, true) => kept.extend([between(to, from, dt / (dt - df)), *to]),
+                    (false, false) => {}
+                }
+            }
+            polygon = kept;
+        }
+        polygon
+    }
+
+    /// The part of a line between two places of clip space that is inside.
+    pub(crate) fn segment(&self, ends: [Clip; 2]) -> Option<[ScreenVertex; 2]> {
+        let [mut a, mut b] = ends;
+        if !ends.as_flattened().iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        for plane in 0..6 {
+            let inner = |end: Clip| self.distances(end)[plane];
+            let (da, db) = (inner(a), inner(b));
+            match (da >= 0.0, db >= 0.0) {
+                (true, true) => {}
+                (true, false) => b = between(&a, &b, da / (da - db)),
+                (false, true) => a = between(&b, &a, db / (db - da)),
+                (false, false) => return None,
+            }
+        }
+        Some([a, b].map(|end| self.project(end).seen_from(self.shift)))
+    }
+}
+
+/// The place that lies at the part `t` of the way from the inner end of an edge to the outer one.
+fn between(inner: &Clip, outer: &Clip, t: f64) -> Clip {
+    std::array::from_fn(|i| inner[i] + (outer[i] - inner[i]) * t)
+}
+
+/// The parts that the corners of a triangle have in what is seen at a place of the picture, with
+/// perspective, from its corners in clip space: also where some of them lie behind the observer.
+///
+///   m ~ (q x r, r x p, p x q) . s   for corners p, q, r and the place s, each as (x, y, w)
+///
+/// Olano and Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997. Held to the
+/// triangle, and their sum to 1.
+pub(crate) fn homogeneous_weights(corners: [Clip; 3], [x, y]: [f64; 2]) -> DVec3 {
+    let [p, q, r] = corners.map(|[x, y, _, w]| DVec3::new(x, y, w));
+    let place = DVec3::new(x, y, 1.0);
+    let weights = DVec3::new(q.cross(r).dot(place), r.cross(p).dot(place), p.cross(q).dot(place));
+    let weights = if weights.element_sum() < 0.0 { -weights } else { weights };
+    let held = weights.max(DVec3::ZERO);
+    let sum = held.element_sum();
+    if sum > 0.0 { held / sum } else { DVec3::splat(1.0 / 3.0) }
+}
+
+/// Whether the corners of a triangle of clip space run counter-clockwise for the observer.
+pub(crate) fn faces_observer(corners: [Clip; 3]) -> bool {
+    let [p, q, r] = corners.map(|[x, y, _, w]| DVec3::new(x, y, w));
+    p.dot(q.cross(r)) > 0.0
+}

@@ -1,0 +1,89 @@
+//! Where pixels lie in the triangles that they show.
+//!
+//! First linear on the screen, from whole numbers; then the same with perspective.
+//!
+//! Perspective: Heckbert and Moreton, "Interpolation for Polygon Texture Mapping and Shading", 1991.
+
+use glam::DVec3;
+
+use crate::render::shading::fragments::Fragments;
+use crate::render::shading::triangle_attributes::{TriangleAttributes, picked};
+use crate::render::simd::BATCH;
+use crate::render::simd::{Kernel, Lanes, Number, Vec3};
+
+/// Where the pixels of a list lie in their triangles.
+#[derive(Debug)]
+pub(crate) struct Barycentrics<T> {
+    /// The second and third barycentric coordinate, linear on the screen.
+    pub(crate) linear: [[T; BATCH]; 2],
+    /// The same with perspective.
+    pub(crate) weights: [[T; BATCH]; 2],
+    /// The distance along the observer's axis.
+    pub(crate) w: [T; BATCH],
+    /// Where they are looked at, in pixels; where they [share](Fragments::shared) their pixels only.
+    pub(crate) places: [[T; BATCH]; 2],
+}
+
+impl<T: Number> Default for Barycentrics<T> {
+    fn default() -> Self {
+        let row = [T::default(); BATCH];
+        Self { linear: [row; 2], weights: [row; 2], w: row, places: [row; 2] }
+    }
+}
+
+impl<T: Number> Barycentrics<T> {
+    /// The parts that the corners have in pixel `i` of the list.
+    pub(crate) fn weights(&self, i: usize) -> DVec3 {
+        let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
+        DVec3::new(1.0 - b - c, b, c)
+    }
+}
+
+/// Linear coordinates get perspective.
+pub(super) struct Perspective<'a, T, const PAGES: usize> {
+    pub(super) items: &'a Fragments,
+    pub(super) faces: &'a TriangleAttributes<T>,
+    pub(super) to: &'a mut Barycentrics<T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Perspective<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { items, faces, to } = self;
+        for at in (0..items.len).step_by(M::LANES) {
+            let slots = lanes.slots(&items.slots, at);
+            let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
+            let by_w = picked::<M, PAGES>(lanes, &faces.by_w, slots);
+            to.put(lanes, at, linear, by_w);
+        }
+    }
+}
+
+impl<T: Number> Barycentrics<T> {
+    /// Linear coordinates get perspective.
+    #[inline(always)]
+    pub(super) fn put<M: Lanes<Number = T>>(
+        &mut self,
+        lanes: M,
+        at: usize,
+        linear: [M::R; 2],
+        by_w: Vec3<M::R>,
+    ) {
+        let (weights, w) = with_perspective(lanes, linear, by_w);
+        lanes.store(w, &mut self.w, at);
+        lanes.store(weights[0], &mut self.weights[0], at);
+        lanes.store(weights[1], &mut self.weights[1], at);
+    }
+}
+
+/// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and one by the sum, which is the
+/// pixel's own w.
+#[inline(always)]
+pub(crate) fn with_perspective<M: Lanes>(
+    lanes: M,
+    [second, third]: [M::R; 2],
+    Vec3([w0, w1, w2]): Vec3<M::R>,
+) -> ([M::R; 2], M::R) {
+    let w = lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
+    ([second * w1 * w, third * w2 * w], w)
+}

@@ -1,0 +1,317 @@
+//! What a block shows, as a list: pixels, and which triangle each of them shows.
+//!
+//! A block shows few triangles on many pixels. Each triangle gets a slot, in which what is known of
+//! it stands once; a pixel takes it from there. A pixel shows mostly the triangle of its neighbour to
+//! the left; where a run of pixels begins, the slot is looked for in a table, by the end of the
+//! triangle's number. A triangle that another has pushed out of the table gets a second slot, and nothing
+//! else comes of it.
+
+use std::hint::select_unpredictable;
+
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, u32x16};
+
+use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::render::simd::gather::SLOTS;
+
+/// Pixels of one block that show triangles. See the [module](self).
+#[derive(Debug)]
+pub(crate) struct Fragments {
+    /// How many pixels.
+    pub(crate) len: usize,
+    /// Their places in the block, row by row.
+    pub(crate) places: [u8; BLOCK_PIXELS],
+    /// Their columns and rows in the picture.
+    pub(crate) x: [i32; BLOCK_PIXELS],
+    pub(crate) y: [i32; BLOCK_PIXELS],
+    /// The slots of the triangles that they show. What stands behind the last is a slot too.
+    pub(crate) slots: [i32; BLOCK_PIXELS],
+    /// Whether they share their pixels with others: then it stands in `shares` how many of the samples
+    /// of its pixel each of them has.
+    pub(crate) shared: bool,
+    pub(crate) shares: [i32; BLOCK_PIXELS],
+    /// How many slots are taken.
+    pub(crate) count: usize,
+    /// The triangles of the slots, by their numbers in the frame.
+    pub(crate) numbers: [u32; SLOTS],
+    /// In which slot of this list a triangle was last put, by the end of its number, or [`FREE`].
+    table: [u8; TABLE],
+}
+
+/// Which pixels of a block show what: bit i stands for pixel i.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shown {
+    pub(crate) triangles: u64,
+    pub(crate) lines: u64,
+}
+
+/// Positions of the table in which a triangle is looked for that is seen again. Of two that would have the
+/// same place, the later one does.
+const TABLE: usize = 128;
+
+/// What a place of the table holds that no slot has.
+const FREE: u8 = u8::MAX;
+
+/// Pixels before the first and after the last, so that neighbours can be looked at.
+const MARGIN: usize = 16;
+const ROW: usize = BLOCK as usize;
+const FIRST_COLUMN: u64 = 0x0101_0101_0101_0101;
+
+impl Default for Fragments {
+    fn default() -> Self {
+        Self {
+            len: 0,
+            places: [0; BLOCK_PIXELS],
+            x: [0; BLOCK_PIXELS],
+            y: [0; BLOCK_PIXELS],
+            slots: [0; BLOCK_PIXELS],
+            shared: false,
+            shares: [0; BLOCK_PIXELS],
+            count: 0,
+            numbers: [0; SLOTS],
+            table: [FREE; TABLE],
+        }
+    }
+}
+
+impl Fragments {
+    /// Lists the pixels of the block with the upper left pixel `corner` that show triangles.
+    pub(crate) fn list(
+        &mut self,
+        level: Level,
+        words: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+    ) -> Shown {
+        dispatch!(level, simd => self.find(simd, words, corner))
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+    fn find<S: Simd>(&mut self, simd: S, words: &[u64; BLOCK_PIXELS], corner: [i32; 2]) -> Shown {
+        self.shared = false;
+        // The number of the background, as its word has it, is none of a triangle.
+        let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
+        for (number, word) in numbers[MARGIN..].iter_mut().zip(words) {
+            *number = !(*word as u32);
+        }
+        let (mut triangles, mut background, mut left) = (0, 0, 0);
+        for at in (0..BLOCK_PIXELS).step_by(16) {
+            let own = sixteen(simd, &numbers, MARGIN + at);
+            triangles |= own.simd_lt(1 << 31).to_bitmask() << at;
+            background |= own.simd_eq(u32::MAX).to_bitmask() << at;
+            left |= own.simd_eq(sixteen(simd, &numbers, MARGIN + at - 1)).to_bitmask() << at;
+        }
+        if triangles == 0 {
+            return Shown { triangles, lines: !background };
+        }
+        let first = numbers[MARGIN];
+        if triangles == u64::MAX && left | 1 == u64::MAX {
+            self.count = 1;
+            self.numbers[0] = first;
+            self.put_all(corner, &[0; BLOCK_PIXELS]);
+        } else {
+            let starts = triangles & (!left | FIRST_COLUMN);
+            let slots = self.share_out(&numbers, starts);
+            if triangles == u64::MAX {
+                self.put_all(corner, &slots);
+            } else {
+                self.put_some(corner, &slots, triangles);
+            }
+        }
+        Shown { triangles, lines: !triangles & !background }
+    }
+
+    /// Lists all pixels of a block that one triangle covers as a whole.
+    pub(crate) fn list_whole(&mut self, number: u32, corner: [i32; 2]) {
+        self.shared = false;
+        self.count = 1;
+        self.numbers[0] = number;
+        self.put_all(corner, &[0; BLOCK_PIXELS]);
+    }
+
+    /// Gives slots to the runs of pixels that begin at `starts`.
+    #[inline(always)]
+    fn share_out(
+        &mut self,
+        numbers: &[u32; MARGIN + BLOCK_PIXELS],
+        mut starts: u64,
+    ) -> [i32; BLOCK_PIXELS] {
+        (self.count, self.table) = (0, [FREE; TABLE]);
+        // As long as a run can reach behind the last.
+        let mut slots = [0; BLOCK_PIXELS + ROW];
+        while starts != 0 {
+            let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
+            starts &= starts - 1;
+            let slot = self.slot_of(numbers[MARGIN + at]);
+            slots[at..][..ROW].fill(slot);
+        }
+        let mut all = [0; BLOCK_PIXELS];
+        all.copy_from_slice(&slots[..BLOCK_PIXELS]);
+        all
+    }
+
+    /// The slot of a triangle, a new one where it has none.
+    #[inline(always)]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        reason = "there are 64 slots"
+    )]
+    fn slot_of(&mut self, number: u32) -> i32 {
+        let known = &mut self.table[number as usize % TABLE];
+        let slot = usize::from(*known);
+        let is_known = (*known != FREE) & (self.numbers[slot % SLOTS] == number);
+        let slot = select_unpredictable(is_known, slot, self.count);
+        *known = slot as u8;
+        self.numbers[slot % SLOTS] = number;
+        self.count += usize::from(!is_known);
+        slot as i32
+    }
+
+    #[inline(always)]
+    fn put_all(&mut self, [left, top]: [i32; 2], slots: &[i32; BLOCK_PIXELS]) {
+        self.len = BLOCK_PIXELS;
+        self.places = PLACES;
+        for ((x, y), place) in self.x.iter_mut().zip(&mut self.y).zip(PLACES) {
+            *x = left + i32::from(place) % BLOCK;
+            *y = top + i32::from(place) / BLOCK;
+        }
+        self.slots = *slots;
+    }
+
+    #[inline(always)]
+    fn put_some(&mut self, corner: [i32; 2], slots: &[i32; BLOCK_PIXELS], mut pixels: u64) {
+        self.len = 0;
+        while pixels != 0 {
+            let place = pixels.trailing_zeros() as usize % BLOCK_PIXELS;
+            pixels &= pixels - 1;
+            self.put(corner, PLACES[place], slots[place]);
+        }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, [left, top]: [i32; 2], place: u8, slot: i32) -> usize {
+        let i = self.len % BLOCK_PIXELS;
+        self.places[i] = place;
+        self.x[i] = left + i32::from(place) % BLOCK;
+        self.y[i] = top + i32::from(place) / BLOCK;
+        self.slots[i] = slot;
+        self.len += 1;
+        i
+    }
+
+    /// Says how many samples of their pixels those of the list have.
+    pub(crate) fn share(&mut self, of_positions: &[i32; BLOCK_PIXELS]) {
+        self.shared = true;
+        for (share, place) in self.shares.iter_mut().zip(&self.places[..self.len]) {
+            *share = of_positions[usize::from(*place) % BLOCK_PIXELS];
+        }
+    }
+
+    /// Empties the list, for triangles that share their pixels.
+    pub(crate) fn begin_shared(&mut self) {
+        (self.len, self.count, self.shared) = (0, 0, true);
+        self.table = [FREE; TABLE];
+    }
+
+    /// Whether there is no room for another.
+    pub(crate) const fn is_full(&self) -> bool {
+        self.len == BLOCK_PIXELS
+    }
+
+    /// Adds a triangle that has some samples of a pixel, where there is room.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
+        let slot = self.slot_of(number);
+        let i = self.put(corner, PLACES[place % BLOCK_PIXELS], slot);
+        self.shares[i] = share;
+    }
+
+    /// Takes over the items of another list whose slots have a true `keep`.
+    pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS], corner: [i32; 2]) {
+        let mut new = [0; SLOTS];
+        self.count = 0;
+        for slot in (0..other.count).filter(|slot| keep[*slot]) {
+            self.numbers[self.count] = other.numbers[slot];
+            new[slot] = i32::try_from(self.count).expect("there are 64 slots");
+            self.count += 1;
+        }
+        (self.len, self.shared) = (0, other.shared);
+        for (from, place) in other.places[..other.len].iter().enumerate() {
+            let slot = other.slots[from].cast_unsigned() as usize;
+            if keep[slot] {
+                let to = self.put(corner, *place, new[slot]);
+                self.shares[to] = other.shares[from];
+            }
+        }
+    }
+
+    /// Whether every pixel of the block is there, in order.
+    pub(crate) const fn is_whole(&self) -> bool {
+        self.len == BLOCK_PIXELS
+    }
+}
+
+#[inline(always)]
+fn sixteen<S: Simd>(simd: S, numbers: &[u32; MARGIN + BLOCK_PIXELS], at: usize) -> u32x16<S> {
+    u32x16::from_slice(simd, &numbers[at..at + 16])
+}
+
+/// The places of a block, in order.
+const PLACES: [u8; BLOCK_PIXELS] = {
+    let mut places = [0; BLOCK_PIXELS];
+    let mut place = 0;
+    while place < 64 {
+        places[place as usize] = place;
+        place += 1;
+    }
+    places
+};
+
+#[cfg(test)]
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
+mod tests {
+    use super::*;
+
+    /// A word that shows a triangle.
+    fn word(number: u32) -> u64 {
+        1 << 62 | u64::from(!number)
+    }
+
+    #[test]
+    fn every_pixel_finds_its_triangle_in_its_slot() {
+        let mut state = 1_u64;
+        for round in 0..2000 {
+            let words: [u64; BLOCK_PIXELS] = std::array::from_fn(|i| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                let random = (state >> 40) as u32;
+                match (round % 4, random % 8) {
+                    (0, _) => word(7),
+                    (1, _) => word(random),
+                    (2, 0) => 0,
+                    (3, 0) => word(1 << 31 | random),
+                    _ => word(random % 2 + i as u32 % 8 / 3),
+                }
+            });
+            let mut items = Fragments::default();
+            let shown = items.list(Level::new(), &words, [8, 16]);
+            let is_triangle = |i: &usize| words[*i] != 0 && !(words[*i] as u32) < 1 << 31;
+            let want: Vec<usize> = (0..BLOCK_PIXELS).filter(is_triangle).collect();
+            let bits = want.iter().fold(0, |bits, i| bits | 1_u64 << i);
+            let lines = (0..BLOCK_PIXELS).filter(|i| words[*i] != 0 && !is_triangle(i));
+            assert_eq!((shown.triangles, items.len), (bits, want.len()));
+            assert_eq!(shown.lines, lines.fold(0, |bits, i| bits | 1_u64 << i));
+            for (k, i) in want.into_iter().enumerate() {
+                let slot = items.slots[k] as usize;
+                assert!(slot < items.count);
+                assert_eq!(word(items.numbers[slot]), words[i] & !(1 << 63));
+                let (x, y) = (8 + i as i32 % 8, 16 + i as i32 / 8);
+                assert_eq!((usize::from(items.places[k]), items.x[k], items.y[k]), (i, x, y));
+            }
+            // Small numbers have places of their own in the table.
+            let mut different = items.numbers[..items.count].to_vec();
+            different.sort_unstable();
+            different.dedup();
+            assert!(round % 4 == 1 || different.len() == items.count, "{:?}", items.numbers);
+        }
+    }
+}

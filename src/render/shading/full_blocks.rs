@@ -1,0 +1,339 @@
+//! Blocks that one triangle covers as a whole.
+//!
+//! No pixel of them asks what it shows, so nothing is looked up and nothing is listed: where a pixel
+//! lies in the triangle, what that makes of the colours at the corners, and their bytes are one pass,
+//! two rows of a block at a time, from the corners to the tile. The bits are those of pixels that are
+//! listed: the same whole numbers, the same quotients, in the same order.
+
+use fearless_simd::{
+    Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,
+};
+
+use super::interpolate::{Look, between, depth_between};
+use crate::render::lights::{Batch, LightTerm, set};
+use crate::render::plan::tile::TileLight;
+use crate::render::screen::coverage::Triangle;
+use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::render::shading::barycentrics::with_perspective;
+use crate::render::shading::quantize::reflected;
+use crate::render::shading::triangle_attributes::TriangleAttributes;
+use crate::render::simd::Sixteen;
+use crate::render::simd::gather::SLOTS;
+use crate::render::simd::{Lanes as _, Vec3};
+
+/// The pixels of a tile: rows that begin `stride` pixels apart.
+#[derive(Debug)]
+pub(crate) struct Canvas<'a> {
+    pub(crate) pixels: &'a mut [[u8; 4]],
+    pub(crate) stride: usize,
+}
+
+impl Canvas<'_> {
+    /// Puts the pixels of a whole block, row by row; `at` is the place of the first.
+    #[inline(always)]
+    pub(crate) fn put(&mut self, at: usize, pixels: &[u32]) {
+        for (row, from) in pixels.as_chunks::<ROW>().0.iter().enumerate() {
+            let to = &mut self.pixels[at + row * self.stride..][..ROW];
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = from.to_le_bytes();
+            }
+        }
+    }
+
+    /// Where a pixel of the tile stands, by its column and row.
+    #[inline(always)]
+    pub(crate) const fn place(&self, [x, y]: [usize; 2]) -> usize {
+        y * self.stride + x
+    }
+}
+
+/// Blocks of a tile that one triangle covers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blocks {
+    /// Which, a bit for each.
+    pub(crate) which: u64,
+    /// The upper left pixel of the tile.
+    pub(crate) corner: [i32; 2],
+}
+
+impl Blocks {
+    /// Calls `each` with the column and the row of the first pixel of each block, in the tile.
+    #[inline(always)]
+    pub(crate) fn each(self, mut each: impl FnMut([i32; 2])) {
+        let mut left = self.which;
+        while left != 0 {
+            let block = left.trailing_zeros().cast_signed();
+            left &= left - 1;
+            each([block % BLOCK * BLOCK, block / BLOCK * BLOCK]);
+        }
+    }
+}
+
+const ROW: usize = BLOCK as usize;
+/// Two rows of a block at a time.
+const PAIRS: usize = ROW / 2;
+const COLUMNS: [f64; ROW] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+/// Columns and rows of the pixels of two rows of a block.
+const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
+const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
+
+/// Where pixels lie in one triangle: the second and the third barycentric coordinate, linear on the
+/// screen.
+pub(crate) trait Linear<S: Simd>: Copy {
+    /// Those of a whole block, two rows after two rows; its first pixel is given.
+    fn block(&self, simd: S, first: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS];
+}
+
+/// A triangle whose edge functions fit 31 bits inside.
+#[derive(Clone, Copy, Debug)]
+struct Narrow<S: Simd> {
+    /// What the edge functions are at the first pixel of the picture, and what they gain by a pixel
+    /// to the right and by one down.
+    edges: [[i32; 3]; 2],
+    /// What they gain in two rows.
+    gains: [i32x16<S>; 2],
+    per_area: f32,
+}
+
+impl<S: Simd> Narrow<S> {
+    #[inline(always)]
+    fn new(simd: S, faces: &TriangleAttributes<f32>) -> Self {
+        let edges = faces.edges.each_ref().map(|[a, b, c]| [c[0], a[0], b[0]]);
+        let across = i32x16::from_slice(simd, &ACROSS);
+        let down = i32x16::from_slice(simd, &DOWN);
+        let gains =
+            [across * edges[0][1] + down * edges[0][2], across * edges[1][1] + down * edges[1][2]];
+        Self { edges, gains, per_area: faces.per_area[0] }
+    }
+}
+
+impl<S: Simd> Linear<S> for Narrow<S> {
+    #[inline(always)]
+    fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
+        // But for multiples of 2^32, which the sum of all has none of.
+        let at = |i: usize, pair: i32| {
+            let [c, a, b] = self.edges[i];
+            let first = a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y + 2 * pair));
+            (self.gains[i] + first.wrapping_add(c)).to_float::<f32x16<S>>() * self.per_area
+        };
+        let pair = |pair| [at(0, pair), at(1, pair)];
+        [pair(0), pair(1), pair(2), pair(3)]
+    }
+}
+
+/// A triangle whose edge functions need more bits. They are whole numbers that f64 holds, up to 2^53.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wide<'a, S: Simd> {
+    triangle: &'a Triangle,
+    per_area: f64,
+    /// What the edge functions gain in the first row of a block, and in the second.
+    gains: [[f64x8<S>; 2]; 2],
+    /// What they gain by two pixels down.
+    down: [f64x8<S>; 2],
+}
+
+impl<'a, S: Simd> Wide<'a, S> {
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
+    pub(crate) fn new(simd: S, triangle: &'a Triangle) -> Self {
+        let [[_, er, fr], [_, ed, fd]] = triangle.steps();
+        let columns = f64x8::from_slice(simd, &COLUMNS);
+        let gains = |right: f64, down: f64| [columns * right, columns * right + down];
+        Self {
+            triangle,
+            per_area: 1.0 / triangle.doubled_area() as f64,
+            gains: [gains(er as f64, ed as f64), gains(fr as f64, fd as f64)],
+            down: [f64x8::splat(simd, 2.0 * ed as f64), f64x8::splat(simd, 2.0 * fd as f64)],
+        }
+    }
+
+    /// Those of sixteen pixels anywhere.
+    #[inline(always)]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        reason = "the nearest number is meant"
+    )]
+    pub(crate) fn scattered(&self, simd: S, x: &[i32], y: &[i32]) -> [f32x16<S>; 2] {
+        let mut linear = [[0.0; 16]; 2];
+        for (lane, (x, y)) in x.iter().zip(y).enumerate() {
+            let [_, e, f] = self.triangle.edges_at(*x, *y);
+            linear[0][lane] = (e as f64 * self.per_area) as f32;
+            linear[1][lane] = (f as f64 * self.per_area) as f32;
+        }
+        [f32x16::from_slice(simd, &linear[0]), f32x16::from_slice(simd, &linear[1])]
+    }
+}
+
+impl<S: Simd> Linear<S> for Wide<'_, S> {
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
+    fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
+        let [_, e, f] = self.triangle.edges_at(x, y);
+        let first = |i: usize, first: f64| [self.gains[i][0] + first, self.gains[i][1] + first];
+        let below = |i: usize, [a, b]: [f64x8<S>; 2]| [a + self.down[i], b + self.down[i]];
+        let linear = |[a, b]: [f64x8<S>; 2]| (a * self.per_area).narrow(b * self.per_area);
+        let (e0, f0) = (first(0, e as f64), first(1, f as f64));
+        let (e1, f1) = (below(0, e0), below(1, f0));
+        let (e2, f2) = (below(0, e1), below(1, f1));
+        let (e3, f3) = (below(0, e2), below(1, f2));
+        [
+            [linear(e0), linear(f0)],
+            [linear(e1), linear(f1)],
+            [linear(e2), linear(f2)],
+            [linear(e3), linear(f3)],
+        ]
+    }
+}
+
+/// Does something with where pixels lie in the first of some triangles. Says whether that is known: not
+/// where it reaches beyond the planes that triangles are cut by.
+macro_rules! with_linear {
+    ($level:expr, $faces:expr, $simd:ident, $linear:ident => $what:expr) => {{
+        let faces: &TriangleAttributes<f32> = $faces;
+        if faces.cut & 1 != 0 {
+            false
+        } else if faces.wide & 1 == 0 {
+            dispatch!($level, $simd => {
+                let $linear = Narrow::new($simd, faces);
+                $what
+            });
+            true
+        } else if let Some(triangle) = &Triangle::new(faces.corners(0)) {
+            dispatch!($level, $simd => {
+                let $linear = Wide::new($simd, triangle);
+                $what
+            });
+            true
+        } else {
+            false
+        }
+    }};
+}
+
+/// Mixes the colours that the first of some triangles carries in blocks that it covers as a whole.
+/// Says whether that can be done so: not where it reaches beyond the planes that triangles are cut by.
+pub(crate) fn mix(
+    level: Level,
+    faces: &TriangleAttributes<f32>,
+    blocks: Blocks,
+    canvas: &mut Canvas<'_>,
+) -> bool {
+    with_linear!(level, faces, simd, linear => mixed(simd, faces, linear, blocks, canvas))
+}
+
+/// What lights the pixels of some blocks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BlockLight<'a, T> {
+    /// How they are looked at; `None` where no light asks.
+    pub(crate) look: Option<Look<T>>,
+    /// The colour of the surface itself.
+    pub(crate) tint: [T; 3],
+    pub(crate) lights: TileLight<'a>,
+    /// What the lights do to the surface.
+    pub(crate) shines: &'a [LightTerm<T>],
+}
+
+/// Lights blocks that the first of some triangles covers as a whole, whose corners carry normals. Says
+/// whether that can be done so, as [`mix`] does.
+pub(crate) fn light(
+    level: Level,
+    faces: &TriangleAttributes<f32>,
+    blocks: Blocks,
+    (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
+    canvas: &mut Canvas<'_>,
+) -> bool {
+    with_linear!(level, faces, simd, linear => {
+        lit(simd, faces, linear, blocks, (light, &mut *batch), canvas);
+    })
+}
+
+#[inline(always)]
+fn lit<S: Simd>(
+    simd: S,
+    faces: &TriangleAttributes<f32>,
+    linear: impl Linear<S>,
+    blocks: Blocks,
+    (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
+    canvas: &mut Canvas<'_>,
+) {
+    let lanes = Sixteen(simd);
+    let BlockLight { look, tint, lights, shines } = light;
+    let by_w = of_first(lanes, &faces.by_w);
+    let z = of_first(lanes, &faces.z);
+    let corners = corners(lanes, faces);
+    let tint = set(lanes, tint);
+    let across = i32x16::from_slice(simd, &ACROSS);
+    let down = i32x16::from_slice(simd, &DOWN);
+    let [left, top] = blocks.corner;
+    batch.len = BLOCK_PIXELS;
+    let mut is_lit = false;
+    blocks.each(
+        #[inline(always)]
+        |[column, row]| {
+            let [x, y] = [left + column, top + row];
+            if let Some(look) = &look {
+                let pairs = linear.block(simd, [x, y]);
+                for ((pair, linear), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
+                    let (weights, w) = with_perspective(lanes, linear, by_w);
+                    let place = [across + x, down + y].map(|i| i.to_float::<f32x16<S>>() + 0.5);
+                    let normal = between(corners, weights);
+                    let sample = look.at(lanes, normal, place, w, || depth_between(z, weights));
+                    batch.put(lanes, sample, 16 * pair);
+                }
+            }
+            if look.is_some() || !is_lit {
+                is_lit = true;
+                batch.darken();
+                lights.shine(shines, simd.level(), batch);
+            }
+            let mut at = canvas.place([column as usize, row as usize]);
+            for pair in 0..PAIRS {
+                let mut pixels = [0; 16];
+                lanes.store_pixels(reflected(lanes, tint, batch, 16 * pair), &mut pixels, 0);
+                canvas.put(at, &pixels);
+                at += 2 * canvas.stride;
+            }
+        },
+    );
+}
+
+/// Three numbers of the first of some triangles, the same for all lanes.
+#[inline(always)]
+fn of_first<S: Simd>(lanes: Sixteen<S>, rows: &[[f32; SLOTS]; 3]) -> Vec3<f32x16<S>> {
+    set(lanes, [rows[0][0], rows[1][0], rows[2][0]])
+}
+
+/// What the corners of the first of some triangles carry.
+#[inline(always)]
+fn corners<S: Simd>(lanes: Sixteen<S>, faces: &TriangleAttributes<f32>) -> [Vec3<f32x16<S>>; 3] {
+    let [a, b, c] = &faces.values;
+    [of_first(lanes, a), of_first(lanes, b), of_first(lanes, c)]
+}
+
+#[inline(always)]
+fn mixed<S: Simd>(
+    simd: S,
+    faces: &TriangleAttributes<f32>,
+    linear: impl Linear<S>,
+    blocks: Blocks,
+    canvas: &mut Canvas<'_>,
+) {
+    let lanes = Sixteen(simd);
+    let by_w = of_first(lanes, &faces.by_w);
+    let corners = corners(lanes, faces);
+    let [left, top] = blocks.corner;
+    blocks.each(
+        #[inline(always)]
+        |[column, row]| {
+            let mut at = canvas.place([column as usize, row as usize]);
+            for linear in linear.block(simd, [left + column, top + row]) {
+                let (weights, _) = with_perspective(lanes, linear, by_w);
+                let mut pixels = [0; 16];
+                lanes.store_pixels(between(corners, weights), &mut pixels, 0);
+                canvas.put(at, &pixels);
+                at += 2 * canvas.stride;
+            }
+        },
+    );
+}

@@ -1,0 +1,57 @@
+//! From light and the colour of the surface itself to bytes.
+
+use super::colors::Colors;
+use crate::render::lights::{Batch, Rows, load, set};
+use crate::render::simd::{Kernel, Lanes, Number, Vec3};
+
+/// The colour t of the surface itself: one, or one for each pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Own<'a, T> {
+    Tint([T; 3]),
+    Texels(&'a Rows<T>),
+}
+
+impl<T: Number> Own<'_, T> {
+    #[inline(always)]
+    pub(crate) fn at<M: Lanes<Number = T>>(self, lanes: M, at: usize) -> Vec3<M::R> {
+        match self {
+            Self::Tint(tint) => set(lanes, tint),
+            Self::Texels(texels) => load(lanes, texels, at),
+        }
+    }
+}
+
+/// Makes bytes of colours: t D + S where it is lit, with D and S the two kinds of light, else t.
+pub(crate) struct Finish<'a, T> {
+    pub(crate) batch: &'a Batch<T>,
+    pub(crate) lit: bool,
+    pub(crate) own: Own<'a, T>,
+    pub(crate) colors: &'a mut Colors,
+}
+
+impl<T: Number> Kernel<T> for Finish<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { batch, lit, own, colors } = self;
+        for at in (0..batch.len).step_by(M::LANES) {
+            let mut color = own.at(lanes, at);
+            if lit {
+                color = reflected(lanes, color, batch, at);
+            }
+            colors.store(lanes, color, at);
+        }
+    }
+}
+
+/// t D + S at some places.
+#[inline(always)]
+pub(crate) fn reflected<M: Lanes>(
+    lanes: M,
+    Vec3([tr, tg, tb]): Vec3<M::R>,
+    batch: &Batch<M::Number>,
+    at: usize,
+) -> Vec3<M::R> {
+    let Vec3([r, g, b]) = load(lanes, &batch.diffuse, at);
+    let specular = load(lanes, &batch.specular, at);
+    Vec3([tr * r, tg * g, tb * b]).plus(specular)
+}

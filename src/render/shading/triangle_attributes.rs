@@ -1,0 +1,374 @@
+//! What is known of the triangles that a block shows.
+//!
+//! Each triangle has a slot. Its corners on the screen and what it carries at them (normals, or light
+//! that is there already) are fetched once, row after row, so that the fetches overlap; then sixteen
+//! triangles at a time are made ready for the pixels that take from them.
+
+use fearless_simd::{
+    Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16,
+};
+use glam::DVec3;
+
+use crate::base::math::each;
+use crate::render::frame::draw::{Back, Draw};
+use crate::render::frame::{Eye, FramePlan};
+use crate::render::raster::vertices::fetch_vertices;
+use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
+use crate::render::screen::coverage::{SUBPIXELS, Snapped, doubled_area};
+use crate::render::shading::fragments::Fragments;
+use crate::render::simd::gather::SLOTS;
+use crate::render::simd::{Kernel, Lanes, Number, Vec3};
+use crate::scene::{DrawOrder, Normals};
+
+/// The largest doubled area, in square parts of a pixel, whose edge functions fit 31 bits wherever a
+/// pixel of the triangle is, and the longest side that leaves room for their products.
+const NARROW_AREA: f32 = (1 << 30) as f32;
+const NARROW_SIDE: i32 = 1 << 20;
+
+/// What is known of some triangles of one draw. See the [module](self).
+#[derive(Debug)]
+pub(crate) struct TriangleAttributes<T> {
+    pub(crate) count: usize,
+    /// Their numbers in the mesh.
+    pub(crate) numbers: [u32; SLOTS],
+    /// Whether their corners are known.
+    has_corners: bool,
+    /// Their vertices in the mesh's draw order.
+    ids: [[u32; 3]; SLOTS],
+    /// x and y of each corner on the screen, in parts of a pixel.
+    pub(crate) corners: [[[i32; SLOTS]; 2]; 3],
+    /// What each corner carries.
+    pub(crate) carried: [[[T; 4]; SLOTS]; 3],
+    /// a, b and c of the edge functions that belong to the second and the third corner, for whole
+    /// pixels: e = a x + b y + c, but for multiples of 2^32.
+    pub(crate) edges: [[[i32; SLOTS]; 3]; 2],
+    /// One by the doubled area.
+    pub(crate) per_area: [f32; SLOTS],
+    /// One by w of each corner.
+    pub(crate) by_w: [[T; SLOTS]; 3],
+    /// What the first corner carries, and what the second and third have more than it.
+    pub(crate) values: [[[T; SLOTS]; 3]; 3],
+    /// z in view space of each corner; in parallel projection only.
+    pub(crate) z: [[T; SLOTS]; 3],
+    /// Bit i: the triangle reaches beyond the planes that triangles are cut by.
+    pub(crate) cut: u64,
+    /// Bit i: its edge functions do not fit 31 bits inside.
+    pub(crate) wide: u64,
+    /// Bit i: the observer sees its back.
+    pub(crate) back: u64,
+    /// The place of their draw in the plan.
+    draw: Option<u32>,
+}
+
+impl<T: Number> Default for TriangleAttributes<T> {
+    fn default() -> Self {
+        let row = [T::default(); SLOTS];
+        Self {
+            count: 0,
+            numbers: [0; SLOTS],
+            has_corners: false,
+            ids: [[0; 3]; SLOTS],
+            corners: [[[0; SLOTS]; 2]; 3],
+            carried: [[[T::default(); 4]; SLOTS]; 3],
+            edges: [[[0; SLOTS]; 3]; 2],
+            per_area: [0.0; SLOTS],
+            by_w: [row; 3],
+            values: [[row; 3]; 3],
+            z: [row; 3],
+            cut: 0,
+            wide: 0,
+            back: 0,
+            draw: None,
+        }
+    }
+}
+
+/// Numbers that faces are known in.
+pub(crate) trait Faced: Number {
+    /// Whether barycentric coordinates come from whole numbers and f64, one by one.
+    const EXACT: bool;
+    /// Fetches the corners, and makes the edge functions and one by w ready, where they are not yet.
+    fn prepare(level: Level, faces: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]);
+}
+
+impl<T: Faced> TriangleAttributes<T> {
+    /// Forgets what the last block showed.
+    pub(crate) const fn forget(&mut self) {
+        self.draw = None;
+    }
+
+    /// Takes the triangles of a list, all of one draw whose numbers begin at `base`, and their corners
+    /// where an order is given. Says whether they are others than those that are there already.
+    pub(crate) fn take(
+        &mut self,
+        items: &Fragments,
+        order: Option<&DrawOrder>,
+        draw: u32,
+        base: u32,
+    ) -> bool {
+        let count = items.count;
+        let same = self.draw == Some(draw)
+            && (self.has_corners || order.is_none())
+            && count == 1
+            && self.count == 1
+            && self.numbers[0] == items.numbers[0] - base;
+        if same {
+            return false;
+        }
+        (self.draw, self.count, self.has_corners) = (Some(draw), count, order.is_some());
+        for (own, number) in self.numbers.iter_mut().zip(&items.numbers[..count]) {
+            *own = number - base;
+        }
+        if let Some(order) = order {
+            for (ids, number) in self.ids.iter_mut().zip(&self.numbers[..count]) {
+                *ids = order.vertices_of(*number);
+            }
+        }
+        true
+    }
+
+    /// Which sides are seen, where that matters.
+    pub(crate) fn find_sides(&mut self, draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) {
+        self.back = 0;
+        if draw.back == Back::Left {
+            return;
+        }
+        let order = draw.model.mesh.draw_order();
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        for (slot, ids) in self.ids[..self.count].iter().enumerate() {
+            let own = each(*ids, |vertex| vertices[vertex as usize]);
+            let front = if own.iter().all(ScreenVertex::is_inside) {
+                doubled_area(own.map(|vertex| vertex.at())) < 0
+            } else {
+                faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
+            };
+            self.back |= u64::from(front == draw.mirrored) << slot;
+        }
+    }
+
+    /// Fetches the corners and makes them ready.
+    pub(crate) fn locate(
+        &mut self,
+        level: Level,
+        draw: &Draw,
+        plan: &FramePlan,
+        vertices: &[ScreenVertex],
+    ) {
+        T::prepare(level, self, vertices);
+        if !T::EXACT && plan.eye == Eye::Point {
+            return;
+        }
+        let order = draw.model.mesh.draw_order();
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        for (slot, ids) in self.ids[..self.count].iter().enumerate() {
+            for (corner, vertex) in ids.iter().copied().enumerate() {
+                let place = order.position(vertex);
+                if T::EXACT {
+                    self.by_w[corner][slot] = T::from_f64(1.0 / screen.clip(place)[3]);
+                }
+                if plan.eye == Eye::Parallel {
+                    let place = draw.view_from_object.transform_point3(DVec3::from_array(place));
+                    self.z[corner][slot] = T::from_f64(place.z);
+                }
+            }
+        }
+    }
+
+    /// Lets the corners carry their normals, turned where the back is seen and lit.
+    pub(crate) fn carry_normals(&mut self, draw: &Draw) {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        let points = order.points(draw.normal_source);
+        for (slot, number) in self.numbers[..self.count].iter().enumerate() {
+            let normals = match draw.normals {
+                Normals::Face => {
+                    let polygon = mesh.polygon_of(*number);
+                    [mesh.polygon_normals()[polygon as usize]; 3]
+                }
+                Normals::Vertex => {
+                    let of = points.of(order, *number, self.ids[slot]);
+                    each(of, |point| points.normals[point as usize])
+                }
+            };
+            let turn = if self.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
+            for (carried, normal) in self.carried.iter_mut().zip(normals) {
+                let [x, y, z] = each(normal, |x| T::from_f64(f64::from(x * turn)));
+                carried[slot] = [x, y, z, T::default()];
+            }
+        }
+    }
+
+    /// Lets the corners carry the light of their vertices; `light` is asked for it by place, and by
+    /// whether it is that of the back.
+    #[inline(always)]
+    pub(crate) fn carry_light(&mut self, draw: &Draw, mut light: impl FnMut(u32, bool) -> [T; 4]) {
+        let mesh = &draw.model.mesh;
+        let order = mesh.draw_order();
+        let points = order.points(draw.normal_source);
+        for (slot, number) in self.numbers[..self.count].iter().enumerate() {
+            let places = match draw.normals {
+                Normals::Face => mesh.triangles()[*number as usize].corners,
+                Normals::Vertex => points.of(order, *number, self.ids[slot]),
+            };
+            let back = self.back >> slot & 1 == 1;
+            for (carried, place) in self.carried.iter_mut().zip(places) {
+                carried[slot] = light(place, back);
+            }
+        }
+    }
+
+    /// Makes what the corners carry ready.
+    pub(crate) fn spread(&mut self, level: Level) {
+        T::run(level, Spread(self));
+    }
+
+    /// The corners of a triangle, of those of its draw.
+    pub(crate) fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
+        self.ids[slot].map(|id| all[id as usize])
+    }
+
+    /// The corners of a triangle on the screen.
+    pub(crate) fn corners(&self, slot: usize) -> [Snapped; 3] {
+        self.corners.map(|[x, y]| Snapped { x: x[slot], y: y[slot] })
+    }
+}
+
+/// From what corners carry to the first and the differences of the others.
+struct Spread<'a, T>(&'a mut TriangleAttributes<T>);
+
+impl<T: Number> Kernel<T> for Spread<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self(faces) = self;
+        for at in (0..faces.count).step_by(M::LANES) {
+            let a = carried(lanes, &faces.carried[0], at);
+            let b = carried(lanes, &faces.carried[1], at);
+            let c = carried(lanes, &faces.carried[2], at);
+            for (rows, value) in faces.values.iter_mut().zip([a, b.minus(a), c.minus(a)]) {
+                lanes.store(value.0[0], &mut rows[0], at);
+                lanes.store(value.0[1], &mut rows[1], at);
+                lanes.store(value.0[2], &mut rows[2], at);
+            }
+        }
+    }
+}
+
+/// What one corner of some triangles carries.
+#[inline(always)]
+fn carried<M: Lanes>(lanes: M, rows: &[[M::Number; 4]; SLOTS], at: usize) -> Vec3<M::R> {
+    let [x, y, z, _] = lanes.load_four(rows, at);
+    Vec3([x, y, z])
+}
+
+/// Three numbers of the triangles that some pixels show.
+#[inline(always)]
+pub(crate) fn picked<M: Lanes, const PAGES: usize>(
+    lanes: M,
+    [x, y, z]: &[[M::Number; SLOTS]; 3],
+    slots: M::Slots,
+) -> Vec3<M::R> {
+    Vec3([
+        lanes.pick::<PAGES>(x, slots),
+        lanes.pick::<PAGES>(y, slots),
+        lanes.pick::<PAGES>(z, slots),
+    ])
+}
+
+impl Faced for f64 {
+    const EXACT: bool = true;
+
+    fn prepare(_: Level, faces: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
+        faces.cut = 0;
+        for slot in 0..faces.count {
+            let own = faces.corners_among(slot, vertices);
+            let inside = own.iter().all(ScreenVertex::is_inside);
+            faces.cut |= u64::from(!inside) << slot;
+            for ([x, y], own) in faces.corners.iter_mut().zip(own) {
+                (x[slot], y[slot]) = (own.at().x, own.at().y);
+            }
+        }
+        faces.wide = !faces.cut;
+    }
+}
+
+impl Faced for f32 {
+    const EXACT: bool = false;
+
+    fn prepare(level: Level, faces: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
+        (faces.cut, faces.wide) = (0, 0);
+        dispatch!(level, simd => prepare(simd, faces, vertices));
+    }
+}
+
+/// The edge functions of sixteen triangles at a time.
+#[inline(always)]
+fn prepare<S: Simd>(simd: S, faces: &mut TriangleAttributes<f32>, vertices: &[ScreenVertex]) {
+    for at in (0..faces.count).step_by(16) {
+        let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
+            corners(simd, &faces.ids, at, vertices);
+        for ([own_x, own_y], (x, y)) in faces.corners.iter_mut().zip([(x0, y0), (x1, y1), (x2, y2)])
+        {
+            x.store_slice(&mut own_x[at..at + 16]);
+            y.store_slice(&mut own_y[at..at + 16]);
+        }
+        for (row, w) in faces.by_w.iter_mut().zip([w0, w1, w2]) {
+            w.bitcast::<f32x16<S>>().store_slice(&mut row[at..at + 16]);
+        }
+        let beyond = x0.simd_eq(ScreenVertex::BEYOND)
+            | x1.simd_eq(ScreenVertex::BEYOND)
+            | x2.simd_eq(ScreenVertex::BEYOND);
+        let (ux, uy, vx, vy) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
+        let rough = ux.to_float::<f32x16<S>>() * vy.to_float::<f32x16<S>>()
+            - uy.to_float::<f32x16<S>>() * vx.to_float::<f32x16<S>>();
+        let large = rough.simd_gt(NARROW_AREA) | rough.simd_lt(-NARROW_AREA);
+        let (low, high) = (ux.min(uy).min(vx).min(vy), ux.max(uy).max(vx).max(vy));
+        let wide = large | low.simd_lt(-NARROW_SIDE) | high.simd_gt(NARROW_SIDE);
+        faces.cut |= beyond.to_bitmask() << at;
+        faces.wide |= (wide.to_bitmask() & !beyond.to_bitmask()) << at;
+
+        let area = ux * vy - uy * vx;
+        let per_area = f32x16::splat(simd, 1.0) / area.to_float::<f32x16<S>>();
+        per_area.store_slice(&mut faces.per_area[at..at + 16]);
+        // a (x - p.x) + b (y - p.y) with x and y in the middle of a pixel.
+        let (half, log2) = (SUBPIXELS / 2, SUBPIXELS.trailing_zeros());
+        let second = (vy, x0 - x2, half - x2, half - y2);
+        let third = (y0 - y1, ux, half - x0, half - y0);
+        for (rows, (a, b, x, y)) in faces.edges.iter_mut().zip([second, third]) {
+            (a << log2).store_slice(&mut rows[0][at..at + 16]);
+            (b << log2).store_slice(&mut rows[1][at..at + 16]);
+            (a * x + b * y).store_slice(&mut rows[2][at..at + 16]);
+        }
+    }
+}
+
+/// x, y, depth and one by w of the corners of sixteen triangles. Slots that nobody has taken name vertices
+/// of other draws: what is fetched for them is of no meaning.
+#[inline(always)]
+fn corners<S: Simd>(
+    simd: S,
+    ids: &[[u32; 3]; SLOTS],
+    at: usize,
+    vertices: &[ScreenVertex],
+) -> [[i32x16<S>; 4]; 3] {
+    let ids = &ids[at..at + 16];
+    [
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][0],
+        ),
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][1],
+        ),
+        fetch_vertices(
+            simd,
+            vertices,
+            #[inline(always)]
+            |lane| ids[lane][2],
+        ),
+    ]
+}

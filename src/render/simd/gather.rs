@@ -1,0 +1,175 @@
+//! Numbers taken from a short table, sixteen at once, each from a place of its own.
+//!
+//! What a block shows are few triangles and many pixels: what is known of the triangles stands in
+//! rows, a number for each, and the pixels take from them. Processors have an instruction for that,
+//! which moves the lanes of a register; where they have none, numbers are taken one by one.
+
+use fearless_simd::{Level, Select as _, Simd, SimdBase as _, i32x16};
+
+/// Positions in a table.
+pub(crate) const SLOTS: usize = 64;
+
+/// The numbers of a row at `slots`, all of which are among the first `PAGES` times sixteen.
+#[inline(always)]
+pub(crate) fn pick<S: Simd, const PAGES: usize>(
+    simd: S,
+    row: &[i32; SLOTS],
+    slots: i32x16<S>,
+) -> i32x16<S> {
+    match simd.level() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx512(token) => {
+            let places = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
+            let picked = match PAGES {
+                1 => x86::of_one(token, page(token, row, 0), places),
+                2 => x86::of_two(token, page(token, row, 0), page(token, row, 1), places),
+                _ => {
+                    let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), places);
+                    let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), places);
+                    places.simd_lt(32).select(low, high)
+                }
+            };
+            i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
+        }
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx2(token) if PAGES == 1 => {
+            let places = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
+            let picked = x86::of_halves(token, page(token, row, 0), places);
+            i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
+        }
+        _ => {
+            let mut picked = [0; 16];
+            for (picked, slot) in picked.iter_mut().zip(<[i32; 16]>::from(slots)) {
+                *picked = row[slot.cast_unsigned() as usize % SLOTS];
+            }
+            i32x16::from_slice(simd, &picked)
+        }
+    }
+}
+
+/// Sixteen numbers of a row.
+#[inline(always)]
+fn page<S: Simd>(simd: S, row: &[i32; SLOTS], page: usize) -> i32x16<S> {
+    i32x16::from_slice(simd, &row[16 * page..16 * page + 16])
+}
+
+/// Does something for as many pages of slots as `count` triangles take.
+macro_rules! paged {
+    ($count:expr, $pages:ident => $what:expr) => {
+        match $count {
+            0..=16 => {
+                const $pages: usize = 1;
+                $what
+            }
+            17..=32 => {
+                const $pages: usize = 2;
+                $what
+            }
+            _ => {
+                const $pages: usize = 4;
+                $what
+            }
+        }
+    };
+}
+pub(crate) use paged;
+
+/// The instructions that move lanes by the places in another register.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+mod x86 {
+    #[cfg(target_arch = "x86")]
+    use std::arch::x86::{
+        _mm256_permutevar8x32_epi32, _mm512_permutex2var_epi32, _mm512_permutexvar_epi32,
+    };
+    #[cfg(target_arch = "x86_64")]
+    use std::arch::x86_64::{
+        _mm256_permutevar8x32_epi32, _mm512_permutex2var_epi32, _mm512_permutexvar_epi32,
+    };
+
+    use fearless_simd::x86::{Avx2, Avx512};
+    use fearless_simd::{
+        Select as _, SimdBase as _, SimdCombine as _, SimdInto as _, SimdSplit as _, i32x8, i32x16,
+    };
+
+    fearless_simd::kernel!(
+        #[inline(always)]
+        pub(crate) fn of_one(
+            token: Avx512,
+            page: i32x16<Avx512>,
+            places: i32x16<Avx512>,
+        ) -> i32x16<Avx512> {
+            _mm512_permutexvar_epi32(places.into(), page.into()).simd_into(token)
+        }
+    );
+
+    fearless_simd::kernel!(
+        #[inline(always)]
+        pub(crate) fn of_two(
+            token: Avx512,
+            low: i32x16<Avx512>,
+            high: i32x16<Avx512>,
+            places: i32x16<Avx512>,
+        ) -> i32x16<Avx512> {
+            _mm512_permutex2var_epi32(low.into(), places.into(), high.into()).simd_into(token)
+        }
+    );
+
+    fearless_simd::kernel!(
+        #[inline(always)]
+        fn of_eight(token: Avx2, half: i32x8<Avx2>, places: i32x8<Avx2>) -> i32x8<Avx2> {
+            _mm256_permutevar8x32_epi32(half.into(), places.into()).simd_into(token)
+        }
+    );
+
+    /// From sixteen places, by halves of eight.
+    #[inline(always)]
+    pub(crate) fn of_halves(token: Avx2, page: i32x16<Avx2>, places: i32x16<Avx2>) -> i32x16<Avx2> {
+        let (low, high) = page.split();
+        let (first, second) = places.split();
+        let from_low = of_eight(token, low, first).combine(of_eight(token, low, second));
+        let from_high = of_eight(token, high, first).combine(of_eight(token, high, second));
+        places.simd_lt(8).select(from_low, from_high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+
+    fn picked<const PAGES: usize>(
+        level: Level,
+        row: &[i32; SLOTS],
+        slots: &[i32; 16],
+    ) -> [i32; 16] {
+        let mut out = [0; 16];
+        dispatch!(level, simd => {
+            let slots = i32x16::from_slice(simd, slots);
+            pick::<_, PAGES>(simd, row, slots).store_slice(&mut out);
+        });
+        out
+    }
+
+    #[test]
+    fn every_level_picks_what_stands_at_the_places() {
+        let row: [i32; SLOTS] = std::array::from_fn(|i| 1000 - 7 * i32::try_from(i).unwrap());
+        let mut state = 1_u64;
+        for _ in 0..200 {
+            let slots: [u32; 16] = std::array::from_fn(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                u32::try_from(state >> 58).unwrap()
+            });
+            let new = Level::new();
+            let levels =
+                [Some(new), new.as_avx2().map(Level::Avx2), new.as_sse2().map(Level::Sse2)];
+            for level in levels.into_iter().flatten() {
+                let want = |below: u32| slots.map(|slot| row[(slot % below) as usize]);
+                let of = |below: u32| slots.map(|slot| (slot % below).cast_signed());
+                assert_eq!(picked::<1>(level, &row, &of(16)), want(16));
+                assert_eq!(picked::<2>(level, &row, &of(32)), want(32));
+                assert_eq!(picked::<4>(level, &row, &of(64)), want(64));
+            }
+        }
+    }
+}

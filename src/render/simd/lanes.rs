@@ -1,0 +1,160 @@
+//! What takes numbers from rows in memory, some at a time, computes with them, and stores them.
+
+use super::gather::SLOTS;
+use super::real::Real;
+use super::variant_real::VariantReal;
+use super::vec3::Vec3;
+use crate::base::color::byte;
+
+/// Positions lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
+/// that the call of a light's shader costs nothing beside its work.
+pub const BATCH: usize = 64;
+
+/// What takes numbers from rows in memory, some at a time, computes with them, and puts them back.
+///
+/// Code that is written over a lanes is compiled for each: see [`Kernel`].
+pub trait Lanes: Copy {
+    /// The numbers in memory.
+    type Number: Copy;
+    /// The numbers that are computed with: [`Self::LANES`] of them.
+    type R: VariantReal;
+    /// Positions in a row: [`Self::LANES`] of them.
+    type Slots: Copy;
+    /// How many numbers are taken at a time.
+    const LANES: usize;
+    /// The numbers of a row that begin at `at`.
+    fn load(self, row: &[Self::Number], at: usize) -> Self::R;
+    /// The numbers of four rows that lie side by side, from `at` on.
+    fn load_four(self, rows: &[[Self::Number; 4]], at: usize) -> [Self::R; 4];
+    /// Puts numbers into four rows that lie side by side, from `at` on.
+    fn store_four(self, values: [Self::R; 4], rows: &mut [[Self::Number; 4]], at: usize);
+    /// Puts numbers into a row from `at` on.
+    fn store(self, value: Self::R, row: &mut [Self::Number], at: usize);
+    /// The whole numbers of a row that begin at `at`.
+    fn whole(self, row: &[i32], at: usize) -> Self::R;
+    /// Puts colours into a row of pixels: red, green, blue and 255, as bytes in this order, each the
+    /// nearest to 255 times the number, as [`Number::byte`] has it.
+    fn store_pixels(self, color: Vec3<Self::R>, row: &mut [u32], at: usize);
+    /// The same, each the whole part of 255 times the number and a threshold from 0 to 1.
+    fn store_pixels_by(self, color: Vec3<Self::R>, threshold: Self::R, row: &mut [u32], at: usize);
+    /// Puts colours into three rows: red, green and blue as the bytes of [`Self::store_pixels_by`] before
+    /// they are rounded down, in parts of 2^-16.
+    fn store_parts(
+        self,
+        color: Vec3<Self::R>,
+        threshold: Self::R,
+        rows: &mut [[u32; BATCH]; 3],
+        at: usize,
+    );
+    /// A constant.
+    fn lift(self, constant: f64) -> Self::R;
+    /// One number for all.
+    fn set(self, number: Self::Number) -> Self::R;
+    /// The places in rows of `SLOTS` that [`Self::pick`] takes numbers from.
+    fn slots(self, slots: &[i32], at: usize) -> Self::Slots;
+    /// The numbers of a row at some places, all of which are among the first `PAGES` times sixteen.
+    fn pick<const PAGES: usize>(self, row: &[Self::Number; SLOTS], slots: Self::Slots) -> Self::R;
+    /// Whether any of some numbers is more than its counterpart.
+    fn any_more(self, a: Self::R, b: Self::R) -> bool;
+}
+
+/// Work that is written once for every [`Lanes`] over the same numbers.
+pub trait Kernel<T> {
+    /// Does the work. Implementations are `#[inline(always)]`, so that they are compiled for the
+    /// instructions that the lanes stands for.
+    fn run<M: Lanes<Number = T>>(self, lanes: M);
+}
+
+/// Computes in f64, one number at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact;
+
+impl Lanes for Exact {
+    type Number = f64;
+    type R = f64;
+    type Slots = usize;
+    const LANES: usize = 1;
+
+    #[inline(always)]
+    fn load(self, row: &[f64], at: usize) -> f64 {
+        row[at]
+    }
+
+    #[inline(always)]
+    fn load_four(self, rows: &[[f64; 4]], at: usize) -> [f64; 4] {
+        rows[at]
+    }
+
+    #[inline(always)]
+    fn store_four(self, values: [f64; 4], rows: &mut [[f64; 4]], at: usize) {
+        rows[at] = values;
+    }
+
+    #[inline(always)]
+    fn store(self, value: f64, row: &mut [f64], at: usize) {
+        row[at] = value;
+    }
+
+    #[inline(always)]
+    fn whole(self, row: &[i32], at: usize) -> f64 {
+        f64::from(row[at])
+    }
+
+    #[inline(always)]
+    fn store_pixels(self, color: Vec3<f64>, row: &mut [u32], at: usize) {
+        let [r, g, b] = color.0.map(byte);
+        row[at] = u32::from_le_bytes([r, g, b, 255]);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before")]
+    fn store_pixels_by(self, color: Vec3<f64>, threshold: f64, row: &mut [u32], at: usize) {
+        let byte = |x: f64| (Real::min(Real::max(x, 0.0), 1.0) * 255.0 + threshold) as u8;
+        let [r, g, b] = color.0.map(byte);
+        row[at] = u32::from_le_bytes([r, g, b, 255]);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 2^24")]
+    fn store_parts(
+        self,
+        color: Vec3<f64>,
+        threshold: f64,
+        rows: &mut [[u32; BATCH]; 3],
+        at: usize,
+    ) {
+        for (row, number) in rows.iter_mut().zip(color.0) {
+            let held = Real::min(Real::max(number, 0.0), 1.0);
+            row[at] = ((held * 255.0 + threshold) * PARTS) as u32;
+        }
+    }
+
+    #[inline(always)]
+    fn lift(self, constant: f64) -> f64 {
+        constant
+    }
+
+    #[inline(always)]
+    fn set(self, number: f64) -> f64 {
+        number
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, reason = "places are not negative")]
+    fn slots(self, slots: &[i32], at: usize) -> usize {
+        slots[at] as usize
+    }
+
+    #[inline(always)]
+    fn pick<const PAGES: usize>(self, row: &[f64; SLOTS], slot: usize) -> f64 {
+        row[slot]
+    }
+
+    #[inline(always)]
+    fn any_more(self, a: f64, b: f64) -> bool {
+        a > b
+    }
+}
+
+/// Into how many parts a step of a byte is cut where colours are added up.
+pub(crate) const PARTS: f64 = 65536.0;

@@ -1,0 +1,28 @@
+//! The numbers that light is computed in, one at a time or sixteen at once.
+//!
+//! * [`Real`]: what an equation of light does with numbers; `single` does it in 32 bits.
+//! * [`Lanes`]: takes numbers from memory and stores them; [`Exact`] one f64 at a time, [`Sixteen`]
+//!   sixteen f32 at a time. A [`Kernel`] is work that is compiled for both.
+//! * `gather`: takes numbers from short tables.
+//! * [`Power`], `power_variants`, `reciprocal_root`: powers of cosines and reciprocal roots by each
+//!   variant that settings name; `variant_real` and `variant_lanes` bring them into equations.
+
+pub(crate) mod gather;
+mod lanes;
+mod number;
+pub(crate) mod power;
+mod power_variants;
+mod real;
+mod reciprocal_root;
+mod single;
+mod sixteen;
+mod variant_lanes;
+mod variant_real;
+mod vec3;
+
+pub use lanes::{BATCH, Exact, Kernel, Lanes};
+pub use number::Number;
+pub use power::Power;
+pub use real::Real;
+pub use sixteen::Sixteen;
+pub use vec3::Vec3;

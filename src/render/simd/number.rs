@@ -1,0 +1,77 @@
+//! The numbers that pictures can be computed in.
+
+use fearless_simd::{Level, dispatch};
+
+use super::lanes::{Exact, Kernel};
+use super::real::Real;
+use super::sixteen::Sixteen;
+use super::variant_lanes::VariantLanes;
+use crate::accuracy::{Normalising, SpecularPower};
+
+/// The numbers that pictures can be computed in.
+pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {
+    /// The nearest such number.
+    fn from_f64(number: f64) -> Self;
+    /// The byte nearest to 255 times the number: clamped once, rounded, NaN gives 0.
+    fn byte(self) -> u8;
+    /// How such numbers take powers by themselves.
+    const POWER: SpecularPower;
+    /// Does the work with the lanes for such numbers, and with instructions of this level.
+    fn run(level: Level, kernel: impl Kernel<Self>);
+    /// The same by a rare way, where there is one.
+    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>);
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn from_f64(number: f64) -> Self {
+        number
+    }
+
+    #[inline(always)]
+    fn byte(self) -> u8 {
+        crate::base::color::byte(self)
+    }
+
+    const POWER: SpecularPower = SpecularPower::Library;
+
+    fn run(_: Level, kernel: impl Kernel<Self>) {
+        kernel.run(Exact);
+    }
+
+    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>) {
+        match way {
+            None => Self::run(level, kernel),
+            Some(way) => kernel.run(VariantLanes { lanes: Exact, way }),
+        }
+    }
+}
+
+impl Number for f32 {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
+    fn from_f64(number: f64) -> Self {
+        number as Self
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before")]
+    fn byte(self) -> u8 {
+        (Real::min(Real::max(self, 0.0), 1.0) * 255.0 + 0.5) as u8
+    }
+
+    const POWER: SpecularPower = SpecularPower::Polynomial;
+
+    fn run(level: Level, kernel: impl Kernel<Self>) {
+        dispatch!(level, simd => kernel.run(Sixteen(simd)));
+    }
+
+    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>) {
+        match way {
+            None => Self::run(level, kernel),
+            Some(way) => {
+                dispatch!(level, simd => kernel.run(VariantLanes { lanes: Sixteen(simd), way }));
+            }
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! A real number, or several of them side by side.
+//!
+//! Every equation of light is written once, over [`Real`], and compiled three times: for `f64`, one
+//! at a time, the reference that pictures are judged by; for `f32x16`, sixteen at a time, what the
+//! editor shows; and for `f32`, which does to one number what `f32x16` does to sixteen.
+//!
+//! There is no fused multiply-add here. It rounds once where `a * b + c` rounds twice, and only some
+//! processors have it; without it a picture is the same, bit for bit, on all of them. Nor is there a
+//! minimum or maximum of the processor's own: they disagree about NaN and about the sign of zero.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::power::Power;
+
+/// A real number, or several of them side by side.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A constant beside `self`: as many of it as `self` has numbers.
+    #[must_use]
+    fn lift(self, constant: f64) -> Self;
+    /// One by the square root; 0 where `self` is not more than 0, and where its bits tell no digits:
+    /// infinity, NaN, and what is below the normal numbers.
+    #[must_use]
+    fn reciprocal_root(self) -> Self;
+    /// `yes` where `self` is more than `than`, `no` elsewhere and where either is NaN.
+    #[must_use]
+    fn if_more(self, than: Self, yes: Self, no: Self) -> Self;
+    /// The power of `self`, which is from 0 to 1; 0 where that is below the floor, and where `self`
+    /// is 0.
+    #[must_use]
+    fn power(self, power: &Power) -> Self;
+
+    /// The larger of two numbers; `other` where `self` is NaN.
+    #[inline(always)]
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        self.if_more(other, self, other)
+    }
+
+    /// The smaller of two numbers; `other` where `self` is NaN.
+    #[inline(always)]
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        other.if_more(self, self, other)
+    }
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn lift(self, constant: f64) -> Self {
+        constant
+    }
+
+    #[inline(always)]
+    fn reciprocal_root(self) -> Self {
+        if self > 0.0 && self < Self::INFINITY { 1.0 / self.sqrt() } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn if_more(self, than: Self, yes: Self, no: Self) -> Self {
+        if self > than { yes } else { no }
+    }
+
+    #[inline(always)]
+    fn power(self, power: &Power) -> Self {
+        if self.is_nan() || self <= 0.0 {
+            return 0.0;
+        }
+        let result = libm::pow(self, power.exponent);
+        if result > power.least { result } else { 0.0 }
+    }
+}

@@ -1,0 +1,130 @@
+//! Numbers whose reciprocal roots and powers are computed by a variant that settings name.
+//!
+//! Such a number carries its [`Normalising`]; a [`Power`] knows its own variant. The compiler sees the
+//! same variant in all numbers of a batch, so it is asked for once a root.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use fearless_simd::{Simd, SimdBase as _, f32x16};
+
+use super::power::Power;
+use super::power_variants;
+use super::real::Real;
+use super::reciprocal_root;
+use crate::accuracy::Normalising;
+
+/// Numbers that can be asked for a rare way.
+pub trait VariantReal: Real {
+    /// As [`Real::reciprocal_root`], by a way that is named.
+    #[must_use]
+    fn reciprocal_root_by(self, way: Normalising) -> Self;
+    /// As [`Real::power`], by the way that the power names.
+    #[must_use]
+    fn power_by(self, power: &Power) -> Self;
+}
+
+impl VariantReal for f64 {
+    #[inline(always)]
+    fn reciprocal_root_by(self, way: Normalising) -> Self {
+        reciprocal_root::one(self, way)
+    }
+
+    #[inline(always)]
+    fn power_by(self, power: &Power) -> Self {
+        power_variants::power(power, self)
+    }
+}
+
+impl<S: Simd> VariantReal for f32x16<S> {
+    #[inline(always)]
+    fn reciprocal_root_by(self, way: Normalising) -> Self {
+        reciprocal_root::sixteen(self, way)
+    }
+
+    #[inline(always)]
+    fn power_by(self, power: &Power) -> Self {
+        if power.is_own() {
+            return self.power(power);
+        }
+        let mut lanes: [f32; 16] = *self;
+        power_variants::power_of_sixteen(power, &mut lanes);
+        Self::from_slice(self.simd, &lanes)
+    }
+}
+
+/// Numbers, and how their roots are taken.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct VariantNumber<R> {
+    pub(super) value: R,
+    pub(super) way: Normalising,
+}
+
+impl<R> VariantNumber<R> {
+    #[inline(always)]
+    const fn with(self, value: R) -> Self
+    where
+        R: Copy,
+    {
+        Self { value, way: self.way }
+    }
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident),+) => {
+        $(
+            impl<R: Real> $trait for VariantNumber<R> {
+                type Output = Self;
+
+                #[inline(always)]
+                fn $method(self, other: Self) -> Self {
+                    self.with(self.value.$method(other.value))
+                }
+            }
+        )+
+    };
+}
+
+operators! { Add add, Sub sub, Mul mul, Div div }
+
+impl<R: Real> Neg for VariantNumber<R> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.with(-self.value)
+    }
+}
+
+impl<R: VariantReal> Real for VariantNumber<R> {
+    #[inline(always)]
+    fn lift(self, constant: f64) -> Self {
+        self.with(self.value.lift(constant))
+    }
+
+    #[inline(always)]
+    fn reciprocal_root(self) -> Self {
+        self.with(self.value.reciprocal_root_by(self.way))
+    }
+
+    #[inline(always)]
+    fn if_more(self, than: Self, yes: Self, no: Self) -> Self {
+        self.with(self.value.if_more(than.value, yes.value, no.value))
+    }
+
+    #[inline(always)]
+    fn power(self, power: &Power) -> Self {
+        self.with(self.value.power_by(power))
+    }
+}
+
+impl<R: VariantReal> VariantReal for VariantNumber<R> {
+    #[inline(always)]
+    fn reciprocal_root_by(self, way: Normalising) -> Self {
+        self.with(self.value.reciprocal_root_by(way))
+    }
+
+    #[inline(always)]
+    fn power_by(self, power: &Power) -> Self {
+        self.power(power)
+    }
+}

@@ -1,0 +1,53 @@
+//! Three numbers side by side: directions, positions and colours.
+
+use super::real::Real;
+
+/// Three numbers: a direction, a place, or light in red, green and blue.
+#[derive(Clone, Copy, Debug)]
+pub struct Vec3<R>(pub [R; 3]);
+
+impl<R: Real> Vec3<R> {
+    /// The same constants beside `like`.
+    #[inline(always)]
+    pub fn lift(like: R, [x, y, z]: [f64; 3]) -> Self {
+        Self([like.lift(x), like.lift(y), like.lift(z)])
+    }
+
+    /// The dot product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> R {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        a * x + b * y + c * z
+    }
+
+    /// Each number times `factor`.
+    #[inline(always)]
+    #[must_use]
+    pub fn times(self, factor: R) -> Self {
+        let [x, y, z] = self.0;
+        Self([x * factor, y * factor, z * factor])
+    }
+
+    /// The sum, number by number.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([a + x, b + y, c + z])
+    }
+
+    /// The difference, number by number.
+    #[inline(always)]
+    #[must_use]
+    pub fn minus(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([a - x, b - y, c - z])
+    }
+
+    /// At length 1; what has no length stays without.
+    #[inline(always)]
+    #[must_use]
+    pub fn unit(self) -> Self {
+        self.times(self.dot(self).reciprocal_root())
+    }
+}

@@ -1,0 +1,144 @@
+//! Textures that are seen from afar: a mean of the texels that a pixel covers, from pictures of them at
+//! half, a quarter, an eighth of the size.
+//!
+//! How many texels a pixel covers is the longer of the ways that its neighbours to the right and below
+//! lie off on the texture; its logarithm says between which two pictures to mix.
+//!
+//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer way as in the specification of OpenGL
+//! 4.6, 8.14.1.
+
+use crate::accuracy::Filter;
+use crate::base::Shared;
+use crate::base::image::{Picture, Size};
+use crate::render::simd::Number;
+use crate::render::texture::sample::sample;
+use crate::scene::Texture;
+
+/// A texture at the size that it has, at half of that, and so on down to one texel.
+#[derive(Debug)]
+pub(crate) struct Mips {
+    of: Shared<Texture>,
+    levels: Vec<Texture>,
+}
+
+impl Mips {
+    pub(crate) fn new(of: &Shared<Texture>) -> Self {
+        let mut levels = vec![Texture::clone(of)];
+        while let Some(last) = levels.last()
+            && last.picture.size().area() > 1
+        {
+            levels.push(Texture { picture: halved(&last.picture).into(), ..last.clone() });
+        }
+        Self { of: of.clone(), levels }
+    }
+
+    /// Whether they are those of this texture.
+    pub(crate) fn are_of(&self, texture: &Shared<Texture>) -> bool {
+        Shared::same(&self.of, texture)
+    }
+
+    /// Red, green, blue and alpha at a place whose neighbours on the screen lie these ways off.
+    pub(crate) fn sample<T: Number>(&self, uv: [f64; 2], ways: [[f64; 2]; 2]) -> [T; 4] {
+        let level = self.level(ways);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 32")]
+        let below = level as usize;
+        let near = sample::<T>(&self.levels[below], uv, Filter::Bilinear);
+        #[expect(clippy::cast_precision_loss, reason = "below 32")]
+        let part = T::from_f64(level - below as f64);
+        match self.levels.get(below + 1) {
+            Some(next) if level > 0.0 => {
+                let far = sample::<T>(next, uv, Filter::Bilinear);
+                std::array::from_fn(|i| near[i] + (far[i] - near[i]) * part)
+            }
+            _ => near,
+        }
+    }
+
+    /// log2 of how many texels a pixel covers, as far as there are pictures.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    fn level(&self, ways: [[f64; 2]; 2]) -> f64 {
+        let Texture { picture, scale, .. } = &self.levels[0];
+        let Size { width, height } = picture.size();
+        let texels = ways
+            .map(|[u, v]| libm::hypot(u * scale[0] * width as f64, v * scale[1] * height as f64));
+        let most = texels[0].max(texels[1]);
+        if most > 1.0 { libm::log2(most).min((self.levels.len() - 1) as f64) } else { 0.0 }
+    }
+}
+
+/// A picture at half its size: each pixel the mean of four, rounded to the nearest byte.
+fn halved(picture: &Picture) -> Picture {
+    let from = picture.size();
+    let half = |side: usize| (side / 2).max(1);
+    let size = Size::new(half(from.width), half(from.height));
+    let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
+    let mean = |(x, y): (usize, usize)| {
+        let beside = |i: usize, side: usize| [2 * i, (2 * i + 1).min(side - 1)];
+        let (columns, rows) = (beside(x, from.width), beside(y, from.height));
+        std::array::from_fn(|channel| {
+            let at = |i: usize, j: usize| u16::from(picture.pixel(columns[i], rows[j])[channel]);
+            let sum = at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1);
+            u8::try_from((sum + 2) / 4).unwrap_or(u8::MAX)
+        })
+    };
+    Picture::from_pixels(size, pixels.map(mean).collect()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+    use crate::scene::Wrap;
+
+    fn chequered(side: usize) -> Shared<Texture> {
+        let at = |i: usize| {
+            if (i % side + i / side).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] }
+        };
+        let picture =
+            Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
+        let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
+        let source = PathBuf::new();
+        Shared::new(Texture { source, picture: picture.unwrap().into(), wrap, offset, scale })
+    }
+
+    #[test]
+    fn seen_from_afar_a_chequered_texture_is_grey_and_from_near_it_is_not() {
+        let mips = Mips::new(&chequered(16));
+        assert_eq!(mips.levels.len(), 5);
+        for i in 0..40 {
+            let uv = [f64::from(i) * 0.137, f64::from(i) * 0.071];
+            let afar: [f64; 4] = mips.sample(uv, [[2.0 / 16.0, 0.0], [0.0, 0.01]]);
+            assert!((afar[0] - 0.5).abs() < 0.003, "{afar:?}");
+        }
+        let near: [f64; 4] = mips.sample([0.5 / 16.0, 0.5 / 16.0], [[0.01, 0.0], [0.0, 0.01]]);
+        // The picture's rows run down, so (0, 0) is its lower left texel.
+        assert!(near[0] == 0.0 || near[0] == 1.0, "{near:?}");
+    }
+
+    #[test]
+    fn between_two_sizes_both_are_mixed() {
+        let mips = Mips::new(&chequered(2));
+        let at = |texels: f64| -> [f64; 4] {
+            mips.sample([0.25, 0.25], [[texels / 2.0, 0.0], [0.0, 0.0]])
+        };
+        let (near, half, far) = (at(1.0)[0], at(2.0_f64.sqrt())[0], at(2.0)[0]);
+        assert!((far - 128.0 / 255.0).abs() < 1e-9 && (near == 0.0 || near == 1.0));
+        assert!((half - (near + far) / 2.0).abs() < 1e-9, "{near} {half} {far}");
+    }
+
+    #[test]
+    fn sides_that_are_no_power_of_two_and_one_texel_have_a_chain_too() {
+        for (width, height, levels) in [(1, 1, 1), (5, 3, 3), (1, 8, 4)] {
+            let size = Size::new(width, height);
+            let texture = Texture {
+                picture: Picture::filled(size, [9; 4]).into(),
+                ..Texture::clone(&chequered(1))
+            };
+            let mips = Mips::new(&Shared::new(texture));
+            assert_eq!(mips.levels.len(), levels);
+            let color: [f64; 4] = mips.sample([0.3, 0.7], [[9.0, 0.0], [0.0, 9.0]]);
+            assert!((color[0] - 9.0 / 255.0).abs() < 1e-12);
+        }
+    }
+}

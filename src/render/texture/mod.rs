@@ -1,0 +1,5 @@
+//! The colours of textures, and where they lie on triangles.
+
+pub(crate) mod mips;
+pub(crate) mod sample;
+pub(crate) mod uv;

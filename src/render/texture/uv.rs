@@ -1,0 +1,28 @@
+//! Where a triangle's pixels lie on its texture.
+
+use glam::DVec3;
+
+use crate::render::frame::draw::Draw;
+use crate::scene::NONE;
+
+/// The places on the texture of a triangle's corners.
+pub(crate) type Uvs = [[f64; 2]; 3];
+
+/// The place on the texture between those of the corners.
+#[inline(always)]
+pub(crate) fn uv([a, b, c]: Uvs, weights: DVec3) -> [f64; 2] {
+    let between = |axis: usize| {
+        let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
+        let value = a[axis] + (b[axis] - a[axis]) * weights.y + (c[axis] - a[axis]) * weights.z;
+        value.clamp(low, high)
+    };
+    [between(0), between(1)]
+}
+
+/// The places on the texture of a triangle's corners; `None` where one has none.
+pub(crate) fn uvs(draw: &Draw, number: u32) -> Option<Uvs> {
+    let mesh = &draw.model.mesh;
+    let own = mesh.triangles()[number as usize];
+    let ids = own.corners.map(|corner| mesh.corners()[corner as usize].uv);
+    (!ids.contains(&NONE)).then(|| ids.map(|id| mesh.uvs()[id as usize].map(f64::from)))
+}

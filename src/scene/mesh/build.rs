@@ -1,0 +1,247 @@
+//! From the parts of a mesh to the mesh: checks, normals of polygons, triangles.
+//!
+//! Everything that is long is made by all threads, each its own stretch of it, and is the same
+//! whatever their number.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::base::Shared;
+use crate::base::lists::concatenated;
+use crate::base::math;
+use crate::scene::mesh::cache::{Found, FoundOfShape};
+use crate::scene::mesh::points::{Computed, points_and_corners};
+use crate::scene::mesh::{Shape, index, mean};
+use crate::scene::triangulate::Triangulator;
+use crate::scene::{
+    Bounds, Crease, Mesh, MeshError, MeshSource, NONE, Smoothing, SourceCorner, Triangle, dvec3,
+    newell,
+};
+
+/// Polygons that a thread takes at a time.
+const SHARE: usize = 4096;
+
+/// The corners of all polygons, one after the other, as a list for each thing that they name.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CornerLists {
+    /// The vertex of each corner.
+    pub positions: Vec<u32>,
+    /// Its place on the texture, or [`NONE`]; empty where no corner has one.
+    pub uvs: Vec<u32>,
+    /// Its normal, or [`NONE`]; empty where no corner has one.
+    pub normals: Vec<u32>,
+}
+
+impl CornerLists {
+    /// The place on the texture of a corner, or [`NONE`].
+    #[must_use]
+    pub fn uv(&self, corner: usize) -> u32 {
+        self.uvs.get(corner).copied().unwrap_or(NONE)
+    }
+
+    /// The normal of a corner, or [`NONE`].
+    #[must_use]
+    pub fn normal(&self, corner: usize) -> u32 {
+        self.normals.get(corner).copied().unwrap_or(NONE)
+    }
+}
+
+impl Mesh {
+    /// Checks the parts, triangulates the polygons and computes their normals.
+    ///
+    /// # Errors
+    /// Where a number is not finite, an index out of range, or a list of the wrong length.
+    pub fn new(mut source: MeshSource) -> Result<Self, MeshError> {
+        let corners = std::mem::take(&mut source.corners);
+        let list = |some: fn(&SourceCorner) -> u32| -> Vec<u32> {
+            if corners.iter().any(|corner| some(corner) != NONE) {
+                corners.iter().map(some).collect()
+            } else {
+                Vec::new()
+            }
+        };
+        let corners = CornerLists {
+            positions: corners.iter().map(|corner| corner.position).collect(),
+            uvs: list(|corner| corner.uv),
+            normals: list(|corner| corner.normal),
+        };
+        Self::from_lists(source, corners)
+    }
+
+    /// As [`Self::new`], of corners in lists, which take less room; those of `source` are passed
+    /// over.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn from_lists(source: MeshSource, corners: CornerLists) -> Result<Self, MeshError> {
+        check(&source, &corners)?;
+        let starts = running_sum(&source.arities);
+        let triangles_only = corners.positions.len() == 3 * source.arities.len();
+        let positions = || source.positions.iter().copied().map(dvec3);
+        // Two sums that have to be taken in their order, beside what is not summed.
+        let ((computed, corner_points), (bounds, mean)) = rayon::join(
+            || points_and_corners(&source, &corners, &starts),
+            || (Bounds::of(positions()), mean(positions())),
+        );
+        let shape = Shape {
+            bounds,
+            mean,
+            without_area: computed.without_area,
+            positions: source.positions,
+            colors: source.colors,
+            uvs: source.uvs,
+            corners: corners.positions,
+            corner_uvs: corners.uvs,
+            starts,
+            polygon_parts: source.polygon_parts,
+            parts: source.parts,
+            found: FoundOfShape::default(),
+        };
+        Ok(Self {
+            shape: Shared::new(shape),
+            smoothing: source.smoothing,
+            points: computed.points,
+            corners: corner_points,
+            triangles_only,
+            found: Found::default(),
+        })
+    }
+
+    /// The mesh with another crease angle, which shares all but the normals with this one. A mesh
+    /// with smoothing groups stays as it is.
+    #[must_use]
+    pub fn with_crease(&self, crease: Crease) -> Self {
+        let smoothing = match &self.smoothing {
+            Smoothing::Crease(_) => Smoothing::Crease(crease),
+            groups @ Smoothing::Groups(_) => groups.clone(),
+        };
+        let outlines = self.outlines();
+        let computed = Computed::of(&outlines, self.positions().len(), &smoothing);
+        let (points, corners) =
+            self.corners.with_computed(&self.points, computed, outlines.corners);
+        Self {
+            shape: self.shape.clone(),
+            smoothing,
+            points,
+            corners,
+            triangles_only: self.triangles_only,
+            found: Found::default(),
+        }
+    }
+
+    /// Whether the other is the same mesh up to the crease angle, by [`Self::with_crease`].
+    #[must_use]
+    pub fn shares_shape_with(&self, other: &Self) -> bool {
+        Shared::same(&self.shape, &other.shape)
+    }
+}
+
+/// The outlines of all polygons.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outlines<'a> {
+    pub(crate) places: &'a [[f32; 3]],
+    /// The vertices of all corners.
+    pub(crate) corners: &'a [u32],
+    /// Where each polygon's corners begin, and where the last one's end.
+    pub(crate) starts: &'a [u32],
+}
+
+impl<'a> Outlines<'a> {
+    /// The vertices of a polygon's corners.
+    pub(crate) fn vertices(&self, polygon: usize) -> &'a [u32] {
+        &self.corners[self.starts[polygon] as usize..self.starts[polygon + 1] as usize]
+    }
+
+    /// Where a polygon's corners are.
+    pub(crate) fn of(&self, polygon: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone + 'a {
+        let places = self.places;
+        self.vertices(polygon).iter().map(|vertex| dvec3(places[*vertex as usize]))
+    }
+
+    /// The normal of a polygon by Newell's method, of length 1; `None` for one without area.
+    pub(crate) fn normal(&self, polygon: usize) -> Option<DVec3> {
+        math::unit(newell(self.of(polygon)))
+    }
+}
+
+/// Where each list begins whose lengths are `counts`, and where the last one ends.
+fn running_sum(counts: &[u32]) -> Vec<u32> {
+    let mut sums = Vec::with_capacity(counts.len() + 1);
+    let mut sum = 0;
+    sums.push(sum);
+    for count in counts {
+        sum += count;
+        sums.push(sum);
+    }
+    sums
+}
+
+/// The triangles of all polygons, in their order.
+pub(crate) fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
+    let count = outlines.starts.len() - 1;
+    if outlines.corners.len() == 3 * count {
+        let own = |polygon: usize| {
+            let first = index(3 * polygon);
+            Triangle { corners: [first, first + 1, first + 2], polygon: index(polygon) }
+        };
+        return (0..count).into_par_iter().map(own).collect();
+    }
+    let share = |share: usize| {
+        let mut triangles = Vec::new();
+        let mut triangulator = Triangulator::default();
+        for polygon in share * SHARE..count.min((share + 1) * SHARE) {
+            let begin = outlines.starts[polygon];
+            // With all its digits: where a polygon is cut depends on them.
+            let normal = outlines.normal(polygon).unwrap_or(DVec3::Z);
+            let cut = triangulator.cut(outlines.of(polygon), normal);
+            let polygon = index(polygon);
+            let own = |own: &[u32; 3]| Triangle { corners: own.map(|i| begin + i), polygon };
+            triangles.extend(cut.iter().map(own));
+        }
+        triangles
+    };
+    concatenated((0..count.div_ceil(SHARE)).into_par_iter().map(share).collect())
+}
+
+/// Checks that every index is in range and every number finite.
+fn check(source: &MeshSource, corners: &CornerLists) -> Result<(), MeshError> {
+    let room = |what, length: usize| {
+        // A vertex may need one point a corner, and NONE is taken.
+        if length < NONE as usize / 4 { Ok(()) } else { Err(MeshError::TooMany(what)) }
+    };
+    room("vertices", source.positions.len())?;
+    room("corners", corners.positions.len())?;
+    let length = |what, right: bool| if right { Ok(()) } else { Err(MeshError::Length(what)) };
+    let all: u64 = source.arities.iter().map(|&n| u64::from(n)).sum();
+    let right = |list: &[u32]| list.is_empty() || list.len() as u64 == all;
+    length("corners", corners.positions.len() as u64 == all)?;
+    length("corners", right(&corners.uvs) && right(&corners.normals))?;
+    length("parts of polygons", source.polygon_parts.len() == source.arities.len())?;
+    if let Smoothing::Groups(groups) = &source.smoothing {
+        length("smoothing groups", groups.len() == source.arities.len())?;
+    }
+    length("colours", [0, source.positions.len()].contains(&source.colors.len()))?;
+    let finite = |what, right: bool| if right { Ok(()) } else { Err(MeshError::NotFinite(what)) };
+    let all = |rows: &[[f32; 3]]| rows.par_iter().all(|row| row.iter().all(|x| x.is_finite()));
+    finite("positions", all(&source.positions))?;
+    finite("colours", all(&source.colors))?;
+    finite("normals", all(&source.normals))?;
+    finite(
+        "places on the texture",
+        source.uvs.par_iter().all(|row| row.iter().all(|x| x.is_finite())),
+    )?;
+    if let Some(short) = source.arities.iter().position(|&n| n < 3) {
+        return Err(MeshError::Short(index(short)));
+    }
+    let within = |what, list: &[u32], length: usize, optional: bool| {
+        let wrong = |i: &&u32| **i as usize >= length && !(optional && **i == NONE);
+        match list.par_iter().find_first(wrong) {
+            Some(wrong) => Err(MeshError::Index(what, *wrong)),
+            None => Ok(()),
+        }
+    };
+    within("vertex", &corners.positions, source.positions.len(), false)?;
+    within("place on the texture", &corners.uvs, source.uvs.len(), true)?;
+    within("normal", &corners.normals, source.normals.len(), true)?;
+    within("part", &source.polygon_parts, source.parts.len(), false)
+}

@@ -1,0 +1,207 @@
+//! What of a mesh is found when it is first asked for.
+//!
+//! A picture needs a part of it: to find the rest, and to have memory filled with it, would take
+//! longer than the drawing.
+
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+use super::closed::is_closed;
+use crate::base::once::get_or_compute;
+use crate::scene::mesh::build::{Outlines, triangles};
+use crate::scene::mesh::edges::{Edge, Edges};
+use crate::scene::mesh::points::shown_normal;
+use crate::scene::mesh::{Shape, index};
+use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
+
+/// A polygon that is lit as a whole. What is fetched together lies together, in one line of the cache.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(32))]
+pub struct Facet {
+    /// The mean of its corners.
+    pub centre: [f32; 3],
+    /// See [`Mesh::polygon_normals`].
+    pub normal: [f32; 3],
+}
+
+/// What follows from a mesh, and is computed when it is first needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Derived {
+    /// [`Mesh::corners`].
+    Corners,
+    /// [`Mesh::triangles`].
+    Triangles,
+    /// [`Mesh::polygon_of`].
+    PolygonOf,
+    /// [`Mesh::polygon_normals`].
+    PolygonNormals,
+    /// [`Mesh::facets`].
+    Facets,
+    /// [`Mesh::draw_order`].
+    DrawOrder,
+    /// [`Mesh::edge_order`], [`Mesh::edges`] and [`Mesh::edge_polygons`].
+    EdgeOrder,
+}
+
+/// What was asked for.
+#[derive(Default)]
+pub(crate) struct Found {
+    corners: OnceLock<Vec<Corner>>,
+    order: OnceLock<DrawOrder>,
+}
+
+/// What was asked for, and does not depend on the normals of vertices.
+#[derive(Default)]
+pub(crate) struct FoundOfShape {
+    triangles: OnceLock<Vec<Triangle>>,
+    normals: OnceLock<Vec<[f32; 3]>>,
+    facets: OnceLock<Vec<Facet>>,
+    edges: OnceLock<Edges>,
+    edge_order: OnceLock<EdgeOrder>,
+    closed: OnceLock<bool>,
+}
+
+impl Mesh {
+    /// The corners of all polygons, one after the other.
+    #[must_use]
+    pub fn corners(&self) -> &[Corner] {
+        get_or_compute::<Vec<_>>(&self.found.corners, || {
+            let vertices = &self.shape.corners;
+            let corner = |i: usize| Corner {
+                position: vertices[i],
+                uv: self.shape.corner_uvs.get(i).copied().unwrap_or(NONE),
+                smooth: self.corners.smooth(vertices, i),
+                filed: self.corners.filed(vertices, i),
+            };
+            (0..vertices.len()).into_par_iter().map(corner).collect()
+        })
+    }
+
+    /// The triangles of all polygons, in the order of the polygons.
+    #[must_use]
+    pub fn triangles(&self) -> &[Triangle] {
+        get_or_compute::<Vec<_>>(&self.shape.found.triangles, || triangles(&self.outlines()))
+    }
+
+    /// The polygon that a triangle belongs to.
+    #[inline(always)]
+    #[must_use]
+    pub fn polygon_of(&self, triangle: u32) -> u32 {
+        if self.has_triangles_only() {
+            return triangle;
+        }
+        self.triangles()[triangle as usize].polygon
+    }
+
+    /// Computes something of the mesh now, so that it can be read inside of
+    /// [`without_computing`](crate::base::once::without_computing).
+    pub fn prepare(&self, what: Derived) {
+        match what {
+            Derived::Corners => _ = self.corners(),
+            Derived::Triangles => _ = self.triangles(),
+            Derived::PolygonOf if self.has_triangles_only() => {}
+            Derived::PolygonOf => _ = self.triangles(),
+            Derived::PolygonNormals => _ = self.polygon_normals(),
+            Derived::Facets => _ = self.facets(),
+            Derived::DrawOrder => _ = self.draw_order(),
+            Derived::EdgeOrder => _ = self.edge_order(),
+        }
+    }
+
+    /// Whether each polygon is one triangle.
+    #[inline(always)]
+    const fn has_triangles_only(&self) -> bool {
+        self.triangles_only
+    }
+
+    /// How many triangles there are.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.shape.corners.len() - 2 * self.polygon_count()
+    }
+
+    /// The corners of a triangle, as places in [`Self::corners`].
+    pub(crate) fn triangle(&self, number: usize) -> [usize; 3] {
+        if self.has_triangles_only() {
+            return [3 * number, 3 * number + 1, 3 * number + 2];
+        }
+        self.triangles()[number].corners.map(|corner| corner as usize)
+    }
+
+    /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
+    #[must_use]
+    pub fn polygon_normals(&self) -> &[[f32; 3]] {
+        get_or_compute::<Vec<_>>(&self.shape.found.normals, || {
+            let outlines = self.outlines();
+            let polygons = 0..self.polygon_count();
+            polygons.into_par_iter().map(|i| shown_normal(outlines.normal(i))).collect()
+        })
+    }
+
+    /// What it takes to light each polygon as a whole.
+    #[must_use]
+    pub fn facets(&self) -> &[Facet] {
+        get_or_compute::<Vec<_>>(&self.shape.found.facets, || {
+            let facet = |(normal, polygon): (&[f32; 3], u32)| Facet {
+                centre: self.polygon_centre(polygon).as_vec3().to_array(),
+                normal: *normal,
+            };
+            let polygons = 0..index(self.polygon_count());
+            self.polygon_normals().par_iter().zip(polygons).map(facet).collect()
+        })
+    }
+
+    /// Whether the polygons form closed surfaces: every edge is passed as often in one direction as in
+    /// the other.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))
+    }
+
+    /// The triangles and vertices in the order in which they are drawn fastest.
+    #[must_use]
+    pub fn draw_order(&self) -> &DrawOrder {
+        get_or_compute(&self.found.order, || DrawOrder::along_curve(self))
+    }
+
+    /// Has the mesh drawn in the order of its file, unless another one has been found: for the one
+    /// picture of a program that then ends, a better order is not worth finding.
+    pub fn draw_as_filed(&self) {
+        get_or_compute(&self.found.order, || DrawOrder::as_filed(self));
+    }
+
+    /// The edges in the order in which they are drawn fastest.
+    #[must_use]
+    pub fn edge_order(&self) -> &EdgeOrder {
+        get_or_compute(&self.shape.found.edge_order, || EdgeOrder::new(self))
+    }
+
+    /// The sides of all polygons, each once.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        self.edge_table().edges()
+    }
+
+    /// The polygons that have this edge as a side.
+    #[must_use]
+    pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
+        self.edge_table().polygons(edge)
+    }
+
+    fn edge_table(&self) -> &Edges {
+        get_or_compute(&self.shape.found.edges, || Edges::of(self))
+    }
+
+    /// The outlines of all polygons.
+    pub(crate) fn outlines(&self) -> Outlines<'_> {
+        self.shape.outlines()
+    }
+}
+
+impl Shape {
+    /// The outlines of all polygons.
+    pub(crate) fn outlines(&self) -> Outlines<'_> {
+        Outlines { places: &self.positions, corners: &self.corners, starts: &self.starts }
+    }
+}

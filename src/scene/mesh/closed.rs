@@ -1,0 +1,128 @@
+//! Whether a mesh is a closed surface.
+//!
+//! A surface without boundary passes each of its edges as often in one direction as in the other.
+//! The sum over all sides (p, q) of polygons
+//!
+//! ```text
+//!   S = sum  h(p, q),   h(p, q) = -h(q, p)
+//! ```
+//!
+//! is then 0 for any such h. With h a hash of 64 bits, S of an open surface is 0 with a chance of
+//! 2^-64. It takes one pass and no table of edges. Corners are compared by their positions, so that a
+//! surface that a file takes apart at seams is closed all the same.
+
+use rayon::prelude::*;
+
+use crate::scene::mesh::build::Outlines;
+
+/// Polygons that a thread takes at a time.
+const SHARE: usize = 4096;
+
+/// Whether the polygons form closed surfaces, each with one side outside. Polygons that turn against
+/// their neighbours leave an edge that is passed twice in one direction: open.
+pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
+    let keys: Vec<u64> = outlines.places.par_iter().map(|place| key(*place)).collect();
+    let polygons = (0..outlines.starts.len() - 1).into_par_iter().with_min_len(SHARE);
+    let sum = polygons.map(|polygon| boundary(outlines.vertices(polygon), &keys));
+    sum.reduce(|| 0, u64::wrapping_add) == 0
+}
+
+/// The hashes of a polygon's sides, added up.
+fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
+    let Some(mut from) = vertices.last().map(|last| keys[*last as usize]) else { return 0 };
+    let mut sum = 0_u64;
+    for vertex in vertices {
+        let to = keys[*vertex as usize];
+        let side = mixed(from.min(to).wrapping_add(from.max(to).rotate_left(32)));
+        sum = match from.cmp(&to) {
+            std::cmp::Ordering::Less => sum.wrapping_add(side),
+            std::cmp::Ordering::Greater => sum.wrapping_sub(side),
+            std::cmp::Ordering::Equal => sum,
+        };
+        from = to;
+    }
+    sum
+}
+
+/// A hash of a position, the same for 0 and -0.
+fn key([x, y, z]: [f32; 3]) -> u64 {
+    let bits = |x: f32| u64::from((x + 0.0).to_bits());
+    mixed(mixed(bits(x) << 32 | bits(y)) ^ bits(z))
+}
+
+/// A permutation of the 64-bit numbers without visible order: SplitMix64's, by Steele, Lea and Flood,
+/// "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
+const fn mixed(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ x >> 31
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{Mesh, MeshSource, NONE, Part, SourceCorner};
+
+    /// The faces of a cube from -1 to 1, seen from outside.
+    const CUBE: [[u32; 4]; 6] =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+
+    fn corner_of_cube(i: u32) -> [f32; 3] {
+        [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 })
+    }
+
+    fn mesh(positions: Vec<[f32; 3]>, faces: &[[u32; 4]]) -> Mesh {
+        let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
+        Mesh::new(MeshSource {
+            positions,
+            corners: faces.iter().flatten().map(|i| corner(*i)).collect(),
+            arities: vec![4; faces.len()],
+            polygon_parts: vec![0; faces.len()],
+            parts: vec![Part { name: "it".to_owned(), material: None }],
+            ..MeshSource::default()
+        })
+        .unwrap()
+    }
+
+    fn cube(faces: &[[u32; 4]]) -> Mesh {
+        mesh((0..8).map(corner_of_cube).collect(), faces)
+    }
+
+    #[test]
+    fn a_cube_is_closed_and_a_box_without_lid_is_open() {
+        assert!(cube(&CUBE).is_closed());
+        for left_out in 0..6 {
+            let faces: Vec<_> =
+                CUBE.iter().enumerate().filter(|(i, _)| *i != left_out).map(|(_, f)| *f).collect();
+            assert!(!cube(&faces).is_closed(), "without face {left_out}");
+        }
+    }
+
+    #[test]
+    fn a_cube_with_a_face_turned_round_is_open() {
+        let mut faces = CUBE;
+        faces[3].reverse();
+        assert!(!cube(&faces).is_closed());
+    }
+
+    #[test]
+    fn a_cube_turned_inside_out_is_closed() {
+        let mut faces = CUBE;
+        faces.iter_mut().for_each(|face| face.reverse());
+        assert!(cube(&faces).is_closed());
+    }
+
+    #[test]
+    fn faces_that_share_positions_but_no_vertices_are_closed() {
+        let positions = CUBE.iter().flatten().map(|i| corner_of_cube(*i)).collect();
+        let faces: Vec<[u32; 4]> = (0..6).map(|i| [0, 1, 2, 3].map(|k| 4 * i + k)).collect();
+        assert!(mesh(positions, &faces).is_closed());
+    }
+
+    #[test]
+    fn zero_and_minus_zero_are_one_position() {
+        let flat = |x: f32| vec![[x, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [x, 1.0, 0.0]];
+        let positions = [flat(0.0), flat(-0.0)].concat();
+        assert!(mesh(positions, &[[0, 1, 2, 3], [7, 6, 5, 4]]).is_closed());
+    }
+}

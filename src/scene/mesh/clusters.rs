@@ -1,0 +1,125 @@
+//! Bounds of triangles that lie side by side, so that many are left out at once.
+//!
+//! A cluster knows a ball about its corners and a cone about its normals: Shirman and Abi-Ezzi, "The Cone
+//! of Normals Technique for Fast Processing of Curved Patches", Eurographics 1993. It also knows how thin
+//! its triangles are, since one that is thinner than a part of a pixel may be turned round by snapping.
+//! All bounds are rounded outwards.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::scene::mesh::draw_order::DrawTriangle;
+
+/// Triangles of a cluster; the last has what is left.
+pub const CLUSTER: usize = 64;
+
+/// Some triangles of a [`DrawOrder`](crate::scene::DrawOrder), in object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cluster {
+    /// The middle of a ball about all corners.
+    pub centre: [f32; 3],
+    /// Its radius.
+    pub radius: f32,
+    /// The axis of a cone about the normals of all triangles, of no certain length.
+    pub axis: [f32; 3],
+    /// The cosine of its half-angle; -1 where a triangle has no normal.
+    pub cosine: f32,
+    /// The least height of a triangle over its longest side.
+    pub least_height: f32,
+    /// The least doubled area.
+    pub least_area: f32,
+}
+
+/// More than what rounding to f32 takes from a number, as a part of it.
+const ROUNDING: f64 = 1e-6;
+
+impl Cluster {
+    /// The bounds of triangles whose corners `place` knows.
+    #[expect(clippy::cast_possible_truncation, reason = "rounded outwards")]
+    fn of(triangles: &[DrawTriangle], place: impl Fn(u32) -> DVec3) -> Self {
+        let corners = || triangles.iter().flat_map(|triangle| triangle.vertices).map(&place);
+        let low = corners().fold(DVec3::INFINITY, DVec3::min);
+        let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let centre = ((low + high) / 2.0).as_vec3();
+        let middle = centre.as_dvec3();
+        let radius = corners().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
+        let (mut sum, mut least_height, mut least_area) = (DVec3::ZERO, f64::MAX, f64::MAX);
+        let normal = |triangle: &DrawTriangle| {
+            let [a, b, c] = triangle.vertices.map(&place);
+            ((b - a).cross(c - a), [b - a, c - b, a - c])
+        };
+        for (across, sides) in triangles.iter().map(normal) {
+            let area = across.length();
+            let longest = sides.into_iter().map(DVec3::length).fold(0.0, f64::max);
+            sum += across.normalize_or_zero();
+            least_area = least_area.min(area);
+            least_height = least_height.min(if longest > 0.0 { area / longest } else { 0.0 });
+        }
+        let axis = sum.normalize_or_zero().as_vec3();
+        let own = axis.as_dvec3().normalize_or_zero();
+        let cosines = triangles.iter().map(|of| own.dot(normal(of).0.normalize_or_zero()));
+        let cosine = cosines.fold(1.0, f64::min) - ROUNDING;
+        Self {
+            centre: centre.to_array(),
+            radius: (radius * (1.0 + ROUNDING)) as f32,
+            axis: axis.to_array(),
+            cosine: if least_area > 0.0 { cosine as f32 } else { -1.0 },
+            least_height: (least_height.min(1e30) * (1.0 - ROUNDING)) as f32,
+            least_area: (least_area.min(1e30) * (1.0 - ROUNDING)) as f32,
+        }
+    }
+}
+
+/// The clusters of some triangles, whose corners `place` knows.
+pub(crate) fn clusters(
+    triangles: &[DrawTriangle],
+    place: impl Fn(u32) -> DVec3 + Sync,
+) -> Vec<Cluster> {
+    triangles.par_chunks(CLUSTER).map(|some| Cluster::of(some, &place)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From -1 to 1, by Marsaglia's xorshift.
+    fn real(state: &mut u64) -> f64 {
+        *state ^= *state << 13;
+        *state ^= *state >> 7;
+        *state ^= *state << 17;
+        f64::from(u32::try_from(*state >> 33).unwrap()) / f64::from(1_u32 << 30) - 1.0
+    }
+
+    #[test]
+    fn every_corner_lies_in_the_ball_and_every_normal_in_the_cone() {
+        let mut state = 1;
+        for round in 0..200 {
+            // Leaves that are nearly flat, far from the origin, to triangles in all directions.
+            let rough = [1e-3, 0.1, 1.0][round % 3];
+            let away = DVec3::splat([0.0, 5e3][round % 2]);
+            let mut place = || {
+                let [x, y, z] = [0, 1, 2].map(|_| real(&mut state));
+                (away + DVec3::new(x, y, z * rough)).as_vec3().as_dvec3()
+            };
+            let places: Vec<DVec3> = (0..3 * CLUSTER).map(|_| place()).collect();
+            let triangle = |number: usize| {
+                let at = |i: usize| u32::try_from(3 * number + i).unwrap();
+                DrawTriangle { vertices: [at(0), at(1), at(2)], number: at(0) / 3 }
+            };
+            let triangles: Vec<DrawTriangle> = (0..CLUSTER).map(triangle).collect();
+            let [cluster] = clusters(&triangles, |i| places[i as usize])[..] else { panic!() };
+            let centre = DVec3::from_array(cluster.centre.map(f64::from));
+            for place in &places {
+                assert!(place.distance(centre) <= f64::from(cluster.radius), "round {round}");
+            }
+            let axis = DVec3::from_array(cluster.axis.map(f64::from)).normalize_or_zero();
+            for corners in places.as_chunks::<3>().0 {
+                let [a, b, c] = *corners;
+                let across = (b - a).cross(c - a);
+                let cosine = axis.dot(across.normalize_or_zero());
+                assert!(cosine >= f64::from(cluster.cosine), "round {round}");
+                assert!(across.length() >= f64::from(cluster.least_area), "round {round}");
+            }
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! A mesh in the order in which it is drawn fastest.
+//!
+//! Triangles along a Morton curve through the mesh's box, vertices numbered by first use: what is
+//! near in space is near in memory. Each triangle keeps its number in the file's order, which decides
+//! between equal depths, so that the order cannot show. Morton, "A Computer Oriented Geodetic Data
+//! Base", IBM 1966.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::clusters::{Cluster, clusters};
+use crate::base::lists::sorted_by_keys;
+use crate::scene::{Bounds, Mesh, NONE, dvec3};
+
+/// A triangle as it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawTriangle {
+    /// Its vertices, as places in [`DrawOrder::x`].
+    pub vertices: [u32; 3],
+    /// Its place in [`Mesh::triangles`].
+    pub number: u32,
+}
+
+impl DrawTriangle {
+    /// Its numbers side by side.
+    #[inline(always)]
+    #[must_use]
+    pub const fn row(&self) -> [i32; 4] {
+        let [a, b, c] = self.vertices;
+        [a.cast_signed(), b.cast_signed(), c.cast_signed(), self.number.cast_signed()]
+    }
+}
+
+/// The triangles and vertices of a mesh in the order in which they are drawn fastest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrawOrder {
+    /// Where the vertices are, coordinate by coordinate; only those that a triangle uses.
+    pub x: Vec<f32>,
+    /// See [`Self::x`].
+    pub y: Vec<f32>,
+    /// See [`Self::x`].
+    pub z: Vec<f32>,
+    /// The triangles.
+    pub triangles: Vec<DrawTriangle>,
+    /// What is known of the triangles many at a time; empty where nobody has looked.
+    pub clusters: Vec<Cluster>,
+    /// For each triangle of the mesh its place in [`Self::triangles`]; empty where that is its
+    /// number.
+    places: Vec<u32>,
+    smooth: Points,
+    /// Empty where no polygon has normals of the file's own.
+    filed: Points,
+}
+
+/// The points of a mesh with one kind of normals, numbered by first use.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// The points of each triangle, in the order of [`DrawOrder::triangles`]; empty where they have
+    /// the numbers of its vertices, each of which has one normal.
+    of: Vec<[u32; 3]>,
+    /// Their normals, of length 1.
+    pub normals: Vec<[f32; 3]>,
+    /// Their vertices, as places in [`DrawOrder::x`]; empty where they have the numbers of these.
+    pub vertices: Vec<u32>,
+}
+
+/// Which of a file's normals are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalSource {
+    /// The mean of those of the faces around.
+    Computed,
+    /// The file's own, where a polygon has them.
+    File,
+}
+
+impl Points {
+    /// The points of a triangle of the mesh, with these vertices, in the order that they belong to.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(&self, order: &DrawOrder, number: u32, vertices: [u32; 3]) -> [u32; 3] {
+        if self.of.is_empty() { vertices } else { self.of[order.place(number) as usize] }
+    }
+}
+
+impl DrawOrder {
+    /// Along a Morton curve.
+    pub(crate) fn along_curve(mesh: &Mesh) -> Self {
+        let Some(bounds) = mesh.bounds() else { return Self::default() };
+        let count = mesh.triangle_count();
+        let key = |number: usize| morton(mesh, bounds, vertices(mesh, number));
+        let numbers = sorted_by_keys((0..count).into_par_iter().map(key).collect(), 30);
+        let mut places = vec![0; count];
+        for (place, number) in (0..).zip(&numbers) {
+            places[*number as usize] = place;
+        }
+        let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
+        let triangles = numbers.into_par_iter().map(triangle).collect();
+        let order = Self { places, ..Self::of(mesh, triangles) };
+        let place = |vertex| DVec3::from_array(order.position(vertex));
+        Self { clusters: clusters(&order.triangles, place), ..order }
+    }
+
+    /// As the mesh has them.
+    pub(crate) fn as_filed(mesh: &Mesh) -> Self {
+        let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
+        let numbers = (0..index(mesh.triangle_count())).into_par_iter();
+        Self::of(mesh, numbers.map(triangle).collect())
+    }
+
+    /// Triangles in this order, which name vertices of the mesh.
+    fn of(mesh: &Mesh, mut triangles: Vec<DrawTriangle>) -> Self {
+        // Vertices by their first use.
+        let mut places = vec![NONE; mesh.positions().len()];
+        let mut used = Vec::with_capacity(places.len());
+        for vertex in triangles.iter_mut().flat_map(|triangle| &mut triangle.vertices) {
+            let place = &mut places[*vertex as usize];
+            if *place == NONE {
+                *place = index(used.len());
+                used.push(*vertex);
+            }
+            *vertex = *place;
+        }
+        drop(places);
+        let coordinate = |axis: usize| -> Vec<f32> {
+            used.par_iter().map(|vertex| mesh.positions()[*vertex as usize][axis]).collect()
+        };
+        let [x, y, z] = [0, 1, 2].map(coordinate);
+        let mut order = Self { x, y, z, triangles, ..Self::default() };
+        let vertices = &mesh.shape.corners;
+        order.smooth = if mesh.corners.are_vertices() {
+            let normal = |vertex: &u32| mesh.points()[*vertex as usize].normal;
+            Points {
+                of: Vec::new(),
+                normals: used.par_iter().map(normal).collect(),
+                vertices: Vec::new(),
+            }
+        } else {
+            order.points_of(mesh, |corner| mesh.corners.smooth(vertices, corner))
+        };
+        if mesh.has_file_normals() {
+            order.filed = order.points_of(mesh, |corner| mesh.corners.filed(vertices, corner));
+        }
+        order
+    }
+
+    /// The vertices of a triangle of the mesh, as places in [`Self::x`].
+    #[inline(always)]
+    #[must_use]
+    pub fn vertices_of(&self, number: u32) -> [u32; 3] {
+        self.triangles[self.place(number) as usize].vertices
+    }
+
+    /// Where a triangle of the mesh stands in [`Self::triangles`].
+    #[inline(always)]
+    fn place(&self, number: u32) -> u32 {
+        if self.places.is_empty() { number } else { self.places[number as usize] }
+    }
+
+    /// The points with one kind of normals.
+    #[must_use]
+    pub const fn points(&self, source: NormalSource) -> &Points {
+        match source {
+            NormalSource::File if !self.filed.normals.is_empty() => &self.filed,
+            _ => &self.smooth,
+        }
+    }
+
+    fn points_of(&self, mesh: &Mesh, pick: impl Fn(usize) -> u32) -> Points {
+        let mut points = Points::default();
+        let mut places = vec![NONE; mesh.points().len()];
+        for triangle in &self.triangles {
+            let corners = mesh.triangle(triangle.number as usize);
+            let of = std::array::from_fn(|i| {
+                let point = pick(corners[i]) as usize;
+                if places[point] == NONE {
+                    places[point] = index(points.normals.len());
+                    points.normals.push(mesh.points()[point].normal);
+                    points.vertices.push(triangle.vertices[i]);
+                }
+                places[point]
+            });
+            points.of.push(of);
+        }
+        let of_vertices = self.triangles.iter().map(|triangle| triangle.vertices);
+        if points.of.iter().copied().eq(of_vertices) {
+            // Both are numbered by first use.
+            (points.of, points.vertices) = (Vec::new(), Vec::new());
+        }
+        points
+    }
+
+    /// Where a vertex is.
+    #[inline(always)]
+    #[must_use]
+    pub fn position(&self, vertex: u32) -> [f64; 3] {
+        let i = vertex as usize;
+        [f64::from(self.x[i]), f64::from(self.y[i]), f64::from(self.z[i])]
+    }
+}
+
+/// The vertices of a triangle, as the mesh numbers them.
+fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
+    mesh.triangle(number).map(|corner| mesh.shape.corners[corner])
+}
+
+/// The place of a triangle's middle on the curve, ten bits for each axis.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "held to ten bits just before"
+)]
+fn morton(mesh: &Mesh, bounds: Bounds, vertices: [u32; 3]) -> u32 {
+    let [a, b, c] = vertices.map(|vertex| dvec3(mesh.positions()[vertex as usize]));
+    let extent = bounds.extent().max_element().max(f64::MIN_POSITIVE);
+    let place = ((a + b + c) / 3.0 - bounds.min) / extent * 1023.0;
+    let bits = place.to_array().map(|x| spread(x.clamp(0.0, 1023.0) as u32));
+    bits[0] | bits[1] << 1 | bits[2] << 2
+}
+
+/// The ten bits of a number, each followed by two zeros.
+const fn spread(bits: u32) -> u32 {
+    let bits = (bits | bits << 16) & 0x0300_00ff;
+    let bits = (bits | bits << 8) & 0x0300_f00f;
+    let bits = (bits | bits << 4) & 0x030c_30c3;
+    (bits | bits << 2) & 0x0924_9249
+}
+
+fn index(i: usize) -> u32 {
+    u32::try_from(i).expect("the mesh has checked that everything can be numbered")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_spread_to_every_third_place() {
+        assert_eq!(spread(0b11_1111_1111), 0o1_111_111_111);
+        assert_eq!(spread(0b101), 0o101);
+    }
+}

@@ -1,0 +1,103 @@
+//! The edges of a mesh in the order in which they are drawn fastest.
+//!
+//! Along the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so that what is near in space
+//! is near in memory. Each edge keeps its number among the mesh's edges, which decides between equal
+//! depths, so that the order cannot show.
+
+use crate::scene::mesh::index;
+use crate::scene::{Mesh, NONE};
+
+/// An edge as it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawEdge {
+    /// The vertices at its ends, as places in [`DrawOrder::x`](crate::scene::DrawOrder::x); [`NONE`] where no
+    /// triangle uses them.
+    pub vertices: [u32; 2],
+    /// Its two polygons, or the same twice where it has one; the second is [`NONE`] where it has more.
+    pub polygons: [u32; 2],
+    /// Its place in [`Mesh::edges`].
+    pub number: u32,
+}
+
+/// The edges of a mesh as they are drawn, and whether all of its polygons are triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeOrder {
+    /// The edges.
+    pub edges: Vec<DrawEdge>,
+    /// Whether each polygon is one triangle, with the polygon's number.
+    pub triangles: bool,
+}
+
+impl EdgeOrder {
+    /// The order for a mesh.
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let mut vertices = vec![NONE; mesh.positions().len()];
+        for triangle in &mesh.draw_order().triangles {
+            let corners = mesh.triangle(triangle.number as usize);
+            for (corner, vertex) in corners.into_iter().zip(triangle.vertices) {
+                vertices[mesh.shape.corners[corner] as usize] = vertex;
+            }
+        }
+        let edges = mesh.edges().iter().enumerate().map(|(number, edge)| DrawEdge {
+            vertices: edge.ends.map(|end| vertices[end as usize]),
+            polygons: match *mesh.edge_polygons(edge) {
+                [one] => [one; 2],
+                [one, other] => [one, other],
+                _ => [0, NONE],
+            },
+            number: index(number),
+        });
+        let mut edges: Vec<DrawEdge> = edges.collect();
+        let key = |edge: &DrawEdge| {
+            let [a, b] = edge.vertices;
+            (a.min(b), a.max(b), edge.number)
+        };
+        edges.sort_unstable_by_key(key);
+        let one = |polygon: usize| mesh.triangles_of(index(polygon)) == (polygon..polygon + 1);
+        Self { edges, triangles: (0..mesh.polygon_count()).all(one) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{MeshSource, Part, SourceCorner};
+
+    /// A roof of two triangles over a square.
+    #[test]
+    fn an_edge_keeps_its_number_its_ends_and_its_polygons() {
+        let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
+        let mesh = Mesh::new(MeshSource {
+            positions: vec![
+                [0.0, 0.0, 0.0],
+                [2.0, 0.0, 0.0],
+                [2.0, 2.0, 0.0],
+                [0.0, 2.0, 0.0],
+                [1.0, 1.0, 1.0],
+            ],
+            corners: [0, 1, 2, 3, 1, 0, 4, 2, 1, 4].map(corner).to_vec(),
+            arities: vec![4, 3, 3],
+            polygon_parts: vec![0; 3],
+            parts: vec![Part { name: "roof".to_owned(), material: None }],
+            ..MeshSource::default()
+        })
+        .unwrap();
+        let order = mesh.edge_order();
+        assert!(!order.triangles, "one is a square");
+        assert_eq!(order.edges.len(), mesh.edges().len());
+        let mut numbers = Vec::new();
+        for edge in &order.edges {
+            let own = &mesh.edges()[edge.number as usize];
+            numbers.push(edge.number);
+            for (vertex, end) in edge.vertices.into_iter().zip(own.ends) {
+                let place = mesh.positions()[end as usize].map(f64::from);
+                assert_eq!(mesh.draw_order().position(vertex), place);
+            }
+            let mut polygons = edge.polygons.to_vec();
+            polygons.dedup();
+            assert_eq!(polygons, mesh.edge_polygons(own));
+        }
+        numbers.sort_unstable();
+        assert!(numbers.into_iter().eq(0..7));
+    }
+}

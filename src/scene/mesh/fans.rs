@@ -1,0 +1,357 @@
+//! The computed normals of corners if some edges stay sharp.
+//!
+//! The faces around a vertex fall into fans: the faces of a fan are smooth with each other, directly
+//! or through other faces of the fan, and their corners have the mean of the fan's unit normals. The
+//! first fan has the point with the vertex's own number, the others have further points.
+//!
+//! In a fine model nearly every vertex has one fan, which is found without looking at its edges: if
+//! the unit normals n_i of k faces have the sum S, then |S| = sum of n_i . S/|S|, so
+//!
+//!   |S| >= k - 1 + cos(crease / 2)
+//!
+//! holds only if no n_i is farther from S than half the crease, and no two are farther apart than
+//! the crease. What remains to be seen is whether the faces are connected. At all other vertices
+//! faces are joined edge by edge, in time k log k.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::base::math;
+use crate::scene::mesh::around::Around;
+use crate::scene::mesh::build::Outlines;
+use crate::scene::mesh::index;
+use crate::scene::mesh::points::{cancels, narrow, shown_normal};
+use crate::scene::{Crease, NONE, Point, dvec3};
+
+/// How much sharper than the crease angle a smooth edge may be, in degrees. Files have numbers of
+/// some six digits, so a right angle in them is right only up to that.
+const TOLERANCE: f64 = 1e-4;
+
+/// More faces than this around a vertex or an edge are sorted before they are compared.
+const FEW: usize = 16;
+
+/// Vertices that a thread takes at a time.
+const BLOCK: usize = 4096;
+
+/// Which faces around a vertex are smooth with each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Rule<'a> {
+    /// Those that share an edge at the vertex that is not too sharp.
+    Crease(Limit),
+    /// Those of the same smoothing group; each polygon's, 0 for none.
+    Groups(&'a [u32]),
+}
+
+/// The crease angle c, as it is compared with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limit {
+    /// cos^2(c / 2)
+    cos2: f64,
+    /// sin^2(c / 2)
+    sin2: f64,
+    /// 1 - cos(c / 2)
+    slack: f64,
+}
+
+impl Limit {
+    pub(crate) fn new(crease: Crease) -> Self {
+        let half = |degrees: f64| degrees.min(180.0).to_radians() / 2.0;
+        let (sin, cos) = libm::sincos(half(crease.get() + TOLERANCE));
+        // Half of the tolerance is left for rounding.
+        let slack = 1.0 - libm::cos(half(crease.get() + TOLERANCE / 2.0));
+        Self { cos2: cos * cos, sin2: sin * sin, slack }
+    }
+
+    /// Whether two unit vectors are no farther apart than the crease.
+    ///
+    ///   tan(angle / 2) = |a - b| / |a + b|
+    ///
+    /// Exact for small and for large angles; Kahan, "How Futile are Mindless Assessments of
+    /// Roundoff in Floating-Point Computation?", 2006.
+    fn joins(&self, a: DVec3, b: DVec3) -> bool {
+        (a - b).length_squared() * self.cos2 <= (a + b).length_squared() * self.sin2
+    }
+}
+
+/// The points of all corners, the first of them one a vertex; and the point of each corner, or
+/// nothing if each has its vertex's. `sums` are those of the unit normals around each vertex.
+pub(crate) fn fan_points(
+    outlines: &Outlines<'_>,
+    sums: &[DVec3],
+    rule: Rule<'_>,
+) -> (Vec<Point>, Vec<u32>) {
+    let around = Around::of(outlines, sums.len());
+    let sorter = Sorter { outlines, sums, normals: around.large_normals(outlines), around, rule };
+    let mut points = vec![Point { position: 0, normal: [0.0; 3] }; sums.len()];
+    let blocks = points.par_chunks_mut(BLOCK).enumerate();
+    let blocks: Vec<Block> = blocks.map(|(i, own)| sorter.block(i * BLOCK, own)).collect();
+    drop(sorter);
+    let mut of_corners = Vec::new();
+    if blocks.iter().any(|block| !block.corners.is_empty()) {
+        of_corners = outlines.corners.to_vec();
+    }
+    points.reserve_exact(blocks.iter().map(|block| block.points.len()).sum());
+    for block in blocks {
+        let first = index(points.len());
+        for (corner, place) in block.corners {
+            of_corners[corner as usize] = first + place;
+        }
+        points.extend(block.points);
+    }
+    (points, of_corners)
+}
+
+/// What a run of vertices has beyond a point each.
+#[derive(Debug, Default)]
+struct Block {
+    points: Vec<Point>,
+    /// Corners whose point is one of these.
+    corners: Vec<(u32, u32)>,
+}
+
+/// The faces around one vertex, while they are sorted into fans. Faces have places in the order of
+/// the polygons; those without area are left out.
+#[derive(Debug, Default)]
+struct Fans {
+    polygons: Vec<u32>,
+    normals: Vec<DVec3>,
+    /// Each corner with the place of its face.
+    corners: Vec<(u32, u32)>,
+    /// An earlier face of the same fan; the first one names itself.
+    earlier: Vec<u32>,
+    sums: Vec<DVec3>,
+    /// Where the point of each face is among those of the block; [`NONE`] for the vertex's own.
+    points: Vec<u32>,
+    /// The other ends of edges, or smoothing groups, each with a face.
+    keys: Vec<(u32, u32)>,
+}
+
+impl Fans {
+    /// The first face of a face's fan.
+    fn first(&mut self, mut face: u32) -> u32 {
+        loop {
+            let earlier = self.earlier[face as usize];
+            if earlier == face {
+                return face;
+            }
+            let before = self.earlier[earlier as usize];
+            self.earlier[face as usize] = before;
+            face = before;
+        }
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.first(a), self.first(b));
+        self.earlier[a.max(b) as usize] = a.min(b);
+    }
+}
+
+struct Sorter<'a> {
+    outlines: &'a Outlines<'a>,
+    sums: &'a [DVec3],
+    /// The normals of polygons, if they take long to compute again.
+    normals: Option<Vec<Option<DVec3>>>,
+    around: Around,
+    rule: Rule<'a>,
+}
+
+impl Sorter<'_> {
+    /// Fills the points of the vertices from `first` on.
+    fn block(&self, first: usize, points: &mut [Point]) -> Block {
+        let mut block = Block::default();
+        let mut fans = Fans::default();
+        for (vertex, point) in (first..).zip(points) {
+            *point = Point { position: index(vertex), normal: shown_normal(None) };
+            let corners = self.around.corners(vertex);
+            let sum = self.sums[vertex];
+            if self.is_one_fan(corners, sum) {
+                point.normal = shown_normal(math::unit(sum));
+            } else {
+                self.find_fans(corners, point.position, &mut fans);
+                Self::add_points(&mut fans, point, &mut block);
+            }
+        }
+        block
+    }
+
+    /// The normal of a polygon; `None` for one without area.
+    fn normal(&self, polygon: usize) -> Option<DVec3> {
+        match &self.normals {
+            Some(normals) => normals[polygon],
+            None => self.outlines.normal(polygon),
+        }
+    }
+
+    /// Whether all faces around a vertex are one fan, as far as that is quickly seen. Those without
+    /// area, and those that name the vertex twice, make the sum of the normals too short for it.
+    #[expect(clippy::cast_precision_loss, reason = "few faces")]
+    fn is_one_fan(&self, corners: &[u32], sum: DVec3) -> bool {
+        if corners.len() < 2 {
+            return true;
+        }
+        match self.rule {
+            Rule::Crease(limit) => {
+                corners.len() <= FEW
+                    && sum.length() >= corners.len() as f64 - limit.slack
+                    && self.is_connected(corners)
+            }
+            Rule::Groups(groups) => {
+                let group = |corner: &u32| groups[self.around.polygon(*corner)];
+                let own = group(&corners[0]);
+                own != 0 && corners.iter().all(|corner| group(corner) == own) && !cancels(sum)
+            }
+        }
+    }
+
+    /// Whether a few faces around a vertex follow each other from edge to edge.
+    fn is_connected(&self, corners: &[u32]) -> bool {
+        let mut sides = [[NONE; 2]; FEW];
+        for (sides, corner) in sides.iter_mut().zip(corners) {
+            *sides = self.neighbours(*corner);
+        }
+        let sides = &mut sides[..corners.len()];
+        // The ends of a row of faces, which the others are put to.
+        let [mut a, mut b] = sides[0];
+        for done in 1..sides.len() {
+            let meets = |[p, q]: &[u32; 2]| [a, b].contains(p) || [a, b].contains(q);
+            let Some(next) = sides[done..].iter().position(meets) else { return false };
+            sides.swap(done, done + next);
+            match sides[done] {
+                [p, q] if p == b => b = q,
+                [p, q] if q == b => b = p,
+                [p, q] if p == a => a = q,
+                [p, _] => a = p,
+            }
+        }
+        true
+    }
+
+    /// The vertices before and after a corner of a polygon.
+    #[inline]
+    fn neighbours(&self, corner: u32) -> [u32; 2] {
+        let own = self.around.polygon(corner);
+        let [begin, end] = [own, own + 1].map(|i| self.outlines.starts[i]);
+        let before = if corner == begin { end - 1 } else { corner - 1 };
+        let after = if corner + 1 == end { begin } else { corner + 1 };
+        [before, after].map(|corner| self.outlines.corners[corner as usize])
+    }
+
+    /// Sorts the faces around a vertex into fans.
+    fn find_fans(&self, corners: &[u32], vertex: u32, fans: &mut Fans) {
+        fans.polygons.clear();
+        fans.normals.clear();
+        fans.corners.clear();
+        for corner in corners {
+            let polygon = self.around.polygon(*corner);
+            if fans.polygons.last() != Some(&index(polygon)) {
+                let Some(normal) = self.normal(polygon) else { continue };
+                fans.polygons.push(index(polygon));
+                fans.normals.push(normal);
+            }
+            fans.corners.push((*corner, index(fans.polygons.len() - 1)));
+        }
+        fans.earlier.clear();
+        fans.earlier.extend(0..index(fans.polygons.len()));
+        let mut keys = std::mem::take(&mut fans.keys);
+        keys.clear();
+        match self.rule {
+            Rule::Crease(limit) => {
+                for (corner, face) in &fans.corners {
+                    let others = self.neighbours(*corner).into_iter();
+                    keys.extend(
+                        others.filter(|other| *other != vertex).map(|other| (other, *face)),
+                    );
+                }
+                keys.sort_unstable();
+                keys.dedup();
+                for edge in keys.chunk_by(|a, b| a.0 == b.0) {
+                    self.join_at_edge(edge, vertex, limit, fans);
+                }
+            }
+            Rule::Groups(groups) => {
+                let group = |(face, polygon): (u32, &u32)| (groups[*polygon as usize], face);
+                keys.extend((0..).zip(&fans.polygons).map(group).filter(|(group, _)| *group != 0));
+                keys.sort_unstable();
+                for two in keys.windows(2).filter(|two| two[0].0 == two[1].0) {
+                    fans.join(two[0].1, two[1].1);
+                }
+            }
+        }
+        fans.keys = keys;
+    }
+
+    /// Joins the faces at one edge that are smooth with each other. `edge` has the other end of the
+    /// edge with each of them.
+    fn join_at_edge(&self, edge: &[(u32, u32)], vertex: u32, limit: Limit, fans: &mut Fans) {
+        if edge.len() <= FEW {
+            for (i, (_, a)) in edge.iter().enumerate() {
+                for (_, b) in &edge[i + 1..] {
+                    Self::join_two(*a, *b, limit, fans);
+                }
+            }
+            return;
+        }
+        // The normals of flat faces at an edge are on a circle about it: faces that are smooth with
+        // each other are so from neighbour to neighbour.
+        let sorted = self.sorted_about_edge(edge, vertex, fans);
+        for (a, b) in sorted.iter().zip(sorted.iter().cycle().skip(1)) {
+            Self::join_two(*a, *b, limit, fans);
+        }
+    }
+
+    fn join_two(a: u32, b: u32, limit: Limit, fans: &mut Fans) {
+        if limit.joins(fans.normals[a as usize], fans.normals[b as usize]) {
+            fans.join(a, b);
+        }
+    }
+
+    /// The faces at an edge by the angles of their normals about it.
+    fn sorted_about_edge(&self, edge: &[(u32, u32)], vertex: u32, fans: &Fans) -> Vec<u32> {
+        let place = |vertex: u32| dvec3(self.outlines.places[vertex as usize]);
+        let along = math::unit(place(edge[0].0) - place(vertex)).unwrap_or(DVec3::Z);
+        let (x, y) = along.any_orthonormal_pair();
+        let angle = |(_, face): &(u32, u32)| {
+            let normal = fans.normals[*face as usize];
+            (libm::atan2(normal.dot(y), normal.dot(x)), *face)
+        };
+        let mut sorted: Vec<(f64, u32)> = edge.iter().map(angle).collect();
+        sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        sorted.into_iter().map(|(_, face)| face).collect()
+    }
+
+    /// Gives each fan around a vertex a point: the first one the vertex's own. The faces of a fan
+    /// whose normals cancel out have a point each.
+    fn add_points(fans: &mut Fans, own: &mut Point, block: &mut Block) {
+        let faces = 0..index(fans.polygons.len());
+        fans.sums.clear();
+        fans.sums.resize(fans.polygons.len(), DVec3::ZERO);
+        for face in faces.clone() {
+            let first = fans.first(face);
+            fans.sums[first as usize] += fans.normals[face as usize];
+        }
+        fans.points.clear();
+        for face in faces {
+            let first = fans.first(face);
+            let sum = fans.sums[first as usize];
+            let of_fan = if cancels(sum) {
+                narrow(fans.normals[face as usize])
+            } else if first == face {
+                shown_normal(math::unit(sum))
+            } else {
+                let point = fans.points[first as usize];
+                fans.points.push(point);
+                continue;
+            };
+            if face == 0 {
+                own.normal = of_fan;
+                fans.points.push(NONE);
+            } else {
+                fans.points.push(index(block.points.len()));
+                block.points.push(Point { normal: of_fan, ..*own });
+            }
+        }
+        let moved =
+            fans.corners.iter().map(|(corner, face)| (*corner, fans.points[*face as usize]));
+        block.corners.extend(moved.filter(|(_, point)| *point != NONE));
+    }
+}

@@ -1,0 +1,413 @@
+//! The shape of a model: polygons of any size over shared vertices.
+//!
+//! A vertex is a `v` of the file; polygons that name the same `v` share it, whatever group they stand
+//! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
+//! polygon names the point it has with computed normals and the one it has with the file's.
+//!
+//! What not every picture needs is found when it is first asked for (`cache`). Meshes that
+//! differ in their computed normals alone share everything else.
+//!
+//! The fields are private and the constructor checks them, so that no index is ever out of range.
+
+mod around;
+pub(super) mod build;
+pub(super) mod cache;
+mod closed;
+pub(super) mod clusters;
+pub(super) mod draw_order;
+pub(super) mod edge_order;
+pub(super) mod edges;
+mod fans;
+mod points;
+mod splits;
+
+use glam::DVec3;
+
+use super::{Bounds, Smoothing};
+use crate::base::Shared;
+use crate::scene::mesh::cache::{Found, FoundOfShape};
+use crate::scene::mesh::points::CornerPoints;
+
+/// In place of an index: there is none.
+pub const NONE: u32 = u32::MAX;
+
+/// What a mesh is made of. Indices count from 0.
+#[derive(Clone, Debug, Default)]
+pub struct MeshSource {
+    /// Where vertices are, in object space; all finite.
+    pub positions: Vec<[f32; 3]>,
+    /// Red, green and blue of each vertex, 0 to 1; empty where the file has none.
+    pub colors: Vec<[f32; 3]>,
+    /// Places on the texture, (0, 0) lower left; all finite.
+    pub uvs: Vec<[f32; 2]>,
+    /// Normals of the file, of any length; all finite.
+    pub normals: Vec<[f32; 3]>,
+    /// Corners of all polygons, one after the other.
+    pub corners: Vec<SourceCorner>,
+    /// How many corners each polygon has: 3 or more.
+    pub arities: Vec<u32>,
+    /// The part that each polygon belongs to.
+    pub polygon_parts: Vec<u32>,
+    /// The parts; at least one where there is a polygon.
+    pub parts: Vec<Part>,
+    /// Which polygons share the normals that are computed.
+    pub smoothing: Smoothing,
+}
+
+/// A corner of a polygon as the file names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SourceCorner {
+    /// Its vertex.
+    pub position: u32,
+    /// Its place on the texture, or [`NONE`].
+    pub uv: u32,
+    /// Its normal, or [`NONE`].
+    pub normal: u32,
+}
+
+/// A run of a file's `o`, `g` and `usemtl`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// As the file calls it.
+    pub name: String,
+    /// Its material, as a place in the model's list; `None` where the file names none that exists.
+    pub material: Option<u32>,
+}
+
+/// A corner of a polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Corner {
+    /// Its vertex.
+    pub position: u32,
+    /// Its place on the texture, or [`NONE`].
+    pub uv: u32,
+    /// Its point with the computed normal.
+    pub smooth: u32,
+    /// Its point with the file's normal where every corner of the polygon has one, else `smooth`.
+    pub filed: u32,
+}
+
+/// Where light is evaluated for vertices: a vertex with one of its normals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// The vertex.
+    pub position: u32,
+    /// The normal, of length 1, in object space.
+    pub normal: [f32; 3],
+}
+
+/// A triangle of a polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Triangle {
+    /// Its corners, as places in [`Mesh::corners`], in the polygon's own order of rotation.
+    pub corners: [u32; 3],
+    /// The polygon.
+    pub polygon: u32,
+}
+
+/// The shape of a model: polygons over shared vertices, and what follows from them.
+pub struct Mesh {
+    pub(super) shape: Shared<Shape>,
+    pub(super) smoothing: Smoothing,
+    pub(super) points: Vec<Point>,
+    pub(super) corners: CornerPoints,
+    /// Whether each polygon is one triangle.
+    pub(super) triangles_only: bool,
+    pub(super) found: Found,
+}
+
+/// What of a mesh does not depend on its normals.
+pub(super) struct Shape {
+    pub(super) positions: Vec<[f32; 3]>,
+    pub(super) colors: Vec<[f32; 3]>,
+    pub(super) uvs: Vec<[f32; 2]>,
+    /// The vertex of each corner.
+    pub(super) corners: Vec<u32>,
+    /// The place on the texture of each corner, or [`NONE`]; empty if no corner has one.
+    pub(super) corner_uvs: Vec<u32>,
+    pub(super) starts: Vec<u32>,
+    pub(super) polygon_parts: Vec<u32>,
+    pub(super) without_area: Vec<u32>,
+    pub(super) parts: Vec<Part>,
+    pub(super) bounds: Option<Bounds>,
+    pub(super) mean: DVec3,
+    pub(super) found: FoundOfShape,
+}
+
+impl PartialEq for Shape {
+    fn eq(&self, other: &Self) -> bool {
+        self.positions == other.positions
+            && self.colors == other.colors
+            && self.uvs == other.uvs
+            && self.corners == other.corners
+            && self.corner_uvs == other.corner_uvs
+            && self.starts == other.starts
+            && self.polygon_parts == other.polygon_parts
+            && self.parts == other.parts
+    }
+}
+
+/// What is worked out when it is first asked for is left out: it is no part of what a mesh is.
+impl std::fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Mesh")
+            .field("positions", &self.shape.positions)
+            .field("corners", &self.shape.corners)
+            .field("starts", &self.shape.starts)
+            .field("parts", &self.shape.parts)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Why a mesh cannot be made.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// A list is not as long as another says it is.
+    #[error("the mesh's list of {0} has the wrong length")]
+    Length(&'static str),
+    /// A number is infinite or none.
+    #[error("the mesh has {0} that are not finite")]
+    NotFinite(&'static str),
+    /// An index points past the end.
+    #[error("the mesh names {0} number {1}, which it does not have")]
+    Index(&'static str, u32),
+    /// A polygon has fewer than three corners.
+    #[error("polygon {0} has fewer than three corners")]
+    Short(u32),
+    /// More than 2^32 - 2 of something.
+    #[error("the mesh has more {0} than can be numbered")]
+    TooMany(&'static str),
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.shape == other.shape
+            && self.smoothing == other.smoothing
+            && self.points == other.points
+            && self.corners == other.corners
+    }
+}
+
+impl Mesh {
+    /// Where the vertices are, in object space.
+    #[must_use]
+    pub fn positions(&self) -> &[[f32; 3]] {
+        &self.shape.positions
+    }
+
+    /// Red, green and blue of each vertex, or nothing where the file has no colours.
+    #[must_use]
+    pub fn colors(&self) -> &[[f32; 3]] {
+        &self.shape.colors
+    }
+
+    /// Places on the texture.
+    #[must_use]
+    pub fn uvs(&self) -> &[[f32; 2]] {
+        &self.shape.uvs
+    }
+
+    /// Vertices with their normals. The first are one a vertex, each with a computed normal, in the
+    /// order of [`Self::positions`]; further computed normals follow, then those of the file.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// How many polygons there are.
+    #[must_use]
+    pub fn polygon_count(&self) -> usize {
+        self.shape.polygon_parts.len()
+    }
+
+    /// The corners of one polygon.
+    #[must_use]
+    pub fn polygon(&self, polygon: u32) -> &[Corner] {
+        &self.corners()[self.corners_of(polygon)]
+    }
+
+    /// Where the corners of one polygon stand in [`Self::corners`].
+    #[must_use]
+    pub fn corners_of(&self, polygon: u32) -> std::ops::Range<usize> {
+        self.shape.starts[polygon as usize] as usize
+            ..self.shape.starts[polygon as usize + 1] as usize
+    }
+
+    /// The part that each polygon belongs to.
+    #[must_use]
+    pub fn polygon_parts(&self) -> &[u32] {
+        &self.shape.polygon_parts
+    }
+
+    /// The polygons without area, which have no normal of their own; ascending.
+    #[must_use]
+    pub fn without_area(&self) -> &[u32] {
+        &self.shape.without_area
+    }
+
+    /// The mean of a polygon's corners.
+    #[must_use]
+    pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
+        mean(self.outlines().of(polygon as usize))
+    }
+
+    /// Where the triangles of one polygon stand in [`Self::triangles`].
+    #[must_use]
+    pub fn triangles_of(&self, polygon: u32) -> std::ops::Range<usize> {
+        // Every polygon before this one has two triangles less than it has corners.
+        let corners = self.corners_of(polygon);
+        let before = 2 * polygon as usize;
+        corners.start - before..corners.end - before - 2
+    }
+
+    /// The runs of the file's `o`, `g` and `usemtl`.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.shape.parts
+    }
+
+    /// Whether any polygon has normals of the file's own.
+    #[must_use]
+    pub const fn has_file_normals(&self) -> bool {
+        !self.corners.filed.is_empty()
+    }
+
+    /// Whether every polygon has normals of the file's own.
+    #[must_use]
+    pub const fn has_file_normals_only(&self) -> bool {
+        self.has_file_normals() && self.corners.filed_only
+    }
+
+    /// Which polygons share the normals that are computed.
+    #[must_use]
+    pub const fn smoothing(&self) -> &Smoothing {
+        &self.smoothing
+    }
+
+    /// The extent of the vertices; `None` where there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.shape.bounds
+    }
+
+    /// The mean of the vertices: what cameras in analysis look at.
+    #[must_use]
+    pub fn mean(&self) -> DVec3 {
+        self.shape.mean
+    }
+}
+
+/// The normal of a polygon, as long as twice its area.
+///
+///   n = sum over sides p, q of (p - o) x (q - o),   o the first corner
+///
+/// Newell's method; taking the corners from the first one keeps small polygons far from the origin
+/// exact. Sutherland, Sproull and Schumacker, "A Characterization of Ten Hidden-Surface
+/// Algorithms", ACM Computing Surveys 1974.
+pub fn newell(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
+    let Some(origin) = corners.clone().next() else { return DVec3::ZERO };
+    let from = corners.clone().map(|p| p - origin);
+    let to = corners.skip(1).map(|p| p - origin);
+    from.zip(to).fold(DVec3::ZERO, |sum, (p, q)| sum + p.cross(q))
+}
+
+/// Three numbers of a file in double precision.
+#[must_use]
+pub fn dvec3(v: [f32; 3]) -> DVec3 {
+    DVec3::from_array(v.map(f64::from))
+}
+
+#[expect(clippy::cast_precision_loss, reason = "fewer than 2^32 points")]
+pub(super) fn mean(points: impl Iterator<Item = DVec3>) -> DVec3 {
+    let (sum, count) = points.fold((DVec3::ZERO, 0_usize), |(sum, n), p| (sum + p, n + 1));
+    sum / count.max(1) as f64
+}
+
+/// An index of 32 bits. `check` has made sure that it fits.
+pub(super) fn index(i: usize) -> u32 {
+    u32::try_from(i).expect("the constructor has checked that everything can be numbered")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(position: u32) -> SourceCorner {
+        SourceCorner { position, uv: NONE, normal: NONE }
+    }
+
+    /// A roof: two squares that meet at a right angle along the side from vertex 0 to vertex 1.
+    fn roof() -> MeshSource {
+        MeshSource {
+            positions: vec![
+                [0.0, 1.0, 0.0],
+                [0.0, 1.0, 1.0],
+                [-1.0, 0.0, 1.0],
+                [-1.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [1.0, 0.0, 1.0],
+            ],
+            corners: [0, 3, 2, 1, 0, 1, 5, 4].map(corner).to_vec(),
+            arities: vec![4, 4],
+            polygon_parts: vec![0, 0],
+            parts: vec![Part { name: "roof".to_owned(), material: None }],
+            ..MeshSource::default()
+        }
+    }
+
+    #[test]
+    fn the_normal_on_the_ridge_is_the_mean_of_both_sides() {
+        let mesh = Mesh::new(roof()).unwrap();
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        assert_eq!(mesh.points()[0].normal, [0.0, 1.0, 0.0]);
+        assert_eq!(mesh.polygon_normals(), [[-half, half, 0.0], [half, half, 0.0]]);
+    }
+
+    #[test]
+    fn a_shared_side_is_one_edge_of_two_polygons() {
+        let mesh = Mesh::new(roof()).unwrap();
+        assert_eq!(mesh.edges().len(), 7);
+        let ridge = mesh.edges().iter().find(|edge| edge.ends == [0, 1]).unwrap();
+        assert_eq!(mesh.edge_polygons(ridge), [0, 1]);
+    }
+
+    #[test]
+    fn opposite_normals_give_each_corner_its_own_polygons_normal() {
+        let mut source = roof();
+        // The same square twice, once from each side.
+        source.corners = [0, 3, 2, 1, 1, 2, 3, 0].map(corner).to_vec();
+        let mesh = Mesh::new(source).unwrap();
+        for polygon in 0..2 {
+            for corner in mesh.polygon(polygon) {
+                let normal = mesh.points()[corner.smooth as usize].normal;
+                assert_eq!(normal, mesh.polygon_normals()[polygon as usize]);
+            }
+        }
+    }
+
+    #[test]
+    fn file_normals_count_only_where_every_corner_has_one() {
+        let mut source = roof();
+        source.normals = vec![[0.0, 0.0, 2.0]];
+        for corner in &mut source.corners[..5] {
+            corner.normal = 0;
+        }
+        let mesh = Mesh::new(source).unwrap();
+        assert!(
+            mesh.polygon(0)
+                .iter()
+                .all(|c| mesh.points()[c.filed as usize].normal == [0.0, 0.0, 1.0])
+        );
+        assert!(mesh.polygon(1).iter().all(|c| c.filed == c.smooth));
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_refused() {
+        let mut source = roof();
+        source.corners[3].position = 6;
+        assert_eq!(Mesh::new(source).unwrap_err(), MeshError::Index("vertex", 6));
+        let mut source = roof();
+        source.positions[0][1] = f32::NAN;
+        assert_eq!(Mesh::new(source).unwrap_err(), MeshError::NotFinite("positions"));
+    }
+}

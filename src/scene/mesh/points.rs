@@ -1,0 +1,277 @@
+//! The normals of a mesh's polygons and vertices, and the corners that name them.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::base::math;
+use crate::scene::mesh::build::Outlines;
+use crate::scene::mesh::fans::{Limit, Rule, fan_points};
+use crate::scene::mesh::index;
+use crate::scene::{CornerLists, Crease, MeshSource, NONE, Point, Smoothing, dvec3};
+
+/// Unit normals that cancel out leave only their rounding errors, which are less.
+const CANCELLED: f64 = 1e-9;
+
+/// How many normals of a vertex are looked through; a vertex with more may have a point twice.
+const LONGEST: usize = 64;
+
+/// Polygons whose normals are held with all their digits at a time: few enough to stay in a cache.
+const BLOCK: usize = 1 << 15;
+
+/// What is computed of the normals of polygons.
+#[derive(Debug)]
+pub(crate) struct Computed {
+    /// The polygons without area; ascending.
+    pub(crate) without_area: Vec<u32>,
+    /// The points of corners: the first are one a vertex.
+    pub(crate) points: Vec<Point>,
+    /// The point of each corner; empty if each has its vertex's.
+    of_corners: Vec<u32>,
+}
+
+impl Computed {
+    pub(crate) fn of(outlines: &Outlines<'_>, vertices: usize, smoothing: &Smoothing) -> Self {
+        let rule = match smoothing {
+            Smoothing::Crease(crease) if *crease == Crease::SMOOTH => None,
+            Smoothing::Crease(crease) => Some(Rule::Crease(Limit::new(*crease))),
+            Smoothing::Groups(groups) => match groups.first() {
+                Some(0) | None => Some(Rule::Groups(groups)),
+                Some(one) if groups.par_iter().all(|group| group == one) => None,
+                Some(_) => Some(Rule::Groups(groups)),
+            },
+        };
+        let normals = Normals::of(outlines, vertices);
+        let Some(rule) = rule else { return normals.points(outlines) };
+        let (points, of_corners) = fan_points(outlines, &normals.sums, rule);
+        Self { without_area: normals.without_area, points, of_corners }
+    }
+}
+
+/// What the normals of polygons are around each vertex.
+#[derive(Debug)]
+struct Normals {
+    /// The polygons without area; ascending.
+    without_area: Vec<u32>,
+    /// For each vertex the sum of the unit normals of the polygons around it; a polygon that names
+    /// the vertex twice is around it once.
+    sums: Vec<DVec3>,
+}
+
+impl Normals {
+    /// The points of corners, each with the mean of all faces around its vertex.
+    fn points(self, outlines: &Outlines<'_>) -> Computed {
+        let smooth = |vertex: u32| {
+            let sum = self.sums[vertex as usize];
+            let normal = if cancels(sum) { None } else { math::unit(sum) };
+            Point { position: vertex, normal: shown_normal(normal) }
+        };
+        let vertices = 0..index(self.sums.len());
+        let mut points: Vec<Point> = vertices.into_par_iter().map(smooth).collect();
+        let mut of_corners = Vec::new();
+        if self.sums.par_iter().any(|sum| cancels(*sum)) {
+            of_corners = alone(outlines, &self, &mut points);
+        }
+        Computed { without_area: self.without_area, points, of_corners }
+    }
+
+    fn of(outlines: &Outlines<'_>, vertices: usize) -> Self {
+        let count = outlines.starts.len() - 1;
+        let mut normals = Self { without_area: Vec::new(), sums: vec![DVec3::ZERO; vertices] };
+        let mut last_polygon = vec![NONE; vertices];
+        let mut block: Vec<Option<DVec3>> = Vec::new();
+        for first in (0..count).step_by(BLOCK) {
+            let own = first..count.min(first + BLOCK);
+            let normal = |polygon: usize| outlines.normal(polygon);
+            own.clone().into_par_iter().map(normal).collect_into_vec(&mut block);
+            let without = own.zip(&block).filter(|(_, normal)| normal.is_none());
+            normals.without_area.extend(without.map(|(polygon, _)| index(polygon)));
+            normals.add(outlines, first, &block, &mut last_polygon);
+        }
+        normals
+    }
+
+    /// Adds the normals of polygons from `first` on to those of their vertices. Every thread goes
+    /// through all of them and adds to its own vertices: the order of no sum depends on how many
+    /// threads there are.
+    fn add(
+        &mut self,
+        outlines: &Outlines<'_>,
+        first: usize,
+        normals: &[Option<DVec3>],
+        last_polygon: &mut [u32],
+    ) {
+        let own = self.sums.len().div_ceil(rayon::current_num_threads()).max(1 << 12);
+        let shares = self.sums.par_chunks_mut(own).zip(last_polygon.par_chunks_mut(own));
+        shares.enumerate().for_each(|(share, (sums, last_polygon))| {
+            let begin = index(share * own);
+            for (polygon, normal) in (first..).zip(normals) {
+                let Some(normal) = normal else { continue };
+                for vertex in outlines.vertices(polygon) {
+                    let place = vertex.wrapping_sub(begin) as usize;
+                    let Some(last) = last_polygon.get_mut(place) else { continue };
+                    if std::mem::replace(last, index(polygon)) != index(polygon) {
+                        sums[place] += *normal;
+                    }
+                }
+            }
+        });
+    }
+}
+
+/// The points of a mesh's corners.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct CornerPoints {
+    /// The point of each corner with the computed normal; empty if each has its vertex's.
+    smooth: Vec<u32>,
+    /// The point of each corner with the file's normal; empty if no corner has one.
+    pub(crate) filed: Vec<u32>,
+    /// The points from here on have normals of the file.
+    first_filed: u32,
+    /// Whether all corners have normals of the file.
+    pub(crate) filed_only: bool,
+}
+
+impl CornerPoints {
+    /// The point of a corner with the computed normal; `vertices` are those of all corners.
+    pub(crate) fn smooth(&self, vertices: &[u32], corner: usize) -> u32 {
+        let list = if self.smooth.is_empty() { vertices } else { &self.smooth };
+        list[corner]
+    }
+
+    /// Its point with the file's normal, or else with the computed one.
+    pub(crate) fn filed(&self, vertices: &[u32], corner: usize) -> u32 {
+        if self.filed.is_empty() { self.smooth(vertices, corner) } else { self.filed[corner] }
+    }
+
+    /// Whether the points of all corners with computed normals are numbered as the vertices.
+    pub(crate) const fn are_vertices(&self) -> bool {
+        self.smooth.is_empty()
+    }
+
+    /// The points and those of the corners, with other computed normals and the same ones of the
+    /// file.
+    pub(crate) fn with_computed(
+        &self,
+        points: &[Point],
+        computed: Computed,
+        vertices: &[u32],
+    ) -> (Vec<Point>, Self) {
+        let Computed { points: mut all, of_corners, .. } = computed;
+        let mut corners =
+            Self { smooth: of_corners, first_filed: index(all.len()), ..Self::default() };
+        if !self.filed.is_empty() {
+            let filed = |corner: usize| match self.filed[corner].checked_sub(self.first_filed) {
+                Some(place) => corners.first_filed + place,
+                None => corners.smooth(vertices, corner),
+            };
+            corners.filed = (0..vertices.len()).into_par_iter().map(filed).collect();
+            corners.filed_only = self.filed_only;
+            all.extend_from_slice(&points[self.first_filed as usize..]);
+        }
+        (all, corners)
+    }
+}
+
+/// What is computed of a mesh's normals, with the file's normals behind, and the points of its
+/// corners.
+pub(crate) fn points_and_corners(
+    source: &MeshSource,
+    lists: &CornerLists,
+    starts: &[u32],
+) -> (Computed, CornerPoints) {
+    let outlines = Outlines { places: &source.positions, corners: &lists.positions, starts };
+    let mut computed = Computed::of(&outlines, source.positions.len(), &source.smoothing);
+    let smooth = std::mem::take(&mut computed.of_corners);
+    let first_filed = index(computed.points.len());
+    let mut corners = CornerPoints { smooth, first_filed, ..CornerPoints::default() };
+    if !lists.normals.is_empty() {
+        corners.filed = filed_points(source, lists, starts, &corners, &mut computed.points);
+        corners.filed_only = corners.filed.par_iter().all(|point| *point >= first_filed);
+    }
+    (computed, corners)
+}
+
+/// Whether the unit normals whose sum this is cancel out.
+pub(crate) fn cancels(sum: DVec3) -> bool {
+    sum.length() <= CANCELLED
+}
+
+/// Gives each corner its polygon's normal where those around its vertex cancel out; empty where none
+/// do around any vertex of a polygon that has a normal.
+fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) -> Vec<u32> {
+    let cancelled: Vec<bool> = normals.sums.par_iter().map(|sum| cancels(*sum)).collect();
+    let vertices = outlines.corners;
+    let alone = |i: &u32| cancelled[vertices[*i as usize] as usize];
+    let alone: Vec<u32> = (0..index(vertices.len())).into_par_iter().filter(alone).collect();
+    let mut smooth = Vec::new();
+    // A polygon's corners follow each other: its normal is computed once for all of them.
+    let mut last = (usize::MAX, None);
+    for i in alone {
+        let polygon = outlines.starts.partition_point(|start| *start <= i) - 1;
+        if last.0 != polygon {
+            last = (polygon, outlines.normal(polygon));
+        }
+        if let Some(normal) = last.1 {
+            if smooth.is_empty() {
+                smooth = vertices.to_vec();
+            }
+            smooth[i as usize] = index(points.len());
+            points.push(Point { position: vertices[i as usize], normal: narrow(normal) });
+        }
+    }
+    smooth
+}
+
+/// Gives corners the file's normals, where every corner of the polygon has one; empty where that is
+/// so of none.
+fn filed_points(
+    source: &MeshSource,
+    lists: &CornerLists,
+    starts: &[u32],
+    corners: &CornerPoints,
+    points: &mut Vec<Point>,
+) -> Vec<u32> {
+    let CornerLists { positions: vertices, normals, .. } = lists;
+    let unit = |normal: &[f32; 3]| math::unit(dvec3(*normal)).map(narrow);
+    let units: Vec<Option<[f32; 3]>> = source.normals.par_iter().map(unit).collect();
+    let unit = |i: usize| *units.get(normals[i] as usize)?;
+    // The points of a vertex that have normals of the file are a chain: the last one, and for each
+    // the one before.
+    let mut last = vec![NONE; source.positions.len()];
+    let mut chained: Vec<(u32, u32)> = Vec::new();
+    let first = points.len();
+    let mut filed: Vec<u32> =
+        (0..vertices.len()).into_par_iter().map(|i| corners.smooth(vertices, i)).collect();
+    for polygon in starts.windows(2) {
+        let own = polygon[0] as usize..polygon[1] as usize;
+        if !own.clone().all(|i| unit(i).is_some()) {
+            continue;
+        }
+        for i in own {
+            let (vertex, normal) = (vertices[i], normals[i]);
+            let mut at = last[vertex as usize];
+            let mut looked_at = 0;
+            while at != NONE && chained[at as usize].0 != normal {
+                looked_at += 1;
+                at = if looked_at < LONGEST { chained[at as usize].1 } else { NONE };
+            }
+            if at == NONE {
+                at = index(chained.len());
+                chained.push((normal, std::mem::replace(&mut last[vertex as usize], at)));
+                let normal = unit(i).expect("every normal of this polygon has been looked at");
+                points.push(Point { position: vertex, normal });
+            }
+            filed[i] = index(first + at as usize);
+        }
+    }
+    if chained.is_empty() { Vec::new() } else { filed }
+}
+
+/// A normal as it is shown: (0, 0, 1) where there is none.
+pub(crate) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
+    narrow(normal.unwrap_or(DVec3::Z))
+}
+
+pub(crate) fn narrow(v: DVec3) -> [f32; 3] {
+    v.as_vec3().to_array()
+}

@@ -1,0 +1,209 @@
+//! The pages are true: what they list is in the program's tables, what they link to is there, and
+//! every command that they show runs in a plain clone.
+//!
+//! `tools/pages.sh` runs this test with `MARRAZTU_WRITE_PAGES=1`: then the lists are written.
+
+#![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use marraztu::accuracy::AXES;
+use marraztu::io;
+use tempfile::TempDir;
+
+/// Pages for people who use the program or work on it.
+const PAGES: &[&str] = &[
+    "README.md",
+    "ARCHITECTURE.md",
+    "CONTRIBUTING.md",
+    "CHANGELOG.md",
+    "docs/accuracy.md",
+    "docs/breakages.md",
+    "docs/glossary.md",
+    "docs/keys.md",
+    "docs/speed.md",
+    "docs/stability.md",
+    "fuzz/README.md",
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn page(name: &str) -> String {
+    let text = std::fs::read_to_string(root().join(name));
+    text.unwrap_or_else(|error| panic!("{name}: {error}")).replace("\r\n", "\n")
+}
+
+/// Compares a page with what it should be, or writes it if that was asked for.
+#[track_caller]
+fn holds(name: &str, expected: &str) {
+    if std::env::var_os("MARRAZTU_WRITE_PAGES").is_some() {
+        std::fs::write(root().join(name), expected).unwrap();
+    }
+    assert!(page(name) == expected, "{name} is not current: run tools/pages.sh\n{expected}");
+}
+
+/// A folder with the files that a clone has, as far as commands read them.
+fn clone() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    copy(&root().join("assets"), &folder.path().join("assets"));
+    folder
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let to = to.join(entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            copy(&entry.path(), &to);
+        } else {
+            std::fs::copy(entry.path(), to).unwrap();
+        }
+    }
+}
+
+/// Runs a line of a shell in `folder`, with the program on the path.
+fn shell(folder: &Path, line: &str) -> Output {
+    let program = Path::new(env!("CARGO_BIN_EXE_marraztu"));
+    let mut path = program.parent().unwrap().as_os_str().to_owned();
+    path.push(":");
+    path.push(std::env::var_os("PATH").unwrap_or_default());
+    let mut command = Command::new("bash");
+    command.args(["-euo", "pipefail", "-c", line]).current_dir(folder).env("PATH", path);
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(display);
+    }
+    command.stdin(Stdio::null()).output().unwrap()
+}
+
+/// The lines of all blocks of this kind in a page; a line that ends in `\` goes on in the next.
+fn lines_of(kind: &str, text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    let mut inside = false;
+    for line in text.lines() {
+        if line.starts_with("```") {
+            inside = line == format!("```{kind}");
+            continue;
+        }
+        if !inside || line.trim().is_empty() || line.trim_start().starts_with('#') {
+            continue;
+        }
+        match lines.last_mut().filter(|last| last.ends_with('\\')) {
+            Some(last) => {
+                last.pop();
+                last.push_str(line.trim_start());
+            }
+            None => lines.push(line.to_owned()),
+        }
+    }
+    lines
+}
+
+#[test]
+fn the_page_of_keys_is_the_table_of_actions() {
+    let output = shell(root(), "marraztu keys --markdown");
+    let table = String::from_utf8(output.stdout).unwrap().replace("Cmd+", "Ctrl+");
+    assert!(table.lines().count() > 50, "{table}");
+    let text = page("docs/keys.md");
+    let (head, _) = text.split_once("\n| ").unwrap_or((text.trim_end(), ""));
+    holds("docs/keys.md", &format!("{}\n\n{table}", head.trim_end()));
+}
+
+#[test]
+fn the_page_of_accuracy_lists_every_axis_with_every_choice() {
+    let mut table = String::from("| axis | option | choices |\n|---|---|---|\n");
+    for axis in AXES {
+        let default = axis.default_choice().word;
+        let words = axis.choices.iter().map(|choice| match choice.word == default {
+            true => format!("**{}**", choice.word),
+            false => choice.word.to_owned(),
+        });
+        let words: Vec<String> = words.collect();
+        let _ = writeln!(table, "| {} | `--{}` | {} |", axis.what, axis.key, words.join(", "));
+    }
+    let text = page("docs/accuracy.md");
+    let (begin, end) = ("<!-- axes: made by tools/pages.sh -->\n", "<!-- axes: end -->\n");
+    let (before, rest) = text.split_once(begin).unwrap();
+    let (_, after) = rest.split_once(end).unwrap();
+    holds("docs/accuracy.md", &format!("{before}{begin}\n{table}\n{end}{after}"));
+}
+
+#[test]
+fn every_command_of_the_program_on_a_page_runs_in_a_plain_clone() {
+    let folder = clone();
+    let mut run = 0;
+    for name in PAGES {
+        for line in lines_of("sh", &page(name)) {
+            if !line.split(['|', ' ']).any(|word| word == "marraztu") {
+                continue;
+            }
+            let output = shell(folder.path(), &line);
+            let error = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{name}: {line}\n{error}");
+            run += 1;
+        }
+    }
+    assert!(run >= 10, "only {run} commands were found");
+}
+
+#[test]
+fn every_script_test_bench_and_example_that_a_page_names_is_there() {
+    let has = |folder: &str, name: &str| {
+        let file = root().join(folder).join(format!("{name}.rs"));
+        file.is_file() || root().join(folder).join(name).join("main.rs").is_file()
+    };
+    let mut found = 0;
+    for name in PAGES {
+        let text = page(name);
+        let words: Vec<&str> = text.split([' ', '\n', '`', '(', ')', ',']).collect();
+        for (i, word) in words.iter().enumerate() {
+            let next = words.get(i + 1).unwrap_or(&"").trim_end_matches(['.', ':', ';']);
+            let folder = match *word {
+                "--test" => "tests",
+                "--bench" => "benches",
+                "--example" => "examples",
+                script if script.starts_with(".ci/") || script.starts_with("tools/") => {
+                    let script = script.trim_end_matches(['.', ':', ';']);
+                    assert!(root().join(script).exists(), "{name} names {script}");
+                    found += 1;
+                    continue;
+                }
+                _ => continue,
+            };
+            assert!(has(folder, next), "{name} names {word} {next}");
+            found += 1;
+        }
+    }
+    assert!(found > 10, "only {found} names were found");
+}
+
+#[test]
+fn every_link_of_a_page_leads_to_a_file() {
+    for name in PAGES {
+        let text = page(name);
+        let folder = root().join(name).parent().map(PathBuf::from).unwrap();
+        let links = text.match_indices("](").filter_map(|(at, _)| text[at + 2..].split(')').next());
+        for link in links.filter(|link| !link.contains("://") && !link.starts_with('#')) {
+            let file = link.split('#').next().unwrap();
+            assert!(folder.join(file).exists(), "{name} links to {link}");
+        }
+    }
+}
+
+#[test]
+fn the_readme_is_short_and_its_scene_can_be_drawn() {
+    let readme = page("README.md");
+    assert!(readme.lines().count() <= 180, "the README has {} lines", readme.lines().count());
+    let folder = clone();
+    let scene = lines_of("ron", &readme).join("\n");
+    std::fs::write(folder.path().join("ship.marraztu"), scene).unwrap();
+    let output = shell(folder.path(), "marraztu render ship.marraztu --size 160x120");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let picture = io::load_picture(&folder.path().join("ship.png")).unwrap();
+    let seen = picture.pixels().iter().filter(|pixel| **pixel != picture.pixel(0, 0)).count();
+    assert!(seen > 1000, "only {seen} pixels show the ship");
+}
