@@ -49,8 +49,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "src/app",
         &[
-            "Chosen", "Easel", "Economy", "Placed", "Wealth", CONDITION, LONG, "nobody",
-            "of which", "so many",
+            "Chosen", "Economy", "Placed", "Wealth", CONDITION, LONG, "nobody", "of which",
+            "so many",
         ],
     ),
     ("src/base", &[CONDITION, LONG, "nobody"]),
