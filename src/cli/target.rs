@@ -1,5 +1,5 @@
-//! Where a picture goes: standard output, or a file whose name may follow from the files that are
-//! drawn.
+//! The target of a picture: standard output, or a file, whose name may follow from the files that
+//! are drawn.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use super::stage::{Stage, is_scene, is_standard, usage};
 /// The picture's name if no file gives it one.
 const UNNAMED: &str = "scene";
 
-/// Where a picture goes.
+/// The target of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Target {
     /// Into a file.
