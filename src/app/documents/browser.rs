@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Ui};
 
-/// Whether the file is to be read or to be written.
+/// Whether the file is opened or saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     Open,
     Save,
 }
 
-/// The choice of a file.
+/// A file browser.
 #[derive(Debug)]
 pub(crate) struct Browser {
     title: &'static str,
@@ -67,7 +67,7 @@ impl Browser {
         browser
     }
 
-    /// Shows the choice. Gives how it ended, once it has.
+    /// Shows the dialog. Returns how it ended, once it has.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<Choice> {
         ui.set_width(ui.available_width().clamp(240.0, 520.0));
         ui.heading(self.title);

@@ -96,17 +96,17 @@ enum Dialog {
 }
 
 impl Dialogs {
-    /// Says in one sentence what went wrong.
+    /// Reports an error in one sentence.
     pub(crate) fn tell_fault(&mut self, sentence: String) {
         self.open.push(Dialog::Fault(sentence));
     }
 
-    /// Lists more about a notice.
+    /// Shows the details of a notice.
     pub(crate) fn tell_details(&mut self, title: String, lines: Vec<String>) {
         self.open.push(Dialog::Details(title, lines));
     }
 
-    /// Asks whether unsaved work is to be saved.
+    /// Asks whether to save unsaved changes.
     pub(crate) fn ask_unsaved(&mut self, after: After) {
         if !self.open.iter().any(|dialog| matches!(dialog, Dialog::Unsaved(_))) {
             self.open.push(Dialog::Unsaved(after));
@@ -118,7 +118,7 @@ impl Dialogs {
         self.open.push(Dialog::Material(Box::new(dialog)));
     }
 
-    /// Gives the model whose material is being chosen a texture.
+    /// Sets the texture of the model whose material is being chosen.
     pub(crate) fn set_texture(&mut self, path: PathBuf) {
         for dialog in self.open.iter_mut().rev() {
             if let Dialog::Material(material) = dialog {
@@ -218,7 +218,7 @@ impl Dialogs {
             Some(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
             Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
             Some(_) | None => {
-                // The system has none: it is not asked again.
+                // The system has no file dialog: do not try again.
                 self.native = false;
                 self.browse(wanted, &name);
                 None
@@ -273,7 +273,7 @@ enum End {
     Save,
     Discard,
     Material(MaterialChoices),
-    /// It stays open, and asks for a texture.
+    /// It stays open, and a texture is chosen.
     Asked,
 }
 
