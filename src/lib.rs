@@ -15,6 +15,22 @@
 //! * [`render`]: from a scene to a picture: plan, geometry, visibility, shading.
 //! * [`lab`]: what drawing costs in time, and what accuracy costs.
 //! * [`app`]: the window. The only floor that knows of egui.
+//!
+//! A picture of the first scene:
+//!
+//! ```
+//! use marraztu::accuracy::{Settings, Shot};
+//! use marraztu::base::image::Size;
+//! use marraztu::io;
+//! use marraztu::render::{Renderer, plan_frame};
+//!
+//! let (scene, view) = io::default_scene();
+//! let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(64, 48));
+//! let mut renderer = Renderer::default();
+//! let picture = renderer.render(&plan_frame(&shot));
+//! assert_eq!(picture.size(), shot.size);
+//! assert!(picture.pixels().iter().any(|pixel| *pixel != scene.background.opaque()));
+//! ```
 
 pub mod accuracy;
 pub mod app;
