@@ -1,4 +1,4 @@
-//! Pictures with several samples a pixel, held to pictures with one that are drawn from each place,
+//! Pictures with several samples per pixel, held to pictures with one that are drawn from each place,
 //! and to pictures that are eight times as large.
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
