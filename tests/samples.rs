@@ -1,5 +1,5 @@
-//! Pictures with several samples per pixel, held to pictures with one that are drawn from each place,
-//! and to pictures that are eight times as large.
+//! Pictures with several samples per pixel, held to pictures with one that are drawn from each
+//! place, and to pictures that are eight times as large.
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
@@ -234,9 +234,9 @@ fn each_sample_is_lit_where_it_lies() {
     wants_means(&small, &in_boxes(&large, SIDE), "eight times as large");
 }
 
-/// In perspective corners of the larger picture are snapped eight times as finely, so that samples next to
-/// an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the whole. If one
-/// triangle is seen, at most one.
+/// In perspective corners of the larger picture are snapped eight times as finely, so that samples
+/// next to an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the
+/// whole. If one triangle is seen, at most one.
 #[test]
 fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     const SMALL: usize = 48;

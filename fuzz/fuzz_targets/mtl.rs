@@ -1,5 +1,5 @@
-//! Materials: whatever the bytes of an MTL file, the model that names it is read, with the materials
-//! that could be understood.
+//! Materials: whatever the bytes of an MTL file, the model that names it is read, with the
+//! materials that could be understood.
 
 #![no_main]
 

@@ -1,7 +1,7 @@
 //! Whether a frame that is being drawn is still wanted.
 //!
-//! Every thread asks between chunks and between tiles. Once the answer is no, it stays no: a frame is
-//! cancelled as a whole.
+//! Every thread asks between chunks and between tiles. Once the answer is no, it stays no: a frame
+//! is cancelled as a whole.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 

@@ -103,8 +103,8 @@ pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
 
 /// The frame of an observer at `eye` that looks at `target`, upright with respect to `up`.
 ///
-/// If it looks straight up or down, the right vector of `last` is kept; if eye and target are equal,
-/// all of `last` is. There is no NaN and no jump.
+/// If it looks straight up or down, the right vector of `last` is kept; if eye and target are
+/// equal, all of `last` is. There is no NaN and no jump.
 #[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
     let Some(z) = unit(eye - target) else { return last };
@@ -117,9 +117,10 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
 
 /// The matrix that transforms normals if `m` transforms surfaces: sign(det m) times its cofactors.
 ///
-/// This is the inverse transpose up to a positive factor, and is defined for a singular `m` as well.
-/// The sign keeps the normals of a mirrored object on its outer side. `m` is scaled by
-/// [`at_power_of_two`] first, so that the squares of normals neither overflow nor vanish, even in f32.
+/// This is the inverse transpose up to a positive factor, and is defined for a singular `m` as
+/// well. The sign keeps the normals of a mirrored object on its outer side. `m` is scaled by
+/// [`at_power_of_two`] first, so that the squares of normals neither overflow nor vanish, even in
+/// f32.
 #[must_use]
 pub fn normal_matrix(m: DMat3) -> DMat3 {
     let m = at_power_of_two(m);

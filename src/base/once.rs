@@ -1,11 +1,11 @@
 //! Values that are computed when a thread first needs them.
 //!
 //! The value is computed outside of its cell. A thread of rayon takes up other work while it waits
-//! for others; if that work needed the same cell, the thread would wait for itself. Computing a value
-//! twice is the cheaper mistake.
+//! for others; if that work needed the same cell, the thread would wait for itself. Computing a
+//! value twice is the cheaper mistake.
 //!
-//! For the same reason nothing is computed inside [`without_computing`], where threads hold locks on
-//! what they draw.
+//! For the same reason nothing is computed inside [`without_computing`], where threads hold locks
+//! on what they draw.
 
 use std::cell::Cell;
 use std::sync::OnceLock;

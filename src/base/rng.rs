@@ -1,9 +1,9 @@
 //! Random numbers that are the same on every machine.
 //!
 //! SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA
-//! 2014): every seed is as good as any other, so the number of a batch of test cases can serve as one.
-//! Tests depend on the sequence: pictures with listed sums and counterexamples named by their seeds
-//! are made from it. It is therefore written here rather than taken from a library, whose
+//! 2014): every seed is as good as any other, so the number of a batch of test cases can serve as
+//! one. Tests depend on the sequence: pictures with listed sums and counterexamples named by their
+//! seeds are made from it. It is therefore written here rather than taken from a library, whose
 //! distributions may change with its version.
 
 use glam::DVec3;

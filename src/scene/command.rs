@@ -1,8 +1,8 @@
 //! The changes that can be made to a scene.
 //!
 //! There is no code that undoes: [`Command::apply`] gives back the command that does, so that a
-//! change and its undoing cannot drift apart. Since all that is large in a scene is shared, a change
-//! of an item holds the whole item as it will be, and its undoing the item as it was.
+//! change and its undoing cannot drift apart. Since all that is large in a scene is shared, a
+//! change of an item holds the whole item as it will be, and its undoing the item as it was.
 
 use super::{
     Camera, CameraId, ItemId, Light, LightId, LightKind, Object, ObjectId, Scene, SpotOwner,

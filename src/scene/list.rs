@@ -1,13 +1,13 @@
 //! Things in the order in which the user sees them, each under an id that is never used twice.
 //!
-//! A list is a persistent structure: a copy shares everything with its original, and a change copies
-//! only the few nodes that lead to it. So snapshots cost nothing, however long the list, and every
-//! question takes time in proportion to the logarithm of the length at most.
+//! A list is a persistent structure: a copy shares everything with its original, and a change
+//! copies only the few nodes that lead to it. So snapshots cost nothing, however long the list, and
+//! every question takes time in proportion to the logarithm of the length at most.
 //!
-//! Each thing has a label, a number that grows along the list. An id leads to its label, and a binary
-//! search for the label leads to the place. What is inserted gets a label between those of its
-//! neighbours; if there is none left, all labels are given anew: Dietz and Sleator, "Two Algorithms
-//! for Maintaining Order in a List", STOC 1987.
+//! Each thing has a label, a number that grows along the list. An id leads to its label, and a
+//! binary search for the label leads to the place. What is inserted gets a label between those of
+//! its neighbours; if there is none left, all labels are given anew: Dietz and Sleator, "Two
+//! Algorithms for Maintaining Order in a List", STOC 1987.
 
 use std::fmt;
 use std::sync::Arc;

@@ -94,7 +94,8 @@ const fn preset(name: &'static str, rows: [[f64; 3]; 3], exponent: f64) -> Prese
 /// The nineteen materials, in the order in which the picker shows them.
 ///
 /// Their numbers are those of the table of OpenGL materials that goes back to the teapots of the
-/// "OpenGL Programming Guide" (Neider, Davis, Woo), with pearl, jade, ruby and turquoise of its plate.
+/// "OpenGL Programming Guide" (Neider, Davis, Woo), with pearl, jade, ruby and turquoise of its
+/// plate.
 #[rustfmt::skip]
 pub const PRESETS: &[Preset] = &[
     preset("brass", [[0.329412, 0.223529, 0.027451], [0.780392, 0.568627, 0.113725], [0.992157, 0.941176, 0.807843]], 27.8974),

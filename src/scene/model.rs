@@ -241,7 +241,8 @@ pub struct FileMaterial {
 pub struct Texture {
     /// Where it came from.
     pub source: PathBuf,
-    /// Its texels, rows from the top, which other textures may share; place (0, 0) is the lower left corner.
+    /// Its texels, rows from the top, which other textures may share; place (0, 0) is the lower
+    /// left corner.
     pub picture: Shared<Picture>,
     /// What happens outside 0 to 1: `-clamp on` holds to the border, else the picture repeats.
     pub wrap: Wrap,

@@ -20,8 +20,8 @@ pub struct Object {
     pub model: Shared<Model>,
     /// The parts of the model that are not drawn, by their places.
     pub hidden_parts: BTreeSet<u32>,
-    /// `world_from_object`, without the spin. A matrix, since a step in the global frame on a turned
-    /// object need not be a product of one translation, rotation and scale.
+    /// `world_from_object`, without the spin. A matrix, since a step in the global frame on a
+    /// turned object need not be a product of one translation, rotation and scale.
     pub placement: Tracked<DMat4>,
     /// Turning by itself.
     pub spin: Spin,

@@ -1,8 +1,8 @@
 //! Where a thing is, and where it was before.
 //!
 //! Every transformation pushes what the thing was, so that `u` can walk back through them. The
-//! stack is a list whose tail is shared: a copy of a scene costs nothing, and what comes back is what
-//! was stored, bit for bit.
+//! stack is a list whose tail is shared: a copy of a scene costs nothing, and what comes back is
+//! what was stored, bit for bit.
 
 use std::sync::Arc;
 

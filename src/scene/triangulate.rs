@@ -6,12 +6,12 @@
 //! what the choice of ears is for.
 //!
 //! The corners are taken from the first one, so that thin polygons far from the origin keep their
-//! shape, and seen along the normal: corners of a polygon that is not flat keep their order best so.
-//! What is closer together than rounding can tell counts as touching.
+//! shape, and seen along the normal: corners of a polygon that is not flat keep their order best
+//! so. What is closer together than rounding can tell counts as touching.
 //!
-//! Looking for ears may take time that grows with the square of the corners. For more than a thousand
-//! of them it is limited, and what is left is cut by a line that sweeps over it (`sweep`), with
-//! slimmer triangles.
+//! Looking for ears may take time that grows with the square of the corners. For more than a
+//! thousand of them it is limited, and what is left is cut by a line that sweeps over it (`sweep`),
+//! with slimmer triangles.
 //!
 //! Ear clipping is Meisters', "Polygons Have Ears", American Mathematical Monthly 1975. A hole that
 //! is joined to the outline by a bridge names positions twice; a corner that stands on a corner of
@@ -35,8 +35,8 @@ const LOOKS: usize = 16;
 
 /// Cuts a polygon into triangles, each as three places in `outline`, in its order of rotation.
 ///
-/// `normal` is the polygon's normal; there are `outline.len() - 2` triangles. A polygon that crosses
-/// itself gets some, too.
+/// `normal` is the polygon's normal; there are `outline.len() - 2` triangles. A polygon that
+/// crosses itself gets some, too.
 #[must_use]
 pub fn triangulate(outline: &[DVec3], normal: DVec3) -> Vec<[u32; 3]> {
     Triangulator::default().cut(outline.iter().copied(), normal).to_vec()

@@ -110,9 +110,9 @@ impl Bent {
         draw(&scene, &view, &Settings { arithmetic, ..Settings::default() }, SIDE)
     }
 
-    /// Light at every pixel before it is rounded, in byte steps and to 1/64 of one: read off the bytes
-    /// of pictures that are each a little brighter than the one before. When the byte changes, the
-    /// light has come half-way to the next.
+    /// Light at every pixel before it is rounded, in byte steps and to 1/64 of one: read off the
+    /// bytes of pictures that are each a little brighter than the one before. When the byte
+    /// changes, the light has come half-way to the next.
     fn before_rounding(&self, arithmetic: Arithmetic) -> Vec<f64> {
         const PARTS: u32 = 64;
         let picture = |part: u32| {

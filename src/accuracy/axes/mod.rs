@@ -1,9 +1,10 @@
 //! The axes of accuracy: every choice that trades exactness for time, in one table.
 //!
 //! Menus, the command line and the laboratory read this table, and tests compare a scene file's
-//! words with it, so a row is all that a new axis needs. It says what the axis does, how its choices
-//! are set in [`Settings`] and read back, which of them is the most exact, in which scenes the axis
-//! changes anything, and what its lesson teaches. The default is that of [`Settings::default`].
+//! words with it, so a row is all that a new axis needs. It says what the axis does, how its
+//! choices are set in [`Settings`] and read back, which of them is the most exact, in which scenes
+//! the axis changes anything, and what its lesson teaches. The default is that of
+//! [`Settings::default`].
 
 /// A choice that sets one field of the settings to one value.
 macro_rules! choice {

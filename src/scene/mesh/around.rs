@@ -66,7 +66,8 @@ impl Around {
         Self { starts, corners, polygons: Polygons::of(outlines) }
     }
 
-    /// The normals of all polygons, if some are so large that one cannot be computed for each corner.
+    /// The normals of all polygons, if some are so large that one cannot be computed for each
+    /// corner.
     pub(crate) fn large_normals(&self, outlines: &Outlines<'_>) -> Option<Vec<Option<DVec3>>> {
         matches!(self.polygons, Polygons::Mixed(_)).then(|| {
             let polygons = 0..outlines.starts.len() - 1;

@@ -15,7 +15,8 @@ use crate::scene::mesh::points::shown_normal;
 use crate::scene::mesh::{Shape, index};
 use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
 
-/// A polygon that is lit as a whole. What is fetched together lies together, in one line of the cache.
+/// A polygon that is lit as a whole. What is fetched together lies together, in one line of the
+/// cache.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub struct Facet {
@@ -152,8 +153,8 @@ impl Mesh {
         })
     }
 
-    /// Whether the polygons form closed surfaces: every edge is passed as often in one direction as in
-    /// the other.
+    /// Whether the polygons form closed surfaces: every edge is passed as often in one direction as
+    /// in the other.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))

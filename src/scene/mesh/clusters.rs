@@ -1,9 +1,9 @@
 //! Bounds of triangles that lie side by side, so that many are left out at once.
 //!
-//! A cluster knows a ball about its corners and a cone about its normals: Shirman and Abi-Ezzi, "The Cone
-//! of Normals Technique for Fast Processing of Curved Patches", Eurographics 1993. It also knows how thin
-//! its triangles are, since one that is thinner than a part of a pixel may be turned round by snapping.
-//! All bounds are rounded outwards.
+//! A cluster knows a ball about its corners and a cone about its normals: Shirman and Abi-Ezzi,
+//! "The Cone of Normals Technique for Fast Processing of Curved Patches", Eurographics 1993. It
+//! also knows how thin its triangles are, since one that is thinner than a part of a pixel may be
+//! turned round by snapping. All bounds are rounded outwards.
 
 use glam::DVec3;
 use rayon::prelude::*;

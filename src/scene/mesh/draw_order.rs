@@ -1,9 +1,9 @@
 //! A mesh in the order in which it is drawn fastest.
 //!
 //! Triangles along a Morton curve through the mesh's box, vertices numbered by first use: what is
-//! near in space is near in memory. Each triangle keeps its number in the file's order, which decides
-//! between equal depths, so that the order cannot show. Morton, "A Computer Oriented Geodetic Data
-//! Base", IBM 1966.
+//! near in space is near in memory. Each triangle keeps its number in the file's order, which
+//! decides between equal depths, so that the order cannot show. Morton, "A Computer Oriented
+//! Geodetic Data Base", IBM 1966.
 
 use glam::DVec3;
 use rayon::prelude::*;

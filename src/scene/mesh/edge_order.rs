@@ -1,8 +1,8 @@
 //! The edges of a mesh in the order in which they are drawn fastest.
 //!
-//! Along the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so that what is near in space
-//! is near in memory. Each edge keeps its number among the mesh's edges, which decides between equal
-//! depths, so that the order cannot show.
+//! Along the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so that what is near
+//! in space is near in memory. Each edge keeps its number among the mesh's edges, which decides
+//! between equal depths, so that the order cannot show.
 
 use crate::scene::mesh::index;
 use crate::scene::{Mesh, NONE};
@@ -10,10 +10,11 @@ use crate::scene::{Mesh, NONE};
 /// An edge as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawEdge {
-    /// The vertices at its ends, as places in [`DrawOrder::x`](crate::scene::DrawOrder::x); [`NONE`] where no
-    /// triangle uses them.
+    /// The vertices at its ends, as places in [`DrawOrder::x`](crate::scene::DrawOrder::x);
+    /// [`NONE`] where no triangle uses them.
     pub vertices: [u32; 2],
-    /// Its two polygons, or the same twice where it has one; the second is [`NONE`] where it has more.
+    /// Its two polygons, or the same twice where it has one; the second is [`NONE`] where it has
+    /// more.
     pub polygons: [u32; 2],
     /// Its place in [`Mesh::edges`].
     pub number: u32,

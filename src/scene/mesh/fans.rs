@@ -1,8 +1,9 @@
 //! The computed normals of corners if some edges stay sharp.
 //!
-//! The faces around a vertex fall into fans: the faces of a fan are smooth with each other, directly
-//! or through other faces of the fan, and their corners have the mean of the fan's unit normals. The
-//! first fan has the point with the vertex's own number, the others have further points.
+//! The faces around a vertex fall into fans: the faces of a fan are smooth with each other,
+//! directly or through other faces of the fan, and their corners have the mean of the fan's unit
+//! normals. The first fan has the point with the vertex's own number, the others have further
+//! points.
 //!
 //! In a fine model nearly every vertex has one fan, which is found without looking at its edges: if
 //! the unit normals n_i of k faces have the sum S, then |S| = sum of n_i . S/|S|, so

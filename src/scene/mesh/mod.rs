@@ -1,8 +1,8 @@
 //! The shape of a model: polygons of any size over shared vertices.
 //!
-//! A vertex is a `v` of the file; polygons that name the same `v` share it, whatever group they stand
-//! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
-//! polygon names the point it has with computed normals and the one it has with the file's.
+//! A vertex is a `v` of the file; polygons that name the same `v` share it, whatever group they
+//! stand in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner
+//! of a polygon names the point it has with computed normals and the one it has with the file's.
 //!
 //! What not every picture needs is found when it is first asked for (`cache`). Meshes that
 //! differ in their computed normals alone share everything else.

@@ -196,8 +196,8 @@ pub(crate) fn cancels(sum: DVec3) -> bool {
     sum.length() <= CANCELLED
 }
 
-/// Gives each corner its polygon's normal where those around its vertex cancel out; empty where none
-/// do around any vertex of a polygon that has a normal.
+/// Gives each corner its polygon's normal where those around its vertex cancel out; empty where
+/// none do around any vertex of a polygon that has a normal.
 fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) -> Vec<u32> {
     let cancelled: Vec<bool> = normals.sums.par_iter().map(|sum| cancels(*sum)).collect();
     let vertices = outlines.corners;

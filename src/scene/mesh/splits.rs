@@ -1,9 +1,9 @@
 //! Edges that a corner of another face stands on.
 //!
 //! Such a corner is in one face and not in the other, so what is drawn of the two edges parts by a
-//! rounding: pixels between them may be missed. Only edges with a face on one side can be split, and
-//! only by ends of such edges. They are sought through a grid whose cells are as wide as these edges
-//! are long on the average.
+//! rounding: pixels between them may be missed. Only edges with a face on one side can be split,
+//! and only by ends of such edges. They are sought through a grid whose cells are as wide as these
+//! edges are long on the average.
 
 use std::collections::HashMap;
 
@@ -18,8 +18,8 @@ const NEAR: f64 = 1e-6;
 const BUDGET: usize = 50_000_000;
 
 impl Mesh {
-    /// How many edges are split by corners of other faces. In meshes where a great many edges have a
-    /// face on one side only, some may be overlooked.
+    /// How many edges are split by corners of other faces. In meshes where a great many edges have
+    /// a face on one side only, some may be overlooked.
     #[must_use]
     pub fn split_edges(&self) -> usize {
         let open: Vec<&Edge> =

@@ -1,8 +1,8 @@
 //! Corners by where they are, so that few have to be looked at.
 //!
 //! Cells as square as can be over the box of all corners, about four of them in each; a corner that
-//! is of no use any more is forgotten when it is met. Akman, Franklin, Kankanhalli and Narayanaswami,
-//! "Geometric Computing and Uniform Grid Technique", Computer-Aided Design 1989.
+//! is of no use any more is forgotten when it is met. Akman, Franklin, Kankanhalli and
+//! Narayanaswami, "Geometric Computing and Uniform Grid Technique", Computer-Aided Design 1989.
 
 use glam::DVec2;
 
@@ -48,8 +48,8 @@ impl Grid {
         self.cells[row * self.columns + column].push(corner);
     }
 
-    /// Whether one of the corners in a box is what is looked for; `None` says that a corner is of no
-    /// use any more.
+    /// Whether one of the corners in a box is what is looked for; `None` says that a corner is of
+    /// no use any more.
     pub(super) fn any(
         &mut self,
         [min, max]: [DVec2; 2],

@@ -1,4 +1,5 @@
-//! Polygons from the hard places: notches, bridges, corners in a row, outlines that touch themselves.
+//! Polygons from the hard places: notches, bridges, corners in a row, outlines that touch
+//! themselves.
 
 use proptest::prelude::*;
 
@@ -211,7 +212,8 @@ fn a_polygon_that_crosses_itself_has_as_many_triangles_as_any_other() {
     }
 }
 
-/// Polygons of so many corners in which ears are far between or hard to tell; whether each is simple.
+/// Polygons of so many corners in which ears are far between or hard to tell; whether each is
+/// simple.
 fn hard_shapes(corners: u32) -> Vec<(&'static str, bool, Vec<DVec3>)> {
     let n = f64::from(corners);
     let round = |i: u32, radius: f64, turns: f64| {
