@@ -86,7 +86,7 @@ fn a_picture_replaces_no_file_of_another_kind_and_none_that_it_is_made_of() {
         std::fs::write(at("poem.obj"), SQUARE).unwrap();
         let all = [&["render"], arguments].concat();
         let (_, err) = ends_with(1, folder.path(), &all, b"");
-        assert!(err.contains("it is no picture"), "{err}");
+        assert!(err.contains("it is not a picture"), "{err}");
         assert_eq!(std::fs::read_to_string(at("poem.png")).unwrap(), "Roses are red");
     }
     // The texture that the model's material names, and the one that is given.

@@ -1,5 +1,5 @@
-//! Where a picture goes: standard output, or a file whose name may follow from the files that are
-//! drawn.
+//! The target of a picture: standard output, or a file whose name may follow from the files that
+//! are drawn.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Pictures to the disk.
+//! Saves pictures.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,10 +12,10 @@ use image::{ExtendedColorType, ImageEncoder, ImageError};
 use super::replace::{SaveError, Worth, check_target, replace};
 use crate::base::image::Picture;
 
-/// The quality of a JPEG, from 1 to 100: differences to the picture are hardly seen.
+/// The quality of a JPEG, from 1 to 100: differences are hardly visible.
 const JPEG_QUALITY: u8 = 92;
 
-/// How many bytes tell what format a picture has.
+/// How many bytes identify the format of a picture.
 const SIGNATURE: u64 = 64;
 
 /// Why a picture whose name ends otherwise is refused.
@@ -24,18 +24,18 @@ const ENDINGS: &str = "its name has to end in .png, .jpg, .webp or .ppm";
 /// How a picture is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// Every pixel as it is; with an alpha channel only if a pixel needs one.
+    /// Lossless; with an alpha channel only if a pixel needs one.
     Png,
-    /// Nearly as it is, and smaller; without alpha.
+    /// Lossy, and smaller; without alpha.
     Jpeg,
-    /// Every pixel as it is, at most 16383 on a side.
+    /// Lossless, at most 16383 pixels on a side.
     WebP,
-    /// Three bytes a pixel, as they are; without alpha.
+    /// Three bytes per pixel, uncompressed; without alpha.
     Ppm,
 }
 
 impl PictureFormat {
-    /// The format that a file's name asks for by its ending.
+    /// The format of a file by the ending of its name.
     ///
     /// # Errors
     /// Which endings there are, if it has none of them.
@@ -72,18 +72,18 @@ impl PictureFormat {
     }
 }
 
-/// Saves a picture in the format that its name asks for.
+/// Saves a picture in the format of its name's ending.
 ///
 /// # Errors
-/// If the name asks for none, or the file cannot be written; what was there before still is.
+/// If the ending is unknown, or the file cannot be written; an existing file stays as it was.
 pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
     let format = PictureFormat::of(path).map_err(|reason| fail(reason.to_owned()))?;
     replace(path, &format.encode(picture).map_err(fail)?, Worth::Product)
 }
 
-/// Finds out, before anything is drawn, whether a picture could be saved at `path`. A file that is
-/// there already has to be a picture, or empty.
+/// Checks, before anything is drawn, whether a picture could be saved at `path`. An existing file
+/// has to be a picture, or empty.
 ///
 /// # Errors
 /// If it could not.
@@ -96,7 +96,9 @@ pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     match file.take(SIGNATURE).read_to_end(&mut begin) {
         Ok(0) => Ok(()),
         Ok(_) if image::guess_format(&begin).is_ok() => Ok(()),
-        _ => Err(fail("there is a file of that name, and it is no picture; choose another name")),
+        _ => {
+            Err(fail("there is a file of that name, and it is not a picture; choose another name"))
+        }
     }
 }
 
@@ -187,7 +189,7 @@ mod tests {
         std::fs::create_dir(folder.path().join("b.png")).unwrap();
         assert_eq!(["a.png", "empty.jpg", "new.webp"].map(reason), [Ok(()), Ok(()), Ok(())]);
         for (name, word) in [
-            ("poem.ppm", "it is no picture"),
+            ("poem.ppm", "it is not a picture"),
             ("b.png", "this is a folder"),
             ("none/a.png", "does not exist"),
             ("poem.ppm/a.png", "is not a folder"),

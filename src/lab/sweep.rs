@@ -205,7 +205,7 @@ impl std::fmt::Debug for Bench<'_> {
 }
 
 impl Bench<'_> {
-    /// Measures these candidates, of which the first is the default.
+    /// Measures these candidates; the first is the default.
     ///
     /// # Errors
     /// As [`sweep`].

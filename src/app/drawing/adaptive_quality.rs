@@ -104,8 +104,8 @@ pub(crate) struct AdaptiveQuality {
 }
 
 impl AdaptiveQuality {
-    /// With what the next picture is drawn, of which `share` (0 to 1) would have to be drawn again
-    /// if it were drawn with all.
+    /// The reduction for the next picture; `share` (0 to 1) of it would have to be drawn again
+    /// without any reduction.
     pub(crate) fn choose(&self, moving: bool, share: f64, applicable: Applicable) -> Reduction {
         if !moving || self.expected(Reduction::NONE, share).is_none_or(|time| time <= BUDGET) {
             return Reduction::NONE;

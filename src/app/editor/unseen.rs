@@ -1,6 +1,7 @@
-//! Reports loaded objects of which nothing is visible, and why.
+//! Reports loaded objects that are not visible, and why.
 //!
-//! It is found on a thread of its own, with pictures of its own: the window does not wait for it.
+//! This is checked on a separate thread, with separate pictures, so the window does not wait for
+//! it.
 
 use egui::Context;
 

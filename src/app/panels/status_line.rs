@@ -1,7 +1,7 @@
 //! The status line: what the next key would do, and the last message.
 //!
-//! Where there is no room for all, what matters least is left out from the middle; nothing is cut
-//! off.
+//! If there is no room for everything, the least important parts are left out of the middle;
+//! nothing is cut off.
 
 use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 

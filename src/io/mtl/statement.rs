@@ -1,8 +1,8 @@
 //! Single statements of an MTL file, read by tobj.
 //!
-//! A call gets one statement in the form that tobj reads rightly: a grey is spelled as three
-//! numbers, comments are cut off, keywords have their usual case. What tobj does not know goes to
-//! it under the keyword of a statement with the same argument.
+//! Each call passes one statement in the form that tobj reads correctly: a grey is spelled as three
+//! numbers, comments are removed, keywords have their usual case. A statement that tobj does not
+//! know is passed under the keyword of one with the same argument.
 
 use std::panic::catch_unwind;
 
@@ -23,7 +23,7 @@ pub(super) fn specular(rest: &[u8]) -> Option<[f64; 3]> {
     finite(material("Ks", &color(rest)?)?.specular?)
 }
 
-/// `Ns x`, and `illum x`, of which tobj takes whole numbers alone.
+/// `Ns x`, and `illum x`, for which tobj accepts only whole numbers.
 pub(super) fn exponent(rest: &[u8]) -> Option<f64> {
     single(words(rest).next()?)
 }
@@ -45,7 +45,7 @@ pub(super) fn texture(name: &str) -> Option<String> {
     material("map_Kd", name)?.diffuse_texture
 }
 
-/// What tobj makes of a statement; `None` if it refuses it.
+/// The material that tobj reads from a statement; `None` if it refuses it.
 fn material(keyword: &str, arguments: &str) -> Option<tobj::Material> {
     let text = format!("newmtl m\n{keyword} {arguments}\n");
     let read = || tobj::load_mtl_buf(&mut text.as_bytes());
