@@ -78,7 +78,7 @@ fn a_picture_is_named_after_its_file_and_lies_in_the_current_folder() {
 }
 
 #[test]
-fn a_picture_replaces_no_file_of_another_kind_and_none_that_it_is_made_of() {
+fn a_picture_replaces_neither_a_file_of_another_kind_nor_its_own_source() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     std::fs::write(at("poem.png"), "Roses are red").unwrap();
@@ -199,7 +199,7 @@ fn colours_of_the_background_threads_and_axes_that_point_up_are_taken_as_people_
 }
 
 #[test]
-fn progress_is_told_in_per_cent_if_it_is_asked_for() {
+fn progress_is_reported_in_per_cent_on_request() {
     let folder = folder();
     let render = ["render", "square.obj", "--size", "64", "--out", "a.png"];
     let (_, err) = ends_with(0, folder.path(), &render, b"");
@@ -227,7 +227,7 @@ fn quiet_silences_notes_and_no_errors() {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_told_of_before_a_display_or_another_file_is_looked_for() {
+fn a_missing_file_is_reported_before_a_display_or_another_file_is_looked_for() {
     let folder = folder();
     let (_, err) = ends_with(1, folder.path(), &["nosuch.obj"], b"");
     assert_eq!(err, "error: nosuch.obj: there is no such file\n");

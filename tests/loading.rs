@@ -110,7 +110,7 @@ fn lines_and_points_are_left_out_and_counted() {
 }
 
 #[test]
-fn places_on_the_texture_and_normals_stay_with_their_corners_where_others_have_none() {
+fn texture_coordinates_and_normals_stay_with_their_corners_if_others_have_none() {
     let loaded = read(&triangle_and(
         "vt 0.25 0.5\nvt 0.5 0.75\nvn 0 0 1\nvn 0 1 0\n\
          f 1 2 3\nf 1/2 2/1 3/2\nf 1//2 2//1 3//2\nf 1/1/1 2/2/2 3/1/1\nf 1/2 2 3\n",
@@ -145,7 +145,7 @@ fn vertices_keep_their_numbers_whether_faces_use_them_or_not() {
 }
 
 #[test]
-fn vertices_without_a_colour_are_white_where_others_have_one() {
+fn vertices_without_a_colour_are_white_if_others_have_one() {
     let loaded = read("v 0 0 0\nv 1 0 0 0.5 0.25 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(loaded.model.mesh.colors(), [[1.0; 3], [0.5, 0.25, 0.0], [1.0; 3]]);
     let text = "2 vertices have no colour, while others have: they are white";
@@ -161,7 +161,7 @@ fn a_fourth_number_is_no_colour_and_a_seventh_is_passed_over() {
 }
 
 #[test]
-fn colours_above_one_are_taken_as_bytes() {
+fn colours_above_one_are_read_as_bytes() {
     let loaded = read("v 0 0 0 255 0 0\nv 1 0 0 0 51 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
     assert_eq!(loaded.model.mesh.colors()[..2], [[1.0, 0.0, 0.0], [0.0, 0.2, 0.0]]);
     assert_eq!(only(&loaded).0, FindingKind::ColorBytes);
@@ -196,7 +196,7 @@ fn texture_places_and_normals_that_are_not_finite_are_left_out() {
 }
 
 #[test]
-fn a_texture_place_of_one_number_has_zero_for_the_other() {
+fn a_texture_coordinate_of_one_number_gets_zero_for_the_other() {
     let loaded = read(&triangle_and("vt 0.5\nvt 0.5 0.25 0\nf 1/1 2/2 3/1\n"));
     let mesh = &loaded.model.mesh;
     assert_eq!(mesh.uvs()[mesh.corners()[0].uv as usize], [0.5, 0.0]);
@@ -331,7 +331,7 @@ fn a_file_without_a_usable_face_is_refused_by_its_first_bad_line() {
 }
 
 #[test]
-fn what_is_no_obj_file_is_refused() {
+fn a_file_that_is_not_an_obj_file_is_refused() {
     for (bytes, message) in [
         (&b""[..], "a.obj: the file is empty"),
         (b" \n\n", "a.obj: the file is empty"),
@@ -346,7 +346,7 @@ fn what_is_no_obj_file_is_refused() {
 }
 
 #[test]
-fn a_file_that_is_not_there_or_is_a_folder_is_refused_in_plain_words() {
+fn a_missing_file_or_a_folder_is_refused_in_plain_words() {
     let folder = tempfile::tempdir().unwrap();
     let refusal = |path: &Path| {
         let error = load(path, &LoadOptions::default(), &Progress::new()).unwrap_err().to_string();
@@ -532,7 +532,7 @@ fn a_file_says_the_same_however_many_threads_read_it() {
 }
 
 #[test]
-fn the_quick_way_through_a_line_says_what_the_other_way_says() {
+fn the_quick_way_reads_a_line_like_the_tolerant_way() {
     let text = long(4000);
     // A blank at the beginning of a line is not for the quick way.
     let slow: String = text.split_inclusive('\n').map(|line| format!(" {line}")).collect();

@@ -129,7 +129,7 @@ fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
 }
 
 #[test]
-fn what_is_mended_in_many_files_is_one_finding_with_the_first_place() {
+fn the_same_fault_in_many_files_is_one_finding_with_the_first_line() {
     let folder = tempfile::tempdir().unwrap();
     let mut obj = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     for i in 0..7 {

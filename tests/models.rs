@@ -179,7 +179,7 @@ fn by_tobj(path: &Path) -> Option<Vec<Vec<[Vec<u32>; 3]>>> {
 }
 
 #[test]
-fn what_tobj_reads_of_a_model_is_read_alike_bit_for_bit() {
+fn models_are_read_as_tobj_reads_them_bit_for_bit() {
     let Some(models) = models() else { return };
     let mut compared = 0;
     for row in table(&models) {

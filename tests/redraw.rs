@@ -331,7 +331,7 @@ fn impatient(
 }
 
 #[test]
-fn what_changed_is_drawn_again_to_the_same_bytes_after_any_sequence_of_commands() {
+fn after_any_commands_a_partial_redraw_gives_the_same_bytes_as_a_full_one() {
     let mut rng = Rng::new(1);
     let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
     let (mut given_up, mut partial, mut frames) = (0, 0, 0);
@@ -423,7 +423,7 @@ fn drawn_normals_are_those_that_the_object_has_by_now() {
 }
 
 #[test]
-fn what_reaches_behind_the_camera_is_drawn_again_wherever_it_is_seen() {
+fn objects_that_reach_behind_the_camera_are_redrawn_wherever_they_are_visible() {
     let (mut scene, view) = scene(&[(plates(), DMat4::IDENTITY)]);
     let plan = |scene: &Scene| {
         plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(500, 500)))
@@ -470,7 +470,7 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
 }
 
 #[test]
-fn what_shows_nowhere_paints_no_tile() {
+fn an_invisible_change_paints_no_tile() {
     let (mut scene, view) = scene(&[(square(), at(20.0, 0.0, 0.0, 0.0))]);
     let plan = |scene: &Scene| {
         plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(100, 100)))

@@ -96,7 +96,7 @@ fn highlights_are_as_wrong_as_their_powers() {
 }
 
 #[test]
-fn quick_roots_grain_highlights_and_newton_mends_them() {
+fn rsqrt_makes_highlights_grainy_and_a_newton_step_repairs_them() {
     use marraztu::accuracy::Normalising;
     let opened = lesson_scene("ball").unwrap();
     let picture = |normalising| {
@@ -110,7 +110,7 @@ fn quick_roots_grain_highlights_and_newton_mends_them() {
 
 /// A floor that leans by 45 degrees, pressed to a tenth: it nearly lies, and the sun is overhead.
 #[test]
-fn normals_placed_by_the_matrix_as_it_is_lean_by_79_degrees() {
+fn normals_transformed_by_the_objects_own_matrix_lean_by_79_degrees() {
     let press = DMat4::from_scale(DVec3::new(1.0, 0.1, 1.0))
         * DMat4::from_rotation_x(-0.25 * std::f64::consts::PI);
     let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0) * press)]);
@@ -212,7 +212,7 @@ fn far_from_the_origin_32_bits_lose_the_shape_of_things() {
 
 /// Case 29, drawn.
 #[test]
-fn points_every_tenth_of_a_unit_leave_holes_nearer_than_97_and_none_beyond() {
+fn points_every_tenth_of_a_unit_leave_holes_nearer_than_97_units_and_none_beyond() {
     let pixel = |distance: f64| 2.0 * (2.0_f64.sqrt() - 1.0) * distance / 800.0;
     let holes = |distance: f64| {
         let place = at(10.0 * pixel(distance), 0.0, 0.0, 400.0 - distance);
@@ -232,7 +232,7 @@ fn points_every_tenth_of_a_unit_leave_holes_nearer_than_97_and_none_beyond() {
 }
 
 #[test]
-fn rounded_rows_and_32_bit_edges_cover_what_is_covered_and_a_little_more() {
+fn rounded_rows_and_32_bit_edges_cover_every_covered_pixel_and_a_few_more() {
     let (scene, view) = scene(&[(ball(12), at(90.0, 3.3, -7.7, 0.0))]);
     let view = unmarked(view);
     let seen = |coverage| {
@@ -252,7 +252,7 @@ fn rounded_rows_and_32_bit_edges_cover_what_is_covered_and_a_little_more() {
 }
 
 #[test]
-fn where_nothing_is_near_to_anything_every_format_of_depth_shows_the_same() {
+fn if_surfaces_are_far_apart_every_depth_format_shows_the_same() {
     let (scene, view) = marraztu::io::default_scene();
     let seen = |depth| {
         let settings = Settings { depth, ..Settings::default() };

@@ -122,7 +122,7 @@ fn normals_of_the_file_can_be_ignored() {
 const ROOF: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 4 0 -2\nv 4 2 -2\nf 1 2 3 4\nf 2 5 6 3\n";
 
 #[test]
-fn edges_sharper_than_the_crease_angle_that_is_asked_for_are_sharp() {
+fn edges_sharper_than_the_given_crease_angle_are_sharp() {
     let folder = folder();
     std::fs::write(folder.path().join("roof.obj"), ROOF).unwrap();
     let drawn = |crease: &[&str]| drawn(folder.path(), &[&["roof.obj"], crease].concat());

@@ -343,7 +343,7 @@ fn folded(corners: [DVec3; 3], covered: &[bool]) -> usize {
 }
 
 #[test]
-fn case_16_what_is_farther_off_than_whole_numbers_reach_is_cut() {
+fn case_16_triangles_beyond_the_range_of_integers_are_clipped() {
     let mut rng = Rng::new(116);
     let (mut wrong, mut seen, mut naive) = (0, 0, 0);
     for _ in 0..60 {
@@ -469,7 +469,7 @@ fn wrapping_covers([p, q, r]: [Snapped; 3], x: usize, y: usize) -> bool {
 }
 
 #[test]
-fn case_18_what_is_behind_the_observer_is_not_there() {
+fn case_18_objects_behind_the_observer_are_invisible() {
     let mut rng = Rng::new(18);
     let (mut drawn, mut naive) = (0, 0);
     for _ in 0..50 {

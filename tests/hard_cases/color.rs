@@ -106,7 +106,7 @@ fn case_53_eight_lights_are_summed_before_they_are_rounded() {
 }
 
 #[test]
-fn case_54_what_is_no_number_is_black_and_what_is_infinite_is_full() {
+fn case_54_nan_is_black_and_infinity_is_full() {
     let (none, all) = (f64::NAN, f64::INFINITY);
     let mut wrong = 0;
     for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
@@ -159,7 +159,7 @@ fn case_55_every_byte_survives_the_way_through_the_renderer() {
 }
 
 #[test]
-fn case_55_what_lies_in_a_picture_is_no_other_for_where_it_lies() {
+fn case_55_a_pictures_pixels_do_not_depend_on_their_position() {
     // The same byte at every pixel, wherever in a tile or a group of lanes it stands.
     let (scene, view) = glowing([0.3, 0.6, 0.9], &[Color::WHITE]);
     let picture = draw(&scene, &view, &Settings::default(), 131);

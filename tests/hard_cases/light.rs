@@ -289,7 +289,7 @@ fn case_44_small_angles_are_shown_as_they_were_typed() {
 }
 
 #[test]
-fn case_45_powers_of_what_has_none_are_nothing() {
+fn case_45_powers_of_numbers_that_have_none_are_zero() {
     let mut wrong = 0;
     for exponent in [0.0, 0.5, 5.0, 76.8, 1000.0] {
         for x in [0.0_f32, -0.0, -1e-45, -0.5, -1.0, f32::NAN, f32::NEG_INFINITY] {

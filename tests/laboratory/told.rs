@@ -130,7 +130,7 @@ fn several_samples_are_judged_against_sixty_four_each_lit_and_have_a_front_of_th
 }
 
 #[test]
-fn what_covers_other_pixels_is_on_no_front_but_that_of_flip() {
+fn choices_with_different_coverage_are_on_no_front_but_that_of_flip() {
     let subpixels = Axis::named("subpixels").unwrap();
     let coarse = subpixels.choice("bits-0").map(|choice| (subpixels, choice));
     // All take as long and look the same.

@@ -207,7 +207,7 @@ fn with_text_field() -> Editor {
 }
 
 #[test]
-fn what_is_typed_into_a_text_field_asks_for_nothing() {
+fn typing_into_a_text_field_triggers_no_action() {
     let mut editor = with_text_field();
     editor.press(Lower(Key::Z));
     let (scene, view, shown) = (editor.scene(), editor.view(), editor.state().panels);

@@ -261,7 +261,7 @@ fn a_double_click_renames_and_esc_leaves_the_name() {
 }
 
 #[test]
-fn a_name_that_was_given_up_elsewhere_is_not_taken_up_again() {
+fn a_rename_that_was_abandoned_elsewhere_is_not_resumed() {
     let mut editor = Editor::new();
     editor.press(Named(Key::F2));
     type_text(&mut editor, "half a na");

@@ -61,7 +61,7 @@ fn every_effect_has_a_line_and_what_differs_is_folded_out() {
 }
 
 #[test]
-fn what_is_measured_is_shown_until_something_changes() {
+fn a_measurement_is_shown_until_something_changes() {
     let mut editor = Editor::of_size(900.0, 500.0);
     editor.perform(Action::MeasurePlan);
     assert!(editor.state().panels.plan && editor.state().plan.measuring);
