@@ -1,7 +1,8 @@
 //! What becomes of OBJ files as people and programs write them.
 //!
-//! Each test is a small file. Those of the first part are read wrongly, or not at all, by `tobj`,
-//! which reads most files rightly: for those `tests/models.rs` holds the program against it.
+//! Each test is a small file. `tobj` alone reads those of the first part wrongly, or not at all: the
+//! program hands it only what it reads rightly. On files that it reads rightly by itself
+//! `tests/models.rs` holds the program against it.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -81,6 +82,30 @@ fn a_back_slash_continues_a_line_between_numbers_and_inside_names() {
 fn a_comment_may_follow_numbers_and_corners() {
     let mesh = clean("v 0 0 0 # origin\nv 1 0 0# near\nv 0 1 0 #1 2 3\nf 1 2 3 # 2\nf 1 3 2#4\n");
     assert_eq!((mesh.positions().len(), mesh.polygon_count()), (3, 2));
+}
+
+#[test]
+fn a_comment_of_three_words_is_no_colour_and_a_weight_of_zero_divides_nothing() {
+    let loaded = read("v 0 0 0 # no colour\nv 1 0 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_eq!(loaded.model.mesh.positions()[..2], [[0.0; 3], [1.0, 0.0, 0.0]]);
+    assert!(loaded.model.mesh.colors().is_empty());
+    assert_eq!(only(&loaded).0, FindingKind::Weight);
+}
+
+#[test]
+fn numbers_that_tobj_passes_over_refuse_the_file_all_the_same() {
+    for (text, message) in [
+        ("vt 0 0 x\n", "a.obj:1: \"x\" is not a number"),
+        ("vt 0 0 1e\n", "a.obj:1: \"1e\" is not a number"),
+        ("vn 0 0 1 x\n", "a.obj:1: \"x\" is not a number"),
+        ("v 0 0 0 . 0 0\n", "a.obj:1: \".\" is not a number"),
+        ("v 0 0 0 1 1 1\nv 0 0 0 1 1 -\n", "a.obj:2: \"-\" is not a number"),
+        // The first fault counts, whoever finds it.
+        ("v 0 0 --1\nv 0 0\n", "a.obj:1: \"--1\" is not a number"),
+        ("v 0 0 1..\nv 0 x 0\n", "a.obj:1: \"1..\" is not a number"),
+    ] {
+        assert_eq!(refusal(text), message);
+    }
 }
 
 #[test]

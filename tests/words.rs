@@ -44,27 +44,42 @@ const NAMES: &[&str] = &[
 
 /// What a folder may still hold. Each allowance has to be needed: whoever cleans a folder takes its
 /// row away.
-const ALLOWED: &[(&str, &[&str])] = &[(
-    "src/render",
-    &[
-        "Choosing",
-        "Chosen",
-        "Dice",
-        "Lamp",
-        "Located",
-        "Machine",
-        "Matter",
-        "Shine",
-        "Triple",
-        CONDITION,
-        UNSEEN,
-        LONG,
-        "by chance",
-        "nobody",
-        "of which",
-        "so many",
-    ],
-)];
+const ALLOWED: &[(&str, &[&str])] = &[
+    ("fuzz", &[LONG]),
+    (
+        "src/app",
+        &[
+            "Chosen", "Economy", "Placed", "Wealth", CONDITION, LONG, "nobody", "of which",
+            "so many",
+        ],
+    ),
+    ("src/base", &[CONDITION, LONG, "nobody"]),
+    ("src/edit", &["Placed", CONDITION, LONG, "so many"]),
+    ("src/io", &["Placed", CONDITION, LONG, "nobody", "of which", "so many", "that is none"]),
+    (
+        "src/render",
+        &[
+            "Choosing",
+            "Chosen",
+            "Dice",
+            "Lamp",
+            "Located",
+            "Machine",
+            "Matter",
+            "Shine",
+            "Triple",
+            CONDITION,
+            UNSEEN,
+            LONG,
+            "by chance",
+            "nobody",
+            "of which",
+            "so many",
+        ],
+    ),
+    ("src/scene", &["Placed", CONDITION, LONG, "mesh_found", "nobody", "of which", "so many"]),
+    ("tests", &["Lamp", "Matter", LONG]),
+];
 
 /// How many columns a line of Rust may have.
 const COLUMNS: usize = 100;

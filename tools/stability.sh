@@ -38,8 +38,8 @@ number() {
 # The number of mutations of rules that docs/breakages.md says were caught.
 rules() {
   local all caught
-  all=$(grep -c '^| plan |' docs/breakages.md)
-  caught=$(grep -c '^| plan |.*| caught |' docs/breakages.md)
+  all=$(grep -c '^| plan |' docs/breakages.md) || true
+  caught=$(grep -c '^| plan |.*| caught |' docs/breakages.md) || true
   [ "$all" -eq "$caught" ] || { echo "docs/breakages.md: $caught of $all rules caught" >&2; exit 1; }
   echo "$all"
 }

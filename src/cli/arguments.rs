@@ -16,7 +16,7 @@ use super::values::{color, size, threads};
 use super::verify::Verify;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
-use marraztu::io::PictureFormat;
+use marraztu::io::{self, PICTURE_FORMATS, PictureFormat};
 use marraztu::scene::{
     Crease, LoadOptions, MaterialChoice, Normals, PresetId, Projection, Scale, Sides, Surface,
     UpAxis, Winding,
@@ -85,9 +85,7 @@ Examples:
   marraztu render shelf.marraztu --out shelf.ppm --camera 2 --time 1.5
   marraztu render ship.obj --out lines.png --edges --projection orthographic --background 0,0,0")]
 pub(crate) struct Render {
-    /// The picture to write: .png, .jpg, .webp or .ppm; "-" writes a PNG to standard output
-    /// [default: the name of the scene or first model with .png, in the current folder]
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help = out_help())]
     #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
@@ -147,8 +145,7 @@ pub(crate) struct Surfaces {
     /// One of the 19 materials (brass, polished-gold, ruby ...), or "file" for the file's own
     #[arg(long, value_name = "NAME", value_parser = material)]
     pub(crate) material: Option<MaterialChoice>,
-    /// A texture for the objects: PNG, JPEG, WebP, TIFF, BMP, TGA or GIF
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help = texture_help())]
     pub(crate) texture: Option<PathBuf>,
     /// What to show: material, texture (unlit), or both, lit (lit*)
     #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
@@ -280,8 +277,22 @@ fn choice<T: Copy + Send + Sync>(
     })
 }
 
+fn out_help() -> String {
+    format!(
+        "The picture to write: {}; \"-\" writes a {} to standard output [default: the name of the \
+         scene or first model with .{}, in the current folder]",
+        PictureFormat::usual_endings(),
+        PICTURE_FORMATS[0].name,
+        PICTURE_FORMATS[0].endings[0],
+    )
+}
+
+fn texture_help() -> String {
+    format!("A texture for the objects: {}", io::texture_formats())
+}
+
 /// Checks the name before anything is drawn, which may take long.
-fn picture(path: PathBuf) -> Result<PathBuf, &'static str> {
+fn picture(path: PathBuf) -> Result<PathBuf, String> {
     if is_standard(&path) { Ok(path) } else { PictureFormat::of(&path).map(|_| path) }
 }
 

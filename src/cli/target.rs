@@ -1,11 +1,11 @@
-//! The target of a picture: standard output, or a file whose name may follow from the files that
+//! The target of a picture: standard output, or a file, whose name may follow from the files that
 //! are drawn.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use marraztu::base::image::Picture;
-use marraztu::io::{self, PictureFormat};
+use marraztu::io::{self, PICTURE_FORMATS};
 use marraztu::scene::Scene;
 
 use super::arguments::Render;
@@ -15,7 +15,7 @@ use super::stage::{Stage, is_scene, is_standard, usage};
 /// The picture's name if no file gives it one.
 const UNNAMED: &str = "scene";
 
-/// Where a picture goes.
+/// The target of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Target {
     /// Into a file.
@@ -67,7 +67,7 @@ impl Target {
         match self {
             Self::File(path) => Ok(io::save_picture(path, picture)?),
             Self::Output => {
-                let bytes = PictureFormat::Png.encode(picture).map_err(Failure::Absent)?;
+                let bytes = PICTURE_FORMATS[0].encode(picture).map_err(Failure::Absent)?;
                 match std::io::stdout().lock().write_all(&bytes) {
                     // The reader has closed the pipe, as `head` does.
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),

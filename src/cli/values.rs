@@ -52,7 +52,7 @@ fn decimal(text: &str) -> Option<[u8; 3]> {
     channels?.try_into().ok()
 }
 
-/// Reads six digits, two for each channel, or three, each for two equal ones.
+/// Six digits, two for each channel, or three: each of them stands for two equal ones.
 fn hexadecimal(digits: &str) -> Option<[u8; 3]> {
     let digits: Option<Vec<u8>> =
         digits.chars().map(|digit| u8::try_from(digit.to_digit(16)?).ok()).collect();

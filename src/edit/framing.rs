@@ -4,11 +4,11 @@
 //! distance = r / sin(a)                                 r the bounding radius, a the half-angle
 //! near     = min(1, (distance - r) / 2, distance / 1000)
 //! far      = max(2000, distance + 2 r)
-//! in parallel projection: half-size = 1.1 r
+//! orthographic: half-size = 1.1 r
 //! ```
 //!
-//! The camera keeps the direction in which it looks. In analysis it goes on looking at the mean of
-//! the object's vertices, so the sphere that is framed then has its centre there.
+//! The camera keeps its direction. In analysis it keeps looking at the mean of the object's
+//! vertices, so the framed sphere has its centre there.
 
 use glam::{DMat3, DVec3};
 
@@ -50,13 +50,13 @@ impl Side {
     }
 }
 
-/// From where models alone are seen: degrees to the right of the front, and degrees up.
+/// The default direction to view models from: degrees to the right of the front, and up.
 pub const MODELS_FROM: [f64; 2] = [30.0, 20.0];
 
-/// How much farther away than necessary models alone are seen: their margin in the picture.
+/// The margin around models in the picture, as a fraction of the distance.
 const MARGIN: f64 = 1.0 / 20.0;
 
-/// The key `.`: the selected camera sees the selected object whole.
+/// Frames the selected object (key `.`).
 ///
 /// # Errors
 /// If there is no object, or it has no vertices.
@@ -65,7 +65,7 @@ pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     objects(scene, view, &[id])
 }
 
-/// The key Home: the selected camera sees everything that is shown.
+/// Frames everything visible (key Home).
 ///
 /// # Errors
 /// If nothing is visible.
@@ -73,7 +73,7 @@ pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     objects(scene, view, &shown(scene, view))
 }
 
-/// The objects that are shown.
+/// The visible objects.
 fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
     let shown = |id: &ObjectId, object: &Object| {
         object.visible && (!view.only_selected || view.object == Some(*id))
@@ -81,17 +81,16 @@ fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
     scene.objects.iter().filter(|(id, object)| shown(id, object)).map(|(id, _)| id).collect()
 }
 
-/// The selected camera sees these objects whole.
+/// Frames these objects.
 ///
 /// # Errors
-/// Where none of them has vertices.
+/// If none of them has vertices.
 pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, Refusal> {
     framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
 }
 
-/// Models that no scene says how to look at: the selected camera sees everything that is shown,
-/// with a margin of a twentieth, from `right` degrees to the right of the front and `up` degrees
-/// above.
+/// Frames everything visible with a margin, from `right` degrees to the right of the front and `up`
+/// degrees above: the view of models that come without a scene.
 ///
 /// # Errors
 /// If nothing is visible.
@@ -101,7 +100,7 @@ pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Comma
     framed(scene, view, &shown(scene, view), axes, MARGIN)
 }
 
-/// Ctrl+1, 3 and 7: the selected camera sees the selected object whole from a side.
+/// Frames the selected object from a side (Ctrl+1, 3 and 7).
 ///
 /// # Errors
 /// If there is no object, or it has no vertices.
@@ -110,8 +109,8 @@ pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> 
     framed(scene, view, &[id], side.axes(), 0.0)
 }
 
-/// A sphere about objects: of one object its own, of several about the box around theirs. `None`
-/// where none of them has vertices.
+/// The bounding sphere of objects: of one object its own, of several that of their bounding box.
+/// `None` if none of them has vertices.
 #[must_use]
 pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
     let spheres: Vec<(DVec3, f64)> = ids
@@ -129,7 +128,7 @@ pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
     Some(Sphere { centre, radius: spheres.iter().map(reach).fold(0.0, f64::max) })
 }
 
-/// How far from the centre of a sphere of radius `r` the eye is, and the lens that sees it.
+/// The distance from the centre of a sphere of radius `r`, and the lens to see it.
 #[must_use]
 pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     let distance = r / libm::sin(lens.half_angle.to_radians());
@@ -146,8 +145,7 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     (distance, framed)
 }
 
-/// The selected camera sees these objects whole along these axes, farther away than necessary by a
-/// part of the distance.
+/// Frames these objects along these axes, with a margin as a fraction of the distance.
 fn framed(
     scene: &Scene,
     view: &View,

@@ -2,7 +2,7 @@
 
 use crate::scene::Tracked;
 
-/// Whether a change stands alone, or is one of many that a single drag or held key makes.
+/// Whether a change stands alone or is part of a drag or a held key.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gesture {
     /// A key, a click, a typed number: undone by itself.
@@ -12,13 +12,13 @@ pub enum Gesture {
     Part(u64),
 }
 
-/// Where in a gesture (a drag, a held key) a change stands: what the item was before the gesture is
-/// pushed once, so that `u` takes the whole gesture back.
+/// The phase of a change in a gesture: the first change pushes the old transform, so that `u`
+/// undoes the whole gesture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum GesturePhase {
-    /// Its first change, or its only one: what the item was goes onto its stack.
+    /// The first change, or the only one: pushes the old transform.
     First,
-    /// A later one: the stack stays as it is.
+    /// A later change: pushes nothing.
     Continued,
 }
 

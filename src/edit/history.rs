@@ -1,7 +1,7 @@
 //! The history: changes as steps that can be undone and redone.
 //!
-//! A step is what one undo takes back. It holds the command that leads away from where the scene
-//! is: steps before the present position lead back, those after it lead forward.
+//! One undo undoes one step. A step holds the commands that lead away from the current position:
+//! steps before it lead back, steps after it lead forward.
 
 use super::Gesture;
 use crate::scene::{Command, CommandError, Scene};
@@ -13,14 +13,14 @@ struct Step {
     commands: Vec<Command>,
 }
 
-/// The changes made so far, and those taken back. Writes the scene; whoever else writes it makes
-/// the steps unfit.
+/// The steps done and undone. It is the only writer of the scene: any other change would invalidate
+/// the steps.
 #[derive(Debug)]
 pub struct History {
     steps: Vec<Step>,
-    /// How many of the steps are done; those after them were taken back.
+    /// The number of steps done; those after them were undone.
     position: usize,
-    /// The gesture that the last step belongs to, while it may still go on.
+    /// The gesture of the last step, while it may continue.
     open: Gesture,
     /// The position at which the scene was saved; `None` if no step leads there any more.
     saved: Option<usize>,
@@ -33,14 +33,13 @@ impl Default for History {
 }
 
 impl History {
-    /// A history without steps, of a scene that needs no saving.
+    /// A history without steps, of a scene that counts as saved.
     #[must_use]
     pub const fn new() -> Self {
         Self { steps: Vec::new(), position: 0, open: Gesture::Whole, saved: Some(0) }
     }
 
-    /// Changes the scene, and remembers under `label` how to change it back. What was taken back
-    /// before is gone then.
+    /// Applies a command, and records under `label` how to undo it. Undone steps are discarded.
     ///
     /// # Errors
     /// If the command does not fit the scene; then neither scene nor history changes.
@@ -87,8 +86,8 @@ impl History {
         Some(label)
     }
 
-    /// Takes a gesture back while it lasts, as if it had never begun: no redo leads to it. Says
-    /// whether there was anything to take back.
+    /// Cancels the current gesture, without a step to redo. Returns whether there was anything to
+    /// undo.
     pub fn abandon(&mut self, scene: &mut Scene, gesture: Gesture) -> bool {
         if gesture == Gesture::Whole || gesture != self.open || self.undo(scene).is_none() {
             return false;
@@ -97,40 +96,40 @@ impl History {
         true
     }
 
-    /// Goes to where `position` steps are done: 0 is the beginning. Past the end means the end.
+    /// Goes to the point after `position` steps, at most to the end.
     pub fn go_to(&mut self, scene: &mut Scene, position: usize) {
         while self.position > position && self.undo(scene).is_some() {}
         while self.position < position && self.redo(scene).is_some() {}
     }
 
-    /// The labels of all steps, the oldest first: those done, then those taken back.
+    /// The labels of all steps, oldest first: those done, then those undone.
     pub fn steps(&self) -> impl ExactSizeIterator<Item = &str> {
         self.steps.iter().map(|step| step.label.as_str())
     }
 
-    /// How many steps are done.
+    /// The number of steps done.
     #[must_use]
     pub const fn position(&self) -> usize {
         self.position
     }
 
-    /// Whether the scene is as it was when it was last saved (or loaded).
+    /// Whether the scene is unchanged since it was last saved or loaded.
     #[must_use]
     pub fn is_saved(&self) -> bool {
         self.saved == Some(self.position)
     }
 
-    /// Remembers that the scene as it is now is on the disk.
+    /// Marks the current scene as saved.
     pub const fn mark_saved(&mut self) {
         self.saved = Some(self.position);
     }
 
-    /// Forgets all steps: the scene is a new one, and needs no saving.
+    /// Discards all steps: the scene is new and counts as saved.
     pub fn clear(&mut self) {
         *self = Self::new();
     }
 
-    /// Applies the step at `index`, and leaves in its place the one that leads the other way.
+    /// Applies the step at `index`, and replaces it by its inverse.
     fn cross(&mut self, scene: &mut Scene, index: usize) -> Option<String> {
         let step = self.steps.get_mut(index)?;
         self.open = Gesture::Whole;

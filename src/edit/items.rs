@@ -12,16 +12,16 @@ use crate::scene::{
     MaterialChoice, Model, Object, ObjectId, Pose, Scene, Smoothing, SpotOwner, Tracked,
 };
 
-/// More parts than this are not made objects at once: the outline could not be read any more.
+/// The maximum number of parts to split at once, so that the outline stays readable.
 pub const MOST_PARTS: usize = 1000;
 
-/// Puts an object into the scene, at the front of the list.
+/// Adds an object at the front of the list.
 #[must_use]
 pub fn insert_object(scene: &Scene, object: Object) -> Command {
     insert_objects(scene, vec![object])
 }
 
-/// Puts objects into the scene, each at the front of the list, so that the last comes first.
+/// Adds objects, each at the front of the list, so that the last comes first.
 #[must_use]
 pub fn insert_objects(scene: &Scene, objects: Vec<Object>) -> Command {
     let mut names: Names<'_> = scene.objects.iter().map(|(_, other)| &*other.name).collect();
@@ -37,8 +37,7 @@ pub fn insert_objects(scene: &Scene, objects: Vec<Object>) -> Command {
     Command::Batch(commands)
 }
 
-/// The key `F`: a camera at the centre of the world, looking along -Z, with the model and material
-/// of its mark.
+/// Adds a camera at the origin, looking along -Z, with its model and material (key `F`).
 #[must_use]
 pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoice) -> Command {
     let number = scene.cameras.len() + 1;
@@ -53,7 +52,7 @@ pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoi
     put_camera(scene, camera)
 }
 
-/// A new white light in the lowest free slot.
+/// Adds a white light in the lowest free slot.
 ///
 /// # Errors
 /// If it is a spot of an object or a camera that is not there.
@@ -61,7 +60,7 @@ pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> 
     put_light(scene, Light::new(light_name(&kind), 0, kind))
 }
 
-/// A copy of an item; its stack of transformations begins anew.
+/// Adds a copy of an item, without its stack of transformations.
 ///
 /// # Errors
 /// If the item is gone.
@@ -92,7 +91,7 @@ pub fn duplicate(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     }
 }
 
-/// Takes an item out of the scene, and the spots that are fixed to it.
+/// Removes an item and the spots attached to it.
 ///
 /// # Errors
 /// If the item is gone, or is the last camera.
@@ -117,7 +116,7 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     Ok(one_or_batch(commands))
 }
 
-/// Calls an item something else.
+/// Renames an item.
 ///
 /// # Errors
 /// If the name is empty, or the item gone.
@@ -142,7 +141,7 @@ pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Result<Command, Refusal>
     if scene.contains(id) { Ok(Command::Reorder { id, to }) } else { Err(Refusal::Gone) }
 }
 
-/// Shows or hides an object or a camera's mark; puts a light on or out.
+/// Shows or hides an object or a camera; switches a light on or off.
 ///
 /// # Errors
 /// If the item is gone.
@@ -170,8 +169,8 @@ pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Re
     })
 }
 
-/// Makes an object of each part: the object itself keeps the first, the others follow it in the
-/// list. All share the model and show one part of it.
+/// Turns each part into an object: the object itself keeps the first part, the others follow it in
+/// the list. All share the model.
 ///
 /// # Errors
 /// If the object is gone, or has one part or too many.
@@ -208,7 +207,7 @@ pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
     Ok(Command::Batch(commands))
 }
 
-/// What the objects are called that an object's parts become.
+/// The names of the objects that an object is split into.
 fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<String> {
     let others = scene.objects.iter().filter(|(_, other)| !std::ptr::eq(*other, object));
     let mut names: Names<'_> = others.map(|(_, other)| &*other.name).collect();
@@ -216,7 +215,7 @@ fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<Stri
     parts.iter().map(name).collect()
 }
 
-/// Gives a camera another lens.
+/// Sets the lens of a camera.
 ///
 /// # Errors
 /// If no picture could be made through it, or the camera is gone.
@@ -227,7 +226,7 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refu
     change_camera(scene, id, |camera| camera.lens = lens)
 }
 
-/// Why a crease angle changes nothing of a model, if it does not.
+/// Why a crease angle has no effect on a model, if so.
 #[must_use]
 pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
     if model.source.is_none() {
@@ -241,8 +240,8 @@ pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> 
     }
 }
 
-/// Gives the model of an object another crease angle. Another object of the same file that has this
-/// angle already shares its model with it.
+/// Sets the crease angle of an object's model. Shares the model of another object of the same file
+/// that already has this angle.
 ///
 /// # Errors
 /// If the object is gone, or the angle has no effect on it.
@@ -260,7 +259,7 @@ pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Result<Command
     change_object(scene, id, |object| object.model = model)
 }
 
-/// Changes what of an object is neither its place nor its spin.
+/// Changes properties of an object, except its placement and its spin.
 ///
 /// # Errors
 /// If the object is gone.
@@ -274,7 +273,7 @@ pub fn change_object(
     Ok(Command::Replace(Item::Object(id, Box::new(object))))
 }
 
-/// Changes what of all objects is neither their places nor their spins, in one step.
+/// Changes properties of all objects in one step, except their placements and spins.
 #[must_use]
 pub fn change_all_objects(scene: &Scene, change: impl Fn(&mut Object)) -> Command {
     let changed = |(id, object): (ObjectId, &Object)| {
@@ -285,7 +284,7 @@ pub fn change_all_objects(scene: &Scene, change: impl Fn(&mut Object)) -> Comman
     Command::Batch(scene.objects.iter().map(changed).collect())
 }
 
-/// Changes what of a camera is not its pose.
+/// Changes properties of a camera, except its pose.
 ///
 /// # Errors
 /// If the camera is gone.
@@ -299,7 +298,7 @@ pub fn change_camera(
     Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
 }
 
-/// Changes what of a light is not its place.
+/// Changes properties of a light, except its position and direction.
 ///
 /// # Errors
 /// If the light is gone.
@@ -354,7 +353,7 @@ const fn light_name(kind: &LightKind) -> &'static str {
     }
 }
 
-/// Whether what a spot should be fixed to is there.
+/// Checks that the owner of a spot exists.
 pub(super) fn check_owner(scene: &Scene, owner: &SpotOwner) -> Result<(), Refusal> {
     let there = match owner {
         SpotOwner::Object(id) => scene.objects.get(*id).is_some(),

@@ -33,31 +33,31 @@ impl Channel {
     }
 }
 
-/// A sun whose light goes straight down.
+/// A sun that shines straight down.
 #[must_use]
 pub const fn sun() -> LightKind {
     LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) }
 }
 
-/// A bulb at the centre of the world.
+/// A bulb at the origin.
 #[must_use]
 pub fn bulb() -> LightKind {
     LightKind::Bulb { position: Tracked::new(DVec3::ZERO), orbit: Orbit::default() }
 }
 
-/// A spot with the aperture and concentration that spots have at first.
+/// A spot with default aperture and concentration.
 #[must_use]
 pub const fn spot(owner: SpotOwner) -> LightKind {
     LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 }
 }
 
-/// The owner of a spot that stands at the centre of the world and shines along -Z.
+/// The owner of a free spot at the origin that shines along -Z.
 #[must_use]
 pub const fn fixed() -> SpotOwner {
     SpotOwner::Fixed(Tracked::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
 }
 
-/// The keys 0 to 9: puts the light in a slot on or out.
+/// Switches the light in a slot on or off (keys 0 to 9).
 ///
 /// # Errors
 /// If the slot is empty.
@@ -67,7 +67,7 @@ pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
     change_light(scene, id, |light| light.on = !light.on)
 }
 
-/// The keys q Q, v V, a A: brightens or dims one channel of the selected light, within 0 to 255.
+/// Changes one channel of the selected light, within 0 to 255 (keys q Q, v V, a A).
 ///
 /// # Errors
 /// At the end of the range, and while the subject is not lights.
@@ -116,7 +116,7 @@ pub fn set_aperture(scene: &Scene, id: LightId, degrees: f64) -> Result<Command,
     change_spot(scene, id, |_, half_aperture, _| *half_aperture = degrees.clamp(0.0, 90.0))
 }
 
-/// Gathers a spot's light along its axis by an exponent of at least 0.
+/// Sets the exponent of a spot, at least 0, which concentrates its light along the axis.
 ///
 /// # Errors
 /// If the light is not a spot, or the number is not finite.
@@ -127,7 +127,7 @@ pub fn set_exponent(scene: &Scene, id: LightId, to: f64) -> Result<Command, Refu
     change_spot(scene, id, |_, _, exponent| *exponent = to.max(0.0))
 }
 
-/// Fixes a spot to something else.
+/// Attaches a spot to another owner.
 ///
 /// # Errors
 /// If the light is not a spot, or the owner is not there.
@@ -136,10 +136,10 @@ pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, R
     change_spot(scene, id, |owner, _, _| *owner = to)
 }
 
-/// Gives a light another key.
+/// Sets the key of a light.
 ///
 /// # Errors
-/// Where another light has it.
+/// If another light has it.
 pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusal> {
     if scene.lights.iter().any(|(other, light)| other != id && light.slot == slot) {
         return Err(Refusal::SlotTaken(slot));
@@ -147,7 +147,7 @@ pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusa
     change_light(scene, id, |light| light.slot = slot)
 }
 
-/// Lets a light fade otherwise.
+/// Sets how a light fades with distance.
 ///
 /// # Errors
 /// If it would become infinite or negative.

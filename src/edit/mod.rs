@@ -1,8 +1,8 @@
 //! Decides commands: what a change of the scene consists of, and the history of changes.
 //!
-//! Everything here but [`History`] only decides: it reads a scene and a view, and gives back the
-//! [`Command`](crate::scene::Command) or the view that is meant, or a [`Refusal`] for the status
-//! line. [`History`] is the one that writes a scene.
+//! Everything here except [`History`] only decides: it reads a scene and a view, and returns a
+//! [`Command`](crate::scene::Command), a view, or a [`Refusal`] for the status line. Only
+//! [`History`] writes a scene.
 
 pub mod framing;
 mod gesture;

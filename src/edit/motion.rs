@@ -1,14 +1,14 @@
 //! Motion: the spin of objects and the orbit of bulbs.
 //!
-//! Whatever of a motion is changed, what has been turned so far goes into the placement first, and
-//! the motion begins anew from there: nothing jumps on the screen.
+//! Before a motion changes, the rotation so far is applied to the placement and the motion restarts
+//! from there, so that nothing jumps on the screen.
 
 use super::items::change_object;
 use super::{GesturePhase, Refusal};
 use crate::base::math::Axis;
 use crate::scene::{Command, Item, LightId, LightKind, ObjectId, Orbit, Scene, Spin};
 
-/// Lets an object turn about one of its axes, or no longer.
+/// Starts or stops the spin of an object about one of its axes.
 ///
 /// # Errors
 /// If the object is gone.
@@ -18,7 +18,7 @@ pub fn toggle_spin(scene: &Scene, id: ObjectId, axis: Axis, time: f64) -> Result
     set_spin(scene, id, spin, time, GesturePhase::First)
 }
 
-/// Gives an object another spin, which begins at `time`; what it has turned so far stays.
+/// Sets the spin of an object from `time` on; it keeps the rotation so far.
 ///
 /// # Errors
 /// If the speed is not finite, or the object is gone.
@@ -45,10 +45,10 @@ pub fn set_spin(
     })
 }
 
-/// Makes what an object has turned so far its placement; it goes on turning.
+/// Applies the rotation of a spinning object to its placement; it keeps spinning.
 ///
 /// # Errors
-/// If it does not turn by itself, or is gone.
+/// If it does not spin, or is gone.
 pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Refusal> {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if !object.spin.is_on() {
@@ -57,7 +57,7 @@ pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Ref
     set_spin(scene, id, object.spin, time, GesturePhase::First)
 }
 
-/// Lets a bulb circle the world's Y, or no longer.
+/// Starts or stops the orbit of a bulb about the world's Y.
 ///
 /// # Errors
 /// If the light is no bulb, or is gone.
@@ -67,7 +67,7 @@ pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Result<Command, Re
     set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, GesturePhase::First)
 }
 
-/// Gives a bulb another orbit, which begins at `time`; it stays where it has come to.
+/// Sets the orbit of a bulb from `time` on; it keeps its current position.
 ///
 /// # Errors
 /// If the speed is not finite, the light is no bulb, or is gone.

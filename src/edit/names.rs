@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-/// The names in use in a list, and those that were given since.
+/// The names in use in a list, and those taken since.
 #[derive(Debug, Default)]
 pub(super) struct Names<'a> {
     taken: HashSet<&'a str>,
@@ -18,7 +18,7 @@ impl<'a> FromIterator<&'a str> for Names<'a> {
 }
 
 impl Names<'_> {
-    /// Gives out `wish` if it is free, else with the lowest number behind it that is.
+    /// Takes `wish` if it is free, otherwise with the lowest free number appended.
     ///
     /// Names are only added, so that each number is tried once, however many are given.
     pub(super) fn take(&mut self, wish: &str) -> String {

@@ -1,7 +1,7 @@
 //! Navigation: orbit, pan, zoom, look and fly with the selected camera.
 //!
-//! Drags yaw about the world's Y and pitch about the camera's X. Pixels are brought to units of the
-//! world at the depth of what is looked at, so that what is under the pointer stays there.
+//! Drags yaw about the world's Y and pitch about the camera's X. Pixels are converted to units of
+//! the world at the depth of the hit, so that it stays under the pointer.
 
 use glam::{DVec2, DVec3};
 
@@ -10,11 +10,11 @@ use super::{GesturePhase, Refusal, set_transform};
 use crate::base::image::Size;
 use crate::scene::{CameraMode, Command, Lens, Observer, Pose, Projection, Scene, View};
 
-/// What a notch of the wheel towards the picture leaves of the distance.
+/// The factor of the distance for one notch of the wheel.
 pub const NOTCH: f64 = 0.9;
 
-/// A place on the picture from which to zoom: in pixels, x to the right and y down from the upper
-/// left, with how far before the camera lies what is seen there, if known.
+/// A point of the picture to zoom to, in pixels from the upper left, with the depth of the hit
+/// there if known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
     /// Pixels from the upper left.
@@ -23,8 +23,8 @@ pub struct Pointer {
     pub depth: Option<f64>,
 }
 
-/// Turns the camera where it stands: `yaw` to the left, `pitch` upwards, in radians. In analysis,
-/// which cannot look aside, the camera orbits the other way round instead.
+/// Turns the camera in place: `yaw` to the left, `pitch` upwards, in radians. In analysis the
+/// camera orbits in the opposite direction instead.
 ///
 /// # Errors
 /// If the observer is an object.
@@ -43,7 +43,7 @@ pub fn look(
     set_transform::pose(scene, view.camera, Pose { axes: turn * pose.axes, ..pose }, phase)
 }
 
-/// Takes the camera round the selected object's centre (the world's where there is no object), by
+/// Orbits the camera around the centre of the selected object (the origin if there is none), by
 /// `yaw` about the world's Y and `pitch` about the camera's X, in radians.
 ///
 /// # Errors
@@ -68,8 +68,8 @@ pub fn orbit(
     set_transform::pose(scene, view.camera, pose, phase)
 }
 
-/// Moves the camera across its view, so that what is at the selected object's depth follows a
-/// pointer that has moved by `pixels` (x to the right, y down). Returns to fly.
+/// Pans the camera, so that points at the depth of the selected object follow a pointer that has
+/// moved by `pixels` (x to the right, y down). Returns to fly.
 ///
 /// # Errors
 /// If the observer is an object.
@@ -86,8 +86,8 @@ pub fn pan(
     set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
 }
 
-/// Moves the camera in its own frame, as the keys do that fly while the right button is held.
-/// Returns to fly.
+/// Moves the camera in its own frame, for the keys that fly while the right button is held. Returns
+/// to fly.
 ///
 /// # Errors
 /// If the observer is an object.
@@ -103,9 +103,9 @@ pub fn fly(
 
 /// Zooms in by this number of notches of the wheel (out if negative).
 ///
-/// In perspective the eye goes along the ray through the pointer, in parallel projection less of
-/// the world is seen; what is under the pointer stays there. In analysis the camera keeps to its
-/// axis, never nearer to the centre than the near plane.
+/// In perspective the eye moves along the ray through the pointer; in orthographic projection the
+/// half-size changes. The hit stays under the pointer. In analysis the camera moves along its axis,
+/// never nearer to the centre than the near plane.
 ///
 /// # Errors
 /// If the observer is an object, or the camera is as near as it may be.
@@ -153,7 +153,7 @@ pub fn zoom(
     }
 }
 
-/// How many units of the world, at `depth` before the camera, a pixel spans.
+/// The units of the world per pixel at `depth` in front of the camera.
 #[must_use]
 pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f64 {
     let lens = scene.selected_camera(view).lens;
@@ -165,7 +165,7 @@ pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f6
     }
 }
 
-/// The selected camera's pose, while it is the one that looks.
+/// The pose of the selected camera, if it is the observer.
 fn looking_pose(scene: &Scene, view: &View) -> Result<Pose, Refusal> {
     if view.observer == Observer::Object && view.object.is_some() {
         return Err(Refusal::ObjectLooks);
@@ -173,15 +173,14 @@ fn looking_pose(scene: &Scene, view: &View) -> Result<Pose, Refusal> {
     Ok(effective_pose(scene, view))
 }
 
-/// What drags of the view go round: the selected object's centre, else the world's.
+/// The pivot of drags: the centre of the selected object, otherwise the origin.
 fn pivot(scene: &Scene, view: &View) -> DVec3 {
     let object = view.object.and_then(|id| scene.objects.get(id));
     object.map_or(DVec3::ZERO, |object| object.centre(view.time))
 }
 
-/// How far before the camera what it looks at is: the pivot where it is before it, else as far as
-/// the pivot is in whatever direction, and never nearer than the near plane: so a drag always moves
-/// something, and a wheel goes through what it has come to.
+/// The depth of the pivot if it is in front of the camera, otherwise its distance, and at least the
+/// near plane: a drag always moves the view, and the wheel passes through the pivot.
 fn depth(scene: &Scene, view: &View, pose: &Pose) -> f64 {
     let away = pose.eye - pivot(scene, view);
     let ahead = away.dot(pose.axes.z_axis);

@@ -1,8 +1,8 @@
 //! Placements as numbers: position, rotation, scale.
 //!
 //! An object's placement is a matrix, which need not be a product of one translation, rotation and
-//! scale. So each number is set without touching what the others say: a new turn is multiplied with
-//! what is left of the matrix when the old turn is taken out of it, and a shear stays.
+//! scale. Setting one of them keeps the others: a new rotation replaces the old one in the matrix,
+//! and a shear stays.
 //!
 //! Angles are in degrees here: an object's are about X, Y and Z with `R = Rx Ry Rz`, a camera's are
 //! yaw, pitch and roll with `R = Ry Rx Rz`.
@@ -39,8 +39,7 @@ pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     DVec3::new(about_x, about_y, about_z).map(f64::to_degrees)
 }
 
-/// How much longer an object's axes are than those of its model; X is negative where it is
-/// mirrored.
+/// The scale of an object along its axes; X is negative if it is mirrored.
 #[must_use]
 pub fn scale(placement: &DMat4) -> DVec3 {
     let m = DMat3::from_mat4(*placement);
@@ -64,7 +63,7 @@ pub fn camera_degrees(pose: &Pose) -> DVec3 {
     DVec3::new(yaw, pitch, roll).map(f64::to_degrees)
 }
 
-/// Puts an object's origin at a place.
+/// Sets the position of an object's origin.
 ///
 /// # Errors
 /// If the numbers are not finite, or the object is gone.
@@ -79,7 +78,7 @@ pub fn object_translation(
     set_transform::object(scene, view, id, DMat4 { w_axis: to.extend(1.0), ..m }, phase)
 }
 
-/// Gives an object another turn, in degrees as [`turn_degrees`] shows it.
+/// Sets the rotation of an object, in degrees as in [`turn_degrees`].
 ///
 /// # Errors
 /// If the numbers are not finite, or the object is gone.
@@ -96,7 +95,7 @@ pub fn object_turn(
     set_transform::object(scene, view, id, math::placed(linear, translation(&m)), phase)
 }
 
-/// Gives an object's axes other lengths, as [`scale`] shows them. Negative ones mirror.
+/// Sets the scale of an object, as in [`scale`]. Negative factors mirror.
 ///
 /// # Errors
 /// If the object would become flat, a number is not finite, or the object is gone.
@@ -126,7 +125,7 @@ pub fn object_scale(
     set_transform::object(scene, view, id, math::placed(linear, translation(&m)), phase)
 }
 
-/// Gives an object a placement as a whole.
+/// Sets the whole placement of an object.
 ///
 /// # Errors
 /// If it is not finite, or flat, or the object is gone.
@@ -143,7 +142,7 @@ pub fn object(
     set_transform::object(scene, view, id, to, phase)
 }
 
-/// Puts a camera's eye at a place. In analysis the camera goes on looking at its centre.
+/// Sets the eye of a camera. In analysis the camera keeps looking at its centre.
 ///
 /// # Errors
 /// If the numbers are not finite, or the camera is gone.
@@ -163,8 +162,8 @@ pub fn camera_eye(
     set_transform::pose(scene, id, Pose { eye: to, axes, ..pose }, phase)
 }
 
-/// Gives a camera yaw, pitch and roll, in degrees as [`camera_degrees`] shows them. In analysis it
-/// goes to where it sees its centre so, as far away as it was.
+/// Sets yaw, pitch and roll of a camera, in degrees as in [`camera_degrees`]. In analysis it orbits
+/// its centre at the same distance.
 ///
 /// # Errors
 /// If the numbers are not finite, or the camera is gone.
@@ -186,7 +185,7 @@ pub fn camera_turn(
     set_transform::pose(scene, id, Pose { eye, axes, ..pose }, phase)
 }
 
-/// Gives a camera a pose as a whole. It flies afterwards.
+/// Sets the whole pose of a camera. It flies afterwards.
 ///
 /// # Errors
 /// If the numbers are not finite, or the camera is gone.
@@ -200,10 +199,10 @@ pub fn camera(
     set_transform::pose(scene, id, Pose { eye, axes, mode: CameraMode::Fly }, phase)
 }
 
-/// Puts a bulb, or a spot of its own, at a place.
+/// Sets the position of a bulb or a free spot.
 ///
 /// # Errors
-/// If the light has no place of its own, or the numbers are not finite.
+/// If the light has no position of its own, or the numbers are not finite.
 pub fn light_position(
     scene: &Scene,
     id: LightId,
@@ -218,10 +217,10 @@ pub fn light_position(
     set_transform::light(scene, id, place, phase)
 }
 
-/// Gives a sun, or a spot of its own, a direction, of any length but 0.
+/// Sets the direction of a sun or a free spot, of any length but 0.
 ///
 /// # Errors
-/// If the light has no direction of its own, or the numbers give none.
+/// If the light has no direction of its own, or the direction has no length.
 pub fn light_direction(
     scene: &Scene,
     id: LightId,

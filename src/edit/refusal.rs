@@ -2,22 +2,22 @@
 
 use crate::scene::CommandError;
 
-/// Why a wish is not fulfilled. Nothing has changed then.
+/// Why a request is refused. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// There is no object to do it with.
+    /// There is no object.
     #[error("there is no object")]
     NoObject,
-    /// There is no light to do it with.
+    /// There is no light.
     #[error("there is no light")]
     NoLight,
     /// Nothing can be framed.
     #[error("there is nothing visible to frame")]
     NothingToFrame,
-    /// What the wish names is not in the scene.
+    /// The item is not in the scene.
     #[error("it is no longer in the scene")]
     Gone,
-    /// Nothing of the chosen kind has another to go on to.
+    /// There is no other item of its kind.
     #[error("there is only one of its kind")]
     OnlyOne,
     /// Cameras have no size.
@@ -47,13 +47,13 @@ pub enum Refusal {
     /// The history is at its end.
     #[error("there is nothing to redo")]
     NothingUndone,
-    /// The item was never anything else.
+    /// The item was never transformed.
     #[error("there is no transformation to undo")]
     NothingToTakeBack,
     /// The object would become flat.
     #[error("a scale of 0 would flatten the object irreversibly")]
     Flat,
-    /// A number would be infinite or none.
+    /// A number would be infinite or NaN.
     #[error("a number would become too large")]
     TooLarge,
     /// A vector of length 0 points nowhere.
@@ -65,7 +65,7 @@ pub enum Refusal {
     /// The scene is seen from an object.
     #[error("the observer is an object: press C to look through the camera")]
     ObjectLooks,
-    /// Neither frames nor modes belong to lights.
+    /// Lights have neither frames nor modes.
     #[error("lights have neither a mode nor a frame to choose")]
     NoModeOfLight,
     /// The key acts on lights.
@@ -95,13 +95,13 @@ pub enum Refusal {
     /// Splitting would flood the outline.
     #[error("the object has {0} parts; at most {1} can be split at once")]
     TooManyParts(usize, usize),
-    /// Nothing turns, nothing to apply.
+    /// There is no spin to apply.
     #[error("the object does not spin")]
     NotSpinning,
-    /// The edges of the model are smooth or sharp by something else.
+    /// The crease angle has no effect on the model.
     #[error("the crease angle has no effect: {0}")]
     NoCrease(&'static str),
-    /// Only a bulb circles.
+    /// Only a bulb orbits.
     #[error("only a bulb can orbit")]
     NotABulb,
     /// A name of blanks.

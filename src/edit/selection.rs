@@ -1,7 +1,7 @@
 //! The selection and the subject, and how they follow changes of the scene.
 //!
-//! None of this is a step of undo, but for one thing: while the selected camera is in analysis,
-//! selecting another object aims the camera at that one. So a selection is a view and, sometimes, a
+//! Selections are not steps of undo, with one exception: while the selected camera is in analysis,
+//! selecting another object aims the camera at it. So a selection is a view and sometimes a
 //! command.
 
 use super::set_transform;
@@ -14,7 +14,7 @@ use crate::scene::{
 /// A view after a selection, with the command that goes with it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
-    /// The view to be shown.
+    /// The new view.
     pub view: View,
     /// Aims the selected camera at the newly selected object, if it is in analysis.
     pub command: Option<Command>,
@@ -28,7 +28,7 @@ pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refus
     select_in(scene, view, id, GesturePhase::First)
 }
 
-/// The same as part of a gesture: a held key pushes on the camera's stack once.
+/// The same as part of a gesture: a held key pushes the pose of the camera once.
 fn select_in(
     scene: &Scene,
     view: &View,
@@ -94,7 +94,7 @@ pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal
     Ok(selection)
 }
 
-/// The key Tab: selects the next item of the subject, round and round.
+/// Selects the next item of the subject, cyclically (key Tab).
 ///
 /// # Errors
 /// If there is no other item.
@@ -132,7 +132,7 @@ pub const fn subject_of(id: ItemId) -> Subject {
     }
 }
 
-/// The key `c`: camera, object, light, camera ...
+/// Changes the subject: camera, object, light, camera ... (key `c`).
 pub const fn cycle_subject(view: &mut View) {
     let next = match view.subject {
         Subject::Camera => Subject::Object,
@@ -151,10 +151,10 @@ pub const fn set_subject(view: &mut View, subject: Subject) {
     }
 }
 
-/// The keys `t`, `r` and `s`.
+/// Chooses the transformation (keys `t`, `r` and `s`).
 ///
 /// # Errors
-/// Scaling, while the subject is not objects.
+/// Scaling, if the subject is not objects.
 pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Refusal> {
     if to == Transformation::Scaling && view.subject != Subject::Object {
         return Err(Refusal::OnlyObjectsScale);
@@ -163,7 +163,7 @@ pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Ref
     Ok(())
 }
 
-/// The key `C`: the selected camera looks, or the selected object.
+/// Switches the observer between the selected camera and the selected object (key `C`).
 ///
 /// # Errors
 /// If there is no object.
@@ -178,7 +178,7 @@ pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The key `o`: the whole object, or one polygon of it at a time, from polygon 0.
+/// Switches polygon mode on, from polygon 0, or off (key `o`).
 ///
 /// # Errors
 /// If there is no object, or it has no polygons.
@@ -193,10 +193,10 @@ pub fn toggle_polygons(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The key Enter: the next polygon of the selected object, round and round.
+/// Selects the next polygon of the selected object, cyclically (key Enter).
 ///
 /// # Errors
-/// Outside of polygon mode.
+/// Outside polygon mode.
 pub fn next_polygon(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     let count = polygon_count(scene, view)?;
     let mode = view.polygons.as_mut().ok_or(Refusal::NotInPolygonMode)?;
@@ -218,8 +218,8 @@ pub fn go_to_polygon(scene: &Scene, view: &mut View, polygon: u32) -> Result<(),
     Ok(())
 }
 
-/// Makes the view fit a scene that has changed from `before`: what appeared is selected, and where
-/// the selected item is gone, the next in its list is, else the one before.
+/// Adapts the view to a scene that has changed from `before`: new items are selected, and if the
+/// selected item is gone, the next in its list is, or else the one before.
 ///
 /// After every command, undo and redo.
 pub fn follow(before: &Scene, scene: &Scene, view: &mut View) {
@@ -234,7 +234,7 @@ pub fn follow(before: &Scene, scene: &Scene, view: &mut View) {
     settle(scene, view);
 }
 
-/// Makes the view fit the scene: what it names exists, and the selected polygon too.
+/// Adapts the view to the scene: selected items and polygons exist.
 pub fn settle(scene: &Scene, view: &mut View) {
     if scene.cameras.get(view.camera).is_none() {
         view.camera = scene.cameras.first().unwrap_or(view.camera);
@@ -254,7 +254,7 @@ pub fn settle(scene: &Scene, view: &mut View) {
     keep_polygons(scene, view);
 }
 
-/// What of a list is selected after a change.
+/// The selected item of a list after a change.
 fn followed<K: Copy + Ord, T>(
     before: &List<K, T>,
     after: &List<K, T>,

@@ -1,7 +1,7 @@
 //! Sets transforms: pushes the old one once a gesture, and keeps cameras in analysis aimed.
 //!
-//! A transformation pushes what the item was, once a gesture. A camera in analysis that looks at a
-//! moved object is aimed again in the same command; that pushes nothing on the camera.
+//! A transformation pushes the old transform of the item, once a gesture. A camera in analysis that
+//! looks at a moved object is aimed again in the same command; that pushes nothing on the camera.
 
 use glam::{DMat3, DMat4, DVec3};
 
@@ -101,7 +101,7 @@ pub(super) fn pose_and_lens(
     Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
 }
 
-/// The pose from which the selected object's centre is looked at, upright, in analysis.
+/// The upright pose in analysis that looks at the centre of the selected object.
 pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
     Pose {
         eye: pose.eye,
@@ -118,7 +118,7 @@ pub(super) fn analysis_centre(scene: &Scene, view: &View) -> Option<DVec3> {
     }
 }
 
-/// What of a light can be placed.
+/// The part of a light that can be transformed.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LightPlace {
     Direction(DVec3),
@@ -126,7 +126,7 @@ pub(super) enum LightPlace {
     Aim(Aim),
 }
 
-/// What of the light can be placed, or why nothing can.
+/// The part of the light that can be transformed, or why none can.
 pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
     match &light.kind {
         LightKind::Ambient => Err(Refusal::Ambient),

@@ -17,7 +17,7 @@ use crate::scene::{
     Subject, Transformation, View,
 };
 
-/// Which way along or about an axis.
+/// The direction along or about an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sign {
     /// The lower-case key.
@@ -35,7 +35,7 @@ impl Sign {
     }
 }
 
-/// One press of x, y or z: transforms the subject's selected item by the view's step.
+/// Transforms the selected item of the subject by one step (keys x, y and z).
 ///
 /// # Errors
 /// If the item cannot be transformed in this way.
@@ -80,8 +80,8 @@ pub fn step(
     }
 }
 
-/// How far one press moves the subject's selected item along `axis`, in the units of the frame that
-/// it is moved in.
+/// The distance of one step along `axis` for the selected item of the subject, in the units of the
+/// frame it is moved in.
 #[must_use]
 pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     let object = view.object.and_then(|id| scene.objects.get(id));
@@ -99,8 +99,8 @@ pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     }
 }
 
-/// Moves the subject's selected item by `delta`: an object in the frame that the view says, a
-/// camera in its own, a light in the world's.
+/// Moves the selected item of the subject by `delta`: an object in the frame of the view, a camera
+/// in its own, a light in the world's.
 ///
 /// # Errors
 /// If it cannot be moved.
@@ -139,13 +139,12 @@ pub fn translate(
     }
 }
 
-/// Turns the subject's selected item by the right-hand rule about `axis`: an object in the frame
-/// that the view says (the global one turns about the world's origin), a camera in fly about its
-/// own eye and in analysis about the centre it looks at, both in its own frame, a light in the
-/// world's.
+/// Rotates the selected item of the subject about `axis` by the right-hand rule: an object in the
+/// frame of the view (the global frame rotates about the origin), a camera in fly about its eye and
+/// in analysis about its centre, both in its own frame, a light in the world's.
 ///
 /// # Errors
-/// If it cannot be turned.
+/// If it cannot be rotated.
 pub fn rotate(
     scene: &Scene,
     view: &View,
@@ -178,7 +177,7 @@ pub fn rotate(
     }
 }
 
-/// Makes the selected object larger or smaller by `factor` in all directions.
+/// Scales the selected object uniformly by `factor`.
 ///
 /// # Errors
 /// If the subject is not objects, or the object would become flat.
@@ -191,8 +190,8 @@ pub fn scale(
     stretch(scene, view, DVec3::splat(factor), phase)
 }
 
-/// Makes the selected object larger or smaller by a factor for each axis of the frame that the view
-/// says; a negative one mirrors it.
+/// Scales the selected object by a factor for each axis of the frame of the view; negative factors
+/// mirror it.
 ///
 /// # Errors
 /// If the subject is not objects, or the object would become flat.
@@ -209,7 +208,7 @@ pub fn stretch(
     }
 }
 
-/// The key `u`: the subject's selected item becomes what it was before its last transformation.
+/// Undoes the last transformation of the selected item of the subject (key `u`).
 ///
 /// # Errors
 /// If it was never transformed.
@@ -242,8 +241,8 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     }
 }
 
-/// The key `g` while the subject is cameras: from fly to analysis, which aims the selected camera
-/// at the selected object's centre, and back, which moves nothing and pushes nothing.
+/// Switches the selected camera from fly to analysis, which aims it at the centre of the selected
+/// object, or back, which moves and pushes nothing (key `g`).
 ///
 /// # Errors
 /// If there is no object to look at.
@@ -262,7 +261,7 @@ pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
     }
 }
 
-/// The selected object's placement, multiplied from the side that the frame says.
+/// The placement of the selected object, multiplied from the side of the frame.
 fn transform(
     scene: &Scene,
     view: &View,
@@ -308,7 +307,7 @@ pub(super) fn orbited(pose: &Pose, turn: DMat3, centre: DVec3) -> Pose {
 
 /// The selected camera in analysis moved in its own frame: aimed again, and never past the centre.
 ///
-/// Towards the centre it goes as far as the near plane, where it would see nothing of it any more.
+/// Towards the centre it stops at the near plane, where the object would vanish.
 pub(super) fn moved_about(
     scene: &Scene,
     view: &View,

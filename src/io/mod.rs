@@ -30,9 +30,11 @@ pub use findings::{Finding, FindingKind, joined};
 pub use input::Input;
 pub use lessons::lesson_scene;
 pub use obj::{Loaded, load, parse};
-pub use picture::{PictureFormat, check_picture_target, save_picture};
+pub use picture::{PICTURE_FORMATS, PictureFormat, check_picture_target, save_picture};
 pub use progress::{Cancelled, Progress};
 pub use read::check_file;
 pub use replace::SaveError;
 pub use scene_file::{Opened, SCENE_ENDING, SceneFileError, open, open_with, save, to_text};
-pub use texture::{load_picture, load_texture, load_texture_with};
+pub use texture::{
+    load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
+};

@@ -18,57 +18,74 @@ const JPEG_QUALITY: u8 = 92;
 /// How many bytes identify the format of a picture.
 const SIGNATURE: u64 = 64;
 
-/// Why a picture whose name ends otherwise is refused.
-const ENDINGS: &str = "its name has to end in .png, .jpg, .webp or .ppm";
-
-/// How a picture is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PictureFormat {
-    /// Lossless; with an alpha channel only if a pixel needs one.
-    Png,
-    /// Lossy, and smaller; without alpha.
-    Jpeg,
-    /// Lossless, at most 16383 pixels on a side.
-    WebP,
-    /// Three bytes per pixel, uncompressed; without alpha.
-    Ppm,
+/// A format that pictures are written in.
+#[derive(Debug)]
+pub struct PictureFormat {
+    /// What people call it.
+    pub name: &'static str,
+    /// How names of such files end, in lower case; the first is the usual one.
+    pub endings: &'static [&'static str],
+    encode: fn(&Picture, &mut Vec<u8>) -> Result<(), ImageError>,
 }
 
+/// The formats that pictures are written in.
+pub static PICTURE_FORMATS: &[PictureFormat] = &[
+    PictureFormat {
+        name: "PNG",
+        endings: &["png"],
+        encode: |picture, to| write(picture, PngEncoder::new(to)),
+    },
+    PictureFormat {
+        name: "JPEG",
+        endings: &["jpg", "jpeg"],
+        encode: |picture, to| {
+            write_opaque(picture, JpegEncoder::new_with_quality(to, JPEG_QUALITY))
+        },
+    },
+    PictureFormat {
+        name: "WebP",
+        endings: &["webp"],
+        encode: |picture, to| write(picture, WebPEncoder::new_lossless(to)),
+    },
+    PictureFormat { name: "PPM", endings: &["ppm"], encode: write_ppm },
+];
+
 impl PictureFormat {
-    /// The format of a file by the ending of its name.
+    /// The format that the ending of a file's name asks for.
     ///
     /// # Errors
-    /// Which endings there are, if it has none of them.
-    pub fn of(path: &Path) -> Result<Self, &'static str> {
+    /// The endings of all formats, if it has none of them.
+    pub fn of(path: &Path) -> Result<&'static Self, String> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-        match ending.as_deref().and_then(|ending| ending.to_str()) {
-            Some("png") => Ok(Self::Png),
-            Some("jpg" | "jpeg") => Ok(Self::Jpeg),
-            Some("webp") => Ok(Self::WebP),
-            Some("ppm") => Ok(Self::Ppm),
-            _ => Err(ENDINGS),
-        }
+        let ending = ending.as_deref().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let found = PICTURE_FORMATS.iter().find(|format| format.endings.contains(&ending));
+        found.ok_or_else(|| format!("its name has to end in {}", Self::usual_endings()))
+    }
+
+    /// The usual endings of all formats: ".png, .jpg, .webp or .ppm".
+    #[must_use]
+    pub fn usual_endings() -> String {
+        either(PICTURE_FORMATS.iter().map(|format| format!(".{}", format.endings[0])))
     }
 
     /// The picture as the bytes of a file.
     ///
     /// # Errors
     /// The reason, if the format cannot hold it.
-    pub fn encode(self, picture: &Picture) -> Result<Vec<u8>, String> {
+    pub fn encode(&self, picture: &Picture) -> Result<Vec<u8>, String> {
         let mut content = Vec::new();
-        let encoded = match self {
-            Self::Png => write(picture, PngEncoder::new(&mut content)),
-            Self::WebP => write(picture, WebPEncoder::new_lossless(&mut content)),
-            Self::Jpeg => {
-                let encoder = JpegEncoder::new_with_quality(&mut content, JPEG_QUALITY);
-                write_opaque(picture, encoder)
-            }
-            Self::Ppm => {
-                content = ppm(picture);
-                Ok(())
-            }
-        };
-        encoded.map(|()| content).map_err(|error| error.to_string())
+        (self.encode)(picture, &mut content).map_err(|error| error.to_string())?;
+        Ok(content)
+    }
+}
+
+/// Words as a list in a sentence: "a, b or c".
+pub(super) fn either(words: impl Iterator<Item = String>) -> String {
+    let words: Vec<String> = words.collect();
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
     }
 }
 
@@ -78,7 +95,7 @@ impl PictureFormat {
 /// If the ending is unknown, or the file cannot be written; an existing file stays as it was.
 pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
-    let format = PictureFormat::of(path).map_err(|reason| fail(reason.to_owned()))?;
+    let format = PictureFormat::of(path).map_err(fail)?;
     replace(path, &format.encode(picture).map_err(fail)?, Worth::Product)
 }
 
@@ -89,7 +106,7 @@ pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
 /// If it could not.
 pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     let fail = |reason: &str| SaveError::new(path, reason);
-    PictureFormat::of(path).map_err(fail)?;
+    PictureFormat::of(path).map_err(|reason| fail(&reason))?;
     check_target(path)?;
     let mut begin = Vec::new();
     let Ok(file) = File::open(path) else { return Ok(()) };
@@ -122,10 +139,11 @@ fn sides(picture: &Picture) -> [u32; 2] {
     [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX))
 }
 
-fn ppm(picture: &Picture) -> Vec<u8> {
+fn write_ppm(picture: &Picture, to: &mut Vec<u8>) -> Result<(), ImageError> {
     let size = picture.size();
-    let head = format!("P6\n{} {}\n255\n", size.width, size.height);
-    [head.as_bytes(), &opaque_bytes(picture)].concat()
+    to.extend(format!("P6\n{} {}\n255\n", size.width, size.height).bytes());
+    to.extend(opaque_bytes(picture));
+    Ok(())
 }
 
 fn opaque_bytes(picture: &Picture) -> Vec<u8> {

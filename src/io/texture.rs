@@ -8,6 +8,7 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
 use super::error::{LoadError, shown};
 use super::findings::{Finding, FindingKind, Findings};
+use super::picture::either;
 use super::progress::Progress;
 use super::read::read;
 use crate::base::Shared;
@@ -23,8 +24,33 @@ const MOST_MEMORY: u64 = 2 << 30;
 /// The most bytes of a file.
 const MOST_BYTES: usize = 2 << 30;
 
+/// The formats that textures are read in, by the names that people call them.
+const FORMATS: &[(&str, ImageFormat)] = &[
+    ("PNG", ImageFormat::Png),
+    ("JPEG", ImageFormat::Jpeg),
+    ("WebP", ImageFormat::WebP),
+    ("TIFF", ImageFormat::Tiff),
+    ("BMP", ImageFormat::Bmp),
+    ("TGA", ImageFormat::Tga),
+    ("GIF", ImageFormat::Gif),
+];
+
+/// The formats that textures are read in, as a list in a sentence.
+#[must_use]
+pub fn texture_formats() -> String {
+    either(FORMATS.iter().map(|(name, _)| (*name).to_owned()))
+}
+
+/// How names of textures end.
+#[must_use]
+pub fn texture_endings() -> Vec<&'static str> {
+    FORMATS.iter().flat_map(|(_, format)| format.extensions_str()).copied().collect()
+}
+
 /// The message for a file of another kind.
-const UNKNOWN: &str = "this is not a PNG, JPEG, WebP, TIFF, BMP, TGA or GIF";
+fn unknown() -> String {
+    format!("this is not a {}", texture_formats())
+}
 
 /// Reads a texture that the user chooses: it repeats, and follows the model's texture coordinates.
 ///
@@ -45,7 +71,8 @@ pub fn load_texture_with(
     Pictures::default().texture(path, findings)
 }
 
-/// Reads a PNG, JPEG, WebP, TIFF, BMP, TGA or GIF (its first picture), whatever its name ends in.
+/// Reads a picture in any of the formats that textures have, whatever its name ends in; of a GIF, the
+/// first picture.
 ///
 /// # Errors
 /// If the file cannot be read, is not a picture, or is too large.
@@ -136,7 +163,7 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
     let mut reader =
         reader.with_guessed_format().map_err(|error| LoadError::system(&file, &error))?;
     if reader.format().is_none() {
-        return Err(fail(UNKNOWN.to_owned()));
+        return Err(fail(unknown()));
     }
     let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(&bytes);
     let mut limits = image::Limits::default();
@@ -213,7 +240,7 @@ fn reason(error: &image::ImageError) -> String {
         ImageError::Limits(_) => {
             format!("the picture takes more than {} GB of memory", MOST_MEMORY >> 30)
         }
-        ImageError::Unsupported(_) => UNKNOWN.to_owned(),
+        ImageError::Unsupported(_) => unknown(),
         _ => "the picture is damaged".to_owned(),
     }
 }
@@ -224,15 +251,15 @@ mod tests {
 
     #[test]
     fn every_kind_of_picture_is_read_whatever_its_name_ends_in() {
-        use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga, Tiff, WebP};
         let folder = tempfile::tempdir().unwrap();
         let texels = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]];
         let drawn = image::RgbaImage::from_fn(8, 8, |x, y| {
             image::Rgba(texels[(x / 4 + y / 4 * 2) as usize])
         });
-        for format in [Bmp, Gif, Jpeg, Png, Tga, Tiff, WebP] {
-            // Only a TGA has no signature.
-            let path = folder.path().join(if format == Tga { "a.tga" } else { "a.picture" });
+        for (_, format) in FORMATS.iter().copied() {
+            // Only a TGA has nothing in it that tells what it is.
+            let path =
+                folder.path().join(if format == ImageFormat::Tga { "a.tga" } else { "a.picture" });
             let written = DynamicImage::from(drawn.clone()).to_rgb8();
             written.save_with_format(&path, format).unwrap();
             let read = load_picture(&path).unwrap();

@@ -17,7 +17,7 @@ pub struct Quartiles {
 }
 
 impl Quartiles {
-    /// The quartiles of some numbers, which must not be NaN; `None` if there are none.
+    /// The quartiles of these numbers without NaN; `None` if there are none.
     #[must_use]
     pub fn of(numbers: &[f64]) -> Option<Self> {
         let mut sorted = numbers.to_vec();
@@ -33,7 +33,7 @@ impl Quartiles {
     }
 }
 
-/// The median of some numbers, which must not be NaN; `None` if there are none.
+/// The median of these numbers without NaN; `None` if there are none.
 #[must_use]
 pub fn median(numbers: &[f64]) -> Option<f64> {
     Quartiles::of(numbers).map(|quartiles| quartiles.median)

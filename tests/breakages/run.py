@@ -31,7 +31,7 @@ def output(*command, **options):
 
 # What the window and the command line are made of, and what only their tests and benchmarks use.
 UPPER_FLOORS = ("src/app/", "src/cli/", "src/main.rs", "benches/", "examples/", "fuzz/", "docs/")
-THEIR_CRATES = ("criterion", "eframe", "egui", "egui_kittest", "egui_plot", "rfd")
+THEIR_CRATES = ("criterion", "eframe", "egui", "egui_kittest", "egui_material_icons", "egui_plot", "rfd")
 
 
 def lower_floors(name, text):

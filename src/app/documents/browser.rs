@@ -7,20 +7,20 @@ use std::path::{Path, PathBuf};
 use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Ui};
 
-/// Whether the file is to be read or to be written.
+/// Whether the file is opened or saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     Open,
     Save,
 }
 
-/// The choice of a file.
+/// A file browser.
 #[derive(Debug)]
 pub(crate) struct Browser {
     title: &'static str,
     mode: Mode,
     /// Endings without the dot, the first being the one that a name without any gets.
-    endings: &'static [&'static str],
+    endings: Vec<&'static str>,
     /// What stands in the path field.
     path: String,
     folder: PathBuf,
@@ -48,7 +48,7 @@ impl Browser {
     pub(crate) fn new(
         title: &'static str,
         mode: Mode,
-        endings: &'static [&'static str],
+        endings: Vec<&'static str>,
         folder: &Path,
         name: &str,
     ) -> Self {
@@ -67,7 +67,7 @@ impl Browser {
         browser
     }
 
-    /// Shows the choice. Gives how it ended, once it has.
+    /// Shows the dialog. Returns how it ended, once it has.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<Choice> {
         ui.set_width(ui.available_width().clamp(240.0, 520.0));
         ui.heading(self.title);
@@ -222,7 +222,7 @@ mod tests {
     fn a_name_without_an_ending_gets_the_first_one_only_where_it_is_saved() {
         let folder = tempfile::tempdir().unwrap();
         let named = |mode| {
-            let browser = Browser::new("", mode, &["png", "ppm"], folder.path(), "view");
+            let browser = Browser::new("", mode, vec!["png", "ppm"], folder.path(), "view");
             browser.named().file_name().unwrap().to_string_lossy().into_owned()
         };
         assert_eq!(named(Mode::Save), "view.png");
@@ -235,7 +235,7 @@ mod tests {
         std::fs::write(folder.path().join("b.OBJ"), "").unwrap();
         std::fs::write(folder.path().join("a.txt"), "").unwrap();
         std::fs::create_dir(folder.path().join("z")).unwrap();
-        let browser = Browser::new("", Mode::Open, &["obj"], folder.path(), "");
+        let browser = Browser::new("", Mode::Open, vec!["obj"], folder.path(), "");
         let names: Vec<&str> = browser.entries.iter().map(|entry| entry.name.as_str()).collect();
         assert_eq!(names, ["z", "b.OBJ"]);
     }
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn a_path_that_does_not_exist_is_not_opened() {
         let folder = tempfile::tempdir().unwrap();
-        let mut browser = Browser::new("", Mode::Open, &["obj"], folder.path(), "none.obj");
+        let mut browser = Browser::new("", Mode::Open, vec!["obj"], folder.path(), "none.obj");
         assert_eq!(browser.take(), None);
         assert!(browser.fault.is_some());
     }

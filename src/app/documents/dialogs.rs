@@ -12,6 +12,7 @@ use super::browser::{Browser, Choice, Mode};
 use super::material_dialog::{self, MaterialChoices, MaterialDialog};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::take_focus;
+use crate::io;
 use crate::scene::ObjectId;
 
 /// A system's dialog that is gone within this time was never there.
@@ -95,17 +96,17 @@ enum Dialog {
 }
 
 impl Dialogs {
-    /// Says in one sentence what went wrong.
+    /// Reports an error in one sentence.
     pub(crate) fn tell_fault(&mut self, sentence: String) {
         self.open.push(Dialog::Fault(sentence));
     }
 
-    /// Lists more about a notice.
+    /// Shows the details of a notice.
     pub(crate) fn tell_details(&mut self, title: String, lines: Vec<String>) {
         self.open.push(Dialog::Details(title, lines));
     }
 
-    /// Asks whether unsaved work is to be saved.
+    /// Asks whether to save unsaved changes.
     pub(crate) fn ask_unsaved(&mut self, after: After) {
         if !self.open.iter().any(|dialog| matches!(dialog, Dialog::Unsaved(_))) {
             self.open.push(Dialog::Unsaved(after));
@@ -117,7 +118,7 @@ impl Dialogs {
         self.open.push(Dialog::Material(Box::new(dialog)));
     }
 
-    /// Gives the model whose material is being chosen a texture.
+    /// Sets the texture of the model whose material is being chosen.
     pub(crate) fn set_texture(&mut self, path: PathBuf) {
         for dialog in self.open.iter_mut().rev() {
             if let Dialog::Material(material) = dialog {
@@ -143,7 +144,7 @@ impl Dialogs {
             let task = Task::start(ctx, title.to_owned(), move |_| {
                 let mut dialog = rfd::FileDialog::new()
                     .set_title(title)
-                    .add_filter(endings.join(", "), endings)
+                    .add_filter(endings.join(", "), &endings)
                     .set_directory(folder);
                 if !own_name.is_empty() {
                     dialog = dialog.set_file_name(own_name);
@@ -217,7 +218,7 @@ impl Dialogs {
             Some(Some(paths)) if !paths.is_empty() => Some(self.chosen(wanted, paths)),
             Some(_) if begun.elapsed() >= AT_ONCE => Some(Answer::NoFile(wanted)),
             Some(_) | None => {
-                // The system has none: it is not asked again.
+                // The system has no file dialog: do not try again.
                 self.native = false;
                 self.browse(wanted, &name);
                 None
@@ -248,17 +249,19 @@ impl Dialogs {
 }
 
 impl Wanted {
-    fn description(&self) -> (&'static str, Mode, &'static [&'static str]) {
-        const MODELS: &[&str] = &["obj", "gz"];
-        const PICTURES: &[&str] =
-            &["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "gif"];
+    fn description(&self) -> (&'static str, Mode, Vec<&'static str>) {
+        let models = || vec!["obj", "gz"];
+        let scenes = || vec!["marraztu"];
+        let pictures = || io::PICTURE_FORMATS.iter().map(|format| format.endings[0]).collect();
         match self {
-            Self::Model => ("Load a model", Mode::Open, MODELS),
-            Self::Scene => ("Open a scene", Mode::Open, &["marraztu"]),
-            Self::SceneTo(_) => ("Save the scene", Mode::Save, &["marraztu"]),
-            Self::PictureTo => ("Save the picture", Mode::Save, &["png", "jpg", "webp", "ppm"]),
-            Self::Texture(_) | Self::TextureOfModel => ("Choose a texture", Mode::Open, PICTURES),
-            Self::Missing(_) => ("Where is the missing model?", Mode::Open, MODELS),
+            Self::Model => ("Load a model", Mode::Open, models()),
+            Self::Scene => ("Open a scene", Mode::Open, scenes()),
+            Self::SceneTo(_) => ("Save the scene", Mode::Save, scenes()),
+            Self::PictureTo => ("Save the picture", Mode::Save, pictures()),
+            Self::Texture(_) | Self::TextureOfModel => {
+                ("Choose a texture", Mode::Open, io::texture_endings())
+            }
+            Self::Missing(_) => ("Where is the missing model?", Mode::Open, models()),
         }
     }
 }
@@ -270,7 +273,7 @@ enum End {
     Save,
     Discard,
     Material(MaterialChoices),
-    /// It stays open, and asks for a texture.
+    /// It stays open, and a texture is chosen.
     Asked,
 }
 

@@ -12,11 +12,11 @@ use crate::scene::{LoadOptions, MaterialChoice, ObjectId, Texture};
 #[derive(Debug)]
 pub(crate) struct Loading {
     pub(crate) task: Task<Fetched>,
-    /// Whether a question follows, for which others have to be answered first.
+    /// Whether it opens a dialog, for which others have to be closed first.
     pub(crate) asks: bool,
 }
 
-/// A file that is read once others have been.
+/// A file that waits to be read.
 pub(crate) struct Queued {
     pub(crate) label: String,
     pub(crate) asks: bool,
@@ -56,7 +56,7 @@ pub(crate) struct Wish {
     pub(crate) options: LoadOptions,
     pub(crate) material: Option<MaterialChoice>,
     pub(crate) texture: Option<PathBuf>,
-    /// Whether a scene that is saved counts as saved afterwards.
+    /// Whether the scene still counts as saved afterwards.
     pub(crate) keeps_saved: bool,
 }
 
@@ -73,7 +73,7 @@ pub(crate) fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(SCENE_ENDING))
 }
 
-/// A scene that waits for the user to show where its models are.
+/// A scene that waits for the user to locate its missing models.
 #[derive(Debug)]
 pub(crate) struct Waiting {
     pub(crate) path: PathBuf,

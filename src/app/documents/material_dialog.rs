@@ -34,7 +34,7 @@ pub(crate) struct MaterialChoices {
     pub(crate) texture: Option<PathBuf>,
 }
 
-/// How the choice ends.
+/// How the dialog ends.
 pub(crate) enum End {
     Taken(MaterialChoices),
     Texture,
@@ -42,7 +42,7 @@ pub(crate) enum End {
 }
 
 impl MaterialDialog {
-    /// For a camera's mark.
+    /// For the model of a new camera.
     pub(crate) fn of_camera() -> Self {
         Self::new(None, MaterialChoice::Preset(PresetId::OBSIDIAN), LoadOptions::default())
     }
@@ -68,7 +68,7 @@ impl MaterialDialog {
         self.choices.texture = Some(path);
     }
 
-    /// Shows the choice. Gives how it ended, once it has.
+    /// Shows the dialog. Returns how it ended, once it has.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<End> {
         ui.set_width(ui.available_width().clamp(240.0, 460.0));
         match &self.loaded {

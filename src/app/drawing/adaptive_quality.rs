@@ -3,10 +3,10 @@
 //! While something moves and frames take too long, they are drawn at reduced quality; as soon as
 //! everything is still, at full quality. No code here reads a clock: times are passed in.
 //!
-//! When frames are given up for newer ones: only at full accuracy, only where a frame takes longer
-//! than the budget, and never two in a row. Then a slow frame is never in the way of what is done
-//! next, while in a stream of changes at least every second frame is finished and shown. Coarser
-//! frames are finished: in a stream the next would come no sooner.
+//! A frame is cancelled for a newer one only at full quality, only if it takes longer than the
+//! budget, and never twice in a row. So a slow frame never delays the next action, while in a
+//! stream of changes at least every second frame is finished and shown. Frames at reduced quality
+//! are always finished: cancelling them would not bring the next one sooner.
 
 use std::time::Duration;
 
@@ -37,8 +37,8 @@ impl Reduction {
     /// Full quality.
     pub const NONE: Self = Self { vertex_light: false, nearest_texels: false, half_size: false };
 
-    /// What is tried, one after the other: the first that is quick enough is the one. Half the size
-    /// comes alone too, for a mesh may have more vertices than the picture has pixels.
+    /// The reductions to try, in order; the first that is fast enough is used. Half size also comes
+    /// alone, since a mesh may have more vertices than the picture has pixels.
     const ALL: [Self; 5] = [
         Self::NONE,
         Self { vertex_light: true, ..Self::NONE },
@@ -104,8 +104,8 @@ pub(crate) struct AdaptiveQuality {
 }
 
 impl AdaptiveQuality {
-    /// The reduction for the next picture; `share` (0 to 1) of it would have to be drawn again
-    /// without any reduction.
+    /// Chooses the reduction of the next picture; `share` (0 to 1) is the part of it that has to be
+    /// redrawn at full quality.
     pub(crate) fn choose(&self, moving: bool, share: f64, applicable: Applicable) -> Reduction {
         if !moving || self.expected(Reduction::NONE, share).is_none_or(|time| time <= BUDGET) {
             return Reduction::NONE;
@@ -140,7 +140,7 @@ impl AdaptiveQuality {
     pub(crate) fn record(&mut self, reduction: Reduction, share: f64, time: Duration) {
         let again = std::mem::replace(&mut self.last, reduction) == reduction;
         if reduction != Reduction::NONE {
-            // The first of its kind also makes room for what the others need not.
+            // The first frame at a reduction also allocates memory.
             if again {
                 self.whole[place(reduction)] = Some(time);
             }
@@ -193,9 +193,9 @@ impl Attempt {
 /// What happened since the last frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Happening {
-    /// It is another than the time before.
+    /// The picture differs from the last one.
     pub(crate) changed: bool,
-    /// A button of the mouse is held.
+    /// A mouse button is held.
     pub(crate) held: bool,
     /// A picture is being drawn.
     pub(crate) drawing: bool,
@@ -211,9 +211,9 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// Whether it moves: it changes while a button of the mouse is held, or changes again and again
-    /// without one, as by the wheel or a held key. It is still again when the button is let go, or
-    /// soon after the last change, but not before the picture that shows it is drawn.
+    /// Whether the picture is moving: it changes while a mouse button is held, or repeatedly
+    /// without one, as with the wheel or a held key. It is still again when the button is released
+    /// or soon after the last change, but not before the picture of that change is drawn.
     pub(crate) fn notice(&mut self, now: f64, happening: Happening) -> bool {
         let Happening { changed, held, drawing } = happening;
         let let_go = std::mem::replace(&mut self.held, held) && !held;

@@ -7,15 +7,15 @@ use crate::scene::ItemId;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Border {
     pub(crate) item: ItemId,
-    /// Its own pixels along the border, in runs from left to right.
+    /// The pixels of the item along the border, in runs from left to right.
     pub(crate) inner: Vec<Run>,
-    /// The pixels beside them that are not its own.
+    /// The neighbouring pixels of other items.
     pub(crate) outer: Vec<Run>,
-    /// How large the picture is.
+    /// The size of the picture.
     pub(crate) size: Size,
 }
 
-/// Pixels beside one another in a row.
+/// Adjacent pixels in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Run {
     pub(crate) x: usize,

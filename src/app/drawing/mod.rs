@@ -1,5 +1,4 @@
-//! The thread that draws the pictures of the viewport, and how exactly it draws while the user
-//! waits.
+//! Drawing: the thread that draws the pictures of the viewport, and its adaptive quality.
 
 pub(crate) mod adaptive_quality;
 pub(crate) mod border;

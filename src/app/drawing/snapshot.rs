@@ -11,14 +11,14 @@ pub(crate) struct Snapshot {
     pub(crate) view: View,
     pub(crate) settings: Settings,
     pub(crate) size: Size,
-    /// Whether it is on the move, so that a coarser picture in time is better than none.
+    /// Whether the scene is moving, so that the picture may be drawn at reduced quality.
     pub(crate) moving: bool,
-    /// Whether it shall be said what the picture is made of.
+    /// Whether to explain the effects of the picture.
     pub(crate) explain: bool,
 }
 
 impl Snapshot {
-    /// Whether another one shows something else than the passing of time.
+    /// Whether another snapshot differs in more than the time.
     pub(crate) fn differs_from(&self, other: &Self) -> bool {
         let Self { scene, view, settings, size, moving: _, explain: _ } = self;
         let view = |of: &View| View { time: view.time, ..of.clone() };

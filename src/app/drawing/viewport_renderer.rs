@@ -1,7 +1,7 @@
 //! Draws the pictures of the viewport, and answers what is seen in them.
 //!
-//! A picture is drawn with as much as the hand leaves time for (see
-//! [`pace`](super::adaptive_quality)), and only what has changed of the one before is drawn again.
+//! The quality of a picture adapts to the time it takes (see
+//! [`adaptive_quality`](super::adaptive_quality)), and only what has changed is redrawn.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -25,35 +25,35 @@ pub(crate) struct Drawn {
     /// From the snapshot to the finished picture in memory.
     pub(crate) time: Duration,
     pub(crate) triangles: usize,
-    /// What it does without.
+    /// How its quality is reduced.
     pub(crate) reduction: Reduction,
-    /// What of it was drawn anew, and why.
+    /// What was redrawn, and why.
     pub(crate) changes: Changes,
 }
 
 /// What is wanted while a frame is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
-    /// Still this frame.
+    /// This frame.
     This,
-    /// Another one.
+    /// A newer frame.
     Newer,
-    /// None any more.
+    /// No frame: the window is closing.
     Nothing,
 }
 
-/// The renderer, and the memory that its pictures are shown from.
+/// The renderer, and the images that its pictures are copied to.
 #[derive(Debug)]
 pub(crate) struct ViewportRenderer {
     renderer: Renderer,
-    /// The time: tests have one that they turn by hand.
+    /// The clock; tests use one of their own.
     clock: fn() -> Instant,
     quality: AdaptiveQuality,
-    /// What the last finished picture does without; `None` before the first.
+    /// The reduction of the last finished picture; `None` before the first.
     shown: Option<Reduction>,
     /// Whether the last frame was cancelled.
     gave_up: bool,
-    /// What was said last of what the picture is made of.
+    /// The last explanation.
     explained: Option<Arc<Explained>>,
     /// One is shown while the other is drawn.
     images: [Arc<ColorImage>; 2],
@@ -72,8 +72,7 @@ impl ViewportRenderer {
         }
     }
 
-    /// Draws the picture; `None` where it is the one that was drawn last, or was given up for what
-    /// is asked for by then.
+    /// Draws the picture; `None` if it equals the last one, or was cancelled for a newer one.
     pub(crate) fn draw(
         &mut self,
         wanted: &Snapshot,
@@ -120,8 +119,8 @@ impl ViewportRenderer {
         })
     }
 
-    /// What the picture that was finished last is made of; `None` where that is not wanted, or was
-    /// said.
+    /// Explains the effects of the last finished picture; `None` if that is not wanted or has not
+    /// changed.
     pub(crate) fn explain(&mut self, wanted: &Snapshot) -> Option<Arc<Explained>> {
         if !wanted.explain {
             self.explained = None;
@@ -152,7 +151,7 @@ fn planned(wanted: &Snapshot, reduction: Reduction) -> FramePlan {
     plan_frame(&Shot::new(&wanted.scene, &wanted.view, &settings, size))
 }
 
-/// Which part of the picture is drawn again, from 0 to 1.
+/// The part of the picture that is redrawn, from 0 to 1.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 tiles")]
 fn share(changes: &Changes) -> f64 {
     changes.tiles() as f64 / changes.tiles_in_all() as f64

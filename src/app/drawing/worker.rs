@@ -1,9 +1,8 @@
 //! The thread that draws, so that the window stays responsive however long a picture takes.
 //!
-//! The newest wish is drawn and older ones are forgotten, also one that is being drawn where it
-//! keeps the newer one waiting (see [`adaptive_quality`](super::adaptive_quality)). What is seen at
-//! a pixel is asked of the picture that was finished last, before the next one is begun: that is
-//! the one the user clicked on.
+//! Only the newest snapshot is drawn; a slow frame may be cancelled for it (see
+//! [`adaptive_quality`](super::adaptive_quality)). Picks are answered from the last finished
+//! picture before the next one is started: that is the one the user clicked on.
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -26,7 +25,7 @@ pub(crate) struct Pick<P> {
     pub(crate) purpose: P,
 }
 
-/// What the worker has to tell.
+/// Results of the worker.
 #[derive(Debug)]
 pub(crate) struct News<P> {
     pub(crate) border: Option<Border>,
@@ -50,7 +49,7 @@ struct Shared<P> {
     changed: Condvar,
     /// Whether a newer picture is wanted; asked between tiles.
     newer: AtomicBool,
-    /// Whether nothing is wanted any more.
+    /// Whether the worker is to stop.
     over: AtomicBool,
 }
 
@@ -58,7 +57,7 @@ struct Shared<P> {
 struct Desk<P> {
     wanted: Option<Snapshot>,
     picks: VecDeque<Pick<P>>,
-    /// The item whose border is wanted.
+    /// The item whose border was requested.
     border: Option<ItemId>,
     news: News<P>,
     busy: bool,
@@ -66,7 +65,7 @@ struct Desk<P> {
 }
 
 impl<P: Copy + Send + 'static> Worker<P> {
-    /// Starts the thread; `wake` is called whenever there is news.
+    /// Starts the thread; `wake` is called whenever there are results.
     pub(crate) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let news = News::none();
         let (wanted, picks, border) = (None, VecDeque::new(), None);
@@ -81,7 +80,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
         Ok(Self { shared, last: None, thread: Some(thread) })
     }
 
-    /// Wants this picture, unless it is the one that was wanted last.
+    /// Requests this picture, unless it was the last one requested.
     pub(crate) fn draw(&mut self, snapshot: Snapshot) {
         if self.last.as_ref() == Some(&snapshot) {
             return;
@@ -94,13 +93,13 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.changed.notify_all();
     }
 
-    /// Whether something is being drawn or answered.
+    /// Whether the worker is busy.
     pub(crate) fn is_drawing(&self) -> bool {
         let desk = self.shared.lock();
         desk.busy || desk.has_work()
     }
 
-    /// What was wanted last.
+    /// The last snapshot requested.
     pub(crate) const fn last(&self) -> Option<&Snapshot> {
         self.last.as_ref()
     }
@@ -117,13 +116,13 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.changed.notify_all();
     }
 
-    /// What there is to tell since it was last asked.
+    /// The results since the last call.
     pub(crate) fn news(&self) -> News<P> {
         let mut desk = self.shared.lock();
         std::mem::replace(&mut desk.news, News::none())
     }
 
-    /// Waits until everything that was asked is done.
+    /// Waits until all requests are answered.
     pub(crate) fn wait(&self) {
         let mut desk = self.shared.lock();
         while desk.busy || desk.has_work() {

@@ -10,8 +10,7 @@ use crate::app::viewport::comparison::{Compared, Pair, draw};
 use crate::io;
 
 impl App {
-    /// Begins to draw the two pictures where they are wanted and others were drawn last, and takes
-    /// those that are finished.
+    /// Takes finished pictures, and starts to draw new ones if the comparison is out of date.
     pub(crate) fn compare(&mut self, ctx: &Context) {
         let comparison = &mut self.comparison;
         if let Some(task) = &comparison.task {
@@ -44,7 +43,7 @@ impl App {
         let (scene, view) = (scene.clone(), view.clone());
         let of = Compared { scene, view, settings: *settings, size };
         let work = move |_: &io::Progress| Box::new(draw(of));
-        // Without a thread the picture is simply not compared.
+        // Without a thread there is no comparison.
         self.comparison.task = Task::start(ctx, "Comparing".to_owned(), work).ok();
     }
 }

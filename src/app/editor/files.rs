@@ -1,7 +1,7 @@
 //! Loads models and textures, and saves pictures.
 //!
-//! Loading goes on in threads of its own; the scene is changed when a file has been read whole, so
-//! that a bad file leaves it as it was.
+//! Files are loaded on background threads; the scene changes only once a file is read completely,
+//! so that a bad file leaves it unchanged.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ use crate::render::Renderer;
 use crate::render::plan_frame;
 use crate::scene::{MaterialChoice, Object, ObjectId, Texture};
 
-/// How many files are read at the same time, however many are named.
+/// The maximum number of files read at the same time.
 const MOST_LOADING: usize = 8;
 
 impl App {
@@ -42,8 +42,8 @@ impl App {
         }
     }
 
-    /// Loads what the command line names: models with their files' own materials, else silver. They
-    /// are no work that could be lost.
+    /// Loads the files of the command line: models with their own materials, otherwise silver. They
+    /// do not count as unsaved changes.
     pub fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         for path in paths {
             if is_scene(&path) {
@@ -56,7 +56,7 @@ impl App {
         }
     }
 
-    /// Files that were dropped onto the window.
+    /// Loads files that were dropped onto the window.
     pub(crate) fn take_dropped(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
@@ -65,7 +65,7 @@ impl App {
         }
     }
 
-    /// What the user has answered to a dialog.
+    /// Handles the answer to a dialog.
     pub(crate) fn take_answer(&mut self, ctx: &Context, answer: Answer) {
         match answer {
             Answer::Files(wanted, paths) => self.take_files(ctx, wanted, paths),
@@ -169,7 +169,7 @@ impl App {
         self.begin_queued(ctx);
     }
 
-    /// Begins to read what waits, as far as there is room.
+    /// Starts to read waiting files, up to the maximum.
     fn begin_queued(&mut self, ctx: &Context) {
         while self.loading.len() < MOST_LOADING
             && let Some(Queued { label, asks, work }) = self.queued.pop_front()
@@ -183,7 +183,7 @@ impl App {
         }
     }
 
-    /// Takes what was read meanwhile.
+    /// Takes the files that were read.
     pub(crate) fn hear_loading(&mut self, ctx: &Context) {
         // In the order of the requests, however long each file takes.
         while let Some(loading) = self.loading.first() {
@@ -254,7 +254,7 @@ impl App {
         }
     }
 
-    /// Puts a loaded model into the scene, and tells what was found in its file.
+    /// Adds a loaded model to the scene, and reports the findings about its file.
     fn insert(
         &mut self,
         ctx: &Context,
@@ -274,7 +274,7 @@ impl App {
         self.change(command, Gesture::Whole, &format!("Load {name}"));
         let Some(id) = self.state.view.object else { return };
         self.state.tell(Some(format!("Loaded {name}: {found}")));
-        // Two notices, for one is done with when the object is framed and the other is not.
+        // Two notices, since framing the object dismisses only one of them.
         if !details.is_empty() {
             let text = format!("{name}: {found}");
             self.state.notices.push(Notice { text, details, offer: None });
@@ -299,7 +299,7 @@ impl App {
         }
     }
 
-    /// What the viewport shows, with all that the picture has.
+    /// The picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
         let State { scene, view, settings, statistics, .. } = &self.state;
         if statistics.reduction == Reduction::NONE {
@@ -323,7 +323,7 @@ impl App {
         }
     }
 
-    /// Edits something else from now on; which panels are shown stays.
+    /// Replaces the edited scene; the open panels stay.
     pub(crate) fn replace(&mut self, state: State) {
         let State { panels, theme, .. } = self.state;
         let statistics = self.state.statistics.clone();

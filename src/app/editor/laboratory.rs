@@ -1,8 +1,7 @@
 //! Answers requests to the laboratory, and runs its measurements on threads of their own.
 //!
-//! Measuring has a thread of its own, and so has the comparison with the exact picture; the window
-//! only asks how far they are. While it is measured, the window is drawn at most four times a
-//! second, and a pair of pictures that was measured meanwhile is thrown away.
+//! While a measurement runs, the window is drawn at most four times a second, and pairs of pictures
+//! that were timed while it was drawn are discarded.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -27,12 +26,12 @@ use crate::lab::report::Report;
 use crate::lab::sweep::{Findings, Question, sweep};
 use crate::lab::timing::WallClock;
 
-/// What works for the laboratory.
+/// The background work of the laboratory.
 #[derive(Debug, Default)]
 pub(crate) struct Work {
     watch: Watch,
     sweep: Option<Task<Result<Findings, Unmeasured>>>,
-    /// What there is while it is measured.
+    /// The findings so far.
     so_far: Arc<Mutex<Option<Findings>>>,
     blame: Option<Task<Option<Explained>>>,
     /// The command that repeats the measurement.
@@ -44,15 +43,15 @@ pub(crate) struct Work {
 /// An attribution of the error at a pixel, with the item seen there; `None` for the background.
 type Explained = (Attribution, Option<String>);
 
-/// While it is measured, the window is drawn no sooner than so long after the last time, and so
-/// seldom that one pair of pictures at least is measured in between.
+/// The minimum time between two drawings of the window during a measurement; it is longer if a pair
+/// of pictures takes longer.
 const REST: Duration = Duration::from_millis(250);
 
-/// How many pairs have room between two drawings of the window.
+/// The number of pairs between two drawings of the window.
 const PAIRS_BETWEEN: u32 = 3;
 
 impl Work {
-    /// How long the window is not drawn by itself.
+    /// The time between two drawings of the window.
     fn rest_now(&self) -> Duration {
         REST.max(PAIRS_BETWEEN * self.watch.pair())
     }
@@ -67,7 +66,7 @@ impl Work {
         self.watch.clone()
     }
 
-    /// Waits until the window may be drawn again: a measurement shall have some peace.
+    /// Waits until the window may be drawn again, so that it does not disturb a measurement.
     pub(crate) fn rest(&mut self) {
         if self.sweep.is_some()
             && let Some(rest) = self.drawn_at.and_then(|at| REST.checked_sub(at.elapsed()))
@@ -78,7 +77,7 @@ impl Work {
     }
 }
 
-/// The command that measures a scene again on the command line.
+/// The command that repeats the measurement on the command line.
 fn command(state: &State, size: Size, thoroughness: &Thoroughness) -> String {
     let file = match (&state.path, state.history.is_saved()) {
         (Some(path), true) => format!(" '{}'", path.display()),
@@ -100,7 +99,7 @@ fn command(state: &State, size: Size, thoroughness: &Thoroughness) -> String {
 }
 
 impl App {
-    /// Does what the panel of the laboratory asks for.
+    /// Answers a request to the laboratory.
     pub(crate) fn answer_lab(&mut self, ctx: &Context, ask: LabRequest) {
         let lab = &mut self.state.lab;
         match ask {
@@ -173,7 +172,7 @@ impl App {
         self.lab.blame = None;
     }
 
-    /// Explains a pixel of the picture as it is drawn now.
+    /// Attributes the error at a pixel of the current picture.
     fn explain(&mut self, ctx: &Context, at: [usize; 2]) {
         self.state.lab.picking = false;
         let Some(size) = self.viewport.size() else { return };
@@ -193,7 +192,7 @@ impl App {
         }
     }
 
-    /// What has become of what was begun.
+    /// Takes the results of background work.
     pub(crate) fn hear_laboratory(&mut self, ctx: &Context) {
         self.hear_blame();
         let Some(task) = &self.lab.sweep else { return };

@@ -12,10 +12,10 @@ use crate::app::state::Measured;
 use crate::app::tasks::{Outcome, Task};
 use crate::lab::cost::{self, Costs};
 
-/// About how long measuring takes.
+/// The approximate time of a measurement.
 const BUDGET: Duration = Duration::from_secs(3);
 
-/// Effects that are being measured, and in which picture.
+/// A measurement of effects, and its picture.
 #[derive(Debug)]
 pub(crate) struct Measuring {
     task: Task<Costs>,
@@ -53,7 +53,7 @@ impl App {
         }
     }
 
-    /// Takes what was measured meanwhile.
+    /// Takes the finished measurement.
     pub(crate) fn hear_measuring(&mut self) {
         let Some(Measuring { task, .. }) = &self.measuring else { return };
         let cancelled = task.progress.is_cancelled();

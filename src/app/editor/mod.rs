@@ -1,6 +1,6 @@
 //! The editor: shows everything, and answers all requests at the end of the frame.
 //!
-//! [`App::perform`] alone makes of an action a command or another view, and [`App::change`] alone
+//! [`App::perform`] alone turns an action into a command or another view, and [`App::change`] alone
 //! writes the scene.
 
 mod comparing;
@@ -41,7 +41,7 @@ pub struct App {
     pub(crate) dialogs: Dialogs,
     pub(crate) loading: Vec<Loading>,
     pub(crate) searches: Vec<Search>,
-    /// Files that are read after these.
+    /// Files that wait to be read.
     pub(crate) queued: VecDeque<Queued>,
     /// A scene that waits for the user to locate its missing models.
     pub(crate) waiting: Option<Waiting>,
@@ -49,18 +49,18 @@ pub struct App {
     pub(crate) lab: Work,
     pub(crate) comparison: Comparison,
     worker: Option<Worker<Purpose>>,
-    /// The measuring of effects that goes on.
+    /// The running measurement of effects.
     pub(crate) measuring: Option<Measuring>,
-    /// It was decided to leave: nothing more is asked.
+    /// Whether the window is closing.
     leaving: bool,
     /// Whether the picture is changing.
     motion: Motion,
-    /// When the last frame was shown in which something moved by itself.
+    /// The time of the last frame in which the scene was animated.
     moved_at: Option<f64>,
-    /// When the pictures of the last second were shown.
+    /// The times of the pictures of the last second.
     shown_at: VecDeque<f64>,
     title: String,
-    /// How many frames failed one after the other.
+    /// The number of consecutive failed frames.
     faults: u32,
 }
 
@@ -100,7 +100,7 @@ impl App {
         self.dialogs.native = true;
     }
 
-    /// Shows the editor, and does what the user asks of it.
+    /// Shows the editor, and answers all requests.
     pub fn editor_ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut requests = Vec::new();
@@ -152,16 +152,16 @@ impl App {
         }
     }
 
-    /// What comes before anything is shown: the thread's news, the clock, the screen.
+    /// Prepares a frame: the results of the worker, the clock, the screen.
     fn begin(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
         if self.worker.is_none() {
             Keyboard::install(ctx);
-            // Leaving is an action like the others.
+            // Quitting is an action like the others.
             ctx.options_mut(|options| options.quit_shortcuts.clear());
             let waker = ctx.clone();
             let watch = self.lab.watch();
             let wake = move || {
-                // A picture was drawn: what was measured meanwhile means nothing.
+                // A picture was drawn: discard what was timed meanwhile.
                 drop(watch.touch());
                 waker.request_repaint();
             };
@@ -189,12 +189,12 @@ impl App {
             }
         }
         self.tick(ctx);
-        // On a screen of high density a line of one pixel can hardly be seen.
+        // On a high-density screen a line of one pixel is hardly visible.
         self.state.view.wide_lines = ctx.pixels_per_point() >= 1.5;
     }
 
-    /// Lets the scene's clock go on while anything moves by itself. The next picture wakes the
-    /// window again, so that it runs no faster than pictures can be drawn.
+    /// Advances the clock of an animated scene. The next picture wakes the window again, so that it
+    /// runs no faster than pictures are drawn.
     fn tick(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
         let last = self.moved_at.take();
@@ -204,8 +204,7 @@ impl App {
         }
     }
 
-    /// Wants the picture of what there is now; while it moves, and soon after, a coarser one will
-    /// do.
+    /// Requests the picture of the current scene, at reduced quality while it moves.
     fn draw(&mut self, ctx: &Context) {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
         let State { scene, view, settings, .. } = &self.state;
@@ -214,7 +213,7 @@ impl App {
         let mut wanted = Snapshot { scene, view, settings, size, moving: false, explain };
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
-        // What moves by itself is always being drawn.
+        // An animated scene is always being drawn.
         let drawing = worker.is_drawing() && !self.state.is_animated();
         let happening = Happening { changed, held, drawing };
         let moving = self.motion.notice(now, happening);
@@ -234,7 +233,7 @@ impl App {
         }
     }
 
-    /// Does it, after asking where work is not saved.
+    /// Does `after`; asks first if there are unsaved changes.
     pub(crate) fn unless_unsaved(&mut self, ctx: &Context, after: After) {
         if self.state.history.is_saved() {
             self.after(ctx, after);
@@ -243,13 +242,13 @@ impl App {
         }
     }
 
-    /// Leaves the program.
+    /// Closes the program.
     pub(crate) fn leave(&mut self, ctx: &Context) {
         self.leaving = true;
         ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 
-    /// The window's cross.
+    /// Handles the close button of the window.
     fn close_requested(&mut self, ctx: &Context) {
         if ctx.input(|input| input.viewport().close_requested())
             && !self.leaving
@@ -264,8 +263,7 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         self.lab.rest();
-        // A fault of the program costs a frame, not the user's work. One that comes in every frame
-        // cannot be lived with.
+        // A panic costs one frame, not the user's work, unless it comes in every frame.
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
             Ok(()) => self.faults = 0,
             Err(fault) if self.faults >= MOST_FAULTS => resume_unwind(fault),

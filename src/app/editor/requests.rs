@@ -1,4 +1,4 @@
-//! Answers requests: what keys, panels, menus and the viewport ask for is done here.
+//! Answers the requests of keys, panels, menus and the viewport.
 //!
 //! [`App::perform`] alone turns an action into a command or another view, and [`App::change`] alone
 //! writes the scene.
@@ -32,7 +32,7 @@ impl App {
         self.perform(ctx, press.action, press.gesture);
     }
 
-    /// Does what a panel asks for.
+    /// Answers a request.
     pub fn answer(&mut self, ctx: &Context, request: Request) {
         let state = &mut self.state;
         match request {
@@ -83,10 +83,10 @@ impl App {
         }
     }
 
-    /// Does what stands in the table of actions. Every key, menu entry and button ends here.
+    /// Performs an action. Every key, menu entry and button ends here.
     pub fn perform(&mut self, ctx: &Context, action: Action, gesture: Gesture) {
         let label = action.step_label(&self.state);
-        // What a notice offers is done by any key or button, and then there is no more to offer.
+        // Framing the object by any key or button dismisses the notice that offers it.
         if action == Action::FrameSelection {
             let framed = self.state.view.object.map(Offer::Frame);
             self.state.notices.retain(|notice| notice.offer.is_none() || notice.offer != framed);
@@ -146,7 +146,7 @@ impl App {
         }
     }
 
-    /// Shows the scene otherwise.
+    /// Changes the view.
     fn show_view(&mut self, view: View) {
         self.state.message = None;
         self.state.view = view;
@@ -166,7 +166,7 @@ impl App {
         selection::set_subject(&mut self.state.view, subject);
     }
 
-    /// Changes the scene. Every change of it but walking through the history ends here.
+    /// Changes the scene. Every change except undo and redo ends here.
     pub(crate) fn change(&mut self, command: Command, gesture: Gesture, label: &str) {
         let state = &mut self.state;
         let before = state.scene.clone();
@@ -180,7 +180,7 @@ impl App {
         }
     }
 
-    /// Walks through the history.
+    /// Moves through the history.
     fn walk(&mut self, steps: impl FnOnce(&mut State)) {
         let before = self.state.scene.clone();
         self.state.message = None;
@@ -189,7 +189,7 @@ impl App {
         selection::follow(&before, &self.state.scene, &mut self.state.view);
     }
 
-    /// Says in the status line why something is not done.
+    /// Shows in the status line why a request was refused.
     pub(crate) fn refuse(&mut self, why: String) {
         self.state.message = Some(Message { text: why, tone: Tone::Refused });
     }

@@ -1,7 +1,7 @@
 //! Opens and saves scenes.
 //!
-//! A scene whose models are not where it says is opened all the same once the user has shown where
-//! they are; until then the present scene stays.
+//! If models of a scene are missing, it is opened once the user has located them; until then the
+//! current scene stays.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -65,7 +65,7 @@ impl App {
         });
     }
 
-    /// What became of opening a scene.
+    /// Takes an opened scene, or asks for its missing models.
     pub(crate) fn take_scene(&mut self, ctx: &Context, opening: Opening) {
         let Opening { path, relocated, result } = opening;
         match result {
@@ -80,7 +80,7 @@ impl App {
         }
     }
 
-    /// Takes missing models from where others were found; asks for the first that is not there.
+    /// Looks for missing models beside those already found; asks for the first that is not there.
     fn look_for(&mut self, ctx: &Context, mut waiting: Waiting, missing: &[PathBuf]) {
         let known = waiting.relocated.len();
         for old in missing {
@@ -140,7 +140,7 @@ impl App {
     }
 }
 
-/// The path with a scene's ending behind whatever it has.
+/// The path with the file ending of scenes appended.
 fn with_ending(path: PathBuf) -> PathBuf {
     let mut text = path.into_os_string();
     text.push(".");

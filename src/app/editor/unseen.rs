@@ -1,7 +1,6 @@
 //! Reports loaded objects that are not visible, and why.
 //!
-//! This is checked on a separate thread, with separate pictures, so the window does not wait for
-//! it.
+//! The search runs on a thread of its own, with pictures of its own: the window does not wait.
 
 use egui::Context;
 
@@ -14,14 +13,14 @@ use crate::render::plan_frame;
 use crate::render::{Renderer, Unseen, unseen};
 use crate::scene::{Object, ObjectId, Projection};
 
-/// A search for the reasons why nothing of some objects is seen.
+/// A search for objects that are not visible, with the reasons.
 pub(crate) type Search = Task<Vec<(ObjectId, Unseen)>>;
 
 /// The size of the picture before the window has one.
 const SIZE: Size = Size::new(800, 600);
 
 impl App {
-    /// Begins to find out which of these objects are not seen in the picture of the present scene.
+    /// Starts to search for which of these objects are not visible in the current scene.
     pub(crate) fn look_for_unseen(&mut self, ctx: &Context, ids: Vec<ObjectId>) {
         let State { scene, view, settings, .. } = &self.state;
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
@@ -39,7 +38,7 @@ impl App {
         self.searches.extend(search);
     }
 
-    /// Tells what has been found out.
+    /// Adds notices about the objects found.
     pub(crate) fn hear_searches(&mut self) {
         let mut found = Vec::new();
         self.searches.retain(|search| match search.outcome() {

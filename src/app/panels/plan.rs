@@ -1,8 +1,7 @@
 //! The plan panel: each effect of the picture, on or left out, why, and its cost.
 //!
-//! An effect has a line, with what it is on under it where that differs from thing to thing. What
-//! is on is told by a full disk and by full text, so that the eye runs down the disks; costs are
-//! numbers with bars, so that the eye finds the largest.
+//! Each effect has a line, with the items it applies to below it if they differ. Effects that are
+//! on have a full disk and full text; costs are numbers with bars, so that the largest stands out.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

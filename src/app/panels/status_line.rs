@@ -1,7 +1,7 @@
 //! The status line: what the next key would do, and the last message.
 //!
-//! If there is no room for everything, the least important parts are left out of the middle;
-//! nothing is cut off.
+//! If there is no room for all parts, the least important ones in the middle are left out; no part
+//! is cut off.
 
 use egui::{Align, Layout, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 

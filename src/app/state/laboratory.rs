@@ -10,23 +10,23 @@ use crate::scene::{Scene, View};
 /// What the panel of the laboratory shows.
 #[derive(Debug)]
 pub struct Laboratory {
-    /// What was measured last, or has been measured so far.
+    /// The last measurement, or the one so far.
     pub report: Option<Report>,
-    /// How far the measuring is that goes on, from 0 to 1.
+    /// The progress of the running measurement, from 0 to 1.
     pub running: Option<f64>,
-    /// Why there is nothing, where measuring failed.
+    /// Why measuring failed, if it did.
     pub failed: Option<String>,
-    /// What stands for an error.
+    /// The error metric.
     pub measure: Measure,
-    /// What the user can bear.
+    /// The budgets of time and error.
     pub budgets: Budgets,
     /// How the picture is compared with the exact one.
     pub compare: Compare,
-    /// How far the picture is from the exact one, as it was compared last.
+    /// The error of the picture at the last comparison.
     pub judged: Option<Judged>,
-    /// Whether the next click on the picture picks a pixel to be explained.
+    /// Whether the next click on the picture picks a pixel for attribution.
     pub picking: bool,
-    /// The pixel that was explained last, in lines.
+    /// The last attribution, in lines.
     pub attribution: Option<Vec<String>>,
     /// The axis whose lesson is shown.
     pub lesson: &'static Axis,
@@ -83,13 +83,13 @@ pub enum Compare {
     /// Not at all.
     #[default]
     Off,
-    /// The exact picture at the left of this part of the width.
+    /// The exact picture to the left of this fraction of the width.
     Split(f32),
     /// The error instead of the picture, amplified by this factor.
     Error(u16),
 }
 
-/// How far a picture is from the exact one.
+/// The error of a picture against the exact one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
     /// The error.

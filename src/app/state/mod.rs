@@ -23,46 +23,46 @@ use laboratory::Laboratory;
 /// The scene being edited, and everything shown about it.
 #[derive(Debug)]
 pub struct State {
-    /// What there is to draw.
+    /// The scene.
     pub scene: Scene,
-    /// How it is looked at.
+    /// The view.
     pub view: View,
-    /// How exactly it is drawn.
+    /// The settings of accuracy.
     pub settings: Settings,
-    /// What was done to the scene.
+    /// The history of changes.
     pub history: History,
     /// The scene's file, if it has one.
     pub path: Option<PathBuf>,
-    /// The last word to the user, for the status line.
+    /// The last message, for the status line.
     pub message: Option<Message>,
     /// Notices that stay until the user dismisses them.
     pub notices: Vec<Notice>,
-    /// What the last picture took.
+    /// Statistics of the last picture.
     pub statistics: Statistics,
-    /// What the last picture is made of, while somebody wants to see that.
+    /// The effects of the last picture, while the plan is shown.
     pub plan: Plan,
     /// Which panels are shown.
     pub panels: Panels,
     /// Whether the window is light or dark.
     pub theme: ThemePreference,
-    /// What the laboratory has found out.
+    /// The state of the laboratory.
     pub lab: Laboratory,
-    /// The item that is being given a name.
+    /// The item that is being renamed.
     pub renaming: Option<ItemId>,
-    /// What the last change of the scene was part of.
+    /// The gesture of the last change.
     pub(crate) gesture: Gesture,
 }
 
-/// A word to the user.
+/// A message to the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
     /// One sentence.
     pub text: String,
-    /// How it is meant.
+    /// Its tone.
     pub tone: Tone,
 }
 
-/// How a word to the user is meant.
+/// The tone of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
     /// It was done.
@@ -71,18 +71,18 @@ pub enum Tone {
     Refused,
 }
 
-/// Something that is told until the user puts it away.
+/// A notice that stays until the user dismisses it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     /// One line.
     pub text: String,
-    /// More, one line each, for those who want to see it.
+    /// Details, one line each.
     pub details: Vec<String>,
     /// An offer shown with it as a button.
     pub offer: Option<Offer>,
 }
 
-/// What a notice offers to do.
+/// An action that a notice offers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Offer {
     /// To bring an object into view.
@@ -101,10 +101,10 @@ impl Offer {
         }
     }
 
-    /// What it does to the scene, and what the history calls that.
+    /// The change of the scene, and its label in the history.
     ///
     /// # Errors
-    /// If the object is gone, or an object looks.
+    /// If the object is gone, or the observer is an object.
     pub fn command(self, scene: &Scene, view: &View) -> Result<(Command, String), Refusal> {
         let (Self::Frame(id) | Self::TwoSides(id)) = self;
         let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
@@ -118,22 +118,22 @@ impl Offer {
     }
 }
 
-/// What the last picture took.
+/// Statistics of the last picture.
 #[derive(Clone, Debug)]
 pub struct Statistics {
     /// From the snapshot to the finished picture in memory, on the thread that draws.
     pub time: Duration,
-    /// How large the picture is.
+    /// The size of the picture.
     pub size: Size,
-    /// How many pictures have been drawn.
+    /// The number of pictures drawn.
     pub pictures: u64,
-    /// How many of them were shown in the last second.
+    /// The number of pictures shown in the last second.
     pub rate: u32,
-    /// How many triangles of the picture faced the observer inside the view.
+    /// The number of triangles drawn.
     pub triangles: usize,
-    /// What it does without.
+    /// How its quality is reduced.
     pub reduction: Reduction,
-    /// What of it was drawn anew, and why.
+    /// What was redrawn, and why.
     pub changes: Option<Changes>,
 }
 
@@ -152,7 +152,7 @@ impl Default for Statistics {
 }
 
 impl Statistics {
-    /// Notes a picture, the `rate`th in the last second.
+    /// Records a picture, the `rate`th in the last second.
     pub(crate) fn note(&mut self, drawn: &Drawn, rate: u32) {
         let [width, height] = drawn.image.size;
         *self = Self {
@@ -167,18 +167,18 @@ impl Statistics {
     }
 }
 
-/// What the last picture is made of.
+/// The effects of the last picture.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     /// Its effects.
     pub explained: Option<Arc<Explained>>,
-    /// What they cost in time, when that was measured last.
+    /// Their costs in time, if measured.
     pub costs: Option<Arc<Measured>>,
     /// Whether it is being measured.
     pub measuring: bool,
 }
 
-/// What effects cost, and in which picture.
+/// The measured costs of effects, and their picture.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// What was measured.
@@ -192,7 +192,7 @@ pub struct Measured {
 }
 
 impl State {
-    /// A scene that nothing was done to.
+    /// The state of a new scene, without history.
     #[must_use]
     pub fn new(scene: Scene, view: View) -> Self {
         Self {
@@ -225,7 +225,7 @@ impl State {
         self.selected().and_then(|id| self.name(id)).unwrap_or_default()
     }
 
-    /// As the outline calls an item.
+    /// The name of an item.
     #[must_use]
     pub fn name(&self, id: ItemId) -> Option<&str> {
         let scene = &self.scene;
@@ -236,14 +236,14 @@ impl State {
         })
     }
 
-    /// The scene's file without folders, or what stands in for it.
+    /// The file name of the scene, or a placeholder.
     #[must_use]
     pub fn file_name(&self) -> String {
         let name = self.path.as_deref().and_then(Path::file_name);
         name.map_or_else(|| "new scene".to_owned(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// Says in the status line what was done.
+    /// Shows a message in the status line.
     pub(crate) fn tell(&mut self, text: Option<String>) {
         self.message = text.map(|text| Message { text, tone: Tone::Done });
     }
@@ -257,7 +257,7 @@ impl State {
             || self.scene.lights.iter().any(|(_, light)| circles(light))
     }
 
-    /// Where in `gesture` the next change stands: its first one pushes what the item was.
+    /// The phase of the next change in `gesture`: the first one pushes the old transform.
     #[must_use]
     pub fn phase(&self, gesture: Gesture) -> GesturePhase {
         if gesture != Gesture::Whole && gesture == self.gesture {

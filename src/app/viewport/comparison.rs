@@ -1,7 +1,7 @@
 //! Compares the picture with the exact one: a split viewport, or the amplified error.
 //!
-//! Both pictures are drawn on a thread of its own whenever what is shown has changed, so that the
-//! two always show the same moment.
+//! Both pictures are drawn on one background thread whenever the scene has changed, so that they
+//! always show the same moment.
 
 use std::sync::Arc;
 
@@ -53,7 +53,7 @@ pub(crate) struct Comparison {
     pub(crate) task: Option<Task<Box<Pair>>>,
     pub(crate) drawn: Option<Box<Pair>>,
     exact: Option<TextureHandle>,
-    /// The error, and how many times as large it is.
+    /// The amplified error, with its factor.
     error: Option<(u16, TextureHandle)>,
 }
 
@@ -121,7 +121,7 @@ impl Comparison {
     }
 }
 
-/// The size of what the slider shows to be held by.
+/// The size of the handle of the slider.
 const HANDLE: egui::Vec2 = vec2(12.0, 34.0);
 
 /// The grip of the slider between the two pictures; a press there is not a press on the picture.

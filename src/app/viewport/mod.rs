@@ -1,7 +1,7 @@
 //! The viewport: the picture, with mouse and keyboard input over it.
 //!
-//! The picture has as many pixels as the screen has there, stands on a whole pixel and is shown
-//! unfiltered, so that what the renderer drew is what is seen.
+//! The picture is aligned to the pixels of the screen and shown unfiltered, so that each pixel of
+//! the renderer is a pixel of the screen.
 
 pub(crate) mod comparison;
 mod mouse;
@@ -30,22 +30,22 @@ use mouse::{Mouse, Under};
 /// The purpose of a pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Purpose {
-    /// What the pointer is over.
+    /// Finds the item under the pointer.
     Hover,
-    /// A click: select it.
+    /// Selects the item that was clicked.
     Select,
-    /// A double click: frame it.
+    /// Frames the item that was double-clicked.
     Frame,
-    /// A right click there: its menu.
+    /// Opens the menu of the item that was right-clicked.
     Menu(Pos2),
 }
 
-/// The picture with what it takes to show and to ask it.
+/// The picture, and the state of input over it.
 #[derive(Default)]
 pub(crate) struct Viewport {
     texture: Option<TextureHandle>,
     image: Option<Arc<ColorImage>>,
-    /// Where in the window it is, and how many pixels it has.
+    /// Its place in the window, and its size in pixels.
     place: Option<(Rect, Size)>,
     mouse: Mouse,
     /// The pixel under the pointer, and the hit there if known.
@@ -53,11 +53,11 @@ pub(crate) struct Viewport {
     menu: Option<Menu>,
     /// The border of the item under the pointer.
     border: Option<Border>,
-    /// Whether the picture has changed since the pointer was asked about.
+    /// Whether the picture has changed since the last pick under the pointer.
     stale: bool,
     /// The item whose border was requested for this picture.
     asked: Option<ItemId>,
-    /// The pixel of the last click, and from where it was seen: a click on it again goes deeper.
+    /// The pixel and the observer of the last click: a second click there selects what is behind.
     clicked: Option<([usize; 2], DMat4)>,
 }
 
@@ -74,27 +74,27 @@ impl std::fmt::Debug for Viewport {
 }
 
 impl Viewport {
-    /// As many pixels as there are to be drawn; `None` before it was shown.
+    /// The size of the picture in pixels; `None` before the first frame.
     pub(crate) fn size(&self) -> Option<Size> {
         self.place.map(|(_, size)| size)
     }
 
-    /// Where in the window it is; `None` before it was shown.
+    /// Its place in the window; `None` before the first frame.
     pub(crate) fn rect(&self) -> Option<Rect> {
         self.place.map(|(rect, _)| rect)
     }
 
-    /// What it shows.
+    /// The image it shows.
     pub(crate) fn image(&self) -> Option<&Arc<ColorImage>> {
         self.image.as_ref()
     }
 
-    /// The drag that is going on is taken back. Says whether there was one.
+    /// Cancels the current drag. Returns whether there was one.
     pub(crate) fn cancel_drag(&mut self, requests: &mut Vec<Request>) -> bool {
         self.mouse.cancel(requests)
     }
 
-    /// Takes what the worker has to tell; what that asks for is added to `asks`.
+    /// Takes the results of the worker; adds requests that follow from them.
     pub(crate) fn hear(
         &mut self,
         ctx: &Context,
@@ -198,8 +198,8 @@ impl Viewport {
         }
     }
 
-    /// What a click on `hit` asks for: the polygon while polygons of that object are shown one at
-    /// a time, else the item; on the pixel of the last click, the object behind the selected one.
+    /// The request of a click on `hit`: selects the polygon in polygon mode, otherwise the item; a
+    /// second click on the same pixel selects the object behind the selected one.
     fn selecting(&mut self, state: &State, at: [usize; 2], hit: Hit) -> Request {
         let click = (at, state.scene.observer_frame(&state.view));
         let again = self.clicked.replace(click) == Some(click);
@@ -221,7 +221,7 @@ impl Viewport {
         }
     }
 
-    /// The outline of what the pointer is over.
+    /// Outlines the item under the pointer.
     fn border_ui(&mut self, ui: &Ui, worker: &Worker<Purpose>) {
         let over = self.hovered.and_then(|(_, hit)| hit).map(|hit| hit.item);
         if let Some(item) = over.filter(|_| over != self.asked) {
@@ -248,8 +248,7 @@ impl Viewport {
             }
         }
         self.image = Some(image);
-        // Another picture may show something else there. What was seen before is the best guess
-        // until that is known.
+        // A new picture may show another item there; the old hit is the best guess until then.
         self.stale = true;
         self.asked = None;
     }
@@ -270,7 +269,7 @@ impl Viewport {
         [along(part.x, size.width), along(part.y, size.height)]
     }
 
-    /// What stands over the picture: the name of what the pointer is over, the speed of flight.
+    /// Shows the name of the item under the pointer, or the speed of flight.
     fn overlay(&self, ui: &Ui, state: &State) {
         let name = self.hovered.and_then(|(_, hit)| hit).and_then(|hit| state.name(hit.item));
         let text = match (self.mouse.flight(), name) {
@@ -308,7 +307,7 @@ impl Viewport {
     }
 }
 
-/// What the menu of nothing offers.
+/// The menu of the background.
 const ON_NOTHING: &[Action] = &[
     Action::FrameAll,
     Action::Load,
@@ -318,7 +317,7 @@ const ON_NOTHING: &[Action] = &[
     Action::AddSpot,
 ];
 
-/// What the menu of an item offers.
+/// The menu of an item.
 const fn actions_on(item: ItemId) -> &'static [Action] {
     match item {
         ItemId::Object(_) => &[

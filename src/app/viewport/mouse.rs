@@ -33,7 +33,7 @@ const POINTS_A_NOTCH: f32 = 50.0;
 #[derive(Debug)]
 pub(crate) struct Mouse {
     drag: Option<Drag>,
-    /// Times the speed of flight that suits the scene.
+    /// A factor of the default speed of flight.
     speed: f64,
     count: u64,
 }
@@ -41,9 +41,9 @@ pub(crate) struct Mouse {
 /// The picture under the mouse.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Under {
-    /// Where in the window the picture is.
+    /// The place of the picture in the window.
     pub(crate) rect: Rect,
-    /// How many pixels it has.
+    /// Its size in pixels.
     pub(crate) size: Size,
     /// The hit under the pointer, if known.
     pub(crate) hit: Option<Hit>,
@@ -55,12 +55,12 @@ struct Drag {
     button: PointerButton,
     gesture: Gesture,
     from: Pos2,
-    /// How far it was acted on, and how far it has come.
+    /// The position up to which it was handled, and the current one.
     at: Pos2,
     to: Pos2,
     /// Whether it has moved farther than a click may.
     moved: bool,
-    /// Taken back: it does nothing more until the button is let go.
+    /// Whether it was cancelled: it does nothing until the button is released.
     over: bool,
 }
 
@@ -94,7 +94,7 @@ impl Mouse {
         self.is_flying().then_some(self.speed)
     }
 
-    /// The drag that is going on is taken back. Says whether there was one.
+    /// Cancels the current drag. Returns whether there was one.
     pub(crate) fn cancel(&mut self, requests: &mut Vec<Request>) -> bool {
         match &mut self.drag {
             Some(drag) if !drag.over => {
@@ -186,10 +186,10 @@ impl Mouse {
         self.drag = Some(Drag { motion, button, gesture, from, at, to, moved, over });
     }
 
-    /// Does what the pointer's way since the last time means.
+    /// Handles the movement of the pointer since the last call.
     fn go_on(&mut self, ui: &Ui, state: &State, size: Size, requests: &mut Vec<Request>) {
         let Some(drag) = &mut self.drag else { return };
-        // What was not acted on while it could still become a click is made up for.
+        // Includes the movement that was held back while the drag could still become a click.
         drag.moved |= (drag.to - drag.from).length() > CLICK;
         let by = if drag.moved { drag.to - drag.at } else { Vec2::ZERO };
         if drag.moved {
@@ -234,7 +234,7 @@ impl Mouse {
         }
     }
 
-    /// The keys that steer while the right button is held.
+    /// Handles the keys that steer while the right button is held.
     fn fly(&mut self, ui: &Ui, drag: Drag, state: &State, requests: &mut Vec<Request>) {
         let held = |key| ui.input(|input| f64::from(u8::from(input.key_down(key))));
         let along = |back, forth| held(forth) - held(back);
@@ -341,7 +341,7 @@ fn notches(event: &Event) -> f64 {
     }
 }
 
-/// How far a step of translation goes.
+/// The length of a step of translation.
 fn step(state: &State) -> f64 {
     let steps = &state.view.steps;
     let object = state.view.object.and_then(|id| state.scene.objects.get(id));

@@ -9,7 +9,7 @@ use crate::app::widgets::text::grouped;
 use crate::render::{Cause, Change, Changes};
 use crate::scene::ItemId;
 
-/// How much is drawn, and how long it takes.
+/// Shows how much is drawn, and how long it takes.
 pub(crate) fn statistics_ui(ui: &Ui, state: &State, rect: Rect) {
     let statistics = &state.statistics;
     let shown = || state.scene.objects.iter().filter(|(_, object)| object.visible);
@@ -34,10 +34,10 @@ pub(crate) fn statistics_ui(ui: &Ui, state: &State, rect: Rect) {
     plate_ui(ui, rect, Align2::LEFT_TOP, text);
 }
 
-/// Of how many names a reason is made at most.
+/// The maximum number of names in a reason.
 const NAMES: usize = 2;
 
-/// How much of the last picture was drawn anew, and why: "14 of 169 tiles drawn: teapot moved".
+/// How much of the last picture was redrawn, and why: "14 of 169 tiles drawn: teapot moved".
 fn redrawn(state: &State, changes: &Changes) -> String {
     let why = match changes.cause() {
         Cause::First => "a new picture".to_owned(),
@@ -51,7 +51,7 @@ fn redrawn(state: &State, changes: &Changes) -> String {
     format!("{} of {} tiles drawn: {why}", changes.tiles(), changes.tiles_in_all())
 }
 
-/// What became of some items, those alike together: "teapot moved, cube and 2 more look different".
+/// The changes of items, grouped by kind: "teapot moved, cube and 2 more look different".
 fn reasons<'a>(items: &[(ItemId, Change)], name: impl Fn(ItemId) -> Option<&'a str>) -> String {
     let all = [
         (Change::Moved, "moved"),
@@ -74,7 +74,7 @@ fn reasons<'a>(items: &[(ItemId, Change)], name: impl Fn(ItemId) -> Option<&'a s
     all.into_iter().filter_map(reason).collect::<Vec<_>>().join(", ")
 }
 
-/// The outline of an item, light with a dark border, so that it is seen on any background.
+/// Outlines an item, light with a dark border, so that it is visible on any background.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
 pub(crate) fn border_ui(ui: &Ui, rect: Rect, border: &Border) {
     let pixel = rect.size() / vec2(border.size.width as f32, border.size.height as f32);

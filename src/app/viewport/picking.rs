@@ -6,7 +6,7 @@ use crate::app::state::State;
 use crate::base::image::Size;
 use crate::scene::{Object, ObjectId, dvec3};
 
-/// How an object is brought onto the picture.
+/// The transformations from an object to the picture.
 struct Onto {
     view_from_object: DMat4,
     clip_from_view: DMat4,
@@ -38,7 +38,7 @@ impl Onto {
     }
 }
 
-/// The visible objects that a pixel looks at, the nearest first.
+/// The visible objects at a pixel, nearest first.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<ObjectId> {
     let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
@@ -53,7 +53,7 @@ pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<O
     found.into_iter().map(|(_, id)| id).collect()
 }
 
-/// The depth of the nearest triangle that is wholly before the near plane and covers a place.
+/// The depth of the nearest triangle at a point; triangles that cross the near plane are skipped.
 fn nearest_depth(onto: &Onto, object: &Object, at: DVec2) -> Option<f64> {
     let mesh = &object.model.mesh;
     let points: Vec<Option<DVec3>> = mesh
@@ -78,7 +78,7 @@ fn nearest_depth(onto: &Onto, object: &Object, at: DVec2) -> Option<f64> {
     depths.max_by(f64::total_cmp)
 }
 
-/// The depth at a place inside of a triangle on the picture; depth after division is linear there.
+/// The depth at a point inside a projected triangle; projected depth is linear there.
 fn depth_in(at: DVec2, [a, b, c]: [DVec3; 3]) -> Option<f64> {
     let side = |p: DVec3, q: DVec3| (q - p).truncate().perp_dot(at - p.truncate());
     let [u, v, w] = [side(b, c), side(c, a), side(a, b)];

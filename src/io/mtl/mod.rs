@@ -356,6 +356,28 @@ mod tests {
     }
 
     #[test]
+    fn numbers_keep_more_digits_than_an_f32_has() {
+        let (material, _) = read(
+            "newmtl m\nKd 0.5882352941176471 0.1 1e-50\nKs 1 1 1\n\
+             Ns 96.078431\nd 0.3333333333333333\n",
+        );
+        assert_eq!(material.material.diffuse, [150.0 / 255.0, 0.1, 1e-50]);
+        assert_eq!((material.material.exponent, material.opacity), (96.078431, 1.0 / 3.0));
+    }
+
+    #[test]
+    fn statements_that_stop_tobj_cost_no_other() {
+        // It panics on one or two numbers, and refuses fractions of illum and numbers with comments.
+        let (material, findings) = read(
+            "newmtl m\nKa 0 0 0\nkd 0.5\nKd 0.1 0.2\nKs 1 1 1#x\n\
+             illum 1.0\nillum 2.5\nNs\nns 9 # x\nD -halo 1\n",
+        );
+        let Material { diffuse, specular, exponent, .. } = material.material;
+        assert_eq!((diffuse, specular, exponent), ([0.5; 3], [1.0; 3], 9.0));
+        assert_eq!(findings, [FindingKind::MtlNumber]);
+    }
+
+    #[test]
     fn a_texture_without_a_diffuse_colour_is_shown_in_its_own() {
         let (material, findings) = read("newmtl m\nKa 0 0 0\nKs 0 0 0\nmap_Kd t.png\n");
         assert_eq!(material.material.diffuse, [1.0; 3]);

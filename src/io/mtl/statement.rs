@@ -1,8 +1,9 @@
 //! Single statements of an MTL file, read by tobj.
 //!
-//! Each call passes one statement in the form that tobj reads correctly: a grey is spelled as three
-//! numbers, comments are removed, keywords have their usual case. A statement that tobj does not
-//! know is passed under the keyword of one with the same argument.
+//! A call gets one statement in the form that tobj reads rightly: a grey is spelled as three
+//! numbers, comments are cut off, keywords have their usual case. A statement that tobj does not
+//! know reaches it under the keyword of one with the same argument. Numbers stay in f64, as the file
+//! says them.
 
 use std::panic::catch_unwind;
 
@@ -23,12 +24,12 @@ pub(super) fn specular(rest: &[u8]) -> Option<[f64; 3]> {
     finite(material("Ks", &color(rest)?)?.specular?)
 }
 
-/// `Ns x`, and `illum x`, for which tobj accepts only whole numbers.
+/// `Ns x`. Also for `illum x`, where tobj reads whole numbers only.
 pub(super) fn exponent(rest: &[u8]) -> Option<f64> {
     single(words(rest).next()?)
 }
 
-/// `d x`, and `Tr x`, which tobj does not know.
+/// `d x`. Also for `Tr x`, which tobj does not know.
 pub(super) fn opacity(rest: &[u8]) -> Option<f64> {
     let [opacity] = finite([material("d", plain(words(rest).next()?)?)?.dissolve?])?;
     Some(opacity)

@@ -72,14 +72,16 @@ impl Piece {
 /// has anything but blanks and what numbers are written with. It begins with a blank.
 #[inline]
 fn plain(text: &[u8]) -> Option<(u32, usize, usize)> {
-    let (mut words, mut before, mut length) = (0, BLANK, 0);
+    let (mut words, mut after_blank, mut length) = (0, false, 0);
     while let Some(byte) = text.get(length) {
-        let class = CLASSES[usize::from(*byte)];
-        if class > BLANK {
+        // Numbers are of any length, so a branch for each blank would be mispredicted.
+        let is_blank = matches!(byte, b' ' | b'\t');
+        let is_number = matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+' | b'e' | b'E');
+        if !(is_blank | is_number) {
             break;
         }
-        words += u32::from(before & !class);
-        before = class;
+        words += u32::from(after_blank & is_number);
+        after_blank = is_blank;
         length += 1;
     }
     match text[length..] {
@@ -89,32 +91,6 @@ fn plain(text: &[u8]) -> Option<(u32, usize, usize)> {
         _ => None,
     }
 }
-
-/// A byte of a number, for [`CLASSES`].
-const NUMBER: u8 = 0;
-
-/// A space or a tab.
-const BLANK: u8 = 1;
-
-/// Any other byte.
-const OTHER: u8 = 2;
-
-/// What each byte is in a line of numbers.
-const CLASSES: [u8; 256] = {
-    let mut classes = [OTHER; 256];
-    let (numbers, blanks) = (b"0123456789+-.eE", b" \t");
-    let mut i = 0;
-    while i < numbers.len() {
-        classes[numbers[i] as usize] = NUMBER;
-        i += 1;
-    }
-    i = 0;
-    while i < blanks.len() {
-        classes[blanks[i] as usize] = BLANK;
-        i += 1;
-    }
-    classes
-};
 
 /// Whether the last word of a line is a number.
 fn is_number(line: &[u8]) -> bool {

@@ -11,6 +11,7 @@
 
 use std::fmt::Write;
 use std::io::{BufRead, ErrorKind, Read};
+use std::mem::take;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// How many rows a polygon names at most. tobj looks each of them up in a table: this number fills
@@ -102,25 +103,33 @@ impl<const N: usize> Rows<N> {
         self.count = self.count.saturating_add(1);
     }
 
-    /// Has tobj read the lines; says whether it could, and whether every number is the `f32` that
-    /// is nearest to its text.
-    pub(super) fn read(&mut self, chunk: &[u8]) -> bool {
-        if self.lines.is_empty() {
-            return true;
-        }
-        let has_colors = self.lines.iter().any(|line| line.is_colored);
+    /// The polygon that names the last `count` rows.
+    fn polygon(&self, count: usize) -> String {
         let mut polygon = "f".to_owned();
-        for back in (1..=self.lines.len().min(POLYGON)).rev() {
+        for back in (1..=count).rev() {
             let _infallible = match self.kind {
                 RowKind::Vertex => write!(polygon, " -{back}"),
                 RowKind::Uv => write!(polygon, " 1/-{back}"),
                 RowKind::Normal => write!(polygon, " 1//-{back}"),
             };
         }
+        polygon
+    }
+
+    /// Has tobj read the lines; says whether it could, and whether every number is the `f32` that
+    /// is nearest to its text.
+    pub(super) fn read(&mut self, chunk: &[u8]) -> bool {
+        // Their memory is not needed any longer than this.
+        let (lines, rewritten) = (take(&mut self.lines), take(&mut self.rewritten));
+        if lines.is_empty() {
+            return true;
+        }
+        let has_colors = lines.iter().any(|line| line.is_colored);
+        let polygon = self.polygon(lines.len().min(POLYGON));
         let mut text = RowText {
             chunk,
-            rewritten: self.rewritten.as_bytes(),
-            lines: self.lines.iter(),
+            rewritten: rewritten.as_bytes(),
+            lines: lines.iter(),
             needs_vertex: self.kind != RowKind::Vertex,
             has_colors,
             polygon: &polygon,
@@ -131,7 +140,7 @@ impl<const N: usize> Rows<N> {
         let no_library = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
         let read = || tobj::load_obj_buf(&mut text, &options, no_library);
         let Ok(Ok((models, _))) = catch_unwind(AssertUnwindSafe(read)) else { return false };
-        self.kept.reserve(self.lines.len());
+        self.kept.reserve(lines.len());
         let mut sure = true;
         for tobj::Model { mesh, .. } in &models {
             let numbers = match self.kind {
@@ -143,8 +152,8 @@ impl<const N: usize> Rows<N> {
         }
         let finite = self.kept.as_flattened().iter().all(|x| x.is_finite());
         // tobj passes over colours that it cannot read.
-        let colors = if has_colors { self.lines.len() } else { 0 };
-        sure && finite && self.kept.len() == self.lines.len() && self.colors.len() == colors
+        let colors = if has_colors { lines.len() } else { 0 };
+        sure && finite && self.kept.len() == lines.len() && self.colors.len() == colors
     }
 }
 
@@ -166,31 +175,32 @@ struct RowText<'a> {
 impl BufRead for RowText<'_> {
     fn read_line(&mut self, text: &mut String) -> std::io::Result<usize> {
         let before = text.len();
-        if std::mem::take(&mut self.needs_vertex) {
+        if take(&mut self.needs_vertex) {
             text.push_str("v 0 0 0");
-        } else if std::mem::take(&mut self.ends_group) {
+        } else if take(&mut self.ends_group) {
             // tobj makes a mesh of each group, and forgets its table.
             text.push('g');
-        } else if let Some(line) = self.lines.as_slice().first().filter(|_| self.unnamed < POLYGON)
+        } else if self.unnamed < POLYGON
+            && let Some(line) = self.lines.next()
         {
-            let RowLine { begin, end, is_rewritten, is_colored } = *line;
-            let source = if is_rewritten { self.rewritten } else { self.chunk };
-            let line = source.get(begin as usize..end as usize).unwrap_or_default();
-            let line = std::str::from_utf8(line);
-            text.push_str(
-                line.map_err(|error| std::io::Error::new(ErrorKind::InvalidData, error))?,
-            );
-            if self.has_colors && !is_colored {
+            let source = if line.is_rewritten { self.rewritten } else { self.chunk };
+            let bytes = source.get(line.begin as usize..line.end as usize).unwrap_or_default();
+            let no_text = |error| std::io::Error::new(ErrorKind::InvalidData, error);
+            text.push_str(std::str::from_utf8(bytes).map_err(no_text)?);
+            if self.has_colors && !line.is_colored {
                 // All vertices have colours, or none has: NaN stands for none.
                 text.push_str(" NaN NaN NaN");
             }
-            self.lines.next();
             self.unnamed += 1;
         } else if self.unnamed > 0 {
             // The last corners of the polygon name the last rows.
-            let corner = self.polygon.rmatch_indices(' ').nth(self.unnamed - 1);
+            let mut corners = self.polygon.rmatch_indices(' ');
+            let first = match self.unnamed {
+                POLYGON => None,
+                few => corners.nth(few - 1),
+            };
             text.push('f');
-            text.push_str(&self.polygon[corner.map_or(1, |(place, _)| place)..]);
+            text.push_str(&self.polygon[first.map_or(1, |(place, _)| place)..]);
             self.unnamed = 0;
             self.ends_group = true;
         }
