@@ -1,7 +1,7 @@
 //! What becomes of OBJ files as people and programs write them.
 //!
-//! Each test is a small file. `tobj` alone reads those of the first part wrongly, or not at all: the
-//! program hands it only what it reads rightly. On files that it reads rightly by itself
+//! Each test is a small file. `tobj` alone reads those of the first part wrongly, or not at all:
+//! the program hands it only what it reads rightly. On files that it reads rightly by itself
 //! `tests/models.rs` holds the program against it.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]

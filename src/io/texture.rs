@@ -71,8 +71,8 @@ pub fn load_texture_with(
     Pictures::default().texture(path, findings)
 }
 
-/// Reads a picture in any of the formats that textures have, whatever its name ends in; of a GIF, the
-/// first picture.
+/// Reads a picture in any of the formats that textures have, whatever its name ends in; of a GIF,
+/// the first picture.
 ///
 /// # Errors
 /// If the file cannot be read, is not a picture, or is too large.

@@ -367,7 +367,8 @@ mod tests {
 
     #[test]
     fn statements_that_stop_tobj_cost_no_other() {
-        // It panics on one or two numbers, and refuses fractions of illum and numbers with comments.
+        // It panics on one or two numbers, and refuses fractions of illum and numbers with
+        // comments.
         let (material, findings) = read(
             "newmtl m\nKa 0 0 0\nkd 0.5\nKd 0.1 0.2\nKs 1 1 1#x\n\
              illum 1.0\nillum 2.5\nNs\nns 9 # x\nD -halo 1\n",

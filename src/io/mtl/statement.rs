@@ -2,8 +2,8 @@
 //!
 //! A call gets one statement in the form that tobj reads rightly: a grey is spelled as three
 //! numbers, comments are cut off, keywords have their usual case. A statement that tobj does not
-//! know reaches it under the keyword of one with the same argument. Numbers stay in f64, as the file
-//! says them.
+//! know reaches it under the keyword of one with the same argument. Numbers stay in f64, as the
+//! file says them.
 
 use std::panic::catch_unwind;
 
