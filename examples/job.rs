@@ -1,4 +1,4 @@
-//! One drawing job that other renderers do too, so that they can be compared: a mesh orbited by a
+//! A drawing job for comparisons with other renderers: a mesh orbited by a
 //! camera, lit by five lights, in one of several modes.
 //!
 //! A frame is measured from the setting of its camera to bytes in memory, planning included, and no

@@ -1,4 +1,4 @@
-//! What becomes of OBJ files as people and programs write them.
+//! OBJ files as people and programs write them: how each is read.
 //!
 //! Each test is a small file. `tobj` alone reads those of the first part wrongly, or not at all:
 //! the program hands it only what it reads rightly. On files that it reads rightly by itself
@@ -100,7 +100,7 @@ fn numbers_that_tobj_passes_over_refuse_the_file_all_the_same() {
         ("vn 0 0 1 x\n", "a.obj:1: \"x\" is not a number"),
         ("v 0 0 0 . 0 0\n", "a.obj:1: \".\" is not a number"),
         ("v 0 0 0 1 1 1\nv 0 0 0 1 1 -\n", "a.obj:2: \"-\" is not a number"),
-        // The first fault counts, whoever finds it.
+        // The first fault counts, whichever thread finds it.
         ("v 0 0 --1\nv 0 0\n", "a.obj:1: \"--1\" is not a number"),
         ("v 0 0 1..\nv 0 x 0\n", "a.obj:1: \"1..\" is not a number"),
     ] {
@@ -384,7 +384,7 @@ fn a_missing_file_or_a_folder_is_refused_in_plain_words() {
     assert_eq!(refusal(&inner), "this is a folder, not a file");
 }
 
-/// Opening a pipe waits until somebody writes to it.
+/// Opening a pipe waits until another program writes to it.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_pipe_and_a_device_are_refused_at_once() {

@@ -1,5 +1,5 @@
-//! The material files and textures that an OBJ file names: whether they are found, and what is said
-//! where they are not.
+//! The material files and textures that an OBJ file names: whether they are found, and what is
+//! reported if they are not.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

@@ -1,4 +1,4 @@
-//! What pictures show, on scenes small enough to know the answer.
+//! Pictures of scenes so small that the right result is known.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 #![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]

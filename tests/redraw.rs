@@ -1,11 +1,9 @@
-//! What has changed is drawn again, to the same bytes as if all were drawn: accuracy's second
-//! proof.
+//! A partial redraw gives the same bytes as drawing everything.
 //!
-//! Left out or broken once each, to see it bite: the old place of what moved or went, reaches that
-//! are too small, that reach behind the camera or that normals stand out of; of the comparison the
-//! lamps, the material, the tint, the choice of normals, the polygons, the parts with holes, the
-//! width of lines, the normals that are drawn, the order; vertices and bins kept that are no longer
-//! true; a picture taken for finished that was given up.
+//! Catches: the old place of moved or removed objects that is forgotten; reaches that are too
+//! small, behind the camera, or without drawn normals; a comparison that forgets lights, material,
+//! tint, the choice of normals, polygons, parts with holes, the width of lines, drawn normals or
+//! the order; stale vertices and bins; a cancelled picture that is taken for finished.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -281,7 +279,7 @@ impl Desk {
     }
 }
 
-/// Makes an object look otherwise, or puts it elsewhere.
+/// Changes the appearance of an object, or moves it.
 fn dress(object: &mut Object, rng: &mut Rng) {
     match rng.index(10) {
         0 => {

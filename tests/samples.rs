@@ -1,5 +1,5 @@
-//! Pictures with several samples per pixel, held to pictures with one that are drawn from each
-//! place, and to pictures that are eight times as large.
+//! Pictures with several samples per pixel, compared with pictures with one sample at each
+//! position, and with pictures that are eight times as large.
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]

@@ -1,4 +1,4 @@
-//! Scene files: what is saved comes back, and nothing is lost where it cannot.
+//! Scene files: a saved scene opens as it was, and nothing is lost if it cannot be saved.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

@@ -2,8 +2,8 @@
 //!
 //! A hang shows only in some of the runs, and only with three threads or more, so each test repeats
 //! its pictures a thousand times, on new meshes, whose normals, edges and orders are all still to
-//! be computed. A test that does not come to its end in time prints the stacks of all threads (if
-//! `gdb` is installed) and fails.
+//! be computed. A test that does not end in time prints the stacks of all threads (if `gdb` is
+//! installed) and fails.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

@@ -1,4 +1,4 @@
-//! What each axis of accuracy makes of a picture, held to the figures that its table states.
+//! The effect of each axis of accuracy on pictures, compared with the errors that its table states.
 
 #![expect(clippy::cast_precision_loss, reason = "small numbers")]
 

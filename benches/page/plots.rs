@@ -1,4 +1,4 @@
-//! How a picture's time grows, as plots: both scales logarithmic, drawn by `plotters`.
+//! Plots how the time of a picture grows, with two logarithmic scales.
 
 use std::error::Error;
 

@@ -1,4 +1,4 @@
-//! Tables of Markdown.
+//! Writes tables in Markdown.
 
 use std::fmt::Write as _;
 

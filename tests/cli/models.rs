@@ -1,4 +1,4 @@
-//! Models without a scene: how they are seen, and which options apply to them.
+//! Models without a scene: how they are framed, and which options apply to them.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What comes into the scene, what goes, and what changes about it.
+//! Inserting, removing and changing items of the scene.
 
 use glam::DVec3;
 use marraztu::base::math::Axis;

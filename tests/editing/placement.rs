@@ -1,4 +1,4 @@
-//! Placements that are typed, and the numbers that are shown for them.
+//! Placements that are typed as numbers, and the numbers that are shown for them.
 
 use glam::{DMat3, DMat4, DVec3};
 use marraztu::base::math::Axis;

@@ -1,4 +1,4 @@
-//! What is selected, and after what.
+//! Which item is selected after each change.
 
 use marraztu::edit::selection::{self, cycle_subject};
 use marraztu::edit::{GesturePhase, Refusal, items};

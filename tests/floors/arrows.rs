@@ -1,4 +1,4 @@
-//! Reads which file of a floor uses which other one, however the use is written.
+//! Finds out which file of a floor uses which other one, however the use is written.
 //!
 //! Paths are followed as the compiler follows them: through `super` and `self`, opened braces,
 //! renamed imports, re-exports and globs. An arrow therefore ends at the file that defines a name,

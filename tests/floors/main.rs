@@ -1,4 +1,4 @@
-//! The floors of the crate and the rooms of a floor: who may use whom.
+//! The floors of the crate and the rooms of a floor: which may use which.
 
 mod arrows;
 

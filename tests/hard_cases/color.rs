@@ -1,4 +1,4 @@
-//! From light to bytes.
+//! Colours: from light to bytes.
 
 use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::color::{Color, byte};

@@ -1,4 +1,4 @@
-//! Which pixels are covered: by whole-number crossings, never by an edge function.
+//! Coverage, checked by integer crossings and never by an edge function.
 
 use crate::claims::exact::{span, wind};
 use glam::{DMat4, DVec3};
@@ -385,7 +385,7 @@ fn case_25_moved_by_whole_pixels_a_picture_is_the_same_but_moved() {
                 differ += usize::from(from != moved.pixel(tx as usize, ty as usize));
             }
         }
-        // In f32 the edge functions of a moved triangle round otherwise.
+        // In f32, the edge functions of a moved triangle round differently.
         for flat in scattered(25, 1, 0).iter().take(20) {
             let [p, q, _] =
                 flat.corners.map(|c| [c.x as f32 / 256.0 - 0.3, c.y as f32 / 256.0 - 0.3]);

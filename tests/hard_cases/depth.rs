@@ -1,4 +1,4 @@
-//! What is in front.
+//! Depth: which surface is in front.
 
 use crate::claims::double_double::Double;
 use glam::{DMat4, DVec3};

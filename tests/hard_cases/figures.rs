@@ -1,7 +1,7 @@
-//! What a case measures: the naive way's number, ours, and the bound that ours is held to.
+//! The figures of a case: the number of a naive program, ours, and the bound that ours must keep.
 //!
-//! Each is printed as one line, and where `MARRAZTU_FIGURES` names a folder written into a file
-//! there: `tools/stability.sh` makes its page of them.
+//! Each is printed as one line and, if `MARRAZTU_FIGURES` names a folder, written into a file
+//! there. `tools/stability.sh` makes its page of them.
 
 use super::cases::CASES;
 

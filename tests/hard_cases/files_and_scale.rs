@@ -1,4 +1,4 @@
-//! Odd numbers and faces in files, scenes of other sizes, nothing and very much.
+//! Odd numbers and faces in files, scenes of other scales, empty scenes and huge ones.
 
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::Shot;

@@ -182,7 +182,7 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
     }
 }
 
-/// How far the left sides of the strips are moved where places of the world are f32.
+/// How far the left sides of the strips move if positions in the world are f32.
 fn naive_shift(vernier: &Vernier, away: DVec3, tangent: f64) -> f64 {
     let mut worst = 0.0_f64;
     let single = |x: f64| x as f32;

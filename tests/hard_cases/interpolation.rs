@@ -1,4 +1,4 @@
-//! What lies between corners.
+//! Interpolation: the values between corners.
 
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::{Arithmetic, Filter, LightAt, Settings};

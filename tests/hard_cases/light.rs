@@ -1,4 +1,4 @@
-//! Light, against the page's equation along rays.
+//! Light, compared with the equation of the oracle along rays.
 
 use glam::{DMat4, DQuat, DVec3};
 use marraztu::accuracy::Shot;

@@ -1,4 +1,5 @@
-//! What a picture should show, by rays and by the page on light, in f64 and with none of our code.
+//! The oracle of pictures: ray casting and the equation of light, in f64 and without any of our
+//! code.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! What comes back.
+//! Undo and saving: everything comes back as it was.
 
 use marraztu::accuracy::Settings;
 use marraztu::base::math::{self, Axis};

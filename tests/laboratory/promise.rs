@@ -1,7 +1,7 @@
 //! The presets keep their promises, on the first scene and on ten random ones.
 //!
-//! Exact is held to the laboratory's reference, Default to Exact. The reference takes textures from
-//! smaller pictures of them, too, which no preset promises: here it takes them as the presets do.
+//! Exact is compared with the laboratory's reference, Default with Exact. The reference uses
+//! mipmaps, which no preset promises; here it filters textures as the presets do.
 //!
 //! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is
 //! promised; a reference that is not where the presets lead.

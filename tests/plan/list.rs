@@ -1,4 +1,4 @@
-//! What is said of a frame is what the frame does.
+//! The list of a frame's effects is what the frame does.
 
 use marraztu::accuracy::Shot;
 use marraztu::accuracy::{LeaveOut, Settings};

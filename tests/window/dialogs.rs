@@ -1,4 +1,4 @@
-//! Files, materials, unsaved work, faults.
+//! Dialogs: files, materials, unsaved work, errors.
 //!
 //! Catches: work that is lost without a question, questions that are not needed, a bad file that
 //! changes the scene, keys that act behind a dialog.

@@ -1,6 +1,6 @@
-//! Keys and clicks that ask for the same do the same; keys act where they should and nowhere else.
+//! Keys and clicks for the same action do the same, and keys act only where they should.
 //!
-//! Catches: an action that a key reaches by a way of its own, toggles that repeat, steps of undo
+//! Catches: an action that a key reaches differently, toggles that repeat, steps of undo
 //! that a held key leaves behind, Caps Lock, signs on other layouts, keys that a text field loses.
 
 use egui::{Event, Key, Modifiers};

@@ -1,7 +1,7 @@
-//! The panel of the laboratory: measured, chosen from, compared, explained, taught.
+//! The panel of the laboratory: measuring, choosing, comparing, explaining, lessons.
 //!
 //! Catches: a measurement that blocks the window or is of another scene, a mark or a row that draws
-//! otherwise than it says, a comparison of two different moments, a click for a pixel that selects.
+//! something else, a comparison of two different moments, a click for a pixel that selects.
 
 use std::time::Duration;
 

@@ -1,8 +1,8 @@
 //! Menus, outline, switches of the view, status line and list of keys.
 //!
-//! Catches: a switch that does other than its key, an action that is in no menu, a control without
-//! a name, a list that goes by another order than the scene's, a name that is lost or given
-//! unasked.
+//! Catches: a switch that acts differently from its key, an action that is in no menu, a control
+//! without a name, a list in another order than the scene's, a name that is lost or given without
+//! being asked for.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};

@@ -1,5 +1,4 @@
-//! The panel that says what the picture is made of, and that nothing is drawn while nothing
-//! changes.
+//! The panel of the plan, and that nothing is drawn while nothing changes.
 //!
 //! Catches: a panel that lags behind the scene, a list of another picture, an effect without a
 //! line, a window that repaints or draws by itself.

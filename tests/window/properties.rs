@@ -1,8 +1,8 @@
-//! The properties of what is selected.
+//! The properties of the selected item.
 //!
 //! Catches: a field that sets another thing than it names, drags that are many steps, a number
-//! typed for one item that lands in another, fields that round what they only show, sliders that do
-//! other than keys.
+//! typed for one item that lands in another, fields that round what they only show, sliders that
+//! act differently from keys.
 
 use egui::accesskit::Role;
 use egui::{Key, PointerButton, Pos2, vec2};

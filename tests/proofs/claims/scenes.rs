@@ -1,5 +1,5 @@
 //! Scenes of hostile numbers are drawn without a panic, the same on all instructions, with depths
-//! from 0 to 1, and never dark in f32 where f64 shows light.
+//! from 0 to 1, and never dark in f32 if f64 shows light.
 
 use fearless_simd::Level;
 use glam::{DMat4, DVec3, DVec4};
