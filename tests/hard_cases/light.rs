@@ -299,7 +299,7 @@ fn case_45_powers_of_numbers_that_have_none_are_zero() {
         }
     }
     // In a picture: Ns of 0 is a highlight of one strength wherever R.V is above 0, and none where
-    // a lamp is behind.
+    // a light is behind.
     let (mut scene, view) = scene(&[(square(), at(90.0, 0.0, 0.0, 0.0))]);
     let matter = OracleMaterial { ambient: 0.0, diffuse: 0.0, specular: 0.5, exponent: 0.0 };
     edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
@@ -348,7 +348,7 @@ fn case_46_no_power_is_subnormal() {
     .hold();
 }
 
-/// A lit square over the view, with these lamps.
+/// A lit square over the view, with these lights.
 fn lit_square(lamps: &[OracleLight]) -> (Scene, View) {
     let (mut scene, view) = scene(&[(square(), at(170.0, 0.0, 0.0, 0.0))]);
     let matter = OracleMaterial { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 20.0 };
@@ -468,7 +468,7 @@ fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
         soften(&mut scene);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
         differ += picture.pixels().iter().zip(dark.pixels()).filter(|(a, b)| a != b).count();
-        // Without the condition on N.L: R.V of a lamp behind may well be positive.
+        // Without the condition on N.L: R.V of a light behind may well be positive.
         let eye = Eye::first(SIDE);
         for i in 0..SIDE * SIDE {
             let v = unit(-eye.ray(i % SIDE, i / SIDE));

@@ -52,7 +52,7 @@ pub(crate) fn inside_by(parts: [f64; 3]) -> f64 {
     parts.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// A lamp.
+/// A light.
 #[derive(Clone, Copy)]
 pub(crate) enum OracleLight {
     Ambient,

@@ -19,7 +19,7 @@ use marraztu::scene::{Command, Item, MaterialChoice, Scene, View};
 use crate::random_scenes::random_scene;
 
 /// Scenes of the plan's proof: of the first 140 those that show most colours. Left out are scenes
-/// in which a lamp stands in the very surface that it lights, or a cone ends without fading (scene
+/// in which a light stands in the very surface that it lights, or a cone ends without fading (scene
 /// 6): on which side of such a border a pixel lies is a matter of rounding, and its light is all or
 /// nothing.
 const SEEDS: [u64; 10] = [13, 28, 43, 48, 78, 88, 104, 107, 113, 134];
