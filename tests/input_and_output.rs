@@ -246,7 +246,7 @@ fn a_missing_file_is_reported_before_a_display_or_another_file_is_looked_for() {
 #[test]
 fn many_models_are_drawn_and_one_that_is_named_twice_is_read_once() {
     let folder = folder();
-    // What is wrong with a file is told once for each time that it is read.
+    // A fault of a file is reported each time that it is read.
     let text = format!("{SQUARE}f 1 2 99\n");
     std::fs::write(folder.path().join("square.obj"), text).unwrap();
     let mut all = vec!["render", "--size", "64", "--out", "a.png"];

@@ -54,7 +54,7 @@ fn triangle_and(rest: &str) -> String {
     format!("{TRIANGLE}{rest}")
 }
 
-// What `tobj` alone refuses or gets wrong.
+// Text that `tobj` alone refuses or reads wrongly.
 
 #[test]
 fn a_mark_of_the_byte_order_hides_no_vertex() {
@@ -229,7 +229,7 @@ fn a_texture_coordinate_of_one_number_gets_zero_for_the_other() {
     assert_eq!(only(&loaded).0, FindingKind::UvSingle);
 }
 
-// What the format says.
+// The rules of the format.
 
 #[test]
 fn negative_indices_count_back_from_where_they_stand() {
@@ -316,7 +316,7 @@ fn the_axes_the_scale_and_the_winding_are_as_asked_for() {
     assert_eq!(error.to_string(), "a.obj: the coordinates are too large at this scale");
 }
 
-// What is refused, with line and reason.
+// Refusals, with line and reason.
 
 #[test]
 fn a_number_that_cannot_be_read_refuses_the_file_with_its_line() {
@@ -433,7 +433,7 @@ fn a_text_of_utf_16_is_read_in_either_order_of_bytes() {
     }
 }
 
-// What is mended and listed.
+// Faults that are mended and listed.
 
 #[test]
 fn faces_that_cannot_be_are_left_out_and_the_others_stay() {
@@ -575,7 +575,7 @@ fn a_line_that_cannot_be_read_is_named_by_its_number_wherever_it_stands() {
     assert_eq!(refusal(&text), format!("a.obj:{}: \"x\" is not a number", lines + 1));
 }
 
-// What files claim, and no machine has the memory or the time for.
+// Files that claim more than any machine has memory or time for.
 
 #[test]
 fn an_index_promises_nothing() {

@@ -103,7 +103,7 @@ fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
     assert_eq!(text, format!("the texture cannot be read: {path}: {reason}"));
 }
 
-/// What `Tr` says in each of a file's materials, two of them used; the opacity of the first
+/// The `Tr` of each of a file's materials, two of them used; the opacity of the first
 /// and what was found.
 fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
     let material = |(name, tr): (&str, &str)| format!("{}{tr}\n", RED.replace("red", name));
@@ -118,7 +118,7 @@ fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
 fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
     use FindingKind::{MendedTransparency, Translucent, Transparent};
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "Tr 1.0"]), (1.0, vec![(MendedTransparency, 3)]));
-    // What is not used says nothing of the convention.
+    // Unused materials say nothing of the convention.
     let unused = vec![(MendedTransparency, 2), (Translucent, 1)];
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "d 0.5"]), (1.0, unused));
     assert_eq!(with_tr(["Tr 1.0", "Tr 0", "Tr 0"]), (0.0, vec![(Transparent, 1)]));

@@ -66,7 +66,7 @@ fn measure(path: &std::path::Path, file: usize) {
     let (scene, view) = common::scene(&[(Shared::new(loaded.model), DMat4::IDENTITY)]);
     let size = Size::new(800, 600);
     let settings = Settings::default();
-    // What drawing looks for in the mesh once, and keeps there, is the mesh's.
+    // Data that drawing derives from the mesh and keeps there counts as the mesh's.
     drop(plan_frame(&Shot::new(&scene, &view, &settings, size)));
     scene.objects.iter().for_each(|(_, object)| assert!(!object.model.mesh.facets().is_empty()));
     let mesh = HeapStats::get().curr_bytes;

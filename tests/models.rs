@@ -148,7 +148,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
     }
 }
 
-/// What `tobj` reads of a file: positions, normals and places on the texture by corner, as bits.
+/// The positions, normals and texture coordinates of each corner that `tobj` reads, as bits.
 #[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
 fn by_tobj(path: &Path) -> Option<Vec<Vec<[Vec<u32>; 3]>>> {
     let (models, _) = tobj::load_obj(path, &tobj::LoadOptions::default()).ok()?;
@@ -296,7 +296,7 @@ fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
     (scene, view)
 }
 
-/// By how many steps the bytes of two pictures differ at most, and where.
+/// The largest difference of two pictures in byte steps, and its position.
 fn farthest_bytes(a: &Picture, b: &Picture) -> (u8, usize) {
     let pairs = a.pixels().as_flattened().iter().zip(b.pixels().as_flattened());
     pairs.map(|(a, b)| a.abs_diff(*b)).zip(0..).max().unwrap()

@@ -84,7 +84,7 @@ fn texture(rng: &mut Rng) -> Shared<Texture> {
     })
 }
 
-/// What is edited and shown.
+/// The scene that is edited, and its view.
 struct Desk {
     scene: Scene,
     view: View,
@@ -311,7 +311,7 @@ fn dress(object: &mut Object, rng: &mut Rng) {
     }
 }
 
-/// What is seen at some pixels.
+/// The items visible at some pixels.
 fn seen(renderer: &mut Renderer, size: Size) -> Vec<Option<Hit>> {
     let steps = |length: usize| (3..length).step_by(length / 5);
     let places = steps(size.height).flat_map(|y| steps(size.width).map(move |x| (x, y)));
@@ -383,7 +383,7 @@ fn after_any_commands_a_partial_redraw_gives_the_same_bytes_as_a_full_one() {
     }
 }
 
-/// What has changed is drawn again, and the picture is as if all were drawn.
+/// Changed parts are drawn again, and the picture is as if everything were drawn.
 fn agrees(renderer: &mut Renderer, plan: &FramePlan) {
     let changes = renderer.redraw(plan, &|| true).unwrap();
     assert!(Renderer::default().render(plan) == renderer.picture(), "{changes:?}");

@@ -369,7 +369,7 @@ fn another_crease_gives_the_mesh_that_loading_with_it_gives() {
     assert_eq!(groups.with_crease(Crease::SMOOTH).mesh, groups.mesh);
 }
 
-/// What the normal of each corner is by definition, without regard to time.
+/// The normal of each corner by definition, without regard to time.
 fn by_definition(mesh: &Mesh, crease: f64) -> Vec<Vec<DVec3>> {
     let count = mesh.polygon_count();
     let vertices: Vec<Vec<u32>> = (0..u32::try_from(count).unwrap())

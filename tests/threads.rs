@@ -154,7 +154,7 @@ fn pictures_drawn_at_the_same_time_by_the_same_threads_do_not_wait_for_each_othe
     }
 }
 
-/// What is computed once in a process is computed anew in each of these.
+/// Each of these is a new process, in which everything is computed anew.
 #[test]
 fn a_thousand_runs_of_the_program_come_to_their_end() {
     let _watchdog = Watchdog::new("a thousand runs of the program");

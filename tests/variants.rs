@@ -30,7 +30,7 @@ fn unmarked(view: View) -> View {
     View { marks: false, ..view }
 }
 
-/// What each pixel of a picture shows.
+/// The primitive that each pixel of a picture shows.
 fn primitives(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Vec<u32> {
     let mut renderer = Renderer::default();
     renderer.render(&plan_frame(&Shot::new(scene, view, settings, Size::new(side, side))));
@@ -244,7 +244,7 @@ fn rounded_rows_and_32_bit_edges_cover_every_covered_pixel_and_a_few_more() {
     for (coverage, most) in [(Coverage::ScanLines, 1.06), (Coverage::F32Edges, 1.0005)] {
         let other = seen(coverage);
         let lost = exact.iter().zip(&other).filter(|(exact, other)| **exact && !**other).count();
-        // What is rounded away at one side is put on at the other.
+        // Rounding removes at one side what it adds at the other.
         assert!(lost as f64 <= 0.01 * count(&exact), "{coverage:?}: {lost}");
         let ratio = count(&other) / count(&exact);
         assert!((0.9995..most).contains(&ratio), "{coverage:?}: {ratio}");

@@ -49,18 +49,18 @@ const NAMES: &[&str] = &[
     "pace",
 ];
 
-/// What a folder may still hold. Each allowance has to be needed: whoever cleans a folder takes its
-/// row away.
+/// The faults that a folder may still have. Each allowance has to be needed: a clean folder has
+/// none.
 const ALLOWED: &[(&str, &[&str])] =
     &[("src/render", &["Dice", CONDITION, LONG, "by chance", "nobody", "of which", "so many"])];
 
 /// How many columns a line of Rust may have.
 const COLUMNS: usize = 100;
 
-/// What an allowance for long lines is called.
+/// The name of an allowance for long lines.
 const LONG: &str = "a long line";
 
-/// What an allowance for files that rustfmt does not see is called.
+/// The name of an allowance for files that rustfmt does not see.
 const UNSEEN: &str = "a file that rustfmt does not see";
 
 fn root() -> &'static Path {
@@ -153,7 +153,7 @@ fn code(text: &str) -> String {
     code
 }
 
-/// What is wrong with one text, each fault by its phrase or name.
+/// The faults of one text, each by its phrase or name.
 fn faults(name: &str, text: &str) -> Vec<&'static str> {
     let read = as_read(text);
     let lower = read.to_lowercase();

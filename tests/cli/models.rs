@@ -61,7 +61,7 @@ fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
     assert!(closed("two") != closed("one"));
 }
 
-/// What `render` notes on standard error.
+/// The notes of `render` on standard error.
 fn notes(folder: &Path, arguments: &[&str]) -> String {
     let all = [&["render", "--out", "x.png", "--size", "160x120"], arguments].concat();
     ends_with(0, folder, &all).1

@@ -118,7 +118,7 @@ fn case_54_nan_is_black_and_infinity_is_full() {
         }
     }
     assert_eq!([byte(none), byte(all), byte(-all)], [0, 255, 0]);
-    // What C's cast by way of int makes of it: the low byte, or that of the smallest int.
+    // The result of a cast by way of int in C: the low byte, or that of the smallest int.
     let cast = |x: f64| (x * 255.0 + 0.5) as i64 as i32 & 255;
     let naive = [(all, 255), (1e39, 255), (1.2, 255), (-0.01, 0), (f64::MAX, 255)]
         .into_iter()

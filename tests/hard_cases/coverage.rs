@@ -86,7 +86,7 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
 fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
     let tally = quick_round("fans");
     assert!(tally.counts["samples"] > 10_000_000, "{tally}");
-    // What the same fans would have with edges that both sides take.
+    // The same fans if both sides covered shared edges.
     let mut rng = Rng::new(21);
     let mut naive = 0;
     for _ in 0..500 {
@@ -100,7 +100,7 @@ fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
             wind(&outline, y, &mut row);
             for (x, winding) in (0..).zip(&row) {
                 let count = i32::try_from(greedy(&fan, x, y)).unwrap();
-                // Of the same parity at least, where some run the other way.
+                // At least of the same parity, if some run the other way.
                 naive += usize::from((count - winding) % 2 != 0);
             }
         }

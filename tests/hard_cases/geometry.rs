@@ -206,7 +206,8 @@ fn case_4_normals_of_stretched_objects_stay_across_their_surfaces() {
             let m = math::rotation(super::oracle::unit(rng.vector(1.0)), rng.real(0.0, 6.0))
                 * DMat3::from_diagonal(DVec3::new(1.0, stretch, 1.0));
             let (p, q) = (rng.vector(1.0), rng.vector(1.0));
-            // What is across is across two ways along the surface, and they go where it goes.
+            // A normal is perpendicular to two directions along the surface, and these move with
+            // it.
             let (n, exact) = (p.cross(q), (m * p).cross(m * q));
             if n.length() < 0.1 {
                 continue;

@@ -63,7 +63,7 @@ pub(crate) enum OracleLight {
     Spot(DVec3, DVec3, f64, f64),
 }
 
-/// What reflects.
+/// A material.
 #[derive(Clone, Copy)]
 pub(crate) struct OracleMaterial {
     pub(crate) ambient: f64,

@@ -87,7 +87,7 @@ impl PictureSource for FakeSource {
     }
 }
 
-/// What a sweep over all axes finds; all of them make sense.
+/// The findings of a sweep over all axes, which all apply.
 pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings {
     let limits = Limits { pairs: 3, least: 3, time: Duration::from_secs(1) };
     let thoroughness =

@@ -126,7 +126,7 @@ fn caps_lock_has_no_say() {
     let eye = |editor: &Editor| editor.scene().selected_camera(&editor.view()).pose.now().eye;
     let (mut plain, mut capital) = (Editor::new(), Editor::new());
     plain.press(Lower(Key::Z));
-    // With Caps Lock on, only the text is another.
+    // With Caps Lock on, only the text differs.
     capital.key(Key::Z, true, Modifiers::NONE);
     capital.harness.event(Event::Text("Z".to_owned()));
     capital.key(Key::Z, false, Modifiers::NONE);

@@ -95,7 +95,7 @@ fn every_choice_of_the_view_does_what_its_action_does() {
         asked.perform(action);
         assert_ne!(asked.view(), before, "{label} has nothing to do");
         for _ in 0..2 {
-            // What is chosen already stays.
+            // The current choice stays.
             click(&mut clicked, Role::RadioButton, label);
             assert_eq!(clicked.view(), asked.view(), "{label}");
         }

@@ -111,7 +111,7 @@ fn an_idle_editor_draws_nothing_and_asks_for_no_frame() {
         if plan {
             editor.perform(Action::TogglePlan);
         }
-        // What fades in has faded.
+        // Panels that fade in are fully visible by now.
         for _ in 0..60 {
             editor.settle();
         }

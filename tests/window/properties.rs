@@ -78,7 +78,7 @@ fn drag(editor: &mut Editor, role: Role, label: &str, by: f32) {
 
 type Read = fn(&Editor) -> f64;
 
-/// What each field of an object sets.
+/// The value that each field of an object sets.
 const OF_OBJECT: &[(&str, Read)] = &[
     ("Position X", |e| placement::translation(object(e).placement.now()).x),
     ("Position Y", |e| placement::translation(object(e).placement.now()).y),
@@ -92,7 +92,7 @@ const OF_OBJECT: &[(&str, Read)] = &[
     ("Spin speed", |e| object(e).spin.speed),
 ];
 
-/// What each field of a camera sets.
+/// The value that each field of a camera sets.
 const OF_CAMERA: &[(&str, Read)] = &[
     ("Position X", |e| camera(e).pose.now().eye.x),
     ("Position Y", |e| camera(e).pose.now().eye.y),
