@@ -1,4 +1,4 @@
-//! One drawing job that other renderers do too, so that they can be compared: a mesh orbited by a
+//! A drawing job for comparisons with other renderers: a mesh orbited by a
 //! camera, lit by five lights, in one of several modes.
 //!
 //! A frame is measured from the setting of its camera to bytes in memory, planning included, and no
@@ -381,7 +381,7 @@ mod tests {
 
     const SQUARE: &str = "v 5 5 5\nv 6 5 5\nv 6 6 5\nv 5 6 5\nf 1 2 3 4\n";
 
-    /// Two sides of a tent, one of which is turned away.
+    /// Two sides of a tent, one turned away.
     const TENT: &str = "v -1 0 -1\nv 1 0 -1\nv 0 1 0\nv 0 -1 1\nf 1 3 2\nf 1 4 2\nf 4 3 1\n";
 
     /// The cells of the line, and the pixels of the picture.

@@ -1,4 +1,4 @@
-//! The history against a model of it: a list of the scenes there were.
+//! The history, compared with a simple model: a list of all earlier scenes.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

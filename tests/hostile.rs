@@ -1,5 +1,6 @@
-//! Files that once broke the program, or were made to: each is read or refused, shortly and in a
-//! short message, and what is read can be drawn. Fuzzing adds to them; see `fuzz/README.md`.
+//! Files that once broke the program, or were made to break it: each is read or refused, quickly
+//! and with a short message, and a scene that is read can be drawn. Fuzzing adds to them; see
+//! `fuzz/README.md`.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

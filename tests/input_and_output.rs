@@ -78,7 +78,7 @@ fn a_picture_is_named_after_its_file_and_lies_in_the_current_folder() {
 }
 
 #[test]
-fn a_picture_replaces_no_file_of_another_kind_and_none_that_it_is_made_of() {
+fn a_picture_replaces_neither_a_file_of_another_kind_nor_its_own_source() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     std::fs::write(at("poem.png"), "Roses are red").unwrap();
@@ -86,7 +86,7 @@ fn a_picture_replaces_no_file_of_another_kind_and_none_that_it_is_made_of() {
         std::fs::write(at("poem.obj"), SQUARE).unwrap();
         let all = [&["render"], arguments].concat();
         let (_, err) = ends_with(1, folder.path(), &all, b"");
-        assert!(err.contains("it is no picture"), "{err}");
+        assert!(err.contains("it is not a picture"), "{err}");
         assert_eq!(std::fs::read_to_string(at("poem.png")).unwrap(), "Roses are red");
     }
     // The texture that the model's material names, and the one that is given.
@@ -199,7 +199,7 @@ fn colours_of_the_background_threads_and_axes_that_point_up_are_taken_as_people_
 }
 
 #[test]
-fn progress_is_told_in_per_cent_if_it_is_asked_for() {
+fn progress_is_reported_in_per_cent_on_request() {
     let folder = folder();
     let render = ["render", "square.obj", "--size", "64", "--out", "a.png"];
     let (_, err) = ends_with(0, folder.path(), &render, b"");
@@ -227,7 +227,7 @@ fn quiet_silences_notes_and_no_errors() {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_told_of_before_a_display_or_another_file_is_looked_for() {
+fn a_missing_file_is_reported_before_a_display_or_another_file_is_looked_for() {
     let folder = folder();
     let (_, err) = ends_with(1, folder.path(), &["nosuch.obj"], b"");
     assert_eq!(err, "error: nosuch.obj: there is no such file\n");
@@ -246,7 +246,7 @@ fn a_file_that_is_not_there_is_told_of_before_a_display_or_another_file_is_looke
 #[test]
 fn many_models_are_drawn_and_one_that_is_named_twice_is_read_once() {
     let folder = folder();
-    // What is wrong with a file is told once for each time that it is read.
+    // A fault of a file is reported each time that it is read.
     let text = format!("{SQUARE}f 1 2 99\n");
     std::fs::write(folder.path().join("square.obj"), text).unwrap();
     let mut all = vec!["render", "--size", "64", "--out", "a.png"];

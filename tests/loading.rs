@@ -1,7 +1,7 @@
-//! What becomes of OBJ files as people and programs write them.
+//! OBJ files as people and programs write them: how each is read.
 //!
-//! Each test is a small file. `tobj` alone reads those of the first part wrongly, or not at all: the
-//! program hands it only what it reads rightly. On files that it reads rightly by itself
+//! Each test is a small file. `tobj` alone reads those of the first part wrongly, or not at all:
+//! the program hands it only what it reads rightly. On files that it reads rightly by itself
 //! `tests/models.rs` holds the program against it.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
@@ -54,7 +54,7 @@ fn triangle_and(rest: &str) -> String {
     format!("{TRIANGLE}{rest}")
 }
 
-// What `tobj` alone refuses or gets wrong.
+// Text that `tobj` alone refuses or reads wrongly.
 
 #[test]
 fn a_mark_of_the_byte_order_hides_no_vertex() {
@@ -100,7 +100,7 @@ fn numbers_that_tobj_passes_over_refuse_the_file_all_the_same() {
         ("vn 0 0 1 x\n", "a.obj:1: \"x\" is not a number"),
         ("v 0 0 0 . 0 0\n", "a.obj:1: \".\" is not a number"),
         ("v 0 0 0 1 1 1\nv 0 0 0 1 1 -\n", "a.obj:2: \"-\" is not a number"),
-        // The first fault counts, whoever finds it.
+        // The first fault counts, whichever thread finds it.
         ("v 0 0 --1\nv 0 0\n", "a.obj:1: \"--1\" is not a number"),
         ("v 0 0 1..\nv 0 x 0\n", "a.obj:1: \"1..\" is not a number"),
     ] {
@@ -135,7 +135,7 @@ fn lines_and_points_are_left_out_and_counted() {
 }
 
 #[test]
-fn places_on_the_texture_and_normals_stay_with_their_corners_where_others_have_none() {
+fn texture_coordinates_and_normals_stay_with_their_corners_if_others_have_none() {
     let loaded = read(&triangle_and(
         "vt 0.25 0.5\nvt 0.5 0.75\nvn 0 0 1\nvn 0 1 0\n\
          f 1 2 3\nf 1/2 2/1 3/2\nf 1//2 2//1 3//2\nf 1/1/1 2/2/2 3/1/1\nf 1/2 2 3\n",
@@ -170,7 +170,7 @@ fn vertices_keep_their_numbers_whether_faces_use_them_or_not() {
 }
 
 #[test]
-fn vertices_without_a_colour_are_white_where_others_have_one() {
+fn vertices_without_a_colour_are_white_if_others_have_one() {
     let loaded = read("v 0 0 0\nv 1 0 0 0.5 0.25 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(loaded.model.mesh.colors(), [[1.0; 3], [0.5, 0.25, 0.0], [1.0; 3]]);
     let text = "2 vertices have no colour, while others have: they are white";
@@ -186,7 +186,7 @@ fn a_fourth_number_is_no_colour_and_a_seventh_is_passed_over() {
 }
 
 #[test]
-fn colours_above_one_are_taken_as_bytes() {
+fn colours_above_one_are_read_as_bytes() {
     let loaded = read("v 0 0 0 255 0 0\nv 1 0 0 0 51 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
     assert_eq!(loaded.model.mesh.colors()[..2], [[1.0, 0.0, 0.0], [0.0, 0.2, 0.0]]);
     assert_eq!(only(&loaded).0, FindingKind::ColorBytes);
@@ -221,7 +221,7 @@ fn texture_places_and_normals_that_are_not_finite_are_left_out() {
 }
 
 #[test]
-fn a_texture_place_of_one_number_has_zero_for_the_other() {
+fn a_texture_coordinate_of_one_number_gets_zero_for_the_other() {
     let loaded = read(&triangle_and("vt 0.5\nvt 0.5 0.25 0\nf 1/1 2/2 3/1\n"));
     let mesh = &loaded.model.mesh;
     assert_eq!(mesh.uvs()[mesh.corners()[0].uv as usize], [0.5, 0.0]);
@@ -229,7 +229,7 @@ fn a_texture_place_of_one_number_has_zero_for_the_other() {
     assert_eq!(only(&loaded).0, FindingKind::UvSingle);
 }
 
-// What the format says.
+// The rules of the format.
 
 #[test]
 fn negative_indices_count_back_from_where_they_stand() {
@@ -316,7 +316,7 @@ fn the_axes_the_scale_and_the_winding_are_as_asked_for() {
     assert_eq!(error.to_string(), "a.obj: the coordinates are too large at this scale");
 }
 
-// What is refused, with line and reason.
+// Refusals, with line and reason.
 
 #[test]
 fn a_number_that_cannot_be_read_refuses_the_file_with_its_line() {
@@ -356,7 +356,7 @@ fn a_file_without_a_usable_face_is_refused_by_its_first_bad_line() {
 }
 
 #[test]
-fn what_is_no_obj_file_is_refused() {
+fn a_file_that_is_not_an_obj_file_is_refused() {
     for (bytes, message) in [
         (&b""[..], "a.obj: the file is empty"),
         (b" \n\n", "a.obj: the file is empty"),
@@ -371,7 +371,7 @@ fn what_is_no_obj_file_is_refused() {
 }
 
 #[test]
-fn a_file_that_is_not_there_or_is_a_folder_is_refused_in_plain_words() {
+fn a_missing_file_or_a_folder_is_refused_in_plain_words() {
     let folder = tempfile::tempdir().unwrap();
     let refusal = |path: &Path| {
         let error = load(path, &LoadOptions::default(), &Progress::new()).unwrap_err().to_string();
@@ -384,7 +384,7 @@ fn a_file_that_is_not_there_or_is_a_folder_is_refused_in_plain_words() {
     assert_eq!(refusal(&inner), "this is a folder, not a file");
 }
 
-/// Opening a pipe waits until somebody writes to it.
+/// Opening a pipe waits until another program writes to it.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_pipe_and_a_device_are_refused_at_once() {
@@ -433,7 +433,7 @@ fn a_text_of_utf_16_is_read_in_either_order_of_bytes() {
     }
 }
 
-// What is mended and listed.
+// Faults that are mended and listed.
 
 #[test]
 fn faces_that_cannot_be_are_left_out_and_the_others_stay() {
@@ -557,7 +557,7 @@ fn a_file_says_the_same_however_many_threads_read_it() {
 }
 
 #[test]
-fn the_quick_way_through_a_line_says_what_the_other_way_says() {
+fn the_quick_way_reads_a_line_like_the_tolerant_way() {
     let text = long(4000);
     // A blank at the beginning of a line is not for the quick way.
     let slow: String = text.split_inclusive('\n').map(|line| format!(" {line}")).collect();
@@ -575,7 +575,7 @@ fn a_line_that_cannot_be_read_is_named_by_its_number_wherever_it_stands() {
     assert_eq!(refusal(&text), format!("a.obj:{}: \"x\" is not a number", lines + 1));
 }
 
-// What files claim, and no machine has the memory or the time for.
+// Files that claim more than any machine has memory or time for.
 
 #[test]
 fn an_index_promises_nothing() {

@@ -1,5 +1,5 @@
-//! The material files and textures that an OBJ file names: whether they are found, and what is said
-//! where they are not.
+//! The material files and textures that an OBJ file names: whether they are found, and what is
+//! reported if they are not.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -103,7 +103,7 @@ fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
     assert_eq!(text, format!("the texture cannot be read: {path}: {reason}"));
 }
 
-/// What `Tr` says in each of a file's materials, two of them used; the opacity of the first
+/// The `Tr` of each of a file's materials, two of them used; the opacity of the first
 /// and what was found.
 fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
     let material = |(name, tr): (&str, &str)| format!("{}{tr}\n", RED.replace("red", name));
@@ -118,7 +118,7 @@ fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
 fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
     use FindingKind::{MendedTransparency, Translucent, Transparent};
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "Tr 1.0"]), (1.0, vec![(MendedTransparency, 3)]));
-    // What is not used says nothing of the convention.
+    // Unused materials say nothing of the convention.
     let unused = vec![(MendedTransparency, 2), (Translucent, 1)];
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "d 0.5"]), (1.0, unused));
     assert_eq!(with_tr(["Tr 1.0", "Tr 0", "Tr 0"]), (0.0, vec![(Transparent, 1)]));
@@ -129,7 +129,7 @@ fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
 }
 
 #[test]
-fn what_is_mended_in_many_files_is_one_finding_with_the_first_place() {
+fn the_same_fault_in_many_files_is_one_finding_with_the_first_line() {
     let folder = tempfile::tempdir().unwrap();
     let mut obj = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     for i in 0..7 {

@@ -1,7 +1,7 @@
-//! How much memory loading and drawing take, counted by an allocator that counts.
+//! How much memory loading and drawing take, measured by a counting allocator.
 //!
-//! On one thread, so that every run counts the same: with more, each has a tile's worth of its own, and
-//! which of them meets the fullest tile first is chance.
+//! They run on one thread, so that every run counts the same: with more threads, each has memory
+//! for its own tile, and which of them gets the fullest tile first is random.
 
 #![expect(clippy::cast_precision_loss, reason = "small whole numbers")]
 #![expect(clippy::print_stdout, reason = "what was counted is to be read")]
@@ -66,7 +66,7 @@ fn measure(path: &std::path::Path, file: usize) {
     let (scene, view) = common::scene(&[(Shared::new(loaded.model), DMat4::IDENTITY)]);
     let size = Size::new(800, 600);
     let settings = Settings::default();
-    // What drawing looks for in the mesh once, and keeps there, is the mesh's.
+    // Data that drawing derives from the mesh and keeps there counts as the mesh's.
     drop(plan_frame(&Shot::new(&scene, &view, &settings, size)));
     scene.objects.iter().for_each(|(_, object)| assert!(!object.model.mesh.facets().is_empty()));
     let mesh = HeapStats::get().curr_bytes;

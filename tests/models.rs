@@ -1,8 +1,8 @@
-//! Every public model that was gathered, against the table that says what is in it.
+//! Reads every public model that was gathered, and compares it with a table of their contents.
 //!
-//! The models are the work of others and lie beside the project. If they are missing, the test is
-//! left out, loudly; `MARRAZTU_REQUIRE_SHARED=1` makes that a failure, `MARRAZTU_SHARED` says where
-//! they are.
+//! The models are the work of others and are not in the project. If they are missing, the test is
+//! skipped with a message; `MARRAZTU_REQUIRE_SHARED=1` makes that a failure, and `MARRAZTU_SHARED`
+//! names their folder.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -23,7 +23,7 @@ use marraztu::scene::{
     Tracked, View, dvec3, newell,
 };
 
-/// The folder of the models, where it is there.
+/// The folder of the models, if it exists.
 #[expect(clippy::print_stderr, reason = "who runs the tests has to see what is left out")]
 fn models() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared");
@@ -148,7 +148,7 @@ fn every_model_has_as_much_in_it_as_the_table_says() {
     }
 }
 
-/// What `tobj` reads of a file: positions, normals and places on the texture by corner, as bits.
+/// The positions, normals and texture coordinates of each corner that `tobj` reads, as bits.
 #[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
 fn by_tobj(path: &Path) -> Option<Vec<Vec<[Vec<u32>; 3]>>> {
     let (models, _) = tobj::load_obj(path, &tobj::LoadOptions::default()).ok()?;
@@ -179,13 +179,14 @@ fn by_tobj(path: &Path) -> Option<Vec<Vec<[Vec<u32>; 3]>>> {
 }
 
 #[test]
-fn what_tobj_reads_of_a_model_is_read_alike_bit_for_bit() {
+fn models_are_read_as_tobj_reads_them_bit_for_bit() {
     let Some(models) = models() else { return };
     let mut compared = 0;
     for row in table(&models) {
         let path = models.join(&row.file);
         let text = String::from_utf8_lossy(&std::fs::read(&path).unwrap()).into_owned();
-        // It draws lines and points as faces, and counts corners wrongly where only some have all.
+        // tobj reads lines and points as faces, and counts corners wrongly if only some have all
+        // indices.
         let statement = |word: &str| text.lines().any(|line| line.starts_with(word));
         let loaded = load(&path, &LoadOptions::default(), &Progress::new());
         let (Ok(loaded), false) = (loaded, statement("l ") || statement("p ")) else { continue };
@@ -295,7 +296,7 @@ fn staged(model: &Shared<Model>, side: DVec3) -> (Scene, View) {
     (scene, view)
 }
 
-/// By how many steps the bytes of two pictures differ at most, and where.
+/// The largest difference of two pictures in byte steps, and its position.
 fn farthest_bytes(a: &Picture, b: &Picture) -> (u8, usize) {
     let pairs = a.pixels().as_flattened().iter().zip(b.pixels().as_flattened());
     pairs.map(|(a, b)| a.abs_diff(*b)).zip(0..).max().unwrap()

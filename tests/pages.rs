@@ -1,5 +1,5 @@
-//! The pages are true: what they list is in the program's tables, what they link to is there, and
-//! every command that they show runs in a plain clone.
+//! The pages are true: their lists are the program's tables, their links lead to files, and every
+//! command that they show runs in a plain clone.
 //!
 //! `tools/pages.sh` runs this test with `MARRAZTU_WRITE_PAGES=1`: then the lists are written.
 

@@ -1,4 +1,4 @@
-//! What pictures show, on scenes small enough to know the answer.
+//! Pictures of scenes so small that the right result is known.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 #![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
@@ -122,7 +122,7 @@ fn a_square_that_faces_the_camera_covers_the_pixels_that_the_lens_says() {
 }
 
 #[test]
-fn what_is_lit_by_the_sun_alone_has_the_colour_of_the_equation() {
+fn a_surface_lit_by_the_sun_alone_has_the_colour_of_the_equation() {
     let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0))]);
     // The ground, seen from above by a camera at (0, 0, 400): the square lies in y = 0 and is
     // turned to face up and towards the camera by 45 degrees.
@@ -199,7 +199,7 @@ fn a_mirrored_object_is_not_inside_out() {
 }
 
 #[test]
-fn what_is_nearer_hides_what_is_farther_whatever_the_order() {
+fn nearer_surfaces_hide_farther_ones_in_any_order() {
     let near = (square(), at(20.0, 0.0, 0.0, 50.0));
     let far = (square(), at(60.0, 0.0, 0.0, -50.0));
     for models in [[near.clone(), far.clone()], [far, near]] {
@@ -392,7 +392,7 @@ fn scenes_without_anything_in_them_are_background() {
 }
 
 #[test]
-fn what_is_left_out_is_named_with_its_reason() {
+fn everything_that_is_left_out_is_listed_with_its_reason() {
     let (mut scene, view) = scene(&[(cube(), at(40.0, 0.0, 0.0, 900.0))]);
     switch(&mut scene, 4, false);
     edit(&mut scene, FIRST, |object| {

@@ -1,11 +1,9 @@
-//! What has changed is drawn again, to the same bytes as if all were drawn: accuracy's second
-//! proof.
+//! A partial redraw gives the same bytes as drawing everything.
 //!
-//! Left out or broken once each, to see it bite: the old place of what moved or went, reaches that
-//! are too small, that reach behind the camera or that normals stand out of; of the comparison the
-//! lamps, the material, the tint, the choice of normals, the polygons, the parts with holes, the
-//! width of lines, the normals that are drawn, the order; vertices and bins kept that are no longer
-//! true; a picture taken for finished that was given up.
+//! Catches: the old place of moved or removed objects that is forgotten; reaches that are too
+//! small, behind the camera, or without drawn normals; a comparison that forgets lights, material,
+//! tint, the choice of normals, polygons, parts with holes, the width of lines, drawn normals or
+//! the order; stale vertices and bins; a cancelled picture that is taken for finished.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -86,7 +84,7 @@ fn texture(rng: &mut Rng) -> Shared<Texture> {
     })
 }
 
-/// What is edited and shown.
+/// The scene that is edited, and its view.
 struct Desk {
     scene: Scene,
     view: View,
@@ -281,7 +279,7 @@ impl Desk {
     }
 }
 
-/// Makes an object look otherwise, or puts it elsewhere.
+/// Changes the appearance of an object, or moves it.
 fn dress(object: &mut Object, rng: &mut Rng) {
     match rng.index(10) {
         0 => {
@@ -313,7 +311,7 @@ fn dress(object: &mut Object, rng: &mut Rng) {
     }
 }
 
-/// What is seen at some pixels.
+/// The items visible at some pixels.
 fn seen(renderer: &mut Renderer, size: Size) -> Vec<Option<Hit>> {
     let steps = |length: usize| (3..length).step_by(length / 5);
     let places = steps(size.height).flat_map(|y| steps(size.width).map(move |x| (x, y)));
@@ -331,7 +329,7 @@ fn impatient(
 }
 
 #[test]
-fn what_changed_is_drawn_again_to_the_same_bytes_after_any_sequence_of_commands() {
+fn after_any_commands_a_partial_redraw_gives_the_same_bytes_as_a_full_one() {
     let mut rng = Rng::new(1);
     let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
     let (mut given_up, mut partial, mut frames) = (0, 0, 0);
@@ -385,7 +383,7 @@ fn what_changed_is_drawn_again_to_the_same_bytes_after_any_sequence_of_commands(
     }
 }
 
-/// What has changed is drawn again, and the picture is as if all were drawn.
+/// Changed parts are drawn again, and the picture is as if everything were drawn.
 fn agrees(renderer: &mut Renderer, plan: &FramePlan) {
     let changes = renderer.redraw(plan, &|| true).unwrap();
     assert!(Renderer::default().render(plan) == renderer.picture(), "{changes:?}");
@@ -423,7 +421,7 @@ fn drawn_normals_are_those_that_the_object_has_by_now() {
 }
 
 #[test]
-fn what_reaches_behind_the_camera_is_drawn_again_wherever_it_is_seen() {
+fn objects_that_reach_behind_the_camera_are_redrawn_wherever_they_are_visible() {
     let (mut scene, view) = scene(&[(plates(), DMat4::IDENTITY)]);
     let plan = |scene: &Scene| {
         plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(500, 500)))
@@ -470,7 +468,7 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
 }
 
 #[test]
-fn what_shows_nowhere_paints_no_tile() {
+fn an_invisible_change_paints_no_tile() {
     let (mut scene, view) = scene(&[(square(), at(20.0, 0.0, 0.0, 0.0))]);
     let plan = |scene: &Scene| {
         plan_frame(&Shot::new(scene, &view, &Settings::default(), Size::new(100, 100)))

@@ -1,5 +1,5 @@
-//! Pictures with several samples a pixel, held to pictures with one that are drawn from each place,
-//! and to pictures that are eight times as large.
+//! Pictures with several samples per pixel, compared with pictures with one sample at each
+//! position, and with pictures that are eight times as large.
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
@@ -112,7 +112,7 @@ fn wants_means(picture: &Picture, pixels: &[Vec<[u8; 4]>], what: &str) {
 
 /// Sum by sum against one picture for each place, drawn with all corners moved the other way.
 #[test]
-fn a_pixel_is_the_mean_of_what_is_seen_from_its_places() {
+fn a_pixel_is_the_mean_of_its_samples() {
     let with_edges = |view: View| View { edges_over_fill: true, ..view };
     let wide = |view: View| View { edges_over_fill: true, wide_lines: true, ..view };
     let filled = |view: View| view;
@@ -197,7 +197,7 @@ fn in_boxes(large: &Picture, side: usize) -> Vec<Vec<[u8; 4]>> {
 
 /// Sum by sum, as above; and for the grid of sixty-four against the pixels of a larger picture.
 #[test]
-fn each_sample_is_lit_where_it_lies() {
+fn each_sample_is_lit_at_its_own_position() {
     let with_edges = |view: View| View { edges_over_fill: true, ..view };
     let filled = |view: View| view;
     let views: [fn(View) -> View; 2] = [filled, with_edges];
@@ -234,9 +234,9 @@ fn each_sample_is_lit_where_it_lies() {
     wants_means(&small, &in_boxes(&large, SIDE), "eight times as large");
 }
 
-/// In perspective corners of the larger picture are snapped eight times as finely, so that samples next to
-/// an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the whole. If one
-/// triangle is seen, at most one.
+/// In perspective corners of the larger picture are snapped eight times as finely, so that samples
+/// next to an edge may show its other side: at most 4 steps at a pixel, and 0.05 of a step on the
+/// whole. If one triangle is seen, at most one.
 #[test]
 fn sixty_four_lit_samples_are_the_mean_of_a_picture_eight_times_as_large() {
     const SMALL: usize = 48;
@@ -322,7 +322,7 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
 /// On a stage all of these put every corner where it belongs, so what is lit there is the same but
 /// for the rounding of numbers.
 #[test]
-fn finer_and_coarser_corners_light_samples_alike_where_both_are_exact() {
+fn finer_and_coarser_corners_light_samples_alike_if_both_are_exact() {
     let (scene, view) = shiny(&scattered(40, 31), SIDE);
     let lit = Settings { samples: Samples::Four, light: LightAt::Sample, ..Settings::default() };
     let wanted = draw(&scene, &view, &lit, SIDE);
@@ -456,7 +456,7 @@ fn around(i: usize, side: usize) -> impl Iterator<Item = usize> {
 }
 
 #[test]
-fn where_nothing_ends_a_picture_is_the_same_with_any_number_of_samples() {
+fn away_from_edges_a_picture_is_the_same_with_any_number_of_samples() {
     let leaning = at(70.0, 10.0, 5.0, 0.0) * DMat4::from_rotation_y(0.6);
     let (scene, view) = scene(&[(square(), leaning), (ball(4), at(60.0, -40.0, 20.0, 30.0))]);
     let view = View { marks: false, ..view };
@@ -548,7 +548,7 @@ fn the_more_samples_the_nearer_to_the_reference() {
 }
 
 #[test]
-fn what_is_picked_is_what_most_samples_show() {
+fn picking_takes_the_polygon_that_most_samples_show() {
     // The right border of the square stands a quarter, then three quarters into a pixel.
     for (part, seen) in [(0.25, false), (0.75, true)] {
         let border = Snapped { x: 64 * 256 + (part * 256.0) as i32, y: 0 };

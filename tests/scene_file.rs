@@ -1,4 +1,4 @@
-//! Scene files: what is saved comes back, and nothing is lost where it cannot.
+//! Scene files: a saved scene opens as it was, and nothing is lost if it cannot be saved.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -185,7 +185,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn what_is_saved_comes_back_bit_for_bit_but_for_undo(
+    fn a_saved_scene_opens_bit_for_bit_without_its_history(
         numbers in prop::array::uniform4(prop_oneof![
             -1e6..1e6_f64,
             -1e-300..1e-300_f64,
@@ -246,7 +246,7 @@ fn the_first_scene_opens_as_it_was() {
 }
 
 #[test]
-fn what_cannot_be_understood_is_refused_with_its_place_in_plain_words() {
+fn text_that_cannot_be_parsed_is_refused_with_its_position_in_plain_words() {
     let mut wrong = Vec::new();
     for (from, to, line, reason) in [
         (
@@ -325,7 +325,7 @@ fn no_error_speaks_of_the_parser() {
 }
 
 #[test]
-fn what_cannot_be_in_a_scene_is_refused_by_its_name() {
+fn invalid_items_of_a_scene_are_refused_by_name() {
     for (from, to, reason) in [
         ("id: 1,", "id: 2,", "object 2 \"x_wing\": its id is used twice"),
         (
@@ -356,7 +356,7 @@ fn what_cannot_be_in_a_scene_is_refused_by_its_name() {
 }
 
 #[test]
-fn a_selection_that_is_gone_gives_way_to_the_first_and_is_listed() {
+fn a_missing_selection_is_listed_and_the_first_item_is_selected() {
     for (from, to, what) in [
         ("object: Some(2)", "object: Some(77)", "object 77"),
         ("camera: 3,", "camera: 77,", "camera 77"),
@@ -374,7 +374,7 @@ fn a_selection_that_is_gone_gives_way_to_the_first_and_is_listed() {
 }
 
 #[test]
-fn a_scene_that_says_nothing_of_its_view_has_nothing_to_list() {
+fn a_scene_without_a_view_has_no_findings() {
     let folder = folder();
     let path = folder.path().join("a.marraztu");
     std::fs::write(&path, "(version: 1, cameras: [(id: 5, name: \"only\")])").unwrap();
@@ -382,7 +382,7 @@ fn a_scene_that_says_nothing_of_its_view_has_nothing_to_list() {
 }
 
 #[test]
-fn spots_and_cameras_that_are_bound_to_what_is_gone_are_listed() {
+fn spots_and_cameras_attached_to_missing_items_are_listed() {
     for (from, to, text) in [
         (
             "owner: SelectedObject",
@@ -402,7 +402,7 @@ fn spots_and_cameras_that_are_bound_to_what_is_gone_are_listed() {
 }
 
 #[test]
-fn what_is_no_scene_file_at_all_is_refused() {
+fn a_file_that_is_not_a_scene_file_is_refused() {
     let folder = folder();
     let path = folder.path().join("b.marraztu");
     let refusal = || open(&path, &Progress::new()).unwrap_err().to_string();

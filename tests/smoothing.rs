@@ -309,7 +309,7 @@ fn normals_are_the_same_however_many_threads_compute_them() {
 }
 
 #[test]
-fn a_group_holds_from_one_chunk_to_the_next() {
+fn a_smoothing_group_continues_in_the_next_chunk() {
     let text = ground(120, true);
     let mesh = mesh(&text, 45.0);
     let mut right = Vec::new();
@@ -325,7 +325,7 @@ fn a_group_holds_from_one_chunk_to_the_next() {
 }
 
 #[test]
-fn a_hundred_thousand_faces_around_one_vertex_or_one_edge_take_no_longer_than_apart() {
+fn a_hundred_thousand_faces_around_one_vertex_or_edge_take_no_longer_than_separate_ones() {
     let count = 100_000_u32;
     let mut fan = String::from("v 0 1 0\n");
     let mut book = String::from("v 0 0 0\nv 0 1 0\n");
@@ -369,7 +369,7 @@ fn another_crease_gives_the_mesh_that_loading_with_it_gives() {
     assert_eq!(groups.with_crease(Crease::SMOOTH).mesh, groups.mesh);
 }
 
-/// What the normal of each corner is by definition, without regard to time.
+/// The normal of each corner by definition, without regard to time.
 fn by_definition(mesh: &Mesh, crease: f64) -> Vec<Vec<DVec3>> {
     let count = mesh.polygon_count();
     let vertices: Vec<Vec<u32>> = (0..u32::try_from(count).unwrap())

@@ -1,9 +1,9 @@
 //! Pictures drawn by 1 to 64 threads: none hangs, and all are the same.
 //!
 //! A hang shows only in some of the runs, and only with three threads or more, so each test repeats
-//! its pictures a thousand times, on new meshes, whose normals, edges and orders are all still to be
-//! computed. A test that does not come to its end in time prints the stacks of all threads (if `gdb`
-//! is installed) and fails.
+//! its pictures a thousand times, on new meshes, whose normals, edges and orders are all still to
+//! be computed. A test that does not end in time prints the stacks of all threads (if `gdb` is
+//! installed) and fails.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
@@ -154,7 +154,7 @@ fn pictures_drawn_at_the_same_time_by_the_same_threads_do_not_wait_for_each_othe
     }
 }
 
-/// What is computed once in a process is computed anew in each of these.
+/// Each of these is a new process, in which everything is computed anew.
 #[test]
 fn a_thousand_runs_of_the_program_come_to_their_end() {
     let _watchdog = Watchdog::new("a thousand runs of the program");

@@ -1,5 +1,5 @@
-//! What each effect of the plan's table costs: `effects/NAME/with` and `effects/NAME/without`, in a
-//! scene that has them all.
+//! The cost of each effect of the plan's table: `effects/NAME/with` and `effects/NAME/without`, in
+//! a scene that uses all of them.
 
 use criterion::Criterion;
 use marraztu::accuracy::Shot;

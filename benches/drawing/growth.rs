@@ -1,4 +1,4 @@
-//! How a picture's time grows: `triangles/N`, `pixels/WxH`, `lights/N`, `threads/N`.
+//! How the time of a picture grows: `triangles/N`, `pixels/WxH`, `lights/N`, `threads/N`.
 
 use criterion::{BenchmarkId, Criterion};
 use marraztu::base::color::Color;

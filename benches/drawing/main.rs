@@ -1,7 +1,8 @@
-//! How long drawing takes: by stage and shape, by effect, and how it grows.
+//! Benchmarks of drawing: by stage and shape, by effect, and by size.
 //!
-//! `cargo bench --bench drawing`, with a part of a name for some of it. Figures are of this machine
-//! at this moment: what means something is their ratios. `tools/speed.sh` makes a page of them.
+//! `cargo bench --bench drawing` runs them all; a part of a name selects some. Times depend on the
+//! machine and the moment, so only their ratios are meaningful. `tools/speed.sh` makes a page of
+//! them.
 
 mod effects;
 mod growth;

@@ -1,5 +1,5 @@
-//! How long a scene of many objects takes: `objects/N` a frame, `objects/insert/N` to put them into
-//! a scene, `objects/move/N` one command on one of them, with what the editor does after it.
+//! Benchmarks of scenes of many objects: `objects/N` draws a frame, `objects/insert/N` inserts them
+//! into a scene, `objects/move/N` is one command on one of them, with the editor's work after it.
 
 use criterion::{BenchmarkId, Criterion};
 use glam::{DMat4, DVec3};
@@ -48,7 +48,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
     }
 }
 
-/// Squares side by side, each in a material of its own.
+/// Squares side by side, each with a different material.
 fn objects(model: &Shared<Model>, count: u32) -> Vec<Object> {
     let object = |i: u32| {
         let mut material = PresetId::RUBY.get().material;

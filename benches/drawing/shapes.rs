@@ -1,4 +1,4 @@
-//! The meshes that are drawn: each asks for something else of the renderer.
+//! The meshes that are drawn: each stresses another part of the renderer.
 
 use std::f64::consts::TAU;
 

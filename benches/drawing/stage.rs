@@ -1,4 +1,4 @@
-//! A shape in the light of the first scene, seen by a camera that never stands still.
+//! A shape in the light of the first scene, with a camera that always moves.
 
 use std::time::Duration;
 

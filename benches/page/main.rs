@@ -1,7 +1,7 @@
-//! Makes `docs/speed.md` of what `cargo bench --bench drawing` measured last, and of a table of
-//! other renderers' times where there is one: `tools/speed.sh` runs all of it.
+//! Makes `docs/speed.md` from the last run of `cargo bench --bench drawing` and, if there is one, a
+//! table of other renderers' times. `tools/speed.sh` runs all of it.
 //!
-//! The text is `page.md`, here beside; what stands in it between double braces is filled in.
+//! The text is `page.md` in this folder; names in double braces are filled in.
 
 mod measured;
 mod peers;
@@ -39,12 +39,12 @@ fn print(text: &str) {
     print!("{text}");
 }
 
-/// Where cargo builds.
+/// The folder in which cargo builds.
 fn target(root: &Path) -> std::path::PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into)
 }
 
-/// What the figures were measured on, as a list.
+/// The machine on which the figures were measured, as a list.
 fn machine() -> String {
     let said = |program: &str, arguments: &[&str]| {
         let output = Command::new(program).args(arguments).output();

@@ -1,4 +1,4 @@
-//! What criterion measured, as it keeps it: a folder a benchmark, with its name and its estimates.
+//! Reads criterion's results: one folder for each benchmark, with its name and its estimates.
 
 use std::collections::BTreeMap;
 use std::error::Error;

@@ -1,5 +1,5 @@
-//! Times of other renderers beside ours, from the table of a comparison in interleaved rounds: a
-//! row for each run.
+//! Reads the times of other renderers and ours from the table of a comparison in interleaved
+//! rounds, with one row for each run.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

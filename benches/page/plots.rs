@@ -1,4 +1,4 @@
-//! How a picture's time grows, as plots: both scales logarithmic, drawn by `plotters`.
+//! Plots how the time of a picture grows, with two logarithmic scales.
 
 use std::error::Error;
 
@@ -13,7 +13,7 @@ const GRID: RGBColor = RGBColor(226, 226, 230);
 const LINE: RGBColor = RGBColor(0, 114, 178);
 const LINEAR: RGBColor = RGBColor(160, 160, 168);
 
-/// What grows, and how its numbers are read off the names of benchmarks.
+/// The quantity that grows, and how its numbers are read from the names of benchmarks.
 struct Growth {
     group: &'static str,
     title: &'static str,
@@ -73,7 +73,7 @@ fn plot(growth: &Growth, measured: &Measured) -> Result<String, Box<dyn Error>> 
         .x_label_formatter(&|x| short(*x))
         .y_label_formatter(&|y| short(*y))
         .draw()?;
-    // What it would be if each cost what each costs at the end.
+    // The line on which each costs as much as at the end.
     let begin = first.0.max(last.0 * low / last.1);
     let linear = [(begin, last.1 * begin / last.0), last];
     chart.draw_series([PathElement::new(linear, LINEAR.stroke_width(1))])?;

@@ -1,4 +1,4 @@
-//! Tables of Markdown.
+//! Writes tables in Markdown.
 
 use std::fmt::Write as _;
 
@@ -18,7 +18,7 @@ pub(crate) fn stages(measured: &Measured) -> Result<String, String> {
     Ok(text)
 }
 
-/// What each effect costs, the dearest first.
+/// The cost of each effect, the most expensive first.
 pub(crate) fn effects(measured: &Measured) -> Result<String, String> {
     let mut rows = Vec::new();
     for name in measured.groups("effects/") {

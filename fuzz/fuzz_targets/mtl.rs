@@ -1,5 +1,5 @@
-//! Materials: whatever the bytes of an MTL file, the model that names it is read, with the materials
-//! that could be understood.
+//! Fuzzes MTL files: a model is read whatever the bytes of its MTL file, with the materials that
+//! could be parsed.
 
 #![no_main]
 

@@ -1,5 +1,5 @@
-//! Models: whatever the bytes, they are read or refused, and what is read is a mesh that holds
-//! together. The first byte says how it is read.
+//! Fuzzes OBJ files: any bytes are read or refused, and a mesh that is read is consistent. The
+//! first byte selects the options of reading.
 
 #![no_main]
 

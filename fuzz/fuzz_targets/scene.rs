@@ -1,5 +1,5 @@
-//! Scenes: whatever the bytes, they are a scene or are refused; and what is a scene can be saved,
-//! and is then the same text each time.
+//! Fuzzes scene files: any bytes are a scene or are refused, and a scene can be saved and gives the
+//! same text each time.
 
 #![no_main]
 

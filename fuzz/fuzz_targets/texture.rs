@@ -1,4 +1,4 @@
-//! Textures: whatever the bytes, they are a picture or are refused.
+//! Fuzzes textures: any bytes are a picture or are refused.
 
 #![no_main]
 

@@ -1,5 +1,5 @@
-//! The floors of the program that read files, and no others: nothing that draws or knows of windows
-//! has to be built for fuzzing, and none of its branches is counted.
+//! The floors of the program that read files, without those that draw or have windows: these need
+//! not be built for fuzzing, and their branches are not counted.
 
 #[path = "../../src/base/mod.rs"]
 pub mod base;

@@ -1,4 +1,4 @@
-//! The space of accuracy: what settings choose, and what is known of each choice.
+//! How exactly a picture is drawn: the axes of accuracy, their choices, and named presets.
 
 mod axes;
 mod presets;

@@ -1,24 +1,24 @@
-//! Named points in the space of accuracy, and what settings are called.
+//! Presets of accuracy, the reference of some settings, and how settings are worded.
 
 use crate::accuracy::Settings;
 use crate::accuracy::axes::{AXES, Axis, AxisKind};
 
-/// A named point in the space of accuracy.
+/// Settings with a name.
 #[derive(Debug)]
 pub struct AccuracyPreset {
     /// Its word on the command line.
     pub word: &'static str,
     /// Its name on a button.
     pub label: &'static str,
-    /// What it is for, in a sentence.
+    /// Its purpose, in a sentence.
     pub what: &'static str,
-    /// Where it differs from the default: keys of axes, with words of their choices.
+    /// The choices that differ from the default, by the key of the axis and the choice's word.
     pub points: &'static [(&'static str, &'static str)],
-    /// What is wrong with it, where that is what it is for.
+    /// The known faults of an ancestor's algorithms.
     pub faults: &'static [&'static str],
 }
 
-/// Named points, from the fast to the exact; then two of history.
+/// The presets, from the fast to the exact, then those of the two ancestors.
 pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
     AccuracyPreset {
         word: "draft",
@@ -56,12 +56,12 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
             ("rounding", "truncated"),
         ],
         faults: &[
-            "holes in what is nearer than 97 units",
-            "17 writes a pixel at a distance of 400, 100 at 966",
+            "holes in anything nearer than 97 units",
+            "17 writes per pixel at a distance of 400, 100 at 966",
             "highlights smaller than a polygon dim or vanish",
-            "normals lean with what is stretched",
+            "normals lean with stretched objects",
             "vertices up to 2.5 pixels off, far from the origin",
-            "surfaces nearer to each other than 0.06 unit at 1000 show through",
+            "surfaces closer than 0.06 unit show through each other at 1000",
             "every colour half a step too dark",
         ],
     },
@@ -83,20 +83,20 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
             "outlines a pixel too wide, and seams written twice",
             "highlights smaller than a polygon dim or vanish",
             "vertices up to 2.5 pixels off, far from the origin",
-            "surfaces nearer to each other than 0.06 unit at 1000 show through",
+            "surfaces closer than 0.06 unit show through each other at 1000",
             "every colour half a step too dark",
         ],
     },
 ];
 
 impl AccuracyPreset {
-    /// The preset of this word.
+    /// The preset with this word.
     #[must_use]
     pub fn named(word: &str) -> Option<&'static Self> {
         ACCURACY_PRESETS.iter().find(|preset| preset.word == word)
     }
 
-    /// The settings that the preset names. Models stay as they are chosen.
+    /// The preset's settings. Axes that are models keep their choices.
     #[must_use]
     pub fn of(&self, settings: &Settings) -> Settings {
         self.points.iter().fold(Settings::default().modelled_as(settings), |settings, point| {
@@ -107,7 +107,7 @@ impl AccuracyPreset {
 }
 
 impl AccuracyPreset {
-    /// What it is for, and what is wrong with it.
+    /// Its purpose and its faults.
     #[must_use]
     pub fn in_words(&self) -> String {
         match self.faults {
@@ -118,9 +118,9 @@ impl AccuracyPreset {
 }
 
 impl Settings {
-    /// The reference: every axis at its most exact. Models stay as they are chosen, and so does an axis
-    /// that is scored apart where it is at its default: pictures with several samples are judged against
-    /// the one with most of them, each lit.
+    /// The reference: every axis at its most exact choice. Axes that are models keep their choices,
+    /// and so does an axis that is scored apart if it is at its default. Pictures with several
+    /// samples are judged against the one with the most of them, each lit.
     #[must_use]
     pub fn reference(&self) -> Self {
         AXES.iter().fold(*self, |settings, axis| match axis.kind {
@@ -129,23 +129,23 @@ impl Settings {
         })
     }
 
-    /// The reference for the choices of the axis of this key: the same, with that axis at its most exact
-    /// whatever it is scored by.
+    /// The reference for the choices of one axis: [`Self::reference`] with that axis at its most
+    /// exact choice in any case.
     #[must_use]
     pub fn reference_on(&self, key: &str) -> Self {
-        // First, for what is most exact elsewhere may depend on it.
+        // This axis comes first, since the most exact choices of others may depend on it.
         let exact = Axis::named(key).map_or(*self, |axis| axis.most_exact(self).of(self));
         exact.reference()
     }
 
-    /// These settings with the models that others have chosen.
+    /// These settings with the models of `others`.
     #[must_use]
     pub fn modelled_as(&self, others: &Self) -> Self {
         let models = AXES.iter().filter(|axis| axis.kind == AxisKind::Model);
         models.fold(*self, |settings, axis| axis.chosen(others).of(&settings))
     }
 
-    /// In words, where they differ from the default: "shading vertex, filter nearest".
+    /// What differs from the default, in words: "shading vertex, filter nearest".
     #[must_use]
     pub fn in_words(&self) -> String {
         let preset = ACCURACY_PRESETS.iter().find(|preset| preset.of(self) == *self);

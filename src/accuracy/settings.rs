@@ -1,5 +1,6 @@
-//! A point in the space of accuracy. Each field is one axis of [`super::AXES`]; the default is what the
-//! editor begins with.
+//! The settings: one choice for each axis of accuracy.
+//!
+//! Each field is one axis of [`super::AXES`]; the default is what the editor begins with.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,84 +8,84 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// The numbers that light is computed in.
+    /// The precision in which light is computed.
     pub arithmetic: Arithmetic,
     /// Where light is evaluated.
     #[serde(rename = "shading", alias = "light")]
     pub light: LightAt,
-    /// In how many places of a pixel it is asked what is seen.
+    /// Samples per pixel.
     pub samples: Samples,
-    /// What a texture gives between its texels.
+    /// How a texture is filtered between its texels.
     pub filter: Filter,
     /// Which form the highlight has.
     pub specular: SpecularForm,
     /// What may be left out of a picture.
     #[serde(rename = "faint")]
     pub leave_out: LeaveOut,
-    /// How powers of highlights are taken.
+    /// How the power of a highlight is computed.
     pub power: SpecularPower,
-    /// How vectors are brought to length 1.
+    /// How vectors are normalised.
     pub normalising: Normalising,
     /// How colours become bytes.
     pub rounding: Rounding,
-    /// How normals are placed.
+    /// How normals are transformed.
     pub stretched: NormalMatrix,
-    /// The numbers that vertices are placed in.
+    /// The precision in which vertices are transformed.
     pub vertices: VertexArithmetic,
-    /// Which parts of a pixel corners are snapped to.
+    /// The fraction of a pixel that vertices are snapped to.
     pub subpixels: Subpixels,
     /// Which pixels a triangle covers.
     pub coverage: Coverage,
-    /// How depths are kept.
+    /// How depths are stored.
     pub depth: DepthFormat,
-    /// How what corners carry gets to pixels.
+    /// How vertex attributes are interpolated across a triangle.
     pub interpolation: Interpolation,
 }
 
 impl Settings {
-    /// Whether pictures are the same, bit for bit, on every processor.
+    /// Whether pictures are the same on every processor, bit for bit.
     #[must_use]
     pub fn is_alike_everywhere(&self) -> bool {
         self.normalising == Normalising::Root
     }
 }
 
-/// The numbers that light is computed in.
+/// The precision in which light is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Arithmetic {
     /// 32 bits, sixteen at once.
     #[default]
     F32,
-    /// 64 bits, one at a time, with the library's power: the reference.
+    /// 64 bits, one pixel at a time, with the power function of libm: the reference.
     F64,
 }
 
 /// Where light is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum LightAt {
-    /// Once a polygon, at the mean of its corners (flat shading).
+    /// Once per polygon, at the mean of its corners (flat shading).
     Face,
     /// At its vertices, interpolated between them (Gouraud).
     Vertex,
     /// At each pixel, with interpolated normals (Phong).
     #[default]
     Pixel,
-    /// At each of the places in a pixel that are looked at, as at a pixel's middle.
+    /// At each sample of a pixel.
     Sample,
 }
 
-/// In how many places of a pixel it is asked what is seen; written as a number.
+/// Samples per pixel, written as a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(into = "u8", try_from = "u8")]
 pub enum Samples {
-    /// In its middle.
+    /// One, at the pixel's centre.
     #[default]
     One,
-    /// In four.
+    /// Four.
     Four,
-    /// In sixteen.
+    /// Sixteen.
     Sixteen,
-    /// In sixty-four: the reference.
+    /// Sixty-four: the reference.
     SixtyFour,
 }
 
@@ -109,10 +110,10 @@ impl TryFrom<u8> for Samples {
 }
 
 impl Samples {
-    /// From few to many.
+    /// All of them, from one to sixty-four.
     pub const ALL: [Self; 4] = [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour];
 
-    /// How many.
+    /// The number of samples.
     #[must_use]
     pub const fn count(self) -> u32 {
         match self {
@@ -124,15 +125,15 @@ impl Samples {
     }
 }
 
-/// What a texture gives between its texels.
+/// How a texture is filtered between its texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Filter {
-    /// The texel that the place falls into.
+    /// The nearest texel.
     Nearest,
-    /// A mean of the four around it.
+    /// A weighted mean of the four nearest texels.
     #[default]
     Bilinear,
-    /// A mean of those that a pixel covers, from pictures of them at smaller sizes.
+    /// A mean of the texels that a pixel covers, from mipmaps.
     Trilinear,
 }
 
@@ -142,48 +143,49 @@ pub enum SpecularForm {
     /// (R.V)^Ns: Phong's.
     #[default]
     Reflection,
-    /// (N.H)^Ns, H half-way between L and V: Blinn's.
+    /// (N.H)^Ns with H half-way between L and V: Blinn's.
     HalfVector,
 }
 
 /// What may be left out of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum LeaveOut {
-    /// What changes no bit of it.
+    /// Only what changes no bit of it.
     #[default]
     #[serde(rename = "Kept")]
     Unseen,
-    /// Light, too, that together adds less than half a step of a byte: a byte is one step off at most.
+    /// Lights, too, that together add less than half a step of a byte: a byte is at most one step
+    /// off.
     #[serde(rename = "LeftOut")]
     HalfStep,
 }
 
-/// How powers of highlights are taken.
+/// How the power of a highlight is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SpecularPower {
-    /// Schlick's curve, which is none.
+    /// Schlick's approximation.
     Schlick,
-    /// The nearest of 256 in a table.
+    /// The nearest of 256 powers in a table.
     Table256,
-    /// A line between two of 1024 in a table.
+    /// Linear interpolation in a table of 1024 powers.
     Table1024,
-    /// Whole exponents to 64 by squaring, others by a polynomial: sixteen at once.
+    /// Whole exponents up to 64 by squaring, others by a polynomial: sixteen at once.
     #[default]
     Polynomial,
-    /// Exponents that are a power of two by squaring alone; others as [`Self::Polynomial`].
+    /// Exponents that are a power of two by squaring alone, others as [`Self::Polynomial`].
     Squaring,
-    /// The library's, one at a time.
+    /// The power function of libm, one at a time.
     Library,
 }
 
-/// How vectors are brought to length 1.
+/// How vectors are normalised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Normalising {
-    /// By the processor's estimate of one by the root. Pictures differ between processors.
+    /// By the processor's estimate of 1/sqrt. Pictures differ between processors.
     Rsqrt,
-    /// By the estimate and a step of Newton's. Pictures differ between processors.
+    /// By the estimate and one Newton step. Pictures differ between processors.
     Newton,
-    /// By one by the root, as exact as the numbers are.
+    /// By a root and a division, as exact as the arithmetic of light.
     #[default]
     Root,
 }
@@ -191,38 +193,38 @@ pub enum Normalising {
 /// How colours become bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Rounding {
-    /// What is behind the point is cut off.
+    /// Rounded down.
     Truncated,
-    /// Up or down by a pattern of 8 x 8 pixels.
+    /// Rounded up or down by a pattern of 8 x 8 pixels.
     Dithered,
-    /// To the nearest.
+    /// Rounded to the nearest byte.
     #[default]
     Nearest,
 }
 
-/// How normals are placed with an object that is stretched.
+/// How the normals of a stretched object are transformed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum NormalMatrix {
     /// By the object's own matrix.
     AsItIs,
-    /// By its cofactors, which keeps them across the surface.
+    /// By its cofactors, which keep normals perpendicular to the surface.
     #[default]
     Cofactor,
 }
 
-/// The numbers that vertices are placed in.
+/// The precision in which vertices are transformed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum VertexArithmetic {
     /// 32 bits for matrices and vertices.
     F32,
-    /// Matrices are multiplied in 64 bits, vertices by them in 32.
+    /// 64 bits to multiply matrices, 32 bits to transform vertices.
     F32ComposedInF64,
     /// 64 bits for both.
     #[default]
     F64,
 }
 
-/// Which parts of a pixel corners are snapped to: 2^-bits of it.
+/// The fraction of a pixel that vertices are snapped to: 2^-bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Subpixels {
     /// Whole pixels.
@@ -239,37 +241,37 @@ pub enum Subpixels {
 /// Which pixels a triangle covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Coverage {
-    /// Where one of the points falls that lie every 0.1 unit of the observer's space on it.
+    /// Those that points on it fall into, one every 0.1 unit of the observer's space.
     Points,
-    /// Rows between edges that are rounded to whole pixels, both ends with them.
+    /// Rows between edges that are rounded to whole pixels, including both ends.
     ScanLines,
-    /// Where edge functions of 32-bit numbers are not negative.
+    /// Those at which edge functions in 32-bit floating point are not negative.
     F32Edges,
-    /// Where edge functions of whole numbers say so, by the rule of Direct3D and Vulkan.
+    /// Those inside by edge functions in integers, with the rule of Direct3D and Vulkan.
     #[default]
     Exact,
 }
 
-/// How depths are kept.
+/// How depths are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum DepthFormat {
-    /// Whole numbers of 16 bits, 0 near and 65,535 far.
+    /// 16-bit integers, 0 at the near plane and 65,535 at the far one.
     Bits16,
-    /// Whole numbers of 24 bits.
+    /// 24-bit integers.
     Bits24,
-    /// 32-bit numbers, 0 near and 1 far.
+    /// 32-bit floating point, 0 at the near plane and 1 at the far one.
     F32,
-    /// 32-bit numbers, 1 near and 0 far.
+    /// 32-bit floating point, 1 at the near plane and 0 at the far one.
     #[default]
     F32Reversed,
 }
 
-/// How what corners carry gets to pixels.
+/// How vertex attributes are interpolated across a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Interpolation {
-    /// Evenly on the screen.
+    /// Linearly on the screen.
     Affine,
-    /// With perspective at every sixteenth pixel of a row, evenly between.
+    /// With perspective at every sixteenth pixel of a row, linearly between them.
     EverySixteen,
     /// With perspective.
     #[default]

@@ -4,8 +4,8 @@ use super::Settings;
 use crate::base::image::Size;
 use crate::scene::{Scene, View};
 
-/// A scene, how it is viewed, how exactly, and in what size: equal shots give equal pictures. A clone
-/// costs next to nothing.
+/// A scene with its view, settings and size. Equal shots give equal pictures, and a clone is
+/// cheap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
     /// What is drawn.

@@ -1,18 +1,18 @@
 //! Whether a frame that is being drawn is still wanted.
 //!
-//! It is asked between chunks and tiles, by every thread. Once the answer was no, it stays no: a frame
-//! is given up as a whole.
+//! Every thread asks between chunks and between tiles. Once the answer is no, it stays no: a frame
+//! is cancelled as a whole.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// What asks.
+/// Asks whether a frame is still wanted, and reports its progress.
 pub(crate) struct Cancellation<'a> {
     wanted: &'a (dyn Fn() -> bool + Sync),
     given_up: AtomicBool,
     told: Option<Told<'a>>,
 }
 
-/// Who is told how many of how many tiles are painted.
+/// Reports how many tiles are painted, of how many.
 struct Told<'a> {
     tell: &'a (dyn Fn(usize, usize) + Sync),
     painted: AtomicUsize,
@@ -24,20 +24,20 @@ impl<'a> Cancellation<'a> {
         Self { wanted, given_up: AtomicBool::new(false), told: None }
     }
 
-    /// The same, and `tell` is told how many of how many tiles are painted, over all passes.
+    /// The same, and calls `tell` with the painted tiles and all tiles, over all passes.
     pub(crate) const fn telling(self, tell: &'a (dyn Fn(usize, usize) + Sync)) -> Self {
         let (painted, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
         Self { told: Some(Told { tell, painted, all }), ..self }
     }
 
-    /// Says how many tiles will be painted, over all passes.
+    /// Announces how many tiles will be painted, over all passes.
     pub(crate) fn expect_tiles(&self, all: usize) {
         if let Some(told) = &self.told {
             told.all.store(all, Ordering::Relaxed);
         }
     }
 
-    /// Says that another tile is painted.
+    /// Counts another painted tile.
     pub(crate) fn tile_is_painted(&self) {
         if let Some(told) = &self.told {
             let painted = told.painted.fetch_add(1, Ordering::Relaxed) + 1;
@@ -57,7 +57,7 @@ impl<'a> Cancellation<'a> {
         wanted
     }
 
-    /// Whether the frame was given up.
+    /// Whether the frame was cancelled.
     pub(crate) fn is_given_up(&self) -> bool {
         self.given_up.load(Ordering::Relaxed)
     }

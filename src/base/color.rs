@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 pub struct Color(pub [u8; 3]);
 
 impl Color {
-    /// Nothing at all.
+    /// Black.
     pub const BLACK: Self = Self([0, 0, 0]);
-    /// All there is of each.
+    /// White.
     pub const WHITE: Self = Self([255, 255, 255]);
     /// Back faces, and edges of polygons that face away.
     pub const BACK_FACE: Self = Self([255, 0, 0]);
@@ -23,7 +23,7 @@ impl Color {
         self.0.map(|byte| f64::from(byte) / 255.0)
     }
 
-    /// The nearest colour to three factors; what is outside 0 to 1 is brought to its border.
+    /// The nearest colour to three factors, clamped to 0 to 1.
     #[must_use]
     pub fn from_factors(factors: [f64; 3]) -> Self {
         Self(factors.map(byte))
@@ -37,11 +37,11 @@ impl Color {
     }
 }
 
-/// The byte nearest to 255 times a factor: clamped once, rounded to nearest, NaN gives 0.
+/// The byte nearest to 255 times a factor: clamped once, rounded to nearest. NaN gives 0.
 #[must_use]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped just before")]
 pub fn byte(factor: f64) -> u8 {
-    // Unlike `clamp`, `max` takes the number where the other is NaN.
+    // Unlike `clamp`, `max` returns the other number if one is NaN.
     let factor = factor.max(0.0);
     (factor.min(1.0) * 255.0 + 0.5) as u8
 }
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_byte_survives_the_way_to_a_factor_and_back() {
+    fn a_byte_becomes_a_factor_and_the_same_byte_again() {
         for value in 0..=255 {
             let color = Color([value; 3]);
             assert_eq!(Color::from_factors(color.factors()), color);
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_black_and_what_is_infinite_is_full() {
+    fn nan_is_black_and_infinity_is_full() {
         assert_eq!([byte(f64::NAN), byte(f64::INFINITY), byte(f64::NEG_INFINITY)], [0, 255, 0]);
     }
 }

@@ -1,4 +1,4 @@
-//! A picture in memory: what the renderer makes, what a texture holds.
+//! A picture in memory: the renderer's result, and the texels of a texture.
 
 use std::sync::OnceLock;
 
@@ -13,11 +13,11 @@ pub struct Picture {
     least_alpha: LeastAlpha,
 }
 
-/// The least alpha of a picture's pixels, once it has been asked for.
+/// The least alpha of a picture's pixels, computed when it is first needed.
 #[derive(Clone, Debug, Default)]
 struct LeastAlpha(OnceLock<u8>);
 
-/// It follows from the pixels, and is compared with them.
+/// It follows from the pixels, which are compared anyway.
 impl PartialEq for LeastAlpha {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -42,7 +42,7 @@ impl Size {
         Self { width, height }
     }
 
-    /// Pixels in all.
+    /// The number of pixels.
     #[must_use]
     pub const fn area(self) -> usize {
         self.width * self.height
@@ -58,7 +58,7 @@ impl Picture {
         Self { width: size.width, height: size.height, pixels, least_alpha }
     }
 
-    /// A picture of these pixels, row by row from the top; `None` where their number does not fit.
+    /// A picture of these pixels, row by row from the top; `None` if their number does not fit.
     #[must_use]
     pub fn from_pixels(size: Size, pixels: Vec<[u8; 4]>) -> Option<Self> {
         (pixels.len() == size.area()).then_some(Self {
@@ -87,7 +87,7 @@ impl Picture {
         &mut self.pixels
     }
 
-    /// The least alpha of all pixels; 255 where there are none.
+    /// The least alpha of all pixels; 255 if there are none.
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
         let least = || self.pixels.iter().fold(255, |least, pixel| pixel[3].min(least));
@@ -100,7 +100,7 @@ impl Picture {
         self.pixels[y * self.width + x]
     }
 
-    /// Gives the picture this size. What it showed is then of no meaning.
+    /// Gives the picture this size. Its pixels are unspecified afterwards.
     pub fn resize(&mut self, size: Size) {
         (self.width, self.height) = (size.width, size.height);
         self.pixels.resize(size.area(), [0, 0, 0, 255]);

@@ -1,8 +1,8 @@
-//! Long lists made by several threads.
+//! Joins and sorts long lists, with several threads.
 
 use rayon::prelude::*;
 
-/// Lists one after the other, copied by all threads.
+/// Joins lists, with all threads copying.
 #[must_use]
 pub fn concatenated<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>) -> Vec<T> {
     if lists.len() == 1 {
@@ -16,7 +16,7 @@ pub fn concatenated<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>) -> Vec<T> {
         })
         .collect();
     let all = ends.last().copied().unwrap_or(0);
-    // Each thread goes through neighbours: it looks a list up only where the last one ends.
+    // Each thread copies neighbours, so it looks for the next list only when one ends.
     let at = |place: &mut usize, i: usize| {
         let begin = ends[*place] - lists[*place].len();
         if i < begin || i >= ends[*place] {
@@ -27,10 +27,10 @@ pub fn concatenated<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>) -> Vec<T> {
     (0..all).into_par_iter().map_with(0, at).collect()
 }
 
-/// `numbers` by ascending keys; those of one key stay as they are.
+/// The numbers 0 to n - 1 by ascending keys; numbers with equal keys keep their order.
 ///
-/// Digits of eleven bits, the last first: LSD radix sort, Knuth, "The Art of Computer Programming"
-/// 3, 5.2.5. `keys[i]` belongs to number i; `bits` is how many bits of the keys count.
+/// An LSD radix sort with digits of eleven bits: Knuth, "The Art of Computer Programming" 3, 5.2.5.
+/// `keys[i]` belongs to number i; only the low `bits` bits of the keys are compared.
 #[must_use]
 pub fn sorted_by_keys(keys: Vec<u32>, bits: u32) -> Vec<u32> {
     const DIGIT: u32 = 11;
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lists_are_put_one_after_the_other() {
+    fn lists_are_joined_in_order() {
         let lists = vec![vec![], vec![1, 2, 3], vec![], vec![4], (5..9000).collect(), vec![]];
         assert_eq!(concatenated(lists), (1..9000).collect::<Vec<_>>());
         assert!(concatenated::<u8>(Vec::new()).is_empty());
@@ -70,8 +70,8 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_sorted_by_keys_and_stay_in_order_where_keys_are_equal() {
-        // A generator that meets each of its 2^16 values once; every key four times.
+    fn numbers_are_sorted_by_keys_and_keep_their_order_if_keys_are_equal() {
+        // A generator with a period of 2^16: every key occurs four times.
         let keys: Vec<u32> =
             (0..1 << 18_u32).map(|i: u32| ((i.wrapping_mul(40_503) & 0xffff) << 14) | 5).collect();
         let sorted = sorted_by_keys(keys.clone(), 30);

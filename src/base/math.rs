@@ -1,16 +1,16 @@
-//! The conventions of the mathematics, in one place.
+//! Vectors, matrices and projections, and their conventions.
 //!
 //! * Right-handed, Y up; vectors are columns, a matrix stands to their left: `p' = M p`.
 //! * Spaces, in the order of the pipeline: object, world, view (of the observer, who looks along
 //!   its own -Z), clip (homogeneous), screen (pixels, x to the right, y down, a pixel's centre at
 //!   one half). A matrix is named `to_from`: `clip_from_view * view_from_world`.
-//! * Depth after division is reversed: 1 at the near plane, 0 at the far one. Inside the view volume
-//!   `0 <= z <= w`, `-w <= x <= w`, `-w <= y <= w`.
+//! * Depth after division is reversed: 1 at the near plane, 0 at the far one. Inside the view
+//!   volume, `0 <= z <= w`, `-w <= x <= w`, `-w <= y <= w`.
 //! * A polygon's front is the side from which its corners run counter-clockwise.
 //! * Angles are radians here, degrees in the interface and in files.
 //!
-//! Sines and cosines come from the `libm` crate (glam's too, by its feature), so that they have the
-//! same bits on every machine.
+//! Sines and cosines come from the `libm` crate, glam's too, so they have the same bits on every
+//! machine.
 
 use glam::{DMat3, DMat4, DQuat, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -49,16 +49,16 @@ impl Axis {
     }
 }
 
-/// What `f` makes of each of three values.
+/// Applies `f` to each of three values.
 ///
-/// In code for many lanes at once, the array's own `map` is not always compiled into its place, and
-/// every operation becomes a call.
+/// In code for many lanes, the array's own `map` is not always inlined, and every operation becomes
+/// a call.
 #[inline(always)]
 pub fn each<A, B>([a, b, c]: [A; 3], mut f: impl FnMut(A) -> B) -> [B; 3] {
     [f(a), f(b), f(c)]
 }
 
-/// `v` at length 1, whatever its length was; `None` for zero and for what is not finite.
+/// Normalises `v`, whatever its length; `None` if it is zero or not finite.
 ///
 /// The largest component is brought to 1 first, so that squares neither overflow nor vanish.
 #[must_use]
@@ -67,12 +67,12 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     if !(largest > 0.0 && v.is_finite()) {
         return None;
     }
-    // Twice, for a subnormal largest component has no finite reciprocal.
+    // In two steps, since a subnormal component has no finite reciprocal.
     let v = v / largest;
     Some(v / v.length())
 }
 
-/// The turn about `axis` (of length 1) by the right-hand rule.
+/// The rotation about `axis` (of length 1) by the right-hand rule.
 ///
 /// Rodrigues' formula: `R = cos a I + sin a [k]x + (1 - cos a) k k'`.
 #[must_use]
@@ -80,13 +80,13 @@ pub fn rotation(axis: DVec3, radians: f64) -> DMat3 {
     DMat3::from_axis_angle(axis, radians)
 }
 
-/// A right-handed frame whose Z is `z` and whose Y is as near to `y` as may be (Gram-Schmidt, Z
-/// first, X = Y x Z). Where both are parallel or one of them vanishes, the parts that cannot be had
-/// come from `fallback`, a frame that is orthonormal already.
+/// A right-handed frame whose Z is `z` and whose Y is as near to `y` as possible (Gram-Schmidt, Z
+/// first, X = Y x Z). If both are parallel or one of them vanishes, the undetermined axes come from
+/// `fallback`, which must be orthonormal.
 #[must_use]
 pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
     let z = unit(z).unwrap_or(fallback.z_axis);
-    // A part of y across z that is shorter than its rounding error has no direction to speak of.
+    // If the part of y across z is shorter than its rounding error, its direction is arbitrary.
     let across = |v: DVec3| {
         let v = unit(v)?;
         let rest = v - z * v.dot(z);
@@ -103,8 +103,8 @@ pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
 
 /// The frame of an observer at `eye` that looks at `target`, upright with respect to `up`.
 ///
-/// Where it looks straight up or down, or where eye and target are one, what is not determined is
-/// kept from `last`: its right vector, or all of it. No NaN, no jump.
+/// If it looks straight up or down, the right vector of `last` is kept; if eye and target are
+/// equal, all of `last` is. There is no NaN and no jump.
 #[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
     let Some(z) = unit(eye - target) else { return last };
@@ -115,12 +115,12 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
     }
 }
 
-/// The matrix that turns normals as `m` turns surfaces: sign(det m) times its cofactors.
+/// The matrix that transforms normals if `m` transforms surfaces: sign(det m) times its cofactors.
 ///
-/// The inverse transpose, but for a positive factor, and defined for singular `m` as well; the sign
-/// keeps the normals of a mirrored object on its outer side. The factor is that of
-/// [`at_power_of_two`], so that objects of any size have normals whose squares
-/// neither overflow nor vanish, in f32 too.
+/// This is the inverse transpose up to a positive factor, and is defined for a singular `m` as
+/// well. The sign keeps the normals of a mirrored object on its outer side. `m` is scaled by
+/// [`at_power_of_two`] first, so that the squares of normals neither overflow nor vanish, even in
+/// f32.
 #[must_use]
 pub fn normal_matrix(m: DMat3) -> DMat3 {
     let m = at_power_of_two(m);
@@ -138,8 +138,8 @@ pub fn at_power_of_two(m: DMat3) -> DMat3 {
     m * power_of_two_near(1.0 / largest_entry(m))
 }
 
-/// The largest power of two that is not above `x`, for `x` above 0; 1 for what has none. Multiplied
-/// with it, a number keeps its digits.
+/// The largest power of two that is at most `x`, for `x` above 0; 1 if there is none. A number that
+/// is multiplied by it keeps its digits.
 #[must_use]
 pub fn power_of_two_near(x: f64) -> f64 {
     if x.is_normal() && x > 0.0 { libm::ldexp(1.0, libm::ilogb(x)) } else { 1.0 }
@@ -149,15 +149,15 @@ fn largest_entry(m: DMat3) -> f64 {
     m.x_axis.abs().max(m.y_axis.abs()).max(m.z_axis.abs()).max_element()
 }
 
-/// Whether `m` keeps all three dimensions, judged against its own size.
+/// Whether `m` has rank 3, relative to its own size.
 #[must_use]
 pub fn has_full_rank(m: DMat3) -> bool {
     let size = largest_entry(m);
     m.is_finite() && size > 0.0 && ((m * (1.0 / size)).determinant().abs() > 1e-15)
 }
 
-/// The projection in perspective: `half_angle` (radians) is seen to each side of the view's axis
-/// across the shorter side of the picture; the longer side sees more. Depth is 1 at `near`, 0 at
+/// The perspective projection: `half_angle` (radians) is visible to each side of the view's axis
+/// across the shorter side of the picture; the longer side shows more. Depth is 1 at `near`, 0 at
 /// `far`.
 #[must_use]
 pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
@@ -172,8 +172,8 @@ pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
     )
 }
 
-/// The parallel projection: `half_size` is seen to each side of the view's axis across the shorter
-/// side of the picture. Depth is 1 at `near`, 0 at `far`.
+/// The orthographic projection: `half_size` is visible to each side of the view's axis across the
+/// shorter side of the picture. Depth is 1 at `near`, 0 at `far`.
 #[must_use]
 pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
     let DVec2 { x, y } = shorter_side(size) / half_size;
@@ -186,7 +186,7 @@ pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
     )
 }
 
-/// What a coordinate is multiplied by, so that the shorter side of the picture spans -1 to 1.
+/// The factors of x and y with which the shorter side of the picture spans -1 to 1.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn shorter_side(size: Size) -> DVec2 {
     let (width, height) = (size.width as f64, size.height as f64);
@@ -194,13 +194,13 @@ fn shorter_side(size: Size) -> DVec2 {
     DVec2::new(shorter / width, shorter / height)
 }
 
-/// The matrix of a frame at a place.
+/// The matrix of a frame at a position.
 #[must_use]
 pub fn placed(axes: DMat3, origin: DVec3) -> DMat4 {
     DMat4::from_mat3_translation(axes, origin)
 }
 
-/// The turn of `m`'s frame, without scale and mirroring, as a quaternion; for showing angles only.
+/// The rotation of `m`, without scale and mirroring, as a quaternion; only for showing angles.
 #[must_use]
 pub fn turn_of(m: DMat3) -> DQuat {
     DQuat::from_mat3(&frame(m.z_axis, m.y_axis, DMat3::IDENTITY))
@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_vector_of_any_length_is_brought_to_length_one() {
+    fn a_vector_of_any_length_is_normalised() {
         for length in [1e-310, 1e-200, 1e-23, 1.0, 1e20, 1e300] {
             let v = unit(DVec3::new(3.0, 0.0, -4.0) * length).unwrap();
             assert!((v - DVec3::new(0.6, 0.0, -0.8)).length() < 1e-12, "{length}: {v}");
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn normals_of_objects_of_any_size_are_neither_huge_nor_nothing() {
+    fn normals_of_objects_of_any_size_are_neither_huge_nor_zero() {
         for size in [1e-200, 1e-30, 1e-12, 1.0, 1e12, 1e30, 1e150] {
             let n =
                 normal_matrix(DMat3::from_diagonal(DVec3::new(1.0, 1.5, 0.7) * size)) * DVec3::Y;
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn normals_of_a_mirrored_and_stretched_surface_stay_across_it_and_outside() {
+    fn normals_of_a_mirrored_and_stretched_surface_stay_perpendicular_and_outside() {
         let m = DMat3::from_diagonal(DVec3::new(-2.0, 1.0, 10.0));
         let (along, across) = (DVec3::new(1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0));
         let n = normal_matrix(m) * across;

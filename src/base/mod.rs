@@ -1,4 +1,4 @@
-//! What every floor stands on: mathematics, colours, pictures, shared values, parallel work.
+//! The lowest floor: mathematics, colours, pictures, shared values, parallel work.
 
 pub(crate) mod cancellation;
 pub mod color;

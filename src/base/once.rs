@@ -1,11 +1,11 @@
-//! Values that are computed when they are first needed, by whichever thread needs them first.
+//! Values that are computed when a thread first needs them.
 //!
-//! The value is computed outside of its cell. A thread that computes with others, as rayon does,
-//! takes up other work while it waits for them; if that work needs the same cell, the thread waits
-//! for itself. Computing a value twice is the cheaper mistake.
+//! The value is computed outside of its cell. A thread of rayon takes up other work while it waits
+//! for others; if that work needed the same cell, the thread would wait for itself. Computing a
+//! value twice is the cheaper mistake.
 //!
-//! For the same reason nothing is computed inside a section of [`without_computing`]: there threads
-//! hold locks on what they draw.
+//! For the same reason nothing is computed inside [`without_computing`], where threads hold locks
+//! on what they draw.
 
 use std::cell::Cell;
 use std::sync::OnceLock;
@@ -33,7 +33,7 @@ pub fn get_or_compute<T>(cell: &OnceLock<T>, compute: impl FnOnce() -> T) -> &T 
     })
 }
 
-/// Runs a part of a parallel section in which all that it reads has been computed before.
+/// Runs a part of a parallel section in which everything it reads has already been computed.
 pub fn without_computing<R>(work: impl FnOnce() -> R) -> R {
     /// Restores the flag, also if the work panics.
     struct Restore(bool);
@@ -51,10 +51,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_that_needs_itself_while_threads_wait_is_computed_all_the_same() {
+    fn a_value_that_needs_itself_while_threads_wait_is_still_computed() {
         static CELL: OnceLock<u32> = OnceLock::new();
         fn value(depth: u32) -> u32 {
-            // What a waiting thread does when it takes up work that needs the same value.
+            // As if a waiting thread took up work that needs the same value.
             if depth == 0 { 7 } else { *get_or_compute(&CELL, || value(depth - 1)) }
         }
         assert_eq!(*get_or_compute(&CELL, || value(3)), 7);
@@ -62,17 +62,17 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "computed inside a parallel section")]
-    fn computing_inside_a_parallel_section_is_noticed() {
+    fn computing_inside_a_parallel_section_panics() {
         let cell = OnceLock::new();
         without_computing(|| *get_or_compute(&cell, || 1));
     }
 
     #[test]
-    fn what_was_computed_before_is_read_inside_a_parallel_section() {
+    fn values_computed_before_can_be_read_inside_a_parallel_section() {
         let cell = OnceLock::new();
         get_or_compute(&cell, || 1);
         assert_eq!(without_computing(|| *get_or_compute(&cell, || 2)), 1);
-        // Outside it may be computed again.
+        // Outside, values may be computed again.
         assert_eq!(*get_or_compute(&OnceLock::new(), || 3), 3);
     }
 }

@@ -1,10 +1,10 @@
 //! Random numbers that are the same on every machine.
 //!
 //! SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA
-//! 2014): every seed is as good as any other, so the number of a batch of test cases can be one.
-//! The sequence is part of what tests promise: pictures with listed sums and counterexamples that
-//! are named by their seeds are made from it. That is why it is written down here and not left to a
-//! library, whose distributions may change with its version.
+//! 2014): every seed is as good as any other, so the number of a batch of test cases can serve as
+//! one. Tests depend on the sequence: pictures with listed sums and counterexamples named by their
+//! seeds are made from it. It is therefore written here rather than taken from a library, whose
+//! distributions may change with its version.
 
 use glam::DVec3;
 
@@ -49,12 +49,12 @@ impl Rng {
         all[self.index(all.len())].clone()
     }
 
-    /// True in `percent` of 100 cases.
+    /// True with a probability of `percent` percent.
     pub fn percent(&mut self, percent: u64) -> bool {
         self.below(100) < percent
     }
 
-    /// True in one of `n` cases.
+    /// True with a probability of 1 in `n`.
     pub fn one_in(&mut self, n: u64) -> bool {
         self.below(n) == 0
     }

@@ -1,4 +1,4 @@
-//! A value that many owners share and nobody changes.
+//! An immutable value with many owners.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ impl<T> Shared<T> {
         Arc::ptr_eq(&a.0, &b.0)
     }
 
-    /// Where the value lives: a name for it for as long as it is shared.
+    /// The value's address, which identifies it for as long as it is shared.
     #[must_use]
     pub fn address(&self) -> usize {
         Arc::as_ptr(&self.0).addr()

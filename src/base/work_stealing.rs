@@ -1,8 +1,8 @@
-//! Work that threads share out among themselves, so that each does mostly what it did before.
+//! Distributes work among threads, so that each mostly gets the pieces that it had before.
 //!
-//! Each thread has a stretch of the work and takes from its front; who has nothing left takes from the back
-//! of another's. So a thread meets what its core's cache still holds, of the last stage and of the last
-//! frame. What another core has written has to come from there first.
+//! Each thread has a range of the work and takes pieces from its front; a thread that has none left
+//! takes them from the back of another's range. Its pieces are therefore often still in its core's
+//! cache from the last stage or the last frame, and need not be fetched from another core.
 //!
 //! Blumofe and Leiserson, "Scheduling Multithreaded Computations by Work Stealing", JACM 1999.
 
@@ -13,20 +13,21 @@ use rayon::prelude::*;
 
 use crate::base::once::without_computing;
 
-/// Pieces of work, by their numbers, in stretches.
+/// Pieces of work, by their numbers, in one range for each thread.
 #[derive(Debug)]
 pub(crate) struct WorkStealing {
-    /// Where what is left of each stretch begins, in the upper half, and ends, in the lower.
+    /// What is left of each range: its beginning in the upper half, its end in the lower.
     left: Vec<AtomicU64>,
 }
 
 impl WorkStealing {
-    /// So many pieces for so many threads, as many for each.
+    /// `count` pieces for a number of threads, in equal ranges.
     pub(crate) fn new(count: usize, threads: usize) -> Self {
         Self::beginning_at(count, (0..threads).map(|i| i * count / threads))
     }
 
-    /// So many pieces, in stretches that begin here, in ascending order. The first also has what is before.
+    /// `count` pieces, in ranges with these beginnings, in ascending order. The first range also
+    /// has the pieces before its beginning.
     pub(crate) fn beginning_at(
         count: usize,
         begins: impl DoubleEndedIterator<Item = usize> + ExactSizeIterator,
@@ -42,7 +43,7 @@ impl WorkStealing {
         Self { left }
     }
 
-    /// A piece that nobody has taken yet; none when there are no more.
+    /// A piece that no thread has taken yet, if there is one.
     pub(crate) fn next(&self) -> Option<usize> {
         let count = self.left.len();
         let own = rayon::current_thread_index().unwrap_or(0) % count;
@@ -50,7 +51,7 @@ impl WorkStealing {
         self.take(own, false).or_else(|| others.into_iter().find_map(|i| self.take(i, true)))
     }
 
-    /// The last piece of a stretch, or the first.
+    /// Takes the last piece of a range, or the first.
     fn take(&self, stretch: usize, last: bool) -> Option<usize> {
         let mut taken = None;
         let update = |left| {
@@ -68,11 +69,12 @@ impl WorkStealing {
     }
 }
 
-/// Runs the same work on each of a number of threads; each does as much of it as it finds.
+/// Runs the same work on each of a number of threads.
 ///
-/// The work holds locks on what it draws, so it calls nothing that waits for other threads: a thread
-/// that waits takes up other work, which may want the same locks. What the work reads of a mesh is
-/// computed before ([`FramePlan::prepare`](crate::render::frame::FramePlan::prepare)).
+/// The work holds locks on what it draws, so it calls nothing that waits for other threads: a
+/// thread that waits takes up other work, which may need the same locks. Everything that the work
+/// reads of a mesh is computed before
+/// ([`FramePlan::prepare`](crate::render::frame::FramePlan::prepare)).
 pub(crate) fn together(threads: usize, work: impl Fn() + Sync) {
     if threads == 1 {
         without_computing(work);
@@ -82,8 +84,8 @@ pub(crate) fn together(threads: usize, work: impl Fn() + Sync) {
     }
 }
 
-/// One of some things, one of which each thread has: the own one of this thread, if nobody has it, so that
-/// it is in this core's cache. Another where somebody has.
+/// Locks one of several values, one for each thread: this thread's own if it is free, since it is
+/// likely in this core's cache, else another.
 pub(crate) fn own<T>(all: &[Mutex<T>]) -> MutexGuard<'_, T> {
     let own = rayon::current_thread_index().unwrap_or(0);
     let free = (0..all.len()).find_map(|i| all[(own + i) % all.len()].try_lock().ok());
@@ -95,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_piece_is_handed_out_once_whoever_takes_it() {
+    fn every_piece_is_handed_out_once_whichever_thread_takes_it() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
         for (count, begins) in [(0, vec![0, 0]), (1, vec![0, 5, 9]), (1000, vec![3, 3, 700])] {
             let taken: Vec<Mutex<u32>> = (0..count).map(|_| Mutex::new(0)).collect();
@@ -113,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thread_takes_its_own_from_the_front_and_that_of_others_from_the_back() {
+    fn a_thread_takes_its_own_pieces_from_the_front_and_those_of_others_from_the_back() {
         // This thread is in no pool, and counts as the first.
         let shares = WorkStealing::new(6, 2);
         let order: Vec<usize> = std::iter::from_fn(|| shares.next()).collect();
@@ -121,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn who_finds_its_own_taken_has_another() {
+    fn a_thread_whose_own_value_is_locked_gets_another() {
         let all = [Mutex::new('a'), Mutex::new('b')];
         let first = own(&all);
         assert_eq!((*first, *own(&all)), ('a', 'b'));

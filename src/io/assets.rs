@@ -1,4 +1,4 @@
-//! The three models that the program carries, and the scene that it opens with.
+//! The three built-in models, and the first scene.
 
 use std::sync::OnceLock;
 
@@ -14,7 +14,7 @@ use crate::scene::{
     Object, ObjectId, Pose, PresetId, Scene, Texture, Tracked, View, Wrap,
 };
 
-/// A model that the program carries.
+/// A built-in model.
 #[derive(Debug)]
 struct Asset {
     name: &'static str,
@@ -27,7 +27,7 @@ impl Asset {
         Self { name, text, model: OnceLock::new() }
     }
 
-    /// The model, read when first asked for.
+    /// The model, read when it is first needed.
     fn model(&self) -> Shared<Model> {
         let read = || {
             let file = format!("{}.obj", self.name);
@@ -47,23 +47,23 @@ static CUSHION: Asset = Asset::new("cushion", include_bytes!("../../assets/lesso
 static PLATE: Asset = Asset::new("plate", include_bytes!("../../assets/lessons/plate.obj"));
 static WHEEL: Asset = Asset::new("wheel", include_bytes!("../../assets/lessons/wheel.obj"));
 
-/// The one texture that the program carries, by the path that stands for it in a scene file.
+/// The built-in texture, by its path in a scene file.
 const TILES: (&str, &[u8]) = ("own:tiles.png", include_bytes!("../../assets/lessons/tiles.png"));
 
-/// The pyramid: the mark of cameras.
+/// The pyramid: the marker of cameras.
 #[must_use]
 pub fn cam_model() -> Shared<Model> {
     CAM.model()
 }
 
-/// A model that the program carries, by its name.
+/// A built-in model, by its name.
 #[must_use]
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
     let all = [&CAM, &X_WING, &R_FALKE, &BALL, &CUSHION, &PLATE, &WHEEL];
     all.into_iter().find(|asset| asset.name == name).map(Asset::model)
 }
 
-/// A texture that the program carries, by the path that stands for it in a scene file.
+/// A built-in texture, by its path in a scene file.
 #[must_use]
 pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
     static TEXTURE: OnceLock<Shared<Texture>> = OnceLock::new();
@@ -76,10 +76,10 @@ pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
     (path == own).then(|| get_or_compute(&TEXTURE, read).clone())
 }
 
-/// The scene that the program opens with, and how it is seen.
+/// The first scene, with its view.
 ///
-/// Three objects were loaded one after the other, each to the front of the list; so the last is the
-/// first, and the selected one.
+/// Three objects were loaded one after the other, each to the front of the list, so the last one is
+/// the first and the selected one.
 #[must_use]
 pub fn default_scene() -> (Scene, View) {
     let object = |asset: &Asset, material, place| {
@@ -97,7 +97,7 @@ pub fn default_scene() -> (Scene, View) {
     (scene, view)
 }
 
-/// The scene that the program opens with, without its objects, and how it is seen.
+/// The first scene without its objects, with its view.
 #[must_use]
 pub fn empty_scene() -> (Scene, View) {
     let camera = Camera {

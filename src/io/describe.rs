@@ -1,4 +1,4 @@
-//! What a file holds, as plain text: the answer of `marraztu info FILE`.
+//! Describes a file as plain text, for `marraztu info FILE`.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -34,11 +34,11 @@ pub fn describe(loaded: &Loaded) -> String {
     text.0
 }
 
-/// Lines of a label and what belongs to it.
+/// Lines of a label and its value.
 #[derive(Default)]
 struct Text(String);
 
-/// How wide the labels are.
+/// The width of the labels.
 const LABEL: usize = 16;
 
 /// How many parts and materials are listed; `MakeHuman`'s body alone has 139 parts.
@@ -46,7 +46,7 @@ const MOST: usize = 200;
 
 impl Text {
     fn line(&mut self, label: &str, value: &str) {
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(self.0, "{label:LABEL$}{value}");
     }
 
@@ -142,7 +142,7 @@ fn faces(mesh: &Mesh) -> String {
     if kinds.is_empty() { all } else { format!("{all} ({})", kinds.join(", ")) }
 }
 
-/// Whether every edge has two polygons, and how many have not.
+/// Whether every edge has two polygons, and how many do not.
 fn closed(mesh: &Mesh) -> String {
     let edges = mesh.edges();
     let sides = |right: fn(usize) -> bool| {
@@ -242,7 +242,7 @@ fn grouped(count: usize) -> String {
     text
 }
 
-/// A number with at most six digits that count.
+/// A number with at most six significant digits.
 fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();

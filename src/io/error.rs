@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::progress::Cancelled;
 
-/// The message if memory for a file cannot be had.
+/// The message if there is not enough memory for a file.
 pub(super) const NO_MEMORY: &str = "there is not enough memory for it";
 
-/// Why a file could not be loaded. Nothing has been changed then.
+/// Why a file could not be loaded. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read at all.
@@ -18,7 +18,7 @@ pub enum LoadError {
         /// What is wrong.
         reason: String,
     },
-    /// A line of it cannot be taken for what it says it is.
+    /// A line of it is not a valid statement.
     #[error("{file}:{line}: {reason}")]
     Line {
         /// The file's path, as the user gave it.
@@ -57,7 +57,7 @@ impl LoadError {
     }
 }
 
-/// What the operating system says, in words of ours where they are plainer.
+/// The message of the operating system, in our own words if they are plainer.
 pub(super) fn reason(error: &std::io::Error) -> String {
     use std::io::ErrorKind;
     match error.kind() {

@@ -1,4 +1,4 @@
-//! The example scenes that the program carries, with their models and textures.
+//! The built-in example scenes, with their models and textures.
 //!
 //! They are ordinary scene files, `assets/examples/*.marraztu`. A path that begins with [`FOLDER`]
 //! names one of their files inside the program, so a scene that uses them can be saved anywhere and
@@ -16,7 +16,7 @@ use crate::scene::{LoadOptions, Texture, Wrap};
 /// The folder that stands for the examples in paths.
 const FOLDER: &str = "example:/";
 
-/// A scene that the program carries.
+/// A built-in scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
     /// The label in the menu.

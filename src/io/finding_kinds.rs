@@ -1,7 +1,7 @@
 //! The kinds of findings, each with its sentence.
 //!
-//! A file that could be loaded may have thousands of equal faults, so each sentence is worded for one
-//! case and for many.
+//! A file that could be loaded may have thousands of equal faults, so each sentence is worded for
+//! one case and for many.
 
 /// Declares the kinds, each with its words for one case and for more.
 ///

@@ -1,4 +1,4 @@
-//! What was mended, left out or odd in a file that could be loaded all the same.
+//! Findings: everything that was mended, left out or odd in a file that could be loaded.
 //!
 //! Findings of one kind are joined into one sentence with their number and the first line, so that
 //! a file with a million faults is as easy to read about as one with two.
@@ -15,20 +15,20 @@ pub struct Finding {
     pub file: String,
     /// The first line of that file that it is about, counted from 1.
     pub line: Option<u32>,
-    /// What it is.
+    /// Its kind.
     pub kind: FindingKind,
-    /// How often it was found.
+    /// The number of cases.
     pub count: usize,
-    /// What the first case is about.
+    /// The name that the first case is about.
     name: String,
-    /// How many files it is about.
+    /// The number of files.
     files: usize,
-    /// The whole of it in plain words.
+    /// The finding as a sentence.
     pub text: String,
 }
 
 impl Finding {
-    /// Takes up the cases of the same kind in another file.
+    /// Adds the cases of the same kind in another file.
     fn join(&mut self, other: &Self) {
         self.count += other.count;
         self.files += other.files;
@@ -36,7 +36,7 @@ impl Finding {
     }
 }
 
-/// Findings of one kind in several files as one, in the place of the first.
+/// Joins findings of one kind in several files, at the position of the first.
 #[must_use]
 pub fn joined(findings: Vec<Finding>) -> Vec<Finding> {
     let mut places = BTreeMap::new();
@@ -63,19 +63,19 @@ impl std::fmt::Display for Finding {
     }
 }
 
-/// How many names of a kind are told apart.
+/// How many names of a kind are distinguished.
 const MOST_NAMES: usize = 100;
 
-/// No name sorts after it.
+/// A name after which no other sorts.
 const LAST: &str = "\u{10FFFF}";
 
-/// Findings of one file as they come in.
+/// The findings of one file, as they are noted.
 #[derive(Debug, Default)]
 pub(super) struct Findings {
     file: String,
-    /// By kind and, if names are told apart, name.
+    /// By kind and, if names are distinguished, by name.
     cases: BTreeMap<(FindingKind, String), Cases>,
-    /// How many names of a kind are told apart.
+    /// How many names of a kind are distinguished.
     names: BTreeMap<FindingKind, usize>,
     /// Cases of names beyond those.
     others: BTreeMap<FindingKind, Cases>,
@@ -98,19 +98,19 @@ impl Findings {
         self.add(kind, "", Some(line));
     }
 
-    /// Notes one case that is about a name, at a line where there is one.
+    /// Notes one case that is about a name, with its line if there is one.
     pub(super) fn add(&mut self, kind: FindingKind, name: &str, line: Option<u32>) {
         self.add_cases(kind, Cases { count: 1, name: name.to_owned(), line });
     }
 
-    /// Notes `count` cases, the first of them at `line`; 0 cases are no finding.
+    /// Notes `count` cases, the first of them at `line`. Zero cases are no finding.
     pub(super) fn note_all(&mut self, kind: FindingKind, count: usize, line: u32) {
         if count > 0 {
             self.add_cases(kind, Cases { count, name: String::new(), line: Some(line) });
         }
     }
 
-    /// Takes up the findings of the lines that follow the first `lines` lines.
+    /// Adds the findings of the lines after the first `lines` lines.
     pub(super) fn append(&mut self, following: Self, lines: u32) {
         let placed = |cases: Cases| {
             let line = cases.line.map(|line| line.saturating_add(lines));
@@ -138,7 +138,8 @@ impl Findings {
             return;
         }
         *names -= 1;
-        // The last one by name goes: which stay does not depend on the order in which they came.
+        // The last one by name is dropped, so the rest does not depend on the order in which they
+        // came.
         let last = self.cases.range(..(kind, LAST.to_owned())).next_back();
         if let Some(cases) =
             last.map(|(key, _)| key.clone()).and_then(|key| self.cases.remove(&key))
@@ -147,7 +148,7 @@ impl Findings {
         }
     }
 
-    /// Takes up cases of names that are not told apart.
+    /// Adds cases of names that are not distinguished.
     fn add_others(&mut self, kind: FindingKind, cases: &Cases) {
         let Cases { count, line, .. } = *cases;
         let none = Cases { count: 0, name: "... and others".to_owned(), line };

@@ -1,4 +1,4 @@
-//! A model or a scene from standard input, or from anything else that has no name.
+//! Reads a model or a scene from standard input, or from another input without a name.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -11,21 +11,21 @@ use super::progress::Progress;
 use super::scene_file::{Opened, SceneFileError, open_text};
 use crate::scene::LoadOptions;
 
-/// What the input is called in messages and in the outline.
+/// The name of the input in messages and in the outline.
 const NAME: &str = "standard input";
 
-/// What the text of a scene file may begin with; no OBJ file begins so.
+/// The beginnings of scene files; no OBJ file begins with one.
 const SCENE: [&[u8]; 4] = [b"(", b"//", b"/*", b"#!["];
 
-/// A model or a scene whose bytes are in memory. Files that it names are looked for in the current
-/// folder.
+/// A model or a scene whose bytes are in memory. The files that it names are looked for in the
+/// current folder.
 #[derive(Debug)]
 pub struct Input {
     bytes: Vec<u8>,
 }
 
 impl Input {
-    /// Reads all of it, unpacked if it is packed.
+    /// Reads all of it, and unpacks it if it is packed.
     ///
     /// # Errors
     /// If it cannot be read, or is too large.
@@ -49,7 +49,7 @@ impl Input {
         Ok(Self { bytes })
     }
 
-    /// Whether it begins as scene files do.
+    /// Whether it is a scene, by its beginning.
     #[must_use]
     pub fn is_scene(&self) -> bool {
         let text = self.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&self.bytes);
@@ -57,7 +57,7 @@ impl Input {
         SCENE.iter().any(|begin| text.starts_with(begin))
     }
 
-    /// The model that it is.
+    /// The model, if it is one.
     ///
     /// # Errors
     /// As [`load`](super::load).
@@ -65,14 +65,14 @@ impl Input {
         parse(&self.bytes, NAME, Some(Path::new("")), options, progress)
     }
 
-    /// The scene that it is.
+    /// The scene, if it is one.
     ///
     /// # Errors
     /// As [`open`](super::open).
     pub fn scene(&self, progress: &Progress) -> Result<Opened, SceneFileError> {
         let text = std::str::from_utf8(&self.bytes).map_err(|_bytes| SceneFileError::File {
             file: NAME.to_owned(),
-            reason: "this is no scene file".to_owned(),
+            reason: "this is not a scene file".to_owned(),
         })?;
         let here = std::env::current_dir().unwrap_or_else(|_gone| PathBuf::new());
         open_text(text, NAME, here, &BTreeMap::new(), progress)

@@ -1,4 +1,4 @@
-//! The small scenes that teach what accuracy is: each shows one fault as large as it can be.
+//! The scenes of the lessons: each makes one kind of error as visible as possible.
 //!
 //! They are ordinary scene files that are part of the program, as are their models.
 

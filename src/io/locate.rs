@@ -1,34 +1,34 @@
 //! Finds the file that another file names.
 //!
-//! Names come from other machines: with back slashes, with the folders of whoever exported them, in
-//! another case. So a name is looked for where it says, then by its last part beside the file that
-//! names it, then without regard to case.
+//! Names come from other machines: with backslashes, with folders that exist only there, in another
+//! case. A name is therefore first taken as it is, then by its last part beside the file that names
+//! it, then without regard to case.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// How many words of a line of names are looked at.
+/// How many words of a line of names are considered.
 const MOST_WORDS: usize = 1000;
 
-/// Looks for files, and remembers what is in the folders that it has looked into.
+/// Looks for files, and caches the content of folders.
 #[derive(Debug, Default)]
 pub(super) struct Locator {
-    /// The names in a folder, by what they are in lower case.
+    /// The names in a folder, by their lower case.
     listings: BTreeMap<PathBuf, BTreeMap<String, OsString>>,
 }
 
 impl Locator {
-    /// The file that `name` means, seen from `folder`, if there is one.
+    /// The file that `name` refers to, relative to `folder`, if there is one.
     pub(super) fn locate(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
         let name = plain(name);
-        // No system has longer ones.
+        // No system has longer names.
         if name.is_empty() || name.len() > 4096 {
             return None;
         }
         let last = name.rsplit('/').next().unwrap_or(&name);
         let file = |path: PathBuf| path.is_file().then_some(path);
-        // A pipe or a device is not read, but it is what is meant: reading it says why it is not.
+        // A pipe or a device counts as found; reading it will give the reason why it is refused.
         let other = |path: PathBuf| (path.exists() && !path.is_dir()).then_some(path);
         file(folder.join(&name))
             .or_else(|| file(folder.join(last)))
@@ -61,14 +61,16 @@ impl Locator {
             let entries = std::fs::read_dir(here).into_iter().flatten();
             let mut names: Vec<_> =
                 entries.filter_map(|entry| Some(entry.ok()?.file_name())).collect();
-            // The order of a folder's entries is no order: the first by name, put there last.
+            // The entries of a folder have no reliable order, so the first by name is inserted
+            // last.
             names.sort();
             names.reverse();
             names.into_iter().map(|name| (name.to_string_lossy().to_lowercase(), name)).collect()
         })
     }
 
-    /// The files that a line of names means: names are divided by blanks, and may contain blanks.
+    /// The files that a line of names refers to. Names are separated by blanks, and may contain
+    /// blanks.
     ///
     /// From each word on, the longest run of words that is a file is one name. If no run is a file,
     /// a missing name goes up to the first word with the ending that all names have.
@@ -86,7 +88,7 @@ impl Locator {
         let mut found = Vec::new();
         let mut at = 0;
         while at < words.len() {
-            // Every further word is a look at the disk; no name has as many as this.
+            // Every further word costs a look at the disk, and no name has more words than this.
             let longest = words.len().min(at + 16);
             let run = (at + 1..=longest).rev().find_map(|end| {
                 let name = words[at..end].join(" ");
@@ -104,7 +106,7 @@ impl Locator {
     }
 }
 
-/// A name with slashes, without the quotation marks that some write about it.
+/// A name with slashes, without the quotation marks that some programs write around it.
 pub(super) fn plain(name: &str) -> String {
     let name = name.trim();
     let unquoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name);

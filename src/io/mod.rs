@@ -1,7 +1,7 @@
 //! Models, textures, scene files and pictures, to and from the disk.
 //!
-//! Files are written by others: nothing in them may stop the program. A file is either refused with
-//! one reason, or loaded with a list of everything that was mended in it.
+//! Files come from elsewhere, so nothing in them may stop the program. A file is either refused
+//! with one reason, or loaded with a list of everything that was mended in it.
 
 mod assets;
 mod describe;

@@ -1,4 +1,4 @@
-//! Files that gzip has packed.
+//! Unpacks gzip files.
 
 use std::io::{Error, ErrorKind, Read};
 
@@ -7,7 +7,7 @@ use flate2::read::MultiGzDecoder;
 /// The bytes that every gzip archive begins with (RFC 1952, section 2.3.1).
 pub(super) const MAGIC: &[u8] = b"\x1F\x8B";
 
-/// What the names of packed files end in.
+/// The ending of the names of packed files.
 const ENDING: &str = ".gz";
 
 /// A file's name without the ending of gzip; `None` if it does not have that ending.
@@ -16,7 +16,7 @@ pub(super) fn unpacked_name(name: &str) -> Option<&str> {
     ending.eq_ignore_ascii_case(ENDING).then_some(stem)
 }
 
-/// Unpacks what it reads. How much that may be is for the reader to limit.
+/// Unpacks what it reads. The caller limits how much that may be.
 pub(super) struct Unpacked<R>(MultiGzDecoder<R>);
 
 impl<R: Read> Unpacked<R> {

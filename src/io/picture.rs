@@ -1,4 +1,4 @@
-//! Pictures to the disk.
+//! Saves pictures.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,10 +12,10 @@ use image::{ExtendedColorType, ImageEncoder, ImageError};
 use super::replace::{SaveError, Worth, check_target, replace};
 use crate::base::image::Picture;
 
-/// The quality of a JPEG, from 1 to 100: differences to the picture are hardly seen.
+/// The quality of a JPEG, from 1 to 100: differences are hardly visible.
 const JPEG_QUALITY: u8 = 92;
 
-/// How many bytes tell what format a picture has.
+/// How many bytes identify the format of a picture.
 const SIGNATURE: u64 = 64;
 
 /// A format that pictures are written in.
@@ -89,18 +89,18 @@ pub(super) fn either(words: impl Iterator<Item = String>) -> String {
     }
 }
 
-/// Saves a picture in the format that its name asks for.
+/// Saves a picture in the format of its name's ending.
 ///
 /// # Errors
-/// If the name asks for none, or the file cannot be written; what was there before still is.
+/// If the ending is unknown, or the file cannot be written; an existing file stays as it was.
 pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
     let format = PictureFormat::of(path).map_err(fail)?;
     replace(path, &format.encode(picture).map_err(fail)?, Worth::Product)
 }
 
-/// Finds out, before anything is drawn, whether a picture could be saved at `path`. A file that is
-/// there already has to be a picture, or empty.
+/// Checks, before anything is drawn, whether a picture could be saved at `path`. An existing file
+/// has to be a picture, or empty.
 ///
 /// # Errors
 /// If it could not.
@@ -113,7 +113,9 @@ pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     match file.take(SIGNATURE).read_to_end(&mut begin) {
         Ok(0) => Ok(()),
         Ok(_) if image::guess_format(&begin).is_ok() => Ok(()),
-        _ => Err(fail("there is a file of that name, and it is no picture; choose another name")),
+        _ => {
+            Err(fail("there is a file of that name, and it is not a picture; choose another name"))
+        }
     }
 }
 
@@ -205,7 +207,7 @@ mod tests {
         std::fs::create_dir(folder.path().join("b.png")).unwrap();
         assert_eq!(["a.png", "empty.jpg", "new.webp"].map(reason), [Ok(()), Ok(()), Ok(())]);
         for (name, word) in [
-            ("poem.ppm", "it is no picture"),
+            ("poem.ppm", "it is not a picture"),
             ("b.png", "this is a folder"),
             ("none/a.png", "does not exist"),
             ("poem.ppm/a.png", "is not a folder"),

@@ -1,6 +1,6 @@
-//! How far a long piece of work has come, and whether it should go on.
+//! The progress of a long task, and whether it should continue.
 //!
-//! The one who works and the one who watches hold clones of the same value.
+//! The task and its observer hold clones of the same value.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 #[derive(Clone, Debug)]
 pub struct Progress {
     state: Arc<State>,
-    /// Where this part of the work begins and how much of the whole it is.
+    /// The beginning of this part of the work, and its share of the whole.
     begin: f64,
     share: f64,
 }
@@ -65,7 +65,7 @@ impl Progress {
         }
     }
 
-    /// Says that `done` of `all` steps of this work are done.
+    /// Reports that `done` of `all` steps of this work are done.
     ///
     /// # Errors
     /// If the work should end.

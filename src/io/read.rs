@@ -1,4 +1,4 @@
-//! Files into memory, none larger than anyone means.
+//! Reads files into memory, up to a limit of size.
 
 use std::fs::{File, FileType, Metadata};
 use std::io::{Chain, Cursor, Read};
@@ -13,10 +13,10 @@ pub(super) const MOST_WORDS: usize = 64 << 20;
 /// The bytes of a text in UTF-16 that are too many to be converted.
 const MOST_UTF_16: u64 = 1 << 30;
 
-/// How much is read between two looks at the progress.
+/// How much is read between two checks of the progress.
 const PIECE: usize = 8 << 20;
 
-/// Finds out whether `path` is a file that can be read, without reading it.
+/// Checks whether `path` is a file that can be read, without reading it.
 ///
 /// # Errors
 /// If there is nothing, or no file: a folder, a device, or a pipe that the program did not inherit.
@@ -24,7 +24,7 @@ pub fn check_file(path: &Path) -> Result<(), LoadError> {
     readable(path).map(|_| ())
 }
 
-/// Opens a file of at most `most` bytes; says how many it has, as far as that is known beforehand.
+/// Opens a file of at most `most` bytes, and returns its size if that is known beforehand.
 ///
 /// # Errors
 /// If it cannot be opened, cannot be read as a file, or is larger.
@@ -51,7 +51,7 @@ fn readable(path: &Path) -> Result<Metadata, LoadError> {
     }
 }
 
-/// What something on a disk is, if it is not a file.
+/// The kind of an entry of a folder, if it is not a file.
 fn kind(kind: FileType) -> Option<&'static str> {
     #[cfg(unix)]
     {
@@ -69,7 +69,7 @@ fn kind(kind: FileType) -> Option<&'static str> {
     kind.is_dir().then_some("a folder")
 }
 
-/// Whether a path stands for a file that this program had open when it was started.
+/// Whether a path refers to a file that was open when this program was started.
 fn is_inherited(path: &Path) -> bool {
     ["/dev/fd", "/proc/self/fd", "/dev/stdin"].iter().any(|begin| path.starts_with(begin))
 }

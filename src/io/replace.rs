@@ -1,8 +1,8 @@
-//! Writing a file so that nothing is lost, whatever happens on the way.
+//! Writes files so that nothing is lost if writing fails.
 //!
-//! The new content is written beside the old one and takes its name in one step: a reader finds the
-//! old file or the new one, whole. A user's own work is brought to the disk before, so that
-//! not even a loss of power takes it.
+//! The new content is written to a file beside the old one, which is then renamed in one step: a
+//! reader finds the old file or the new one, whole. A user's own work is flushed to the disk
+//! before, so that it survives even a loss of power.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write};
@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use super::error::{reason, shown};
 
-/// Why a file could not be written. What was there before still is.
+/// Why a file could not be written. An existing file stays as it was.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file} could not be saved: {reason}")]
 pub struct SaveError {
@@ -27,17 +27,17 @@ impl SaveError {
     }
 }
 
-/// How much is lost with a file.
+/// How valuable a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Worth {
     /// It can be made again, so saving it does not wait for the disk.
     Product,
-    /// It is somebody's work: it is brought to the disk, and the file that was there is kept, with
-    /// `~` after its name.
+    /// It is a user's work: it is flushed to the disk, and the old file is kept with `~` after its
+    /// name.
     Work,
 }
 
-/// Finds out whether a file could be written at `path`: its folder is there and can be written to.
+/// Checks whether a file could be written at `path`: its folder exists and can be written to.
 ///
 /// # Errors
 /// If it could not.
@@ -59,7 +59,7 @@ pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     }
 }
 
-/// The file that is replaced: a link goes on pointing where it points.
+/// The file that is replaced; a link is followed and stays a link.
 fn target(path: &Path) -> Result<PathBuf, SaveError> {
     let target = fs::canonicalize(path).unwrap_or_else(|_new| path.to_owned());
     if target.is_dir() {
@@ -105,7 +105,7 @@ pub(super) fn replace(path: &Path, content: &[u8], worth: Worth) -> Result<(), S
     let beside = beside(&target, std::process::id());
     let written = write(&beside, &target, content, worth);
     if written.is_err() {
-        // Nothing more can be done where even that fails.
+        // Nothing more can be done if even that fails.
         let _ = fs::remove_file(&beside);
     }
     written.map_err(fail)
@@ -131,7 +131,7 @@ fn write(beside: &Path, target: &Path, content: &[u8], worth: Worth) -> std::io:
         }
     }
     fs::rename(beside, target)?;
-    // The name, too, should survive a loss of power; not every system lets one ask for it.
+    // The name, too, should survive a loss of power; not every system supports that.
     let _ = File::open(folder(target)).and_then(|folder| folder.sync_all());
     Ok(())
 }
@@ -142,15 +142,15 @@ fn with_ending(path: &Path, ending: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// What a process writes beside the file that it replaces.
+/// The temporary file that a process writes beside the file that it replaces.
 fn beside(target: &Path, process: u32) -> PathBuf {
     with_ending(target, &format!(".{process}.new"))
 }
 
-/// What was written beside a file longer ago than this belongs to no process that still writes it.
+/// No process is still writing a temporary file that is older than this.
 const LONG_AGO: Duration = Duration::from_secs(60);
 
-/// Removes what processes that ended on the way have left beside a file.
+/// Removes temporary files beside a file that crashed processes have left.
 fn remove_left_over(target: &Path) {
     let Some(name) = target.file_name().and_then(|name| name.to_str()) else { return };
     let is_left_over = |entry: &fs::DirEntry| {
@@ -169,7 +169,7 @@ fn remove_left_over(target: &Path) {
     }
 }
 
-/// Whether a process has ended, as far as the system tells.
+/// Whether a process has ended, as far as the system reports.
 fn has_ended(process: u32) -> bool {
     let processes = Path::new("/proc");
     process != std::process::id() && !processes.join(process.to_string()).exists()
@@ -181,7 +181,7 @@ mod tests {
 
     use super::*;
 
-    /// The number of a process that has ended.
+    /// The id of a process that has ended.
     fn ended() -> u32 {
         let mut child = std::process::Command::new("true").spawn().unwrap();
         child.wait().unwrap();

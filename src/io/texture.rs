@@ -1,4 +1,4 @@
-//! Pictures to be laid over surfaces.
+//! Reads textures and other pictures.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -52,8 +52,7 @@ fn unknown() -> String {
     format!("this is not a {}", texture_formats())
 }
 
-/// Reads a texture that the user gives by hand: it repeats, and lies as the model's texture
-/// coordinates say.
+/// Reads a texture that the user chooses: it repeats, and follows the model's texture coordinates.
 ///
 /// # Errors
 /// If the file cannot be read or is not a picture.
@@ -72,8 +71,8 @@ pub fn load_texture_with(
     Pictures::default().texture(path, findings)
 }
 
-/// Reads a picture in any of the formats that textures have, whatever its name ends in; of a GIF, the
-/// first picture.
+/// Reads a picture in any of the formats that textures have, whatever its name ends in; of a GIF,
+/// the first picture.
 ///
 /// # Errors
 /// If the file cannot be read, is not a picture, or is too large.
@@ -114,14 +113,14 @@ impl Pictures {
         }
         let read = decode(path, most)
             .map(|(picture, cut_off)| Read { picture: Shared::new(picture), cut_off });
-        // With more room it may be read yet.
+        // With a higher limit it may still be read.
         if read.as_ref().err() != Some(&too_many_texels(path)) {
             self.read.insert(file, read.clone());
         }
         read
     }
 
-    /// The texture of a file that repeats, and lies as the model's texture coordinates say.
+    /// The texture of a file. It repeats, and follows the model's texture coordinates.
     ///
     /// # Errors
     /// If the file cannot be read or is not a picture.
@@ -137,7 +136,7 @@ impl Pictures {
             findings.extend(own.into_list());
         }
         Ok(Shared::new(Texture {
-            // Complete, so that it holds wherever the program goes on to work.
+            // The path is absolute, so that it stays valid if the current folder changes.
             source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
             picture,
             wrap: Wrap::Repeat,
@@ -157,7 +156,7 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
     let fail = |reason: String| LoadError::file(&file, reason);
     let bytes = read(path, MOST_BYTES, &Progress::new())?;
     let mut reader = ImageReader::new(Cursor::new(&bytes));
-    // A TGA is known by its name alone.
+    // A TGA can be recognised only by its name.
     if let Ok(format) = ImageFormat::from_path(path) {
         reader.set_format(format);
     }
@@ -180,7 +179,7 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
         }
         DynamicImage::from_decoder(decoder).map(Some)
     };
-    // A decoder that breaks down on a damaged file must not take the editor with it.
+    // A decoder that panics on a damaged file must not take the editor with it.
     let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoded))
         .map_err(|_panic| fail("the picture is damaged".to_owned()))?
         .map_err(|error| fail(reason(&error)))?
@@ -207,12 +206,13 @@ fn picture(decoded: DynamicImage) -> Option<Picture> {
 
 /// Whether a JPEG ends before its marker of the end: the decoder fills up the missing part.
 fn jpeg_ends_early(bytes: &[u8]) -> bool {
-    // Behind the marker of the beginning: FF, a kind, and for most kinds a length and its content.
+    // After the marker of the beginning: FF, a kind, and for most kinds a length and a content.
     let mut rest = bytes.get(2..).unwrap_or_default();
     while let [first, kind, after @ ..] = rest {
         rest = match (first, kind) {
             (0xFF, 0xD9) => return false,
-            // Of no content: stuffing, restarts, fill bytes. All else is the picture itself.
+            // Stuffing, restarts and fill bytes have no content. Everything else is the picture
+            // itself.
             (0xFF, 0x00 | 0x01 | 0xD0..=0xD8) => after,
             (0xFF, 0xFF) | (0..=0xFE, _) => &rest[1..],
             _ => {
@@ -225,7 +225,7 @@ fn jpeg_ends_early(bytes: &[u8]) -> bool {
     true
 }
 
-/// A picture that the program carries; `None` if it cannot be read.
+/// A built-in picture; `None` if it cannot be read.
 pub(super) fn own_picture(content: &[u8]) -> Option<Picture> {
     picture(image::load_from_memory(content).ok()?)
 }
@@ -266,7 +266,7 @@ mod tests {
             assert_eq!(read.size(), Size::new(8, 8), "{format:?}");
             for (x, y, texel) in [(0, 0, texels[0]), (7, 0, texels[1]), (0, 7, texels[2])] {
                 for (got, expected) in read.pixel(x, y).into_iter().zip(texel) {
-                    // JPEG blurs; a row or a channel in the wrong place is farther off.
+                    // JPEG blurs; a row or a channel in the wrong place would differ by more.
                     assert!(got.abs_diff(expected) < 64, "{format:?} at {x}, {y}: {got}");
                 }
             }
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_is_none_or_too_large_or_cut_off_is_refused() {
+    fn a_file_that_is_not_a_picture_or_is_too_large_or_truncated_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let file = format!("{}: ", path.display());
@@ -325,7 +325,7 @@ mod tests {
         let again = pictures.read(&folder.path().join("./a.png"), 256).unwrap().picture;
         assert!(Shared::same(&first, &again));
         assert_eq!(pictures.read(&path, 255).unwrap_err(), too_many_texels(&path));
-        // A head without texels: it is refused for their number, so no memory was asked for.
+        // A header without texels: it is refused for their number, before memory is allocated.
         let whole = std::fs::read(&path).unwrap();
         let headless = folder.path().join("b.png");
         std::fs::write(&headless, &whole[..50]).unwrap();

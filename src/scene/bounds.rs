@@ -1,4 +1,4 @@
-//! The box that holds a set of points.
+//! The bounding box of a set of points.
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The extent of points; `None` where there are none.
+    /// The extent of points; `None` if there are none.
     #[must_use]
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         points.into_iter().fold(None, |bounds: Option<Self>, p| {
@@ -37,7 +37,7 @@ impl Bounds {
         self.max - self.min
     }
 
-    /// The place in the box that is nearest to a place.
+    /// The point of the box nearest to a point.
     #[must_use]
     pub fn nearest_to(&self, place: DVec3) -> DVec3 {
         place.max(self.min).min(self.max)

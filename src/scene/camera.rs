@@ -1,4 +1,4 @@
-//! A camera of the list: it looks along its own -Z.
+//! A camera, its pose and its lens. It looks along its own -Z.
 
 use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
@@ -10,24 +10,24 @@ use crate::base::{Shared, math};
 /// A camera, with the model that marks it for other observers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// As the outline calls it.
+    /// Its name in the outline.
     pub name: String,
-    /// Whether its mark is drawn.
+    /// Whether its marker is drawn.
     pub visible: bool,
-    /// The mark's shape.
+    /// The marker's shape.
     pub model: Shared<Model>,
-    /// The mark's material.
+    /// The marker's material.
     pub material: MaterialChoice,
-    /// Where it is, and how it moves.
+    /// Its position, orientation and mode.
     pub pose: Tracked<Pose>,
-    /// What it sees.
+    /// Its field of view and its planes.
     pub lens: Lens,
 }
 
-/// Where a camera is, how it is turned, how it moves.
+/// The position, orientation and mode of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Its place in the world.
+    /// Its position in the world.
     pub eye: DVec3,
     /// Its axes as columns, orthonormal and right-handed.
     pub axes: DMat3,
@@ -38,10 +38,10 @@ pub struct Pose {
 /// How a camera moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CameraMode {
-    /// In its own frame.
+    /// It moves in its own frame.
     #[default]
     Fly,
-    /// About the centre of an object, which it looks at.
+    /// It orbits the centre of an object, which it looks at.
     Analysis {
         /// The object.
         target: ObjectId,
@@ -61,7 +61,7 @@ impl Pose {
         math::placed(self.axes, self.eye)
     }
 
-    /// How the camera moves now: in analysis only while its target is the selected object.
+    /// How the camera moves now: it orbits only while its target is the selected object.
     #[must_use]
     pub fn mode_with(&self, selected: Option<ObjectId>) -> CameraMode {
         match self.mode {
@@ -71,21 +71,21 @@ impl Pose {
     }
 }
 
-/// What a camera sees, in perspective and in parallel projection.
+/// The lens of a camera, in perspective and in orthographic projection.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Lens {
     /// Degrees to each side of the axis, across the shorter side of the picture: above 0, below 90.
     pub half_angle: f64,
-    /// Where perspective begins: more than 0.
+    /// The near plane in perspective: more than 0.
     pub near: f64,
-    /// Where perspective ends: more than `near`.
+    /// The far plane in perspective: more than `near`.
     pub far: f64,
-    /// Units to each side of the axis in parallel projection, across the shorter side: above 0.
+    /// Units to each side of the axis in orthographic projection, across the shorter side: above 0.
     pub half_size: f64,
-    /// Where parallel projection begins.
+    /// The near plane in orthographic projection.
     pub parallel_near: f64,
-    /// Where parallel projection ends: more than `parallel_near`.
+    /// The far plane in orthographic projection: more than `parallel_near`.
     pub parallel_far: f64,
 }
 
@@ -103,7 +103,7 @@ impl Default for Lens {
 }
 
 impl Lens {
-    /// Whether a picture can be made through it.
+    /// Whether it gives a valid projection.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let Self { half_angle, near, far, half_size, parallel_near, parallel_far } = *self;

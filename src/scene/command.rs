@@ -1,8 +1,8 @@
 //! The changes that can be made to a scene.
 //!
-//! There is no code that undoes: [`Command::apply`] gives back the command that does, so that a
-//! change and its undoing cannot drift apart. Since all that is large in a scene is shared, a change
-//! of an item holds the whole item as it will be, and its undoing the item as it was.
+//! There is no code of its own for undo: [`Command::apply`] returns the inverse command, so a
+//! change and its undo cannot drift apart. Since everything large in a scene is shared, a change of
+//! an item holds the whole item as it will be, and its inverse holds the item as it was.
 
 use super::{
     Camera, CameraId, ItemId, Light, LightId, LightKind, Object, ObjectId, Scene, SpotOwner,
@@ -12,16 +12,16 @@ use crate::base::color::Color;
 /// One change to a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Puts an item into its list, before the one that stands at `at`.
+    /// Inserts an item into its list, before the one at `at`.
     Insert {
         /// Its place in the list; past the end means last.
         at: usize,
         /// The item, under an id that is not in use.
         item: Item,
     },
-    /// Takes an item out.
+    /// Removes an item.
     Remove(ItemId),
-    /// Makes an item what is given here.
+    /// Replaces an item, found by its id.
     Replace(Item),
     /// Moves an item to another place in its list.
     Reorder {
@@ -38,7 +38,7 @@ pub enum Command {
     Batch(Vec<Self>),
 }
 
-/// An item of one of the lists, under its id.
+/// An item of one of the lists, with its id.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
     /// An object.
@@ -60,7 +60,7 @@ impl Item {
         }
     }
 
-    /// Why it may not be in a scene, where it may not.
+    /// Why it is not valid in a scene, if it is not.
     fn fault(&self) -> Option<CommandError> {
         let finite = match self {
             Self::Object(_, object) => object.placement.now().is_finite(),
@@ -97,22 +97,22 @@ impl Item {
     }
 }
 
-/// Why a command could not be applied. The scene is then as it was before.
+/// Why a command could not be applied. The scene is unchanged then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CommandError {
     /// The item that the command names is not there.
-    #[error("what should be changed is not in the scene any more")]
+    #[error("the item to change is no longer in the scene")]
     Missing(ItemId),
     /// The item that the command would insert is already there.
-    #[error("what should be added is already in the scene")]
+    #[error("the item to add is already in the scene")]
     AlreadyThere(ItemId),
     /// The last camera cannot be removed.
     #[error("the last camera cannot be removed")]
     LastCamera,
-    /// A number would be too large to be one.
+    /// A number would overflow.
     #[error("a number would become too large")]
     NotFinite,
-    /// No picture could be made through the lens.
+    /// The lens would give no valid projection.
     #[error(
         "the lens needs an angle between 0 and 90 degrees, a size above 0, and near before far"
     )]
@@ -123,10 +123,10 @@ pub enum CommandError {
 }
 
 impl Command {
-    /// Changes the scene, and gives back the command that changes it back.
+    /// Changes the scene, and returns the inverse command.
     ///
     /// # Errors
-    /// Where the command does not fit the scene, which is then left as it was.
+    /// If the command does not fit the scene, which is unchanged then.
     pub fn apply(self, scene: &mut Scene) -> Result<Self, CommandError> {
         match self {
             Self::Insert { at, item } => insert(scene, at, item),
@@ -134,7 +134,7 @@ impl Command {
             Self::Replace(item) => replace(scene, item),
             Self::Reorder { id, to } => {
                 let Self::Insert { at, item } = remove_any(scene, id)? else {
-                    unreachable!("removing gives back an insertion")
+                    unreachable!("removing returns an insertion")
                 };
                 insert(scene, to, item)?;
                 Ok(Self::Reorder { id, to: at })
@@ -147,7 +147,7 @@ impl Command {
         }
     }
 
-    /// Whether applying `self` right after `earlier` leaves nothing of what `earlier` set.
+    /// Whether `self`, applied right after `earlier`, overwrites everything that `earlier` set.
     #[must_use]
     pub fn overwrites(&self, earlier: &Self) -> bool {
         match (self, earlier) {
@@ -229,7 +229,7 @@ fn batch(scene: &mut Scene, commands: Vec<Command>) -> Result<Command, CommandEr
             Ok(inverse) => back.push(inverse),
             Err(error) => {
                 for inverse in back.into_iter().rev() {
-                    inverse.apply(scene).expect("what was just done can be taken back");
+                    inverse.apply(scene).expect("a command that was just applied can be undone");
                 }
                 return Err(error);
             }

@@ -9,17 +9,17 @@ use crate::base::{color::Color, math};
 /// A light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// As the outline calls it.
+    /// Its name in the outline.
     pub name: String,
     /// The number of its key: 0 to 9 have one. No two lights have the same.
     pub slot: u32,
-    /// Whether it shines.
+    /// Whether it is on.
     pub on: bool,
     /// Its colour.
     pub color: Color,
     /// How its light fades; the sun's and ambient light do not.
     pub attenuation: Attenuation,
-    /// What it is.
+    /// Its kind, with what that kind needs.
     pub kind: LightKind,
 }
 
@@ -27,11 +27,11 @@ pub struct Light {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Attenuation {
-    /// Whatever the distance; more than 0 where the others are 0.
+    /// The constant term; more than 0 if the others are 0.
     pub constant: f64,
-    /// For each unit of distance.
+    /// The linear term, per unit of distance.
     pub linear: f64,
-    /// For each square unit.
+    /// The quadratic term, per square unit.
     pub quadratic: f64,
 }
 
@@ -42,7 +42,7 @@ impl Default for Attenuation {
 }
 
 impl Attenuation {
-    /// Whether every distance gets a finite amount of light, and no negative one.
+    /// Whether the light at every distance is finite and not negative.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let all = [self.constant, self.linear, self.quadratic];
@@ -50,35 +50,35 @@ impl Attenuation {
     }
 }
 
-/// What a light is.
+/// The kind of a light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightKind {
-    /// From everywhere.
+    /// Ambient: from everywhere.
     Ambient,
-    /// From infinitely far away.
+    /// Directional: from infinitely far away.
     Sun {
-        /// The way its light goes, of length 1.
+        /// The direction in which its light travels, of length 1.
         direction: Tracked<DVec3>,
     },
-    /// From a point, in all directions.
+    /// A point light, in all directions.
     Bulb {
-        /// Where it is.
+        /// Its position.
         position: Tracked<DVec3>,
         /// Circling the world's Y axis.
         orbit: Orbit,
     },
-    /// From a point, in a cone.
+    /// A point light with a cone.
     Spot {
-        /// What it is fixed to.
+        /// What it is attached to.
         owner: SpotOwner,
-        /// Degrees from the axis to the border of the cone: 0 to 90.
+        /// Degrees from the axis to the edge of the cone: 0 to 90.
         half_aperture: f64,
-        /// How much its light is gathered along the axis: at least 0.
+        /// How strongly its light is concentrated along the axis: at least 0.
         exponent: f64,
     },
 }
 
-/// What a spot is fixed to: it shines from there along -Z.
+/// What a spot is attached to. It shines from there along -Z.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpotOwner {
     /// The selected object, whichever it is.
@@ -89,14 +89,14 @@ pub enum SpotOwner {
     Object(ObjectId),
     /// This camera.
     Camera(CameraId),
-    /// Nothing: a place and a direction of its own.
+    /// Nothing: it has a position and a direction of its own.
     Fixed(Tracked<Aim>),
 }
 
-/// A place and a direction.
+/// A position and a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
-    /// The place.
+    /// The position.
     pub position: DVec3,
     /// The direction, of length 1.
     pub direction: DVec3,
@@ -107,7 +107,7 @@ pub struct Aim {
 pub struct Orbit {
     /// Whether it circles.
     pub on: bool,
-    /// Degrees a second.
+    /// Degrees per second.
     pub speed: f64,
     /// When it began, in seconds of the scene's clock.
     pub since: f64,
@@ -120,7 +120,8 @@ impl Default for Orbit {
 }
 
 impl Orbit {
-    /// Where a bulb is at `time` (seconds of the scene's clock) that is placed at `position`.
+    /// The position of a bulb at `time` (seconds of the scene's clock) if it is placed at
+    /// `position`.
     #[must_use]
     pub fn at(&self, position: DVec3, time: f64) -> DVec3 {
         if !self.on {
@@ -133,7 +134,7 @@ impl Orbit {
 }
 
 impl Light {
-    /// A white light that shines.
+    /// A white light that is on.
     #[must_use]
     pub fn new(name: &str, slot: u32, kind: LightKind) -> Self {
         Self {

@@ -1,12 +1,12 @@
-//! Things in the order in which the user sees them, each under an id that is never used twice.
+//! A list of items in the order that the user sees, each under an id that is never reused.
 //!
-//! A list is a persistent structure: a copy shares everything with its original, and a change copies
-//! only the few nodes that lead to it. So snapshots cost nothing, however long the list, and every
-//! question takes time in proportion to the logarithm of the length at most.
+//! A list is a persistent structure: a copy shares everything with its original, and a change
+//! copies only the few nodes that lead to it. Snapshots of lists of any length are therefore cheap,
+//! and every query takes at most logarithmic time.
 //!
-//! Each thing has a label, a number that grows along the list. An id leads to its label, and a binary
-//! search for the label leads to the place. What is inserted gets a label between those of its
-//! neighbours; if there is none left, all labels are given anew: Dietz and Sleator, "Two Algorithms
+//! Each item has a label, a number that grows along the list. An id leads to its label, and a
+//! binary search for the label leads to the position. A new item gets a label between those of its
+//! neighbours; if there is none left, all items are relabelled: Dietz and Sleator, "Two Algorithms
 //! for Maintaining Order in a List", STOC 1987.
 
 use std::fmt;
@@ -18,17 +18,17 @@ use imbl::{OrdMap, Vector};
 /// How far apart the labels of neighbours are at first.
 const STEP: i64 = 1 << 32;
 
-/// How far behind the label before it a new label is at most: things inserted one after the other
-/// find room there.
+/// The largest distance of a new label from the one before it, which leaves room for items inserted
+/// one after the other.
 const NEAR: u64 = 1 << 16;
 
-/// A list of things under ids.
+/// A list of items under ids.
 pub struct List<K, T> {
     entries: Vector<Entry<K, T>>,
     labels: OrdMap<K, i64>,
 }
 
-/// A thing in its place.
+/// An item with its label.
 #[derive(Debug)]
 struct Entry<K, T> {
     label: i64,
@@ -60,7 +60,7 @@ impl<K, T> Default for List<K, T> {
     }
 }
 
-/// Lists that share what they hold are equal without a look at it.
+/// Compares addresses first: lists that share their items are equal.
 impl<K: PartialEq, T: PartialEq> PartialEq for List<K, T> {
     fn eq(&self, other: &Self) -> bool {
         let alike = |(a, b): (&Entry<K, T>, &Entry<K, T>)| {
@@ -73,74 +73,74 @@ impl<K: PartialEq, T: PartialEq> PartialEq for List<K, T> {
 }
 
 impl<K: Copy + Ord, T> List<K, T> {
-    /// How many there are.
+    /// The number of items.
     #[must_use]
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Whether there are none.
+    /// Whether the list is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// Where the thing stands in the list.
+    /// The position of the item with this id.
     #[must_use]
     pub fn position(&self, id: K) -> Option<usize> {
         let label = self.labels.get(&id)?;
         self.entries.binary_search_by_key(label, |entry| entry.label).ok()
     }
 
-    /// Whether there is a thing under `id`.
+    /// Whether there is an item with this id.
     #[must_use]
     pub fn contains(&self, id: K) -> bool {
         self.labels.contains_key(&id)
     }
 
-    /// The thing under `id`.
+    /// The item with this id.
     #[must_use]
     pub fn get(&self, id: K) -> Option<&T> {
         Some(&*self.entries.get(self.position(id)?)?.item)
     }
 
-    /// All of them, first to last.
+    /// All items with their ids, first to last.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (K, &T)> + ExactSizeIterator {
         self.entries.iter().map(|entry| (entry.id, &*entry.item))
     }
 
-    /// Their ids, first to last.
+    /// All ids, first to last.
     pub fn ids(&self) -> impl DoubleEndedIterator<Item = K> + ExactSizeIterator {
         self.entries.iter().map(|entry| entry.id)
     }
 
-    /// The first of them.
+    /// The id of the first item.
     #[must_use]
     pub fn first(&self) -> Option<K> {
         self.id_at(0)
     }
 
-    /// The one at a place of the list, counted from 0.
+    /// The id at a position, counted from 0.
     #[must_use]
     pub fn id_at(&self, at: usize) -> Option<K> {
         self.entries.get(at).map(|entry| entry.id)
     }
 
-    /// The one after `id`, the first after the last; the first if `id` is not there.
+    /// The id after `id`, wrapping at the end; the first if `id` is not in the list.
     #[must_use]
     pub fn after(&self, id: Option<K>) -> Option<K> {
         let next = id.and_then(|id| self.position(id)).map_or(0, |at| at + 1);
         self.id_at(next).or_else(|| self.first())
     }
 
-    /// The one that takes over when `id` is removed: the next in the list, else the one before.
+    /// The id that is selected when `id` is removed: the next, else the previous one.
     #[must_use]
     pub fn successor(&self, id: K) -> Option<K> {
         let at = self.position(id)?;
         self.id_at(at + 1).or_else(|| self.id_at(at.checked_sub(1)?))
     }
 
-    /// The first of those that `before` does not have. What both lists share is not looked at.
+    /// The first id that `before` does not have. Nodes that both lists share are skipped.
     #[must_use]
     pub fn first_since(&self, before: &Self) -> Option<K> {
         let new = before.labels.diff(&self.labels).filter_map(|difference| match difference {
@@ -150,7 +150,7 @@ impl<K: Copy + Ord, T> List<K, T> {
         new.min_by_key(|(label, _)| *label).map(|(_, id)| id)
     }
 
-    /// Inserts a thing before the one at `at`; past the end means last.
+    /// Inserts an item before the one at `at`; past the end means last.
     pub(super) fn insert(&mut self, at: usize, id: K, item: T) {
         let at = at.min(self.len());
         let label = self.free_label(at).unwrap_or_else(|| {
@@ -161,7 +161,7 @@ impl<K: Copy + Ord, T> List<K, T> {
         self.entries.insert(at, Entry { label, id, item: Arc::new(item) });
     }
 
-    /// A label between those of the things at `at` and before it; `None` if there is none.
+    /// A label between those of the items at `at` and before it; `None` if none is left.
     fn free_label(&self, at: usize) -> Option<i64> {
         let label = |at: usize| self.entries.get(at).map(|entry| entry.label);
         match (at.checked_sub(1).and_then(label), label(at)) {
@@ -185,14 +185,14 @@ impl<K: Copy + Ord, T> List<K, T> {
 }
 
 impl<K: Copy + Ord, T: Clone> List<K, T> {
-    /// Puts another thing in the place of the one under `id`, and gives back that one.
+    /// Replaces the item with this id, and returns the old one.
     pub(super) fn replace(&mut self, id: K, item: T) -> Option<T> {
         let at = self.position(id)?;
         let entry = self.entries.get_mut(at)?;
         Some(Arc::unwrap_or_clone(std::mem::replace(&mut entry.item, Arc::new(item))))
     }
 
-    /// Takes the thing under `id` out, and gives back where it stood.
+    /// Removes the item with this id, and returns it with its position.
     pub(super) fn remove(&mut self, id: K) -> Option<(usize, T)> {
         let at = self.position(id)?;
         self.labels.remove(&id);
@@ -200,7 +200,7 @@ impl<K: Copy + Ord, T: Clone> List<K, T> {
     }
 }
 
-/// The ids have to be different ones.
+/// The ids have to differ.
 impl<K: Copy + Ord, T> FromIterator<(K, T)> for List<K, T> {
     fn from_iter<I: IntoIterator<Item = (K, T)>>(items: I) -> Self {
         let mut list = Self::default();
@@ -224,7 +224,7 @@ mod tests {
         static COMPARISONS: Cell<usize> = const { Cell::new(0) };
     }
 
-    /// An id that counts how often it is compared with another.
+    /// An id that counts how often it is compared.
     #[derive(Clone, Copy, Debug)]
     struct Counted(u32);
 
@@ -249,7 +249,7 @@ mod tests {
 
     impl Eq for Counted {}
 
-    /// How many comparisons `work` takes.
+    /// The number of comparisons that `work` takes.
     fn comparisons<R>(work: impl FnOnce() -> R) -> usize {
         COMPARISONS.set(0);
         work();
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_asked_of_ten_thousand_things_takes_a_few_comparisons_of_ids() {
+    fn a_query_on_ten_thousand_items_takes_few_comparisons_of_ids() {
         let mut list: List<Counted, u32> = (0..10_000).map(|i| (Counted(i), i)).collect();
         let before = list.clone();
         let middle = Counted(5_000);
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_stays_what_it_was_and_shares_the_things_that_did_not_change() {
+    fn a_copy_keeps_its_items_and_shares_those_that_did_not_change() {
         let mut list: List<u32, Vec<u32>> = (0..1_000).map(|i| (i, vec![i])).collect();
         let before = list.clone();
         list.replace(3, vec![7]);
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_room_in_the_same_place_for_any_number_of_things() {
+    fn any_number_of_items_can_be_inserted_at_the_same_position() {
         let mut list: List<u32, ()> = [(0, ()), (1, ())].into_iter().collect();
         for id in 2..500 {
             list.insert(1, id, ());
@@ -298,14 +298,14 @@ mod tests {
         assert!(expected.iter().enumerate().all(|(at, id)| list.position(*id) == Some(at)));
     }
 
-    /// A change of a list: at which place, and which.
+    /// A change of a list: its position and its kind.
     fn change() -> impl Strategy<Value = (usize, u8)> {
         (0_usize..40, 0_u8..4)
     }
 
     proptest! {
         #[test]
-        fn a_list_does_what_a_plain_vector_does(changes in prop::collection::vec(change(), 0..200)) {
+        fn a_list_behaves_like_a_vector(changes in prop::collection::vec(change(), 0..200)) {
             let mut list: List<usize, usize> = List::default();
             let mut plain: Vec<(usize, usize)> = Vec::new();
             for (next, (at, what)) in changes.into_iter().enumerate() {

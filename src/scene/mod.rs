@@ -1,6 +1,6 @@
-//! What there is to draw, how it is looked at, and the commands that change it.
+//! The scene: objects, cameras and lights, the view, and the commands that change them.
 //!
-//! Plain data. Nothing here draws, nothing here reads files, nothing here knows of windows.
+//! This is plain data: nothing here draws, reads files or knows of windows.
 
 mod bounds;
 mod camera;
@@ -51,22 +51,24 @@ macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident),+ $(,)?) => {
         $(
             $(#[$doc])*
-            #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+            #[derive(
+                Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize
+            )]
             pub struct $name(pub u32);
         )+
     };
 }
 
 ids! {
-    /// Names an object for as long as the scene lives. A smaller number is an older object.
+    /// Identifies an object for as long as the scene lives. A smaller number is an older object.
     ObjectId,
-    /// Names a camera for as long as the scene lives.
+    /// Identifies a camera for as long as the scene lives.
     CameraId,
-    /// Names a light for as long as the scene lives.
+    /// Identifies a light for as long as the scene lives.
     LightId,
 }
 
-/// Names anything of the three lists.
+/// Identifies an item of any of the three lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ItemId {
     /// An object.
@@ -77,16 +79,16 @@ pub enum ItemId {
     Light(LightId),
 }
 
-/// Everything there is to draw. A clone costs next to nothing: what is large is shared.
+/// Everything that can be drawn. A clone is cheap, since everything large is shared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The objects, in the order in which the user sees them.
+    /// The objects, in the order that the user sees.
     pub objects: List<ObjectId, Object>,
     /// The cameras; there is always one.
     pub cameras: List<CameraId, Camera>,
     /// The lights.
     pub lights: List<LightId, Light>,
-    /// What is seen where nothing is.
+    /// The background colour.
     pub background: Color,
     /// The id that the next new item gets.
     pub next_id: u32,
@@ -96,7 +98,7 @@ impl Scene {
     /// The blue of the first scene.
     pub const BACKGROUND: Color = Color([0, 0, 179]);
 
-    /// A scene with one camera and no more.
+    /// A scene with one camera and nothing else.
     #[must_use]
     pub fn with_camera(camera: Camera) -> Self {
         Self {
@@ -108,7 +110,7 @@ impl Scene {
         }
     }
 
-    /// Whether there is an item under this id.
+    /// Whether there is an item with this id.
     #[must_use]
     pub fn contains(&self, id: ItemId) -> bool {
         match id {
@@ -125,8 +127,8 @@ impl Scene {
         (0..).find(|slot| !taken.contains(slot)).unwrap_or(0)
     }
 
-    /// The view that a scene is first seen in: the first object, camera and light (the sun where
-    /// there is one) selected.
+    /// The first view of a scene. The first object, camera and light are selected; a sun comes
+    /// before other lights.
     #[must_use]
     pub fn first_view(&self) -> View {
         let sun = self.lights.iter().find(|(_, light)| matches!(light.kind, LightKind::Sun { .. }));
@@ -135,7 +137,7 @@ impl Scene {
         View::new(self.objects.first(), camera, light)
     }
 
-    /// The camera that is selected, or the first where that one is gone.
+    /// The selected camera, or the first if that one is gone.
     #[must_use]
     pub fn selected_camera(&self, view: &View) -> &Camera {
         let first = || self.cameras.first().and_then(|id| self.cameras.get(id));
@@ -152,7 +154,7 @@ impl Scene {
         math::placed(axes, m.w_axis.truncate())
     }
 
-    /// From where and which way a spot shines now; `None` where its owner is not there.
+    /// The position and direction of a spot now; `None` if its owner is gone.
     #[must_use]
     pub fn aim(&self, view: &View, owner: &SpotOwner) -> Option<Aim> {
         let object = |id| self.objects.get(id).map(|o| Self::frame_of_object(o, view.time));
@@ -167,8 +169,8 @@ impl Scene {
         Some(Aim { position: frame.w_axis.truncate(), direction: -frame.z_axis.truncate() })
     }
 
-    /// `world_from_view` of whoever looks: the selected object's frame where the view says so and
-    /// there is one, else the selected camera's.
+    /// `world_from_view` of the observer: the selected object's frame if the view says so and there
+    /// is one, else the selected camera's.
     #[must_use]
     pub fn observer_frame(&self, view: &View) -> DMat4 {
         let object = match view.observer {

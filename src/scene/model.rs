@@ -1,4 +1,4 @@
-//! A file's content: its shape, its materials, its textures.
+//! A model: the shape, materials and textures of a file, and how the file is read.
 
 use std::path::PathBuf;
 
@@ -8,20 +8,20 @@ use super::{Material, Mesh};
 use crate::base::image::Picture;
 use crate::base::{Shared, color::Color};
 
-/// What a file holds, as it was loaded. Objects share it and nobody changes it.
+/// The content of a file as it was loaded. Objects share it, and it never changes.
 #[derive(Debug, PartialEq)]
 pub struct Model {
-    /// The name for the outline: the file's, without folders and ending.
+    /// Its name in the outline: the file's, without folders and extension.
     pub name: String,
-    /// Where it came from; `None` for the three models that the program carries.
+    /// The file; `None` for the three built-in models.
     pub source: Option<PathBuf>,
-    /// How it was read.
+    /// The options with which it was read.
     pub options: LoadOptions,
     /// Its shape.
     pub mesh: Mesh,
-    /// Its materials, which the mesh's parts name by their place here.
+    /// Its materials; the mesh's parts refer to them by index.
     pub materials: Vec<FileMaterial>,
-    /// The colour of edges by its line `c r g b` or `# color r g b`.
+    /// The colour of edges, from its line `c r g b` or `# color r g b`.
     pub edge_color: Option<Color>,
 }
 
@@ -53,16 +53,16 @@ impl Model {
 pub struct LoadOptions {
     /// Which of the file's axes points up.
     pub up: UpAxis,
-    /// What the file's coordinates are multiplied by.
+    /// The factor of the file's coordinates.
     pub scale: Scale,
-    /// Whether its polygons run clockwise seen from outside, and have to be turned.
+    /// Which way its polygons run, seen from outside.
     pub winding: Winding,
-    /// Up to which angle its edges are smooth, if it has no smoothing groups.
+    /// The angle up to which its edges are smooth, if it has no smoothing groups.
     pub crease: Crease,
 }
 
-/// Which of a file's axes points up. What it holds is turned by the shortest rotation that brings
-/// that axis to +Y, never mirrored; -Y is brought there by half a turn about X.
+/// Which of a file's axes points up. The model is turned by the shortest rotation that brings that
+/// axis to +Y, and never mirrored; for -Y it is half a turn about X.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
@@ -87,7 +87,7 @@ impl UpAxis {
     pub const ALL: [Self; 6] =
         [Self::X, Self::Y, Self::Z, Self::MinusX, Self::MinusY, Self::MinusZ];
 
-    /// As people write it: "z", "-z".
+    /// Its word: "z", "-z".
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -120,7 +120,7 @@ impl UpAxis {
 pub struct Scale(f64);
 
 impl Scale {
-    /// `factor`, where it is finite and more than 0.
+    /// `factor`, if it is finite and more than 0.
     #[must_use]
     pub fn new(factor: f64) -> Option<Self> {
         (factor.is_finite() && factor > 0.0).then_some(Self(factor))
@@ -223,41 +223,42 @@ pub enum Winding {
     Turned,
 }
 
-/// A material of an MTL file, mended where it was nonsense.
+/// A material of an MTL file, with invalid values replaced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileMaterial {
-    /// As `newmtl` calls it.
+    /// Its name, from `newmtl`.
     pub name: String,
     /// Its coefficients.
     pub material: Material,
     /// `d`: below 0.5 (times the texel's alpha) nothing is drawn.
     pub opacity: f64,
-    /// `map_Kd`, where it was found.
+    /// `map_Kd`, if its file was found.
     pub texture: Option<Shared<Texture>>,
 }
 
-/// A picture to be laid over a surface, and how.
+/// A picture for a surface, and how it is laid over it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Where it came from.
+    /// Its file.
     pub source: PathBuf,
-    /// Its texels, rows from the top, which other textures may share; place (0, 0) is the lower left corner.
+    /// Its texels, rows from the top, which other textures may share. The uv (0, 0) is the lower
+    /// left corner.
     pub picture: Shared<Picture>,
-    /// What happens outside 0 to 1: `-clamp on` holds to the border, else the picture repeats.
+    /// What a uv outside 0 to 1 shows: `-clamp on` is the border; otherwise the picture repeats.
     pub wrap: Wrap,
     /// `-o u v`, added after scaling.
     pub offset: [f64; 2],
-    /// `-s u v`, multiplied with the places.
+    /// `-s u v`, multiplied by the uv.
     pub scale: [f64; 2],
 }
 
 /// What a texture shows outside its borders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wrap {
-    /// Itself, again and again.
+    /// Its repetitions.
     #[default]
     Repeat,
-    /// Its border.
+    /// The texels of its border.
     Clamp,
 }
 

@@ -12,43 +12,43 @@ use crate::base::{Shared, color::Color};
 /// A model placed in the scene, and how its surface looks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// As the outline calls it.
+    /// Its name in the outline.
     pub name: String,
     /// Whether it is drawn.
     pub visible: bool,
     /// Its shape.
     pub model: Shared<Model>,
-    /// The parts of the model that are not drawn, by their places.
+    /// The parts of the model that are not drawn, by their indices.
     pub hidden_parts: BTreeSet<u32>,
-    /// `world_from_object`, without the spin. A matrix, since a step in the global frame on a turned
-    /// object need not be a product of one translation, rotation and scale.
+    /// `world_from_object`, without the spin. This is a matrix, since a step in the global frame on
+    /// a turned object need not be a product of one translation, rotation and scale.
     pub placement: Tracked<DMat4>,
-    /// Turning by itself.
+    /// Its own rotation over time.
     pub spin: Spin,
     /// Which material it has.
     pub material: MaterialChoice,
-    /// What of material, texture and light is shown.
+    /// Which of material, texture and light it shows.
     pub surface: Surface,
-    /// A texture given by hand, in place of the file's.
+    /// A texture chosen by the user, instead of the file's.
     pub texture: Option<Shared<Texture>>,
-    /// Multiplied with the texture.
+    /// The colour by which the texture is multiplied.
     pub tint: Color,
     /// Which sides of its faces are drawn.
     pub sides: Sides,
-    /// Whether the file's normals are used where a polygon has them.
+    /// Whether the file's normals are used for polygons that have them.
     pub file_normals: bool,
-    /// Edges and normals are drawn in it.
+    /// The colour of its edges and normals.
     pub edge_color: Color,
 }
 
-/// What of material, texture and light is shown.
+/// Which of material, texture and light it shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Surface {
     /// The material, lit.
     Material,
     /// The texture, not lit.
     Texture,
-    /// The texture, lit; the material alone where there is none.
+    /// The texture, lit; the material alone if there is none.
     #[default]
     TextureAndLight,
 }
@@ -65,12 +65,12 @@ pub enum Sides {
     Auto,
 }
 
-/// Turning about the object's own axes, after its placement: M Rx Ry Rz.
+/// A rotation about the object's own axes over time, after its placement: M Rx Ry Rz.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spin {
     /// Whether it turns about X, Y and Z.
     pub axes: [bool; 3],
-    /// Degrees a second.
+    /// Degrees per second.
     pub speed: f64,
     /// When it began, in seconds of the scene's clock.
     pub since: f64,
@@ -89,7 +89,7 @@ impl Spin {
         self.axes.contains(&true)
     }
 
-    /// The turn at `time`, in seconds of the scene's clock.
+    /// The rotation at `time`, in seconds of the scene's clock.
     #[must_use]
     pub fn at(&self, time: f64) -> DMat3 {
         // A whole turn changes nothing, and a small angle keeps its digits.
@@ -149,7 +149,7 @@ impl Object {
     }
 
     /// The middle and the radius of a sphere about the object, placed: about the middle of the
-    /// model's box, through the vertex farthest from it. `None` where it has no vertices.
+    /// model's box, through the vertex farthest from it. `None` if it has no vertices.
     #[must_use]
     pub fn bounding_sphere(&self, time: f64) -> Option<(DVec3, f64)> {
         let world_from_object = self.world_from_object(time);
@@ -160,7 +160,7 @@ impl Object {
         Some((centre, squares.fold(0.0, f64::max).sqrt()))
     }
 
-    /// The largest extent of its box in its own axes, placed: what "by size" is measured by.
+    /// The largest extent of its box in its own axes, placed; "by size" is measured by it.
     #[must_use]
     pub fn largest_extent(&self) -> f64 {
         let Some(bounds) = self.model.mesh.bounds() else { return 0.0 };

@@ -1,35 +1,34 @@
-//! Where a thing is, and where it was before.
+//! A value with the values that it had before.
 //!
-//! Every transformation pushes what the thing was, so that `u` can walk back through them. The
-//! stack is a list whose tail is shared: a copy of a scene costs nothing, and what comes back is what
-//! was stored, bit for bit.
+//! Every transformation pushes the old value, so that `u` can walk back. The stack is a list whose
+//! tail is shared: a copy of a scene costs nothing, and old values come back bit for bit.
 
 use std::sync::Arc;
 
-/// A value with the stack of those it had before.
+/// A value with the stack of its earlier values.
 pub struct Tracked<T> {
     now: T,
     before: Option<Arc<Self>>,
 }
 
 impl<T> Tracked<T> {
-    /// A value that was never anything else.
+    /// A value without earlier ones.
     pub const fn new(now: T) -> Self {
         Self { now, before: None }
     }
 
-    /// What it is.
+    /// The current value.
     pub const fn now(&self) -> &T {
         &self.now
     }
 
-    /// How many values there are to walk back through.
+    /// The number of earlier values.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.earlier().count()
     }
 
-    /// What it was, the latest first.
+    /// The earlier values, the latest first.
     pub fn earlier(&self) -> impl Iterator<Item = &T> {
         std::iter::successors(self.before.as_deref(), |placed| placed.before.as_deref())
             .map(|placed| &placed.now)
@@ -37,19 +36,19 @@ impl<T> Tracked<T> {
 }
 
 impl<T: Clone> Tracked<T> {
-    /// It becomes `now`, and what it was goes onto the stack.
+    /// Sets the value to `now` and pushes the old one onto the stack.
     #[must_use]
     pub fn moved(&self, now: T) -> Self {
         Self { now, before: Some(Arc::new(self.clone())) }
     }
 
-    /// It becomes `now`, and its stack stays as it is.
+    /// Sets the value to `now` and leaves the stack as it is.
     #[must_use]
     pub fn replaced(&self, now: T) -> Self {
         Self { now, before: self.before.clone() }
     }
 
-    /// What it was before the last transformation; `None` where it never was anything else.
+    /// The value before the last transformation; `None` if there is none.
     #[must_use]
     pub fn undone(&self) -> Option<Self> {
         self.before.as_deref().cloned()
@@ -68,7 +67,7 @@ impl<T: Default> Default for Tracked<T> {
     }
 }
 
-/// Two are equal where value and stack are; a shared tail is not walked.
+/// Compares value and stack; a shared tail is skipped.
 impl<T: PartialEq> PartialEq for Tracked<T> {
     fn eq(&self, other: &Self) -> bool {
         let (mut a, mut b) = (self, other);
@@ -92,7 +91,7 @@ impl<T: std::fmt::Debug> std::fmt::Debug for Tracked<T> {
     }
 }
 
-/// Lets go of a long stack one by one: the compiler's own way would call itself once for each.
+/// Drops a long stack in a loop: the compiler's own code would recurse once for each value.
 impl<T> Drop for Tracked<T> {
     fn drop(&mut self) {
         let mut next = self.before.take();

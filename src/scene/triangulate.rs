@@ -1,21 +1,20 @@
-//! A polygon as triangles.
+//! Cuts a polygon into triangles.
 //!
-//! A fan where it is right, which one look at its triangles tells; else ears are cut off one by
-//! one. Every cut takes a triangle's signed area from the ring that is left, so the areas of the
-//! triangles sum to the polygon's whatever its shape; that no triangle lies outside the polygon is
-//! what the choice of ears is for.
+//! If a fan is valid, which one pass over its triangles tells, it is used; else ears are cut off
+//! one by one. Every cut takes a triangle's signed area from the remaining ring, so the areas of
+//! the triangles sum to the polygon's whatever its shape; the choice of ears keeps triangles from
+//! lying outside.
 //!
-//! The corners are taken from the first one, so that thin polygons far from the origin keep their
-//! shape, and seen along the normal: corners of a polygon that is not flat keep their order best so.
-//! What is closer together than rounding can tell counts as touching.
+//! Corners are taken relative to the first one, so that thin polygons far from the origin keep
+//! their shape, and projected along the normal, which keeps the order of the corners of a polygon
+//! that is not flat. Points closer together than the rounding error count as touching.
 //!
-//! Looking for ears may take time that grows with the square of the corners. For more than a thousand
-//! of them it is limited, and what is left is cut by a line that sweeps over it (`sweep`), with
-//! slimmer triangles.
+//! The search for ears may take quadratic time. For more than a thousand corners it is limited, and
+//! the rest is cut by a sweep line (`sweep`), into slimmer triangles.
 //!
-//! Ear clipping is Meisters', "Polygons Have Ears", American Mathematical Monthly 1975. A hole that
-//! is joined to the outline by a bridge names positions twice; a corner that stands on a corner of
-//! the ear does not block it.
+//! Ear clipping is Meisters', "Polygons Have Ears", American Mathematical Monthly 1975. A hole
+//! joined to the outline by a bridge names positions twice, so a corner at the position of a corner
+//! of the ear does not block it.
 
 mod grid;
 mod status;
@@ -27,25 +26,25 @@ use glam::{DVec2, DVec3};
 
 use self::grid::Grid;
 
-/// The most corners of a polygon whose ears are looked for to the last.
+/// The largest number of corners for which the search for ears is not limited.
 const FEW: usize = 1000;
 
-/// How many corners and cells are looked at for each corner that the polygon has beyond [`FEW`].
+/// How many corners and cells are looked at for each corner beyond [`FEW`].
 const LOOKS: usize = 16;
 
-/// Cuts a polygon into triangles, each as three places in `outline`, in its order of rotation.
+/// Cuts a polygon into triangles, each as three indices into `outline`, with its orientation.
 ///
-/// `normal` is the polygon's normal; there are `outline.len() - 2` triangles. A polygon that crosses
-/// itself gets some, too.
+/// `normal` is the polygon's normal; there are `outline.len() - 2` triangles. A polygon that
+/// crosses itself gets as many.
 #[must_use]
 pub fn triangulate(outline: &[DVec3], normal: DVec3) -> Vec<[u32; 3]> {
     Triangulator::default().cut(outline.iter().copied(), normal).to_vec()
 }
 
-/// Cuts polygon after polygon, in the same memory.
+/// Cuts one polygon after the other, in the same memory.
 #[derive(Debug, Default)]
 pub(super) struct Triangulator {
-    /// The corners seen along the normal, counter-clockwise where they are so about it.
+    /// The corners projected along the normal, counter-clockwise if they are so about it.
     flat: Vec<DVec2>,
     triangles: Vec<[u32; 3]>,
 }
@@ -80,13 +79,13 @@ impl Triangulator {
     }
 }
 
-/// Twice the area of a triangle, positive where it runs counter-clockwise.
+/// Twice the area of a triangle, positive if it runs counter-clockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Whether the fan from the first corner has triangles of the right rotation alone. Seen from that
-/// corner a simple polygon then turns one way only, and by less than a whole turn.
+/// Whether all triangles of the fan from the first corner have the right orientation. Seen from
+/// that corner, a simple polygon then turns one way only, and by less than a whole turn.
 fn fan_is_right(flat: &[DVec2]) -> bool {
     let tolerance = tolerance(flat);
     flat[1..].windows(2).all(|side| {
@@ -108,7 +107,7 @@ fn number(corners: usize) -> u32 {
     u32::try_from(corners).expect("a mesh numbers its corners with 32 bits")
 }
 
-/// What a cross product with a vector of length 1 may be wrong by.
+/// The error bound of a cross product with a vector of length 1.
 fn tolerance(flat: &[DVec2]) -> f64 {
     let extent = flat.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
     8.0 * f64::EPSILON * extent
@@ -127,7 +126,7 @@ enum Turn {
     Back,
 }
 
-/// How much stands in the way of an ear.
+/// Which corners block an ear.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Blocked {
     /// By corners inside it or on its border.
@@ -142,9 +141,9 @@ struct Ring {
     next: Vec<u32>,
     last: Vec<u32>,
     turn: Vec<Turn>,
-    /// Corners that are not convex, or were not when they were last looked at.
+    /// Corners that are not convex, or were not at the last look.
     inward: Grid,
-    /// Corners that may be ears, in the order in which they are looked at.
+    /// Corners that may be ears, in the order of the search.
     candidates: VecDeque<u32>,
     gone: Vec<bool>,
     left: usize,
@@ -175,14 +174,15 @@ impl Ring {
         }
         let inward = (0..corners).filter(|&i| ring.turn[i as usize] != Turn::Convex);
         ring.inward = Grid::new(inward.map(|i| (i, ring.flat[i as usize])).collect());
-        // Every other corner first: triangles grow evenly in place of a fan of long ones.
+        // Every other corner comes first, so that triangles grow evenly instead of as a fan of long
+        // ones.
         for i in (0..corners).step_by(2).chain((1..corners).step_by(2)) {
             ring.queue(i);
         }
         ring
     }
 
-    /// Cuts ear after ear, and leaves to a sweep what would take too long.
+    /// Cuts ear after ear, and leaves the rest to a sweep if that takes too long.
     fn cut(&mut self) -> Vec<[u32; 3]> {
         let mut triangles = Vec::with_capacity(self.left - 2);
         while self.left > 3
@@ -255,7 +255,7 @@ impl Ring {
         }
     }
 
-    /// The places of a corner and its neighbours, in order.
+    /// The positions of a corner and its neighbours, in order.
     fn triangle(&self, corner: u32) -> [DVec2; 3] {
         let at = |i: u32| self.flat[i as usize];
         [at(self.last[corner as usize]), at(corner), at(self.next[corner as usize])]
@@ -267,7 +267,7 @@ impl Ring {
         }
     }
 
-    /// Whether no more ears should be looked for.
+    /// Whether the search for ears has reached its limit.
     const fn is_spent(&self) -> bool {
         self.looked_at >= self.budget
     }
@@ -289,8 +289,8 @@ impl Ring {
         None
     }
 
-    /// Where no corner waits: an ear that others merely touch; else the polygon crosses itself, and
-    /// some corner has to go. `None` if no more ears should be looked for.
+    /// If no corner is queued: an ear that others merely touch. If there is none, the polygon
+    /// crosses itself, and any corner is taken. `None` if the search has reached its limit.
     fn forced(&mut self) -> Option<u32> {
         let left: Vec<u32> = self.corners_left().collect();
         self.looked_at += left.len() * if self.flat.len() > FEW { 4 } else { 1 };
@@ -316,7 +316,7 @@ impl Ring {
             .or(left.first().copied())
     }
 
-    /// Whether no corner that is left stands in the way of the ear at `corner`.
+    /// Whether no remaining corner blocks the ear at `corner`.
     fn is_free(&mut self, corner: u32, how: Blocked) -> bool {
         let own = [self.last[corner as usize], corner, self.next[corner as usize]];
         let ear = self.triangle(corner);
@@ -334,7 +334,7 @@ impl Ring {
         !blocked
     }
 
-    /// A box that holds whatever may stand in the way of an ear, with what rounding adds to it.
+    /// A box that contains every corner that may block an ear, including rounding errors.
     ///
     /// Each side of the ear is moved outwards by error / length at most, so the ear grows about the
     /// middle of its inscribed circle by that over the circle's radius.
@@ -344,12 +344,12 @@ impl Ring {
         let longest = lengths.into_iter().fold(0.0, f64::max);
         let radius = area(a, b, c) / (lengths[0] + lengths[1] + lengths[2]);
         let grown = 2.0 * longest * self.error([a, b, c]) / (shortest * radius);
-        // What has no size may be touched from anywhere.
+        // An ear without size may be touched from anywhere.
         let grown = if grown.is_finite() { grown.abs() } else { f64::INFINITY };
         [a.min(b).min(c) - grown, a.max(b).max(c) + grown]
     }
 
-    /// What the area of a triangle with a side of the ear may be wrong by.
+    /// The error bound of the area of a triangle with a side of the ear.
     fn error(&self, [a, b, c]: [DVec2; 3]) -> f64 {
         self.tolerance * ((b - a).abs() + (c - b).abs()).max_element()
     }
@@ -365,8 +365,8 @@ impl Ring {
         if !inside {
             return false;
         }
-        // On a corner of the ear: a bridge, or a place where the outline touches itself. Its sides
-        // lead away from the ear, or to corners that are in the way themselves.
+        // It is at a corner of the ear: a bridge, or a point at which the outline touches itself.
+        // Its sides lead away from the ear, or to corners that block it themselves.
         p != a && p != b && p != c
     }
 }

@@ -1,4 +1,5 @@
-//! How the scene is looked at: saved with it, but never a step of undo.
+//! The view: what is selected, which switches are on. It is saved with the scene, but is no step of
+//! undo.
 
 use std::collections::BTreeSet;
 
@@ -11,33 +12,33 @@ use super::{CameraId, LightId, ObjectId};
 pub struct View {
     /// What the keys act on.
     pub subject: Subject,
-    /// The selected object; `None` only where there is none.
+    /// The selected object; `None` only if there is none.
     pub object: Option<ObjectId>,
     /// The selected camera.
     pub camera: CameraId,
-    /// The selected light; `None` only where there is none.
+    /// The selected light; `None` only if there is none.
     pub light: Option<LightId>,
-    /// What x, y and z do.
+    /// What the keys x, y and z do.
     pub transformation: Transformation,
     /// In which frame objects are transformed.
     pub frame: Frame,
-    /// How far a step goes.
+    /// The sizes of steps.
     pub steps: Steps,
-    /// Who looks.
+    /// Whether a camera or an object is the observer.
     pub observer: Observer,
-    /// Through which projection.
+    /// The projection.
     pub projection: Projection,
-    /// Whether polygons are filled.
+    /// Whether polygons are filled or drawn as a wireframe.
     pub fill: Fill,
     /// Whether edges are drawn over filled polygons.
     pub edges_over_fill: bool,
-    /// Whether one polygon of the selected object is shown rather than all.
+    /// The mode in which the selected object is drawn polygon by polygon, if it is on.
     pub polygons: Option<PolygonMode>,
-    /// Polygon mode: whether earlier polygons stay drawn.
+    /// Whether earlier polygons stay drawn in that mode.
     pub polygons_stay: bool,
-    /// Whether all objects are shown, or the selected one alone.
+    /// Whether only the selected object is shown.
     pub only_selected: bool,
-    /// Which normals light uses.
+    /// Which normals are lit.
     pub normals: Normals,
     /// Whether back faces are drawn, in red.
     pub back_faces: bool,
@@ -45,42 +46,43 @@ pub struct View {
     pub face_normals: bool,
     /// Whether the normals of vertices are drawn.
     pub vertex_normals: bool,
-    /// How long drawn normals are.
+    /// The length of drawn normals.
     pub normal_length: NormalLength,
     /// Whether lines are two pixels wide, for screens of high density.
     pub wide_lines: bool,
-    /// Whether the marks of cameras and of the bulb are drawn.
+    /// Whether the markers of cameras and bulbs are drawn.
     pub marks: bool,
-    /// Whether pictures may be coarser while something moves, where they would come too late else.
+    /// Whether pictures may be coarser while something moves, if they would come too late
+    /// otherwise.
     pub coarse_while_moving: bool,
     /// Seconds of the scene's clock.
     pub time: f64,
-    /// Which panels stand beside the picture.
+    /// Which panels are open.
     pub panels: Panels,
 }
 
-/// Which panels stand beside the picture.
+/// Which panels are open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Panels {
     /// The list of objects, cameras and lights.
     pub outline: bool,
-    /// The properties of what is selected.
+    /// The properties of the selected item.
     pub properties: bool,
     /// The switches of the view.
     pub view: bool,
-    /// What a picture takes.
+    /// The plan of the frame.
     pub statistics: bool,
-    /// What a picture is made of.
+    /// The settings of accuracy.
     pub plan: bool,
     /// The list of keys.
     pub cheat_sheet: bool,
-    /// What accuracy costs in time.
+    /// The laboratory.
     pub laboratory: bool,
 }
 
 impl Panels {
-    /// Those that a first look needs.
+    /// The panels of the first start.
     pub const DEFAULT: Self = Self {
         outline: true,
         properties: true,
@@ -142,14 +144,14 @@ pub enum Subject {
     Light,
 }
 
-/// What x, y and z do.
+/// What the keys x, y and z do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Transformation {
     /// Move.
     Translation,
     /// Turn.
     Rotation,
-    /// Make larger or smaller; objects only.
+    /// Scale; objects only.
     Scaling,
 }
 
@@ -162,13 +164,13 @@ pub enum Frame {
     Global,
 }
 
-/// How far one press of x, y or z goes.
+/// The sizes of the steps of x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Steps {
     /// Units of the world.
     pub translation: f64,
-    /// Whether translation goes by 1/20 of the selected object's largest extent instead.
+    /// Whether a translation is 1/20 of the selected object's largest extent instead.
     pub by_size: bool,
     /// Degrees.
     pub rotation: f64,
@@ -188,7 +190,7 @@ impl Default for Steps {
     }
 }
 
-/// Who looks.
+/// Whether a camera or an object is the observer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Observer {
     /// The selected camera.
@@ -197,34 +199,34 @@ pub enum Observer {
     Object,
 }
 
-/// How space is brought onto the picture.
+/// How the view is projected onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Projection {
-    /// What is farther looks smaller.
+    /// In perspective.
     Perspective,
-    /// In parallel.
+    /// Orthographic.
     Orthographic,
 }
 
-/// Whether polygons are filled.
+/// Whether polygons are filled or drawn as a wireframe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Fill {
     /// Filled.
     Filled,
-    /// Edges only.
+    /// Wireframe.
     Edges,
 }
 
-/// Which normals light uses.
+/// Which normals are lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Normals {
-    /// Those of vertices.
+    /// Those of vertices: smooth shading.
     Vertex,
-    /// Those of faces.
+    /// Those of faces: flat shading.
     Face,
 }
 
-/// How long drawn normals are.
+/// The length of drawn normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum NormalLength {
     /// 5 units of the object's own space.
@@ -233,7 +235,7 @@ pub enum NormalLength {
     BySize,
 }
 
-/// One polygon at a time of the selected object.
+/// The mode in which the selected object is drawn polygon by polygon.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PolygonMode {
     /// The selected polygon.
@@ -243,7 +245,7 @@ pub struct PolygonMode {
 }
 
 impl PolygonMode {
-    /// At polygon 0.
+    /// Begins at polygon 0.
     #[must_use]
     pub fn begin() -> Self {
         Self { current: 0, shown: BTreeSet::from([0]) }

@@ -154,7 +154,7 @@ fn every_option_of_the_view_changes_the_picture() {
 }
 
 #[test]
-fn a_texture_given_by_hand_covers_the_model_and_is_filtered_as_asked() {
+fn a_texture_given_as_an_option_covers_the_model_and_is_filtered_as_requested() {
     let folder = folder();
     let text = SQUARE.replace("f 1 2 3 4", "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4");
     std::fs::write(folder.path().join("square.obj"), text).unwrap();

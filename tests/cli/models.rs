@@ -1,4 +1,4 @@
-//! Models without a scene: how they are seen, and which options apply to them.
+//! Models without a scene: how they are framed, and which options apply to them.
 
 use std::path::Path;
 
@@ -61,7 +61,7 @@ fn both_sides_of_an_open_surface_are_drawn_and_the_front_of_a_closed_one() {
     assert!(closed("two") != closed("one"));
 }
 
-/// What `render` notes on standard error.
+/// The notes of `render` on standard error.
 fn notes(folder: &Path, arguments: &[&str]) -> String {
     let all = [&["render", "--out", "x.png", "--size", "160x120"], arguments].concat();
     ends_with(0, folder, &all).1
@@ -122,7 +122,7 @@ fn normals_of_the_file_can_be_ignored() {
 const ROOF: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 4 0 -2\nv 4 2 -2\nf 1 2 3 4\nf 2 5 6 3\n";
 
 #[test]
-fn edges_sharper_than_the_crease_angle_that_is_asked_for_are_sharp() {
+fn edges_sharper_than_the_given_crease_angle_are_sharp() {
     let folder = folder();
     std::fs::write(folder.path().join("roof.obj"), ROOF).unwrap();
     let drawn = |crease: &[&str]| drawn(folder.path(), &[&["roof.obj"], crease].concat());

@@ -1,4 +1,4 @@
-//! A scene like the first one, of shapes so small that their numbers can be done by hand.
+//! A scene like the first one, with shapes so simple that their numbers can be computed by hand.
 
 use glam::{DMat4, DVec3};
 use marraztu::base::Shared;

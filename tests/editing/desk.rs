@@ -23,7 +23,7 @@ impl Desk {
         Self { scene, view }
     }
 
-    /// Does what was decided, and gives back what takes it back.
+    /// Applies a decided command, and returns its inverse.
     pub(crate) fn perform(&mut self, command: Result<Command, Refusal>) -> Command {
         let before = self.scene.clone();
         let back = command.unwrap().apply(&mut self.scene).unwrap();
@@ -75,7 +75,7 @@ impl Desk {
         self.pose().mode_with(self.view.object)
     }
 
-    /// The position and the direction of the selected light, as far as it has either.
+    /// The position and the direction of the selected light, if it has them.
     pub(crate) fn light(&self) -> (DVec3, DVec3) {
         match &self.scene.lights.get(self.view.light.unwrap()).unwrap().kind {
             LightKind::Sun { direction } => (DVec3::ZERO, *direction.now()),

@@ -1,4 +1,4 @@
-//! Seeing things whole.
+//! Framing: the camera moves so that objects are visible as a whole.
 
 use glam::DVec3;
 use marraztu::base::image::Size;

@@ -1,4 +1,4 @@
-//! What comes into the scene, what goes, and what changes about it.
+//! Inserting, removing and changing items of the scene.
 
 use glam::DVec3;
 use marraztu::base::math::Axis;
@@ -34,7 +34,7 @@ fn a_new_object_goes_to_the_front_and_is_selected() {
 }
 
 #[test]
-fn objects_that_come_together_are_those_that_come_one_after_the_other() {
+fn inserting_objects_together_equals_inserting_them_one_by_one() {
     let objects = || {
         ["plate", "object 2", "plate", "object", "plate 2"].map(|name| {
             let mut object = Object::new(common::model(), MaterialChoice::File);
@@ -94,7 +94,7 @@ fn a_new_light_takes_the_lowest_free_slot() {
 }
 
 #[test]
-fn what_is_attached_goes_with_a_removed_thing_and_comes_back_with_it() {
+fn attached_items_are_removed_and_restored_with_their_owner() {
     let mut desk = desk(Subject::Light);
     for owner in [ObjectId(3), ObjectId(2), ObjectId(3)] {
         desk.perform(items::insert_light(&desk.scene, lights::spot(SpotOwner::Object(owner))));

@@ -1,4 +1,4 @@
-//! What the keys, the mouse and the panels mean for a scene.
+//! Editing a scene: what keys, mouse and panels do to it.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 

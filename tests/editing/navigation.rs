@@ -1,4 +1,4 @@
-//! What the mouse does to the camera that looks.
+//! Navigation: what the mouse does to the camera.
 
 use glam::{DVec2, DVec3};
 use marraztu::base::image::Size;

@@ -1,4 +1,4 @@
-//! Placements that are typed, and the numbers that are shown for them.
+//! Placements that are typed as numbers, and the numbers that are shown for them.
 
 use glam::{DMat3, DMat4, DVec3};
 use marraztu::base::math::Axis;
@@ -89,7 +89,7 @@ fn one_typed_number_leaves_the_others_and_a_shear_alone() {
 }
 
 #[test]
-fn what_cannot_be_a_placement_is_refused() {
+fn an_invalid_placement_is_refused() {
     let desk = desk();
     let scale = |to| placement::object_scale(&desk.scene, &desk.view, ID, to, GesturePhase::First);
     assert_eq!(scale(DVec3::new(1.0, 0.0, 1.0)), Err(Refusal::Flat));

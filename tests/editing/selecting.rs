@@ -1,4 +1,4 @@
-//! What is selected, and after what.
+//! Which item is selected after each change.
 
 use marraztu::edit::selection::{self, cycle_subject};
 use marraztu::edit::{GesturePhase, Refusal, items};
@@ -95,7 +95,7 @@ fn after_a_removal_the_next_is_selected_else_the_one_before() {
 }
 
 #[test]
-fn what_comes_back_by_undo_is_selected_and_what_goes_by_undo_is_not() {
+fn items_that_undo_restores_are_selected_and_items_that_it_removes_are_not() {
     let mut desk = desk(Subject::Object);
     let back = desk.perform(items::duplicate(&desk.scene, ItemId::Object(ObjectId(2))));
     assert_eq!(desk.view.object, Some(ObjectId(9)), "the new one is selected");
@@ -109,7 +109,7 @@ fn what_comes_back_by_undo_is_selected_and_what_goes_by_undo_is_not() {
 }
 
 #[test]
-fn a_view_that_names_what_is_not_there_is_made_to_fit() {
+fn a_view_that_names_missing_items_is_corrected() {
     let mut desk = desk(Subject::Light);
     desk.view.object = Some(ObjectId(77));
     desk.view.camera = CameraId(77);

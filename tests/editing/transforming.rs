@@ -1,4 +1,4 @@
-//! What x, y, z, g and u do to objects, cameras and lights: section 3 of the behaviour.
+//! What x, y, z, g and u do to objects, cameras and lights.
 
 use glam::{DMat3, DMat4, DVec3};
 use marraztu::base::math::Axis;

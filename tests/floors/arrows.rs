@@ -1,4 +1,4 @@
-//! Reads which file of a floor uses which other one, however the use is written.
+//! Finds out which file of a floor uses which other one, however the use is written.
 //!
 //! Paths are followed as the compiler follows them: through `super` and `self`, opened braces,
 //! renamed imports, re-exports and globs. An arrow therefore ends at the file that defines a name,
@@ -16,7 +16,7 @@ struct Source {
     code: String,
     /// The spans of modules that are written inside the file.
     inner: Vec<(usize, usize)>,
-    /// What each imported name stands for, as a path from the root.
+    /// Each imported name, with its path from the root.
     imports: BTreeMap<String, Names>,
     /// The modules whose names are all imported.
     globs: Vec<Names>,
@@ -187,7 +187,7 @@ pub(crate) fn cycles(arrows: &BTreeMap<Names, BTreeSet<Names>>) -> Vec<Vec<Names
         let first =
             knot.iter().min_by_key(|module| module.len()).expect("a knot has files").clone();
         if knot.iter().all(|module| module.starts_with(&first)) {
-            // What is left must have no cycle once the parts no longer use the whole.
+            // The rest must have no cycle once the parts no longer use the whole.
             let mut without: BTreeMap<_, _> =
                 arrows.iter().filter(|(module, _)| knot.contains(module)).map(copy).collect();
             for used in without.values_mut() {

@@ -1,4 +1,4 @@
-//! The floors of the crate and the rooms of a floor: who may use whom.
+//! The floors of the crate and the rooms of a floor: which may use which.
 
 mod arrows;
 
@@ -199,7 +199,7 @@ fn after(rest: &str) -> Vec<&str> {
     found
 }
 
-/// What is wrong with a source that stands on `floor`.
+/// The faults of a source on `floor`.
 fn faults(floor: &str, text: &str) -> Vec<String> {
     let under = FLOORS.iter().find(|(name, _)| *name == floor).map_or(&[][..], |(_, under)| under);
     let mut faults = Vec::new();
@@ -279,7 +279,7 @@ fn a_use_of_a_wrong_floor_is_seen_however_it_is_written() {
     }
 }
 
-/// What is wrong with the rooms of a folder.
+/// The faults of the rooms of a folder.
 fn room_faults(sources: &Sources, folder: &str, rooms: &[&str]) -> Vec<String> {
     let names: Vec<&str> = folder.split('/').collect();
     let arrows = sources.arrows(&names);

@@ -6,8 +6,8 @@ use crate::claims::{Proof, Tally};
 pub(crate) struct Case {
     pub(crate) number: u8,
     pub(crate) group: &'static str,
-    /// What it is judged by: Z whole numbers or fractions, D twice the digits or f64 along another
-    /// way, I something that always holds, R two runs that must agree.
+    /// The kind of its oracle: Z whole numbers or fractions, D twice the digits or f64 along
+    /// another way, I something that always holds, R two runs that must agree.
     pub(crate) oracle: &'static str,
     /// What goes wrong in a naive program.
     pub(crate) wrong: &'static str,

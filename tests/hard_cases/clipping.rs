@@ -1,4 +1,4 @@
-//! What reaches beyond the view, or behind the observer.
+//! Clipping: triangles that reach beyond the view, or behind the observer.
 
 use crate::claims::exact::span;
 use glam::{DMat4, DVec3};
@@ -328,7 +328,7 @@ fn case_15_a_triangle_through_all_six_planes_is_seen_where_it_is() {
     .hold();
 }
 
-/// How many pixels are otherwise where corners are divided by their w, behind the eye too.
+/// How many pixels differ if corners are divided by their w, even behind the eye.
 fn folded(corners: [DVec3; 3], covered: &[bool]) -> usize {
     let eye = Eye::first(SIDE);
     let snapped = corners.map(|corner| {
@@ -343,7 +343,7 @@ fn folded(corners: [DVec3; 3], covered: &[bool]) -> usize {
 }
 
 #[test]
-fn case_16_what_is_farther_off_than_whole_numbers_reach_is_cut() {
+fn case_16_triangles_beyond_the_range_of_integers_are_clipped() {
     let mut rng = Rng::new(116);
     let (mut wrong, mut seen, mut naive) = (0, 0, 0);
     for _ in 0..60 {
@@ -469,7 +469,7 @@ fn wrapping_covers([p, q, r]: [Snapped; 3], x: usize, y: usize) -> bool {
 }
 
 #[test]
-fn case_18_what_is_behind_the_observer_is_not_there() {
+fn case_18_objects_behind_the_observer_are_invisible() {
     let mut rng = Rng::new(18);
     let (mut drawn, mut naive) = (0, 0);
     for _ in 0..50 {
@@ -580,7 +580,7 @@ fn case_19_a_cut_does_not_move_what_is_painted_on_a_face() {
     .hold();
 }
 
-/// The place on the texture where the cut's corners are f32 and are mixed as corners are.
+/// The texture coordinates if the corners of the cut are f32 and are interpolated as other corners.
 fn single_cut(corners: [DVec3; 3], eye: Eye, [x, y]: [usize; 2]) -> f64 {
     let [a, b, c] = corners;
     let cut = |to: DVec3, u: f64| {

@@ -1,4 +1,4 @@
-//! From light to bytes.
+//! Colours: from light to bytes.
 
 use marraztu::accuracy::{Arithmetic, Settings};
 use marraztu::base::color::{Color, byte};
@@ -106,7 +106,7 @@ fn case_53_eight_lights_are_summed_before_they_are_rounded() {
 }
 
 #[test]
-fn case_54_what_is_no_number_is_black_and_what_is_infinite_is_full() {
+fn case_54_nan_is_black_and_infinity_is_full() {
     let (none, all) = (f64::NAN, f64::INFINITY);
     let mut wrong = 0;
     for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
@@ -118,7 +118,7 @@ fn case_54_what_is_no_number_is_black_and_what_is_infinite_is_full() {
         }
     }
     assert_eq!([byte(none), byte(all), byte(-all)], [0, 255, 0]);
-    // What C's cast by way of int makes of it: the low byte, or that of the smallest int.
+    // The result of a cast by way of int in C: the low byte, or that of the smallest int.
     let cast = |x: f64| (x * 255.0 + 0.5) as i64 as i32 & 255;
     let naive = [(all, 255), (1e39, 255), (1.2, 255), (-0.01, 0), (f64::MAX, 255)]
         .into_iter()
@@ -159,7 +159,7 @@ fn case_55_every_byte_survives_the_way_through_the_renderer() {
 }
 
 #[test]
-fn case_55_what_lies_in_a_picture_is_no_other_for_where_it_lies() {
+fn case_55_a_pictures_pixels_do_not_depend_on_their_position() {
     // The same byte at every pixel, wherever in a tile or a group of lanes it stands.
     let (scene, view) = glowing([0.3, 0.6, 0.9], &[Color::WHITE]);
     let picture = draw(&scene, &view, &Settings::default(), 131);

@@ -1,4 +1,4 @@
-//! Which pixels are covered: by whole-number crossings, never by an edge function.
+//! Coverage, checked by integer crossings and never by an edge function.
 
 use crate::claims::exact::{span, wind};
 use glam::{DMat4, DVec3};
@@ -86,7 +86,7 @@ fn case_20_corners_on_the_middles_of_pixels_leave_no_hole_and_no_double() {
 fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
     let tally = quick_round("fans");
     assert!(tally.counts["samples"] > 10_000_000, "{tally}");
-    // What the same fans would have with edges that both sides take.
+    // The same fans if both sides covered shared edges.
     let mut rng = Rng::new(21);
     let mut naive = 0;
     for _ in 0..500 {
@@ -100,7 +100,7 @@ fn case_21_signed_coverage_is_the_winding_number_of_the_snapped_outline() {
             wind(&outline, y, &mut row);
             for (x, winding) in (0..).zip(&row) {
                 let count = i32::try_from(greedy(&fan, x, y)).unwrap();
-                // Of the same parity at least, where some run the other way.
+                // At least of the same parity, if some run the other way.
                 naive += usize::from((count - winding) % 2 != 0);
             }
         }
@@ -385,7 +385,7 @@ fn case_25_moved_by_whole_pixels_a_picture_is_the_same_but_moved() {
                 differ += usize::from(from != moved.pixel(tx as usize, ty as usize));
             }
         }
-        // In f32 the edge functions of a moved triangle round otherwise.
+        // In f32, the edge functions of a moved triangle round differently.
         for flat in scattered(25, 1, 0).iter().take(20) {
             let [p, q, _] =
                 flat.corners.map(|c| [c.x as f32 / 256.0 - 0.3, c.y as f32 / 256.0 - 0.3]);

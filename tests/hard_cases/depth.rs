@@ -1,4 +1,4 @@
-//! What is in front.
+//! Depth: which surface is in front.
 
 use crate::claims::double_double::Double;
 use glam::{DMat4, DVec3};
@@ -176,7 +176,7 @@ fn planar_depth(flat: &Flat, x: i32, y: i32) -> f64 {
     planar(flat.corners, flat.distances.map(|d| (1.0 - d / FAR) as f32), x, y)
 }
 
-/// What is given at the corners of a triangle, at a pixel's middle, by a plane through them in f32.
+/// The value at a pixel's centre, by a plane in f32 through the values at a triangle's corners.
 pub(super) fn planar(corners: [Snapped; 3], values: [f32; 3], x: i32, y: i32) -> f64 {
     let [p, q, r] = corners.map(|c| [c.x as f32 / 256.0, c.y as f32 / 256.0]);
     let [a, b, c] = values;
@@ -401,7 +401,7 @@ fn case_36_the_order_of_drawing_does_not_show() {
         let now = picture(&scene);
         differ += first.pixels().iter().zip(now.pixels()).filter(|(a, b)| a != b).count();
     }
-    // What would be seen if the last one drawn were: the younger of each pair.
+    // The result if the last one drawn were visible: the younger of each pair.
     let mut younger = scene.clone();
     for id in (10..22).step_by(2) {
         edit(&mut younger, ObjectId(id), |object| object.visible = false);

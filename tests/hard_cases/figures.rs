@@ -1,7 +1,7 @@
-//! What a case measures: the naive way's number, ours, and the bound that ours is held to.
+//! The figures of a case: the number of a naive program, ours, and the bound that ours must keep.
 //!
-//! Each is printed as one line, and where `MARRAZTU_FIGURES` names a folder written into a file
-//! there: `tools/stability.sh` makes its page of them.
+//! Each is printed as one line and, if `MARRAZTU_FIGURES` names a folder, written into a file
+//! there. `tools/stability.sh` makes its page of them.
 
 use super::cases::CASES;
 
@@ -9,16 +9,16 @@ use super::cases::CASES;
 pub(crate) struct Figure {
     /// The case's number.
     pub(crate) case: u8,
-    /// What is measured.
+    /// The quantity that is measured.
     pub(crate) what: &'static str,
     /// A way in which it is done elsewhere, and what comes of it. It has to be worse than the
     /// bound: else the case would be an easy one.
     pub(crate) naive: Option<(&'static str, f64)>,
-    /// What comes of our way.
+    /// Our number.
     pub(crate) ours: f64,
-    /// What ours may be at the most.
+    /// The bound of our number.
     pub(crate) bound: f64,
-    /// Of all three numbers.
+    /// The unit of all three numbers.
     pub(crate) unit: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Odd numbers and faces in files, scenes of other sizes, nothing and very much.
+//! Odd numbers and faces in files, scenes of other scales, empty scenes and huge ones.
 
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::Shot;
@@ -27,7 +27,7 @@ fn with_first_number(number: &str) -> Result<Loaded, LoadError> {
 #[test]
 fn case_64_numbers_are_read_to_the_nearest_f32_or_refused() {
     let mut wrong = 0;
-    // What these digits are nearest to, by whole numbers: bits of f32 worked out from the decimals.
+    // The f32 nearest to these digits, computed from the decimals in integers.
     for (text, bits) in [
         ("1e-46", 0x0000_0000_u32),
         ("-1e-46", 0x8000_0000),
@@ -65,7 +65,7 @@ fn case_64_numbers_are_read_to_the_nearest_f32_or_refused() {
         let refusal = with_first_number(text).unwrap_err().to_string();
         wrong += usize::from(!(refusal.contains(":1: ") && refusal.contains(text)));
     }
-    // What atof makes of a comma: the digits before it.
+    // atof stops at a comma and keeps the digits before it.
     let comma = "0,5".split(',').next().unwrap().parse::<f64>().unwrap();
     Figure {
         case: 64,

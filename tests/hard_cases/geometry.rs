@@ -182,7 +182,7 @@ fn case_3_the_screen_stands_still_however_far_from_the_origin_the_scene_is() {
     }
 }
 
-/// How far the left sides of the strips are moved where places of the world are f32.
+/// How far the left sides of the strips move if positions in the world are f32.
 fn naive_shift(vernier: &Vernier, away: DVec3, tangent: f64) -> f64 {
     let mut worst = 0.0_f64;
     let single = |x: f64| x as f32;
@@ -206,7 +206,8 @@ fn case_4_normals_of_stretched_objects_stay_across_their_surfaces() {
             let m = math::rotation(super::oracle::unit(rng.vector(1.0)), rng.real(0.0, 6.0))
                 * DMat3::from_diagonal(DVec3::new(1.0, stretch, 1.0));
             let (p, q) = (rng.vector(1.0), rng.vector(1.0));
-            // What is across is across two ways along the surface, and they go where it goes.
+            // A normal is perpendicular to two directions along the surface, and these move with
+            // it.
             let (n, exact) = (p.cross(q), (m * p).cross(m * q));
             if n.length() < 0.1 {
                 continue;

@@ -1,4 +1,4 @@
-//! What lies between corners.
+//! Interpolation: the values between corners.
 
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::{Arithmetic, Filter, LightAt, Settings};
@@ -177,7 +177,7 @@ fn case_39_places_beyond_the_texture_are_brought_back_into_it() {
             }
         }
     }
-    // By whole numbers of 32 bits: what is beyond them is any texel.
+    // In 32-bit integers, which overflow: the texel is arbitrary then.
     let by_i32 = |u: f32| 10 + 10 * ((u * 2.0) as i32 & 1);
     let naive = [(-0.25_f32, 20), (-3.75, 10), (-1e4 - 0.25, 20), (1e30, 10), (f32::MAX, 10)]
         .into_iter()
@@ -388,7 +388,7 @@ fn case_33_what_is_painted_on_slivers_is_right_to_two_last_places() {
     }
 }
 
-/// What is between the corners at the middle of a pixel, by whole-number edge functions in f64.
+/// The value at the centre of a pixel, by integer edge functions in f64.
 fn between([p, q, r]: [Snapped; 3], u: [f32; 3], x: i32, y: i32) -> f64 {
     let edge = |p: Snapped, q: Snapped| {
         let (cx, cy) = (i64::from(x) * 256 + 128, i64::from(y) * 256 + 128);

@@ -1,4 +1,4 @@
-//! Are the judges right? The oracles on cases whose answers are known.
+//! Checks the oracles themselves on cases whose answers are known.
 
 use marraztu::render::screen::coverage::Snapped;
 

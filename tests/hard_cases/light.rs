@@ -1,4 +1,4 @@
-//! Light, against the page's equation along rays.
+//! Light, compared with the equation of the oracle along rays.
 
 use glam::{DMat4, DQuat, DVec3};
 use marraztu::accuracy::Shot;
@@ -17,17 +17,19 @@ use marraztu::scene::{
 
 use super::common::{at, ball, draw, edit, model_of, scene, square};
 use super::figures::Figure;
-use super::oracle::{self, Eye, Lamp, Matter, meet, unit};
+use super::oracle::{self, Eye, OracleLight, OracleMaterial, meet, unit};
 
 const SIDE: usize = 96;
 
 /// White lights of these kinds and no other.
-fn with_lamps(scene: &mut Scene, lamps: &[Lamp]) {
-    let kind = |lamp: &Lamp| match *lamp {
-        Lamp::Ambient => LightKind::Ambient,
-        Lamp::Sun(direction) => LightKind::Sun { direction: Tracked::new(direction) },
-        Lamp::Bulb(at) => LightKind::Bulb { position: Tracked::new(at), orbit: Orbit::default() },
-        Lamp::Spot(position, direction, half_aperture, exponent) => {
+fn with_lamps(scene: &mut Scene, lamps: &[OracleLight]) {
+    let kind = |lamp: &OracleLight| match *lamp {
+        OracleLight::Ambient => LightKind::Ambient,
+        OracleLight::Sun(direction) => LightKind::Sun { direction: Tracked::new(direction) },
+        OracleLight::Bulb(at) => {
+            LightKind::Bulb { position: Tracked::new(at), orbit: Orbit::default() }
+        }
+        OracleLight::Spot(position, direction, half_aperture, exponent) => {
             let aim = Tracked::new(Aim { position, direction });
             LightKind::Spot { owner: SpotOwner::Fixed(aim), half_aperture, exponent }
         }
@@ -37,7 +39,7 @@ fn with_lamps(scene: &mut Scene, lamps: &[Lamp]) {
 }
 
 /// Grey stuff.
-fn stuff(matter: &Matter) -> MaterialChoice {
+fn stuff(matter: &OracleMaterial) -> MaterialChoice {
     MaterialChoice::Own(Material {
         ambient: [matter.ambient; 3],
         diffuse: [matter.diffuse; 3],
@@ -50,8 +52,8 @@ fn stuff(matter: &Matter) -> MaterialChoice {
 struct Bent {
     corners: [DVec3; 3],
     normals: [DVec3; 3],
-    matter: Matter,
-    lamps: Vec<Lamp>,
+    matter: OracleMaterial,
+    lamps: Vec<OracleLight>,
 }
 
 impl Bent {
@@ -70,17 +72,17 @@ impl Bent {
         let mut about = |size: f64| DVec3::Z * 150.0 + rng.vector(size);
         let spot = about(140.0);
         let lamps = vec![
-            Lamp::Ambient,
-            Lamp::Sun(unit(DVec3::new(0.3, -0.5, -1.0))),
-            Lamp::Bulb(about(140.0)),
-            Lamp::Spot(spot, unit(DVec3::new(10.0, 5.0, 0.0) - spot), 60.0, 5.0),
+            OracleLight::Ambient,
+            OracleLight::Sun(unit(DVec3::new(0.3, -0.5, -1.0))),
+            OracleLight::Bulb(about(140.0)),
+            OracleLight::Spot(spot, unit(DVec3::new(10.0, 5.0, 0.0) - spot), 60.0, 5.0),
         ];
         let exponent = rng.one_of(&[1.0, 9.846_15, 27.8974, 76.8, 89.6, 128.0]);
-        let matter = Matter { ambient: 0.05, diffuse: 0.25, specular: 0.2, exponent };
+        let matter = OracleMaterial { ambient: 0.05, diffuse: 0.25, specular: 0.2, exponent };
         Self { corners, normals, matter, lamps }
     }
 
-    fn scene(&self, matter: &Matter) -> (Scene, View) {
+    fn scene(&self, matter: &OracleMaterial) -> (Scene, View) {
         let source = MeshSource {
             positions: self.corners.map(|c| c.as_vec3().to_array()).to_vec(),
             normals: self.normals.map(|n| n.as_vec3().to_array()).to_vec(),
@@ -105,19 +107,19 @@ impl Bent {
         oracle::light(&self.lamps, &self.matter, [eye.at + ray * t, unit(n), unit(-ray)], power)
     }
 
-    fn draw(&self, matter: &Matter, arithmetic: Arithmetic) -> Picture {
+    fn draw(&self, matter: &OracleMaterial, arithmetic: Arithmetic) -> Picture {
         let (scene, view) = self.scene(matter);
         draw(&scene, &view, &Settings { arithmetic, ..Settings::default() }, SIDE)
     }
 
-    /// Light at every pixel before it is rounded, in byte steps and to 1/64 of one: read off the bytes
-    /// of pictures that are each a little brighter than the one before. When the byte changes, the
-    /// light has come half-way to the next.
+    /// Light at every pixel before it is rounded, in byte steps and to 1/64 of one: read off the
+    /// bytes of pictures that are each a little brighter than the one before. When the byte
+    /// changes, the light has come half-way to the next.
     fn before_rounding(&self, arithmetic: Arithmetic) -> Vec<f64> {
         const PARTS: u32 = 64;
         let picture = |part: u32| {
             let more = f64::from(part) / f64::from(PARTS) / 255.0;
-            let matter = Matter { ambient: self.matter.ambient + more, ..self.matter };
+            let matter = OracleMaterial { ambient: self.matter.ambient + more, ..self.matter };
             let picture = self.draw(&matter, arithmetic);
             picture.pixels().iter().map(|pixel| pixel[0]).collect::<Vec<u8>>()
         };
@@ -214,14 +216,14 @@ fn case_43_a_cosine_above_one_does_no_harm() {
         let turn = DMat4::from_quat(DQuat::from_rotation_arc(DVec3::Z, -ray));
         let place = DMat4::from_translation(eye.at + ray * 300.0) * turn * at(90.0, 0.0, 0.0, 0.0);
         let (mut scene, view) = scene(&[(square(), place)]);
-        let matter = Matter { ambient: 0.0, diffuse: 0.0, specular: 1.0, exponent: 1.0 };
+        let matter = OracleMaterial { ambient: 0.0, diffuse: 0.0, specular: 1.0, exponent: 1.0 };
         edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
-        with_lamps(&mut scene, &[Lamp::Spot(eye.at, ray, 1.0, 1000.0)]);
+        with_lamps(&mut scene, &[OracleLight::Spot(eye.at, ray, 1.0, 1000.0)]);
         let view = View { marks: false, light: None, ..view };
         // With an exponent of 10^7 a cosine of a last place above 1 is light three times too
         // bright.
         let mut piercing = scene.clone();
-        let sharp = stuff(&Matter { exponent: 1e7, ..matter });
+        let sharp = stuff(&OracleMaterial { exponent: 1e7, ..matter });
         edit(&mut piercing, ObjectId(10), |object| object.material = sharp.clone());
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
             let settings = Settings { arithmetic, ..Settings::default() };
@@ -287,7 +289,7 @@ fn case_44_small_angles_are_shown_as_they_were_typed() {
 }
 
 #[test]
-fn case_45_powers_of_what_has_none_are_nothing() {
+fn case_45_powers_of_numbers_that_have_none_are_zero() {
     let mut wrong = 0;
     for exponent in [0.0, 0.5, 5.0, 76.8, 1000.0] {
         for x in [0.0_f32, -0.0, -1e-45, -0.5, -1.0, f32::NAN, f32::NEG_INFINITY] {
@@ -297,15 +299,15 @@ fn case_45_powers_of_what_has_none_are_nothing() {
         }
     }
     // In a picture: Ns of 0 is a highlight of one strength wherever R.V is above 0, and none where
-    // a lamp is behind.
+    // a light is behind.
     let (mut scene, view) = scene(&[(square(), at(90.0, 0.0, 0.0, 0.0))]);
-    let matter = Matter { ambient: 0.0, diffuse: 0.0, specular: 0.5, exponent: 0.0 };
+    let matter = OracleMaterial { ambient: 0.0, diffuse: 0.0, specular: 0.5, exponent: 0.0 };
     edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
     let view = View { marks: false, light: None, ..view };
     for (direction, want) in
         [(DVec3::NEG_Z, 128), (unit(DVec3::new(0.3, 0.0, -1.0)), 128), (DVec3::Z, 0)]
     {
-        with_lamps(&mut scene, &[Lamp::Sun(direction)]);
+        with_lamps(&mut scene, &[OracleLight::Sun(direction)]);
         for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
             let settings = Settings { arithmetic, ..Settings::default() };
             let middle = draw(&scene, &view, &settings, 33).pixel(16, 16)[0];
@@ -346,10 +348,10 @@ fn case_46_no_power_is_subnormal() {
     .hold();
 }
 
-/// A lit square over the view, with these lamps.
-fn lit_square(lamps: &[Lamp]) -> (Scene, View) {
+/// A lit square over the view, with these lights.
+fn lit_square(lamps: &[OracleLight]) -> (Scene, View) {
     let (mut scene, view) = scene(&[(square(), at(170.0, 0.0, 0.0, 0.0))]);
-    let matter = Matter { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 20.0 };
+    let matter = OracleMaterial { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 20.0 };
     edit(&mut scene, ObjectId(10), |object| object.material = stuff(&matter));
     with_lamps(&mut scene, lamps);
     (scene, View { marks: false, light: None, ..view })
@@ -364,8 +366,8 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
     let (mut differ, mut black) = (0, 0);
     for above in [0.0, 1e-300, 1e-30, 1e-12, -1e-12, 1e-5, -1e-5] {
         let at = touching + DVec3::Z * above;
-        for lamp in [Lamp::Bulb(at), Lamp::Spot(at, DVec3::NEG_Z, 90.0, 5.0)] {
-            let (scene, view) = lit_square(&[Lamp::Ambient, lamp]);
+        for lamp in [OracleLight::Bulb(at), OracleLight::Spot(at, DVec3::NEG_Z, 90.0, 5.0)] {
+            let (scene, view) = lit_square(&[OracleLight::Ambient, lamp]);
             for light in [LightAt::Pixel, LightAt::Vertex, LightAt::Face] {
                 let settings = Settings { light, ..Settings::default() };
                 let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(65, 65)));
@@ -393,7 +395,7 @@ fn case_47_a_lamp_on_a_surface_is_the_same_on_all_instructions_and_spoils_nothin
 
 /// A wide highlight, which reaches where a narrow one does not.
 fn soften(scene: &mut Scene) {
-    let matter = Matter { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 2.0 };
+    let matter = OracleMaterial { ambient: 0.1, diffuse: 0.6, specular: 0.5, exponent: 2.0 };
     edit(scene, ObjectId(10), |object| object.material = stuff(&matter));
 }
 
@@ -401,13 +403,13 @@ fn soften(scene: &mut Scene) {
 fn case_48_a_highlight_ends_where_a_round_surface_turns_away() {
     const RADIUS: f64 = 100.0;
     let ball = ball(48);
-    let picture = |lamps: &[Lamp]| {
+    let picture = |lamps: &[OracleLight]| {
         let (mut scene, view) = scene(&[(ball.clone(), at(RADIUS, 0.0, 0.0, 0.0))]);
         soften(&mut scene);
         with_lamps(&mut scene, lamps);
         draw(&scene, &View { marks: false, light: None, ..view }, &Settings::default(), SIDE)
     };
-    let dark = picture(&[Lamp::Ambient]);
+    let dark = picture(&[OracleLight::Ambient]);
     let eye = Eye::first(SIDE);
     // The normal where a ray meets the ball.
     let normal = |i: usize| {
@@ -421,7 +423,7 @@ fn case_48_a_highlight_ends_where_a_round_surface_turns_away() {
     for _ in 0..20 {
         let to_light =
             unit(DVec3::new(rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-0.9, 0.3)));
-        let lit = picture(&[Lamp::Ambient, Lamp::Sun(-to_light)]);
+        let lit = picture(&[OracleLight::Ambient, OracleLight::Sun(-to_light)]);
         for i in 0..SIDE * SIDE {
             // A polygon of the ball leans from its surface by 0.03 at most.
             let Some(n) = normal(i).filter(|n| n.dot(to_light) < -0.05) else { continue };
@@ -445,7 +447,7 @@ fn case_48_a_highlight_ends_where_a_round_surface_turns_away() {
 #[test]
 fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
     let dark = {
-        let (mut scene, view) = lit_square(&[Lamp::Ambient]);
+        let (mut scene, view) = lit_square(&[OracleLight::Ambient]);
         soften(&mut scene);
         draw(&scene, &view, &Settings::default(), SIDE)
     };
@@ -457,16 +459,16 @@ fn case_48_a_lamp_behind_a_surface_leaves_it_as_it_is() {
         let direction =
             unit(DVec3::new(rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(0.01, 1.0)));
         let lamps = [
-            Lamp::Ambient,
-            Lamp::Bulb(behind),
-            Lamp::Sun(direction),
-            Lamp::Spot(behind, DVec3::Z, 80.0, 1.0),
+            OracleLight::Ambient,
+            OracleLight::Bulb(behind),
+            OracleLight::Sun(direction),
+            OracleLight::Spot(behind, DVec3::Z, 80.0, 1.0),
         ];
         let (mut scene, view) = lit_square(&lamps);
         soften(&mut scene);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
         differ += picture.pixels().iter().zip(dark.pixels()).filter(|(a, b)| a != b).count();
-        // Without the condition on N.L: R.V of a lamp behind may well be positive.
+        // Without the condition on N.L: R.V of a light behind may well be positive.
         let eye = Eye::first(SIDE);
         for i in 0..SIDE * SIDE {
             let v = unit(-eye.ray(i % SIDE, i / SIDE));
@@ -495,7 +497,7 @@ fn case_49_a_wider_cone_lights_no_pixel_less() {
     let mut before: Option<Picture> = None;
     let (mut less, mut lit_by_none, mut wrong) = (0, 0, 0);
     for half_aperture in (0..=90).map(f64::from) {
-        let lamps = [Lamp::Spot(from, axis, half_aperture, 5.0)];
+        let lamps = [OracleLight::Spot(from, axis, half_aperture, 5.0)];
         let (scene, view) = lit_square(&lamps);
         let picture = draw(&scene, &view, &Settings::default(), SIDE);
         if let Some(before) = &before {
@@ -535,9 +537,9 @@ fn case_49_a_wider_cone_lights_no_pixel_less() {
 #[test]
 fn case_50_the_order_of_lights_does_not_show() {
     let mut rng = Rng::new(50);
-    let mut lamps = vec![Lamp::Ambient];
+    let mut lamps = vec![OracleLight::Ambient];
     for _ in 0..9 {
-        lamps.push(Lamp::Bulb(DVec3::Z * 150.0 + rng.vector(120.0)));
+        lamps.push(OracleLight::Bulb(DVec3::Z * 150.0 + rng.vector(120.0)));
     }
     let (mut scene, view) = scene(&[(ball(16), at(120.0, 0.0, 0.0, 0.0))]);
     // Three channels with their own digits: one in a hundred thousand bytes stands so near to the
@@ -581,8 +583,9 @@ fn case_50_the_order_of_lights_does_not_show() {
 #[test]
 fn case_51_light_is_held_to_full_once_and_after_the_texture() {
     // Two suns at 1 each on a surface of 1, under a tint of a half: 2 times 1/2 is full.
-    let (mut scene, view) = lit_square(&[Lamp::Sun(DVec3::NEG_Z), Lamp::Sun(DVec3::NEG_Z)]);
-    let matter = Matter { ambient: 0.0, diffuse: 1.0, specular: 0.0, exponent: 1.0 };
+    let (mut scene, view) =
+        lit_square(&[OracleLight::Sun(DVec3::NEG_Z), OracleLight::Sun(DVec3::NEG_Z)]);
+    let matter = OracleMaterial { ambient: 0.0, diffuse: 1.0, specular: 0.0, exponent: 1.0 };
     let texture = super::clipping::ruler(1.0);
     let source = MeshSource {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],

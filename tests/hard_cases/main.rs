@@ -1,5 +1,5 @@
-//! The cases in which programs of this kind go wrong, by their numbers; each says with what number
-//! a naive program does.
+//! The hard cases, in which programs of this kind go wrong, by their numbers. Each measures a naive
+//! program, too.
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 #![expect(clippy::print_stdout, reason = "what was measured is shown")]

@@ -1,4 +1,5 @@
-//! What a picture should show, by rays and by the page on light, in f64 and with none of our code.
+//! The oracle of pictures: ray casting and the equation of light, in f64 and without any of our
+//! code.
 
 use glam::DVec3;
 
@@ -51,9 +52,9 @@ pub(crate) fn inside_by(parts: [f64; 3]) -> f64 {
     parts.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// A lamp.
+/// A light.
 #[derive(Clone, Copy)]
-pub(crate) enum Lamp {
+pub(crate) enum OracleLight {
     Ambient,
     /// The way its light goes.
     Sun(DVec3),
@@ -62,9 +63,9 @@ pub(crate) enum Lamp {
     Spot(DVec3, DVec3, f64, f64),
 }
 
-/// What reflects.
+/// A material.
 #[derive(Clone, Copy)]
-pub(crate) struct Matter {
+pub(crate) struct OracleMaterial {
     pub(crate) ambient: f64,
     pub(crate) diffuse: f64,
     pub(crate) specular: f64,
@@ -74,26 +75,26 @@ pub(crate) struct Matter {
 /// The light of white lamps from a place with the normal `n` towards `v`, not clamped; `power`
 /// raises cosines, so that ways of doing it can be compared.
 pub(crate) fn light(
-    lamps: &[Lamp],
-    matter: &Matter,
+    lamps: &[OracleLight],
+    matter: &OracleMaterial,
     [place, n, v]: [DVec3; 3],
     power: &dyn Fn(f64, f64) -> f64,
 ) -> f64 {
     let mut sum = 0.0;
     for lamp in lamps {
         let (to_light, strength) = match *lamp {
-            Lamp::Ambient => {
+            OracleLight::Ambient => {
                 sum += matter.ambient;
                 continue;
             }
-            Lamp::Sun(direction) => (-direction, 1.0),
-            Lamp::Bulb(at) | Lamp::Spot(at, ..) => {
+            OracleLight::Sun(direction) => (-direction, 1.0),
+            OracleLight::Bulb(at) | OracleLight::Spot(at, ..) => {
                 let d = (at - place).length();
                 ((at - place) / d, 1.0 / (1.0 + 5e-6 * d + 5e-6 * d * d))
             }
         };
         let gathered = match *lamp {
-            Lamp::Spot(_, axis, half_aperture, exponent) => {
+            OracleLight::Spot(_, axis, half_aperture, exponent) => {
                 let c = axis.dot(-to_light).min(1.0);
                 if c > half_aperture.to_radians().cos() { c.powf(exponent) } else { 0.0 }
             }

@@ -1,4 +1,4 @@
-//! What comes back.
+//! Undo and saving: everything comes back as it was.
 
 use marraztu::accuracy::Settings;
 use marraztu::base::math::{self, Axis};
@@ -107,7 +107,7 @@ fn case_63_a_scene_saved_on_the_way_is_the_one_that_redo_comes_back_to() {
 }
 
 #[test]
-fn case_63_what_is_saved_is_written_in_enough_digits() {
+fn case_63_numbers_are_saved_with_enough_digits() {
     // 15 digits, as many formats have them, lose the last bits of a placement.
     let (mut scene, view) = io::default_scene();
     let view = View { subject: Subject::Object, transformation: Transformation::Rotation, ..view };

@@ -23,7 +23,7 @@ pub(crate) fn plantable() -> impl Iterator<Item = (&'static Axis, &'static Choic
     })
 }
 
-/// A clock that takes a millisecond for every picture, and three where the planted choice is made.
+/// A clock on which every picture takes a millisecond, and three with the planted choice.
 pub(crate) struct FakeClock {
     pub(crate) slow: Planted,
     now: Duration,
@@ -52,8 +52,8 @@ impl Clock for FakeClock {
     }
 }
 
-/// A source whose picture is grey, but for a pixel that is 9 steps lighter where the planted choice
-/// is made, and covered by another triangle where `coverage` is.
+/// A source whose picture is grey. With the planted choice one pixel is 9 steps lighter, and with
+/// `coverage` it is covered by another triangle.
 pub(crate) struct FakeSource {
     pub(crate) wrong: Planted,
     pub(crate) coverage: Planted,
@@ -87,7 +87,7 @@ impl PictureSource for FakeSource {
     }
 }
 
-/// What a sweep over all axes finds; all of them make sense.
+/// The findings of a sweep over all axes, which all apply.
 pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings {
     let limits = Limits { pairs: 3, least: 3, time: Duration::from_secs(1) };
     let thoroughness =

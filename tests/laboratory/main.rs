@@ -1,4 +1,4 @@
-//! The laboratory: is what it says of time and error true?
+//! The laboratory: whether its times and errors are true.
 //!
 //! Catches: a slowdown or an error that is attributed to the wrong axis, or on none; an axis that
 //! the scene file or the command line does not know; a table, a plot or a file of results that

@@ -1,4 +1,4 @@
-//! What is planted is found where it was planted, and nowhere else.
+//! Planted slowdowns and errors are attributed to the right choice, and to no other.
 
 use marraztu::accuracy::{Axis, AxisKind, Choice, LightAt, Settings};
 use marraztu::lab::attribution::attribute;

@@ -49,7 +49,7 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
     ] {
         assert!(out.contains(part), "{part}\n{out}");
     }
-    // What is drawn now is marked, and is no row of its own where it is a choice of an axis.
+    // The current settings are marked, and have no separate row if they are a choice of an axis.
     assert!(out.lines().any(|line| line.contains('>') && line.contains("Face")), "{out}");
     let found = folder.path().join("found");
     let read = |name: &str| std::fs::read_to_string(found.join(name)).unwrap();

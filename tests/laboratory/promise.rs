@@ -1,7 +1,7 @@
 //! The presets keep their promises, on the first scene and on ten random ones.
 //!
-//! Exact is held to the laboratory's reference, Default to Exact. The reference takes textures from
-//! smaller pictures of them, too, which no preset promises: here it takes them as the presets do.
+//! Exact is compared with the laboratory's reference, Default with Exact. The reference uses
+//! mipmaps, which no preset promises; here it filters textures as the presets do.
 //!
 //! Catches: a preset that names too coarse a choice; light in 32 bits that strays by more than is
 //! promised; a reference that is not where the presets lead.
@@ -19,7 +19,7 @@ use marraztu::scene::{Command, Item, MaterialChoice, Scene, View};
 use crate::random_scenes::random_scene;
 
 /// Scenes of the plan's proof: of the first 140 those that show most colours. Left out are scenes
-/// in which a lamp stands in the very surface that it lights, or a cone ends without fading (scene
+/// in which a light stands in the very surface that it lights, or a cone ends without fading (scene
 /// 6): on which side of such a border a pixel lies is a matter of rounding, and its light is all or
 /// nothing.
 const SEEDS: [u64; 10] = [13, 28, 43, 48, 78, 88, 104, 107, 113, 134];

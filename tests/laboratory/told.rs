@@ -124,13 +124,13 @@ fn several_samples_are_judged_against_sixty_four_each_lit_and_have_a_front_of_th
     let mark = &chart.marks[point(&report, "samples", "4")];
     assert_eq!((mark.kind, mark.name.as_str()), (MarkKind::Apart, "samples 4"));
     let (text, svg) = (text(&report), svg(&report).unwrap());
-    assert!(text.contains("samples a pixel (against 64 samples, each lit), --samples"), "{text}");
+    assert!(text.contains("samples per pixel (against 64 samples, each lit), --samples"), "{text}");
     assert!(svg.contains("samples 4 ") || svg.contains("samples 4:"), "{svg}");
     assert!(svg.contains("(against 64 samples)") && !svg.contains("samples 4 (a model"), "{svg}");
 }
 
 #[test]
-fn what_covers_other_pixels_is_on_no_front_but_that_of_flip() {
+fn choices_with_different_coverage_are_on_no_front_but_that_of_flip() {
     let subpixels = Axis::named("subpixels").unwrap();
     let coarse = subpixels.choice("bits-0").map(|choice| (subpixels, choice));
     // All take as long and look the same.

@@ -1,4 +1,4 @@
-//! What is said of a frame is what the frame does.
+//! The list of a frame's effects is what the frame does.
 
 use marraztu::accuracy::Shot;
 use marraztu::accuracy::{LeaveOut, Settings};
@@ -47,7 +47,7 @@ fn every_pixel_that_shows_something_is_counted_once_under_surfaces() {
 }
 
 #[test]
-fn taking_out_what_is_left_out_changes_no_byte_and_what_is_on_is_there_to_be_taken_out() {
+fn an_effect_can_be_removed_from_a_plan_exactly_if_it_is_on() {
     let (scene, view) = first();
     let settings = Settings::default();
     let (plan, uses) = explain_frame(&Shot::new(&scene, &view, &settings, SIZE));
@@ -78,7 +78,7 @@ fn a_light_that_reaches_one_object_of_three_is_on_there_and_nowhere_else() {
 }
 
 #[test]
-fn what_is_left_out_as_too_faint_is_said_with_its_bound() {
+fn light_that_is_left_out_as_too_faint_is_listed_with_its_bound() {
     let (mut scene, view) = first();
     for (id, light) in scene.clone().lights.iter() {
         if let LightKind::Bulb { .. } = light.kind {

@@ -1,5 +1,5 @@
-//! What a frame leaves out: that reports of it are true. That it changes nothing is proved in
-//! `tests/proofs`, and that each of its rules is needed in `tests/breakages`.
+//! The reports of what a frame leaves out are true. `tests/proofs` shows that leaving it out
+//! changes nothing, and `tests/breakages` that each rule is needed.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 

@@ -1,4 +1,4 @@
-//! Small randomly generated scenes that prefer borders: a lamp on a surface, a cone that touches a
+//! Small randomly generated scenes that prefer borders: a light on a surface, a cone that touches a
 //! box, a face that ends at the border of a tile, coefficients of 0, -0 and the smallest number,
 //! apertures of 0 and 90 degrees.
 
@@ -200,7 +200,7 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
     (10..).zip((0..count).map(|_| ())).map(|(id, ())| (LightId(id), light(rng, id))).collect()
 }
 
-/// The position of a lamp: anywhere, or exactly on the surface of an object.
+/// The position of a light: anywhere, or exactly on the surface of an object.
 fn lamp_place(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> DVec3 {
     match rng.index(3) {
         0 => {

@@ -1,4 +1,4 @@
-//! Files, materials, unsaved work, faults.
+//! Dialogs: files, materials, unsaved work, errors.
 //!
 //! Catches: work that is lost without a question, questions that are not needed, a bad file that
 //! changes the scene, keys that act behind a dialog.
@@ -204,7 +204,7 @@ fn a_dropped_file_loads_as_by_key_and_cancelling_changes_nothing() {
 }
 
 #[test]
-fn a_bad_file_is_told_in_one_sentence_with_its_line_and_changes_nothing() {
+fn a_bad_file_is_reported_in_one_sentence_with_its_line_and_changes_nothing() {
     let (_folder, path) = folder_with("bad.obj", "v 0 0 0\nv 1 zero 0\nf 1 2 2\n");
     let mut editor = Editor::new();
     let before = editor.scene();
@@ -217,7 +217,7 @@ fn a_bad_file_is_told_in_one_sentence_with_its_line_and_changes_nothing() {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_told() {
+fn a_missing_file_is_reported() {
     let mut editor = Editor::new();
     editor.ask(Request::LoadFiles(vec![PathBuf::from("nowhere.obj")]));
     editor.wait_until(|editor| editor.shows("Something went wrong"));
@@ -225,7 +225,7 @@ fn a_file_that_is_not_there_is_told() {
 }
 
 #[test]
-fn what_was_mended_is_told_and_listed_on_a_click() {
+fn findings_are_announced_and_listed_on_a_click() {
     let text = format!("{CUBE}f 1 2 99\nf 1 2\n");
     let (_folder, path) = folder_with("mended.obj", &text);
     let mut editor = Editor::new();
@@ -346,7 +346,7 @@ fn a_scene_opens_with_the_panels_that_it_was_saved_with() {
 }
 
 #[test]
-fn an_object_whose_faces_are_turned_away_is_told_of_with_a_button_that_draws_both_sides() {
+fn an_object_whose_faces_are_turned_away_is_reported_with_a_button_that_draws_both_sides() {
     let square = "v -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\nf 4 3 2 1\n";
     let (folder, _) = folder_with("square.obj", square);
     let file = folder.path().join("turned.marraztu");
@@ -376,7 +376,7 @@ fn an_object_whose_faces_are_turned_away_is_told_of_with_a_button_that_draws_bot
 }
 
 #[test]
-fn a_scene_that_cannot_be_saved_is_told_and_stays_unsaved() {
+fn a_scene_that_cannot_be_saved_is_reported_and_stays_unsaved() {
     let mut editor = Editor::new();
     editor.press(Lower(Key::Z));
     editor.press(Command(Key::S));

@@ -151,7 +151,7 @@ impl Editor {
         }
     }
 
-    /// Where the picture is.
+    /// The area of the picture.
     pub(crate) fn picture(&self) -> egui::Rect {
         self.harness.get_by_label("Viewport").rect()
     }
@@ -180,7 +180,7 @@ impl Editor {
         self.settle();
     }
 
-    /// Drags from one place by way of others; the last is where it is let go.
+    /// Drags from the first position over the others, and releases at the last.
     pub(crate) fn drag(&mut self, button: PointerButton, places: &[Pos2]) {
         self.hover(places[0]);
         self.button(places[0], button, true);
@@ -190,7 +190,7 @@ impl Editor {
         self.button(places[places.len() - 1], button, false);
     }
 
-    /// Clicks what has this label; where several have it, the one that is on top.
+    /// Clicks the control with this label; if several have it, the topmost.
     pub(crate) fn click_label(&mut self, label: &str) {
         let found = self.harness.query_all_by_label(label).last();
         found.unwrap_or_else(|| panic!("nothing is called {label}")).click();

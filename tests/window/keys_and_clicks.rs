@@ -1,6 +1,6 @@
-//! Keys and clicks that ask for the same do the same; keys act where they should and nowhere else.
+//! Keys and clicks for the same action do the same, and keys act only where they should.
 //!
-//! Catches: an action that a key reaches by a way of its own, toggles that repeat, steps of undo
+//! Catches: an action that a key reaches differently, toggles that repeat, steps of undo
 //! that a held key leaves behind, Caps Lock, signs on other layouts, keys that a text field loses.
 
 use egui::{Event, Key, Modifiers};
@@ -126,7 +126,7 @@ fn caps_lock_has_no_say() {
     let eye = |editor: &Editor| editor.scene().selected_camera(&editor.view()).pose.now().eye;
     let (mut plain, mut capital) = (Editor::new(), Editor::new());
     plain.press(Lower(Key::Z));
-    // With Caps Lock on, only the text is another.
+    // With Caps Lock on, only the text differs.
     capital.key(Key::Z, true, Modifiers::NONE);
     capital.harness.event(Event::Text("Z".to_owned()));
     capital.key(Key::Z, false, Modifiers::NONE);
@@ -207,7 +207,7 @@ fn with_text_field() -> Editor {
 }
 
 #[test]
-fn what_is_typed_into_a_text_field_asks_for_nothing() {
+fn typing_into_a_text_field_triggers_no_action() {
     let mut editor = with_text_field();
     editor.press(Lower(Key::Z));
     let (scene, view, shown) = (editor.scene(), editor.view(), editor.state().panels);

@@ -1,7 +1,7 @@
-//! The panel of the laboratory: measured, chosen from, compared, explained, taught.
+//! The panel of the laboratory: measuring, choosing, comparing, explaining, lessons.
 //!
 //! Catches: a measurement that blocks the window or is of another scene, a mark or a row that draws
-//! otherwise than it says, a comparison of two different moments, a click for a pixel that selects.
+//! something else, a comparison of two different moments, a click for a pixel that selects.
 
 use std::time::Duration;
 
@@ -62,7 +62,7 @@ fn measured() -> Editor {
     editor
 }
 
-/// What a button puts on the clipboard.
+/// The text that a button copies to the clipboard.
 fn copied(editor: &mut Editor, button: &str) -> Option<String> {
     control(editor, Role::Button, button).click();
     (0..4).find_map(|_| {
@@ -182,7 +182,7 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
             "normalising" | "rounding" => 1,
             _ => 40,
         };
-        // What moves is told as pixels that show something else.
+        // Movement counts as pixels whose coverage differs.
         assert!(error.largest >= least || error.coverage > 100, "{}: {error:?}", axis.key);
     }
 }

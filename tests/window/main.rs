@@ -1,6 +1,6 @@
 //! The window without a window: keys, mouse and dialogs, event by event.
 //!
-//! What each file catches is said at its top.
+//! Each file says at its top what it catches.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 

@@ -318,7 +318,7 @@ fn a_click_that_begins_and_ends_in_one_frame_is_a_click() {
 }
 
 #[test]
-fn clicking_again_goes_to_the_object_behind_and_round() {
+fn clicking_again_selects_the_object_behind_and_wraps_around() {
     let mut editor = Editor::new();
     // From the right, one ship stands before the other.
     editor.perform(Action::FrameAll);

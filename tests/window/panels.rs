@@ -1,8 +1,8 @@
 //! Menus, outline, switches of the view, status line and list of keys.
 //!
-//! Catches: a switch that does other than its key, an action that is in no menu, a control without
-//! a name, a list that goes by another order than the scene's, a name that is lost or given
-//! unasked.
+//! Catches: a switch that acts differently from its key, an action that is in no menu, a control
+//! without a name, a list in another order than the scene's, a name that is lost or given without
+//! being asked for.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
@@ -95,7 +95,7 @@ fn every_choice_of_the_view_does_what_its_action_does() {
         asked.perform(action);
         assert_ne!(asked.view(), before, "{label} has nothing to do");
         for _ in 0..2 {
-            // What is chosen already stays.
+            // The current choice stays.
             click(&mut clicked, Role::RadioButton, label);
             assert_eq!(clicked.view(), asked.view(), "{label}");
         }
@@ -261,7 +261,7 @@ fn a_double_click_renames_and_esc_leaves_the_name() {
 }
 
 #[test]
-fn a_name_that_was_given_up_elsewhere_is_not_taken_up_again() {
+fn a_rename_that_was_abandoned_elsewhere_is_not_resumed() {
     let mut editor = Editor::new();
     editor.press(Named(Key::F2));
     type_text(&mut editor, "half a na");

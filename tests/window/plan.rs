@@ -1,5 +1,4 @@
-//! The panel that says what the picture is made of, and that nothing is drawn while nothing
-//! changes.
+//! The panel of the plan, and that nothing is drawn while nothing changes.
 //!
 //! Catches: a panel that lags behind the scene, a list of another picture, an effect without a
 //! line, a window that repaints or draws by itself.
@@ -61,7 +60,7 @@ fn every_effect_has_a_line_and_what_differs_is_folded_out() {
 }
 
 #[test]
-fn what_is_measured_is_shown_until_something_changes() {
+fn a_measurement_is_shown_until_something_changes() {
     let mut editor = Editor::of_size(900.0, 500.0);
     editor.perform(Action::MeasurePlan);
     assert!(editor.state().panels.plan && editor.state().plan.measuring);
@@ -112,7 +111,7 @@ fn an_idle_editor_draws_nothing_and_asks_for_no_frame() {
         if plan {
             editor.perform(Action::TogglePlan);
         }
-        // What fades in has faded.
+        // Panels that fade in are fully visible by now.
         for _ in 0..60 {
             editor.settle();
         }

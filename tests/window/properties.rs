@@ -1,8 +1,8 @@
-//! The properties of what is selected.
+//! The properties of the selected item.
 //!
 //! Catches: a field that sets another thing than it names, drags that are many steps, a number
-//! typed for one item that lands in another, fields that round what they only show, sliders that do
-//! other than keys.
+//! typed for one item that lands in another, fields that round what they only show, sliders that
+//! act differently from keys.
 
 use egui::accesskit::Role;
 use egui::{Key, PointerButton, Pos2, vec2};
@@ -78,7 +78,7 @@ fn drag(editor: &mut Editor, role: Role, label: &str, by: f32) {
 
 type Read = fn(&Editor) -> f64;
 
-/// What each field of an object sets.
+/// The value that each field of an object sets.
 const OF_OBJECT: &[(&str, Read)] = &[
     ("Position X", |e| placement::translation(object(e).placement.now()).x),
     ("Position Y", |e| placement::translation(object(e).placement.now()).y),
@@ -92,7 +92,7 @@ const OF_OBJECT: &[(&str, Read)] = &[
     ("Spin speed", |e| object(e).spin.speed),
 ];
 
-/// What each field of a camera sets.
+/// The value that each field of a camera sets.
 const OF_CAMERA: &[(&str, Read)] = &[
     ("Position X", |e| camera(e).pose.now().eye.x),
     ("Position Y", |e| camera(e).pose.now().eye.y),
@@ -201,7 +201,7 @@ fn the_u_key_takes_a_whole_drag_back() {
 }
 
 #[test]
-fn an_angle_beyond_a_right_one_stays_as_it_was_given_while_it_is_dragged_on() {
+fn an_angle_beyond_90_degrees_is_kept_while_it_is_dragged() {
     let mut editor = with_object();
     type_into(&mut editor, "Rotation Y", "85");
     drag(&mut editor, Role::SpinButton, "Rotation Y", 100.0);
@@ -262,7 +262,7 @@ fn walking_through_the_fields_changes_nothing() {
 }
 
 #[test]
-fn what_is_no_number_and_what_would_flatten_the_object_change_nothing() {
+fn nan_and_numbers_that_would_flatten_the_object_change_nothing() {
     let mut editor = with_object();
     let before = editor.scene();
     for (field, text) in
@@ -432,7 +432,7 @@ fn a_camera_goes_to_analysis_by_its_properties_as_by_the_key() {
 }
 
 #[test]
-fn a_lens_that_makes_no_picture_is_refused_in_words() {
+fn an_invalid_lens_is_refused_with_a_message() {
     let mut editor = with_camera();
     let before = editor.scene();
     type_into(&mut editor, "Near", "5000");

@@ -1,4 +1,4 @@
-//! Axes of light.
+//! The axes of light: shading, arithmetic, powers, normalisation, faint light, highlights.
 
 use super::sense::{has_even_power, has_several_samples, if_any, is_lit, is_mirroring};
 use super::{Axis, AxisKind, Choice, Lesson};
@@ -12,7 +12,7 @@ pub(super) const SHADING: Axis = Axis {
     kind: AxisKind::Scored,
     choices: &[
         choice!("face" "Flat" light = LightAt::Face,
-            "Light is evaluated once a polygon (flat).",
+            "Light is evaluated once per polygon (flat).",
             "whole polygons, by as much as light changes across one"),
         choice!("vertex" "Gouraud" light = LightAt::Vertex,
             "Light is evaluated at vertices (Gouraud).",
@@ -21,18 +21,18 @@ pub(super) const SHADING: Axis = Axis {
             "Light is evaluated at each pixel (Phong).",
             "none with one sample; with several, highlights narrower than a pixel"),
         choice!("sample" "Per sample" light = LightAt::Sample,
-            "Light is evaluated in each place of a pixel that is looked at: a picture for each.",
+            "Light is evaluated at every sample: as slow as a picture for each.",
             "none",
             |_, _| Ok(()), has_several_samples),
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
         title: "Why Gouraud misses a highlight",
-        what: "Light can be worked out once a polygon, once a corner, once a pixel, or in each place \
-            of a pixel that is looked at.",
-        coarse: "Between corners colours are only mixed, so a highlight that falls inside a \
-            polygon is missed, and one on a corner is smeared along its edges.",
-        shows: "On the bright spot in the middle of the cushion, which no corner sees: the line of \
+        what: "Light can be computed once per polygon, per vertex, per pixel, or per sample of a \
+            pixel.",
+        coarse: "Between vertices, colours are only interpolated: a highlight inside a polygon is \
+            missed, and one at a vertex is smeared along the edges.",
+        shows: "On the bright spot in the middle of the cushion, which no vertex sees: the line of \
             the comparison cuts it in half.",
         scene: "highlight",
         choice: Some("vertex"),
@@ -43,7 +43,7 @@ pub(super) const ARITHMETIC: Axis = Axis {
     name: "arithmetic of light",
     key: "arithmetic",
     label: "Arithmetic",
-    what: "The numbers that light is computed in",
+    what: "The precision in which light is computed",
     kind: AxisKind::Scored,
     choices: &[
         choice!("f32" "32 bits" arithmetic = Arithmetic::F32,
@@ -57,9 +57,9 @@ pub(super) const ARITHMETIC: Axis = Axis {
     lesson: Lesson {
         title: "What 64 bits add to light",
         what: "Every number is rounded when it is stored: 32 bits keep 7 digits, 64 bits 16.",
-        coarse: "The digits that are lost almost never reach the eye: a byte changes only \
-            where the exact value lies next to the border between two steps.",
-        shows: "Nowhere without help: look at the picture of the error, amplified 256 times.",
+        coarse: "The lost digits are almost never visible: a byte changes only if the exact value \
+            is very close to the border between two steps.",
+        shows: "Only in the picture of the error, amplified 256 times.",
         scene: "ball",
         choice: None,
     },
@@ -69,38 +69,39 @@ pub(super) const POWER: Axis = Axis {
     name: "specular power",
     key: "power",
     label: "Power",
-    what: "How the power of a highlight is taken",
+    what: "How the power of a highlight is computed",
     kind: AxisKind::Scored,
     choices: &[
         choice!("schlick" "Schlick" power = SpecularPower::Schlick,
-            "Schlick's curve x / (n - n x + x): a model of its own, without any power.",
-            "51 byte steps at Ns 76.8: it is another curve"),
+            "Schlick's approximation x / (n - n x + x), which needs no power.",
+            "51 byte steps at Ns 76.8: the curve has another shape"),
         choice!("table-256" "256" power = SpecularPower::Table256,
             "The nearest of 256 powers in a table.",
             "35 byte steps at Ns 76.8"),
         choice!("table-1024" "1024" power = SpecularPower::Table1024,
-            "A line between two of 1024 powers in a table.",
+            "Linear interpolation in a table of 1024 powers.",
             "0.17 of a byte step at Ns 76.8"),
-        choice!("polynomial" "Own" power = SpecularPower::Polynomial,
-            "Whole exponents to 64 by squaring, others by a polynomial: sixteen at once.",
+        choice!("polynomial" "Polynomial" power = SpecularPower::Polynomial,
+            "Squares for whole exponents up to 64, and uses a polynomial for others: sixteen at \
+                once.",
             "0.001 of a byte step"),
         choice!("squaring" "2^k" power = SpecularPower::Squaring,
-            "Exponents that are a power of two by squaring alone.",
-            "rounding alone; other exponents as Own",
+            "Only squares if the exponent is a power of two.",
+            "rounding alone; other exponents as Polynomial",
             |scene, view| if_any(scene, view, has_even_power,
-                "no exponent that is shown is a power of two")),
+                "no material that is shown has a power of two as its exponent")),
         choice!("library" "libm" power = SpecularPower::Library,
-            "The power of the library libm, one at a time: the reference.",
+            "The power function of libm, one at a time: the reference.",
             "none"),
     ],
-    sense: |scene, view| if_any(scene, view, is_mirroring, "nothing that is shown mirrors light"),
+    sense: |scene, view| if_any(scene, view, is_mirroring, "nothing that is shown has a highlight"),
     lesson: Lesson {
         title: "Why quick powers leave rings",
-        what: "A highlight is a cosine taken to a power, and no processor has an instruction for \
-            that: it is computed, or looked up.",
-        coarse: "A table of 256 has steps where the power is steep, which show as rings; Schlick's \
-            curve has no power in it and a wider foot.",
-        shows: "On the bright spot of the ball: compare 256 and Own, then Schlick.",
+        what: "A highlight is a cosine raised to a power. No processor has an instruction for \
+            that, so it is computed or looked up in a table.",
+        coarse: "A table of 256 has steps where the power is steep, and they show as rings. \
+            Schlick's approximation gives a highlight that fades out more slowly.",
+        shows: "On the bright spot of the ball: compare 256 with Polynomial, then with Schlick.",
         scene: "ball",
         choice: None,
     },
@@ -110,26 +111,27 @@ pub(super) const NORMALISING: Axis = Axis {
     name: "normalisation",
     key: "normalising",
     label: "Normalisation",
-    what: "How vectors are brought to length 1",
+    what: "How vectors are normalised",
     kind: AxisKind::Scored,
     choices: &[
         choice!("rsqrt" "rsqrt" normalising = Normalising::Rsqrt,
-            "By the processor's estimate of one by the root. Differs between CPUs.",
-            "8 byte steps at Ns 76.8 with AVX2; another number on another CPU"),
+            "The processor's estimate of 1/sqrt. Differs between CPUs.",
+            "8 byte steps at Ns 76.8 with AVX2; differs between CPUs"),
         choice!("newton" "rsqrt + Newton step" normalising = Normalising::Newton,
-            "By the estimate and one step of Newton's. Differs between CPUs.",
+            "The estimate, refined by one Newton step. Differs between CPUs.",
             "0.01 of a byte step at Ns 76.8"),
         choice!("root" "1/sqrt" normalising = Normalising::Root,
-            "By one by the root, as exact as the numbers of light are.",
+            "A root and a division, as exact as the arithmetic of light.",
             "none"),
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
         title: "Why quick roots make highlights grainy",
-        what: "Directions are brought to length 1 by one by a root; processors have a quick \
-            instruction that knows 11 or 14 of its digits.",
-        coarse: "With the instruction alone vectors are a little too long or too short, and a \
-            power makes much of that: highlights get grainy, on each make of CPU in its own way.",
+        what: "A direction is normalised by 1/sqrt of its squared length. Processors have a quick \
+            instruction that knows 11 or 14 binary digits of that.",
+        coarse: "With the instruction alone, vectors are a little too long or too short, and the \
+            power of a highlight magnifies that: highlights become grainy, differently on each \
+            kind of CPU.",
         shows: "On the bright spot of the ball, in the picture of the error, amplified 16 times.",
         scene: "ball",
         choice: None,
@@ -140,25 +142,23 @@ pub(super) const FAINT: Axis = Axis {
     name: "faint light",
     key: "faint",
     label: "Faint light",
-    what: "What becomes of light too faint to matter",
+    what: "What happens to light that is too faint to see",
     kind: AxisKind::Scored,
     choices: &[
         choice!("left-out" "Left out" leave_out = LeaveOut::HalfStep,
-            "Light that together adds less than half a step of a byte is not evaluated.",
-            "one byte step at the most"),
+            "Skips lights that together add less than half a step of a byte.",
+            "at most one byte step"),
         choice!("kept" "Kept" leave_out = LeaveOut::Unseen,
-            "Only what changes no bit of the picture is left out.",
+            "Skips only what changes no bit of the picture.",
             "none"),
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "nothing that is shown is lit"),
     lesson: Lesson {
-        title: "What becomes of light too faint to see",
-        what: "A lamp that is far off, or a highlight at its rim, may add less light than a byte \
-            can tell.",
-        coarse: "What is left out together adds less than half a step, so that a byte may be \
-            rounded the other way: one step at the most.",
-        shows: "Nowhere without help: look at the picture of the error, amplified 256 times, where \
-            highlights fade out.",
+        title: "What happens to light that is too faint to see",
+        what: "A distant light, or the rim of a highlight, may add less than a byte can hold.",
+        coarse: "Everything that is left out adds less than half a step together, so a byte may be \
+            rounded the other way: it is at most one step off.",
+        shows: "Only in the picture of the error, amplified 256 times, where highlights fade out.",
         scene: "ball",
         choice: None,
     },
@@ -178,13 +178,13 @@ pub(super) const SPECULAR: Axis = Axis {
             "Blinn's highlight: (N.H)^Ns.",
             "a model, not scored"),
     ],
-    sense: |scene, view| if_any(scene, view, is_mirroring, "nothing that is shown mirrors light"),
+    sense: |scene, view| if_any(scene, view, is_mirroring, "nothing that is shown has a highlight"),
     lesson: Lesson {
         title: "Two shapes of a highlight: R.V and N.H",
-        what: "A highlight can be measured from the mirrored light to the eye (R.V), or from \
-            the normal to the half-way between light and eye (N.H).",
-        coarse: "Neither is an error of the other: with the same exponent N.H is about twice \
-            as wide, and it stretches where light grazes.",
+        what: "A highlight can be measured by the angle from the mirrored light to the eye (R.V), \
+            or from the normal to the half-way vector between light and eye (N.H).",
+        coarse: "Neither is an error of the other: with the same exponent N.H is about twice as \
+            wide, and it stretches where light grazes.",
         shows: "On the rim of a shiny ball lit from behind, and in the size of every highlight.",
         scene: "ball",
         choice: None,

@@ -1,10 +1,10 @@
 //! The axes of accuracy: every choice that trades exactness for time, in one table.
 //!
-//! Menus, the command line and the laboratory read this table, and a scene file's words are held to
-//! it by test: an axis is known everywhere by standing here. A row says what the axis is, how its
-//! choices are set in [`Settings`] and read back, which of them is the most exact, where the axis
-//! means something, and what there is to learn from it. The default of an axis is what
-//! [`Settings::default`] has.
+//! Menus, the command line and the laboratory read this table, and tests compare a scene file's
+//! words with it, so a row is all that a new axis needs. It says what the axis does, how its
+//! choices are set in [`Settings`] and read back, which of them is the most exact, in which scenes
+//! the axis changes anything, and what its lesson teaches. The default is that of
+//! [`Settings::default`].
 
 /// A choice that sets one field of the settings to one value.
 macro_rules! choice {
@@ -44,53 +44,53 @@ mod texture;
 use crate::accuracy::Settings;
 use crate::scene::{Scene, View};
 
-/// One way in which a picture can be more or less exact, or otherwise modelled.
+/// A decision between exact and fast, or between two models.
 #[derive(Debug)]
 pub struct Axis {
-    /// What it is called in text: "shading".
+    /// Its name in text: "shading".
     pub name: &'static str,
     /// Its option on the command line, and its field in a scene file.
     pub key: &'static str,
-    /// Its name on a narrow row: "Shading".
+    /// Its label in the interface: "Shading".
     pub label: &'static str,
-    /// What it says, as a phrase: "Where light is evaluated".
+    /// What it decides, as a phrase: "Where light is evaluated".
     pub what: &'static str,
-    /// Whether one choice is nearer to the truth than another.
+    /// Whether some choices are more exact than others.
     pub kind: AxisKind,
-    /// The choices, from the coarse to the exact where they are scored.
+    /// The choices, from the coarse to the exact if they are scored.
     pub choices: &'static [Choice],
-    /// Whether it changes anything in a scene that is seen so, and why not.
+    /// Whether it can change the picture of a scene in a view; else the reason.
     pub sense: fn(&Scene, &View) -> Result<(), &'static str>,
-    /// What it teaches.
+    /// What there is to learn about it.
     pub lesson: Lesson,
 }
 
 /// Whether the choices of an axis can be ranked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisKind {
-    /// The last choice is the most exact, and the others have an error against it.
+    /// The last choice is the most exact one; the errors of the others are measured against it.
     Scored,
-    /// The same, but the exact choice shows so much else that the references of all other axes leave
-    /// this one as it is.
+    /// As [`Self::Scored`], but the exact choice changes the picture so much that the references of
+    /// all other axes leave this one as it is.
     ScoredApart,
-    /// The choices are different models of the world: none is an error of another.
+    /// The choices are different models: none is an error of another.
     Model,
 }
 
-/// A place on an axis.
+/// A value of an axis.
 #[derive(Debug)]
 pub struct Choice {
     /// Its word on the command line.
     pub word: &'static str,
-    /// Its name on a button.
+    /// Its label on a button.
     pub label: &'static str,
     /// What it does, in a sentence.
     pub what: &'static str,
-    /// The error to expect of it, in words.
+    /// The error to expect, in words.
     pub error: &'static str,
-    /// Whether it is anything of its own in a scene that is seen so, and why not.
+    /// Whether it differs from the other choices for a scene in a view; else the reason.
     pub sense: fn(&Scene, &View) -> Result<(), &'static str>,
-    /// Whether it is anything of its own beside what such settings choose on other axes, and why not.
+    /// Whether it differs from the other choices beside those of the other axes; else the reason.
     pub among: fn(&Settings) -> Result<(), &'static str>,
     set: fn(&mut Settings),
     is: fn(&Settings) -> bool,
@@ -99,21 +99,21 @@ pub struct Choice {
 /// What an axis teaches, in three sentences.
 #[derive(Debug)]
 pub struct Lesson {
-    /// What a student would ask: "Why Gouraud misses a highlight".
+    /// The question that it answers: "Why Gouraud misses a highlight".
     pub title: &'static str,
-    /// What it is.
+    /// What the axis is about.
     pub what: &'static str,
-    /// What goes wrong when it is coarse.
+    /// What goes wrong with a coarse choice.
     pub coarse: &'static str,
     /// Where that shows.
     pub shows: &'static str,
-    /// The small scene, carried by the program, in which the difference is plain to see.
+    /// The built-in scene in which the difference is plain to see.
     pub scene: &'static str,
-    /// The word of the choice that is drawn with there, where it is not the coarsest.
+    /// The word of the choice that the scene opens with, if it is not the coarsest.
     pub choice: Option<&'static str>,
 }
 
-/// Every axis, in the order in which they are shown.
+/// Every axis, in the order of the interface.
 pub const AXES: &[Axis] = &[
     light::SHADING,
     light::ARITHMETIC,
@@ -133,40 +133,40 @@ pub const AXES: &[Axis] = &[
 ];
 
 impl Axis {
-    /// The axis of this key.
+    /// The axis with this key.
     #[must_use]
     pub fn named(key: &str) -> Option<&'static Self> {
         AXES.iter().find(|axis| axis.key == key)
     }
 
-    /// The choice of this word.
+    /// The choice with this word.
     #[must_use]
     pub fn choice(&self, word: &str) -> Option<&'static Choice> {
         self.choices.iter().find(|choice| choice.word == word)
     }
 
-    /// What its lesson begins with: the choice that goes most plainly wrong there.
+    /// The choice that its lesson opens with: the one that goes most plainly wrong.
     #[must_use]
     pub fn lesson_choice(&self) -> &'static Choice {
         let named = self.lesson.choice.and_then(|word| self.choice(word));
         named.unwrap_or(&self.choices[0])
     }
 
-    /// What these settings have chosen.
+    /// The choice of these settings.
     #[must_use]
     pub fn chosen(&self, settings: &Settings) -> &'static Choice {
         let chosen = self.choices.iter().find(|choice| choice.is(settings));
         chosen.expect("every value of a setting is a choice of its axis")
     }
 
-    /// What settings have that nobody has touched.
+    /// The choice of the default settings.
     #[must_use]
     pub fn default_choice(&self) -> &'static Choice {
         self.chosen(&Settings::default())
     }
 
-    /// The most exact choice that is anything of its own beside the others of these settings; of a model,
-    /// the one that they have.
+    /// The most exact choice that differs from the others with these settings; for a model, the
+    /// choice of these settings.
     #[must_use]
     pub fn most_exact(&self, settings: &Settings) -> &'static Choice {
         let own = |choice: &&Choice| (choice.among)(settings).is_ok();
@@ -178,11 +178,10 @@ impl Axis {
 }
 
 impl Choice {
-    /// Whether it is anything of its own in a scene that is seen so, drawn with such settings otherwise,
-    /// and why not.
+    /// Whether it differs from the other choices for a scene in a view with these settings.
     ///
     /// # Errors
-    /// The reason.
+    /// The reason why it does not.
     pub fn is_of_its_own(
         &self,
         scene: &Scene,

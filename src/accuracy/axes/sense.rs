@@ -1,4 +1,4 @@
-//! Where an axis means something.
+//! In which scenes an axis or a choice changes the picture.
 
 use glam::{DMat3, DVec3};
 
@@ -15,7 +15,7 @@ fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> 
     scene.objects.iter().filter(is_shown).map(|(_, object)| object)
 }
 
-/// Whether one of the parts that are shown has it; else the reason that is given.
+/// Whether one of the parts that are shown has a property; else the given reason.
 pub(super) fn if_any(
     scene: &Scene,
     view: &View,
@@ -45,13 +45,13 @@ pub(super) fn is_mirroring(object: &Object, part: u32) -> bool {
     is_lit(object, part) && object.part_look(part).material.specular.iter().any(|ks| *ks > 0.0)
 }
 
-/// Whether its highlight's exponent is a power of two.
+/// Whether the exponent of its highlight is a power of two.
 pub(super) fn has_even_power(object: &Object, part: u32) -> bool {
     let exponent = object.part_look(part).material.exponent;
     is_mirroring(object, part) && exponent >= 1.0 && power_of_two_near(exponent) == exponent
 }
 
-/// Whether one of the objects that are shown is so; else the reason that is given.
+/// Whether one of the objects that are shown has a property; else the given reason.
 pub(super) fn if_any_object(
     scene: &Scene,
     view: &View,
@@ -61,17 +61,17 @@ pub(super) fn if_any_object(
     if shown(scene, view).any(is) { Ok(()) } else { Err(reason) }
 }
 
-/// Whether pixels are looked at in several places.
+/// Whether pixels have several samples.
 pub(super) fn has_several_samples(settings: &Settings) -> Result<(), &'static str> {
     if settings.samples == Samples::One { Err("a pixel has one sample") } else { Ok(()) }
 }
 
-/// Any object.
+/// Holds for any object.
 pub(super) const fn is_any(_: &Object) -> bool {
     true
 }
 
-/// Whether it is lit, and placed by more than turning, moving and an even scale.
+/// Whether it is lit, and transformed by more than rotation, translation and uniform scale.
 pub(super) fn is_stretched(object: &Object) -> bool {
     let m = DMat3::from_mat4(*object.placement.now());
     let gram = m.transpose() * m;

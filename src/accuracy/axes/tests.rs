@@ -5,7 +5,7 @@ use crate::accuracy::{
 };
 
 #[test]
-fn each_choice_is_read_back_as_it_was_set_and_touches_no_other_axis() {
+fn each_choice_is_read_back_as_set_and_changes_no_other_axis() {
     for axis in AXES {
         for choice in axis.choices {
             let settings = choice.of(&Settings::default());
@@ -20,7 +20,7 @@ fn each_choice_is_read_back_as_it_was_set_and_touches_no_other_axis() {
 }
 
 #[test]
-fn the_reference_is_exact_in_everything_and_keeps_the_models() {
+fn the_reference_has_every_axis_at_its_most_exact_and_keeps_the_models() {
     let chosen = Settings {
         light: LightAt::Face,
         specular: SpecularForm::HalfVector,
@@ -36,7 +36,7 @@ fn the_reference_is_exact_in_everything_and_keeps_the_models() {
 }
 
 #[test]
-fn several_samples_are_judged_against_the_most_of_them_each_lit() {
+fn several_samples_are_judged_against_64_samples_each_lit() {
     let one = Settings::default();
     for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
         let reference = Settings { samples, ..one }.reference();
@@ -50,7 +50,7 @@ fn several_samples_are_judged_against_the_most_of_them_each_lit() {
 }
 
 #[test]
-fn presets_are_the_points_that_their_names_promise() {
+fn presets_have_the_settings_that_their_names_promise() {
     let of = |word: &str| AccuracyPreset::named(word).unwrap().of(&Settings::default());
     let draft = Settings { light: LightAt::Vertex, filter: Filter::Nearest, ..of("default") };
     assert_eq!(of("draft"), draft);
@@ -72,7 +72,7 @@ fn presets_are_the_points_that_their_names_promise() {
 }
 
 #[test]
-fn a_filter_makes_no_sense_without_a_texture_and_a_highlight_none_without_ks() {
+fn a_filter_changes_nothing_without_a_texture_nor_a_highlight_without_ks() {
     use crate::base::Shared;
     use crate::scene::*;
     let source = MeshSource {

@@ -36,10 +36,10 @@ struct Entry {
     is_folder: bool,
 }
 
-/// How a choice ends.
+/// The result of the browser.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Choice {
-    Chosen(PathBuf),
+    File(PathBuf),
     Cancelled,
 }
 
@@ -173,7 +173,7 @@ impl Browser {
             self.fault = Some("There is no such file.".to_owned());
             return None;
         }
-        Some(Choice::Chosen(path))
+        Some(Choice::File(path))
     }
 
     /// Lists the folder that the typed path is in.

@@ -281,7 +281,7 @@ impl Dialog {
     fn ui(&mut self, ui: &mut Ui) -> Option<End> {
         match self {
             Self::Browser(_, browser) => browser.ui(ui).map(|choice| match choice {
-                Choice::Chosen(path) => End::File(path),
+                Choice::File(path) => End::File(path),
                 Choice::Cancelled => End::Cancelled,
             }),
             Self::Unsaved(after) => unsaved_ui(ui, after),

@@ -1,4 +1,4 @@
-//! Reports loaded objects of which nothing is visible, and why.
+//! Reports loaded objects that are not visible, and why.
 //!
 //! The search runs on a thread of its own, with pictures of its own: the window does not wait.
 

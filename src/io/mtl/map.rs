@@ -4,17 +4,17 @@ use super::statement;
 use crate::io::obj::lines::decode;
 use crate::scene::Wrap;
 
-/// Which texture, and how it lies.
+/// The file of a texture, and its options.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Map {
-    /// As the file names it.
+    /// Its name in the MTL file.
     pub(super) name: String,
     pub(super) wrap: Wrap,
     pub(super) offset: [f64; 2],
     pub(super) scale: [f64; 2],
 }
 
-/// Reads them; `None` where there is no name.
+/// Parses the arguments; `None` if there is no name.
 pub(super) fn map(rest: &[u8]) -> Option<Map> {
     let mut map =
         Map { name: String::new(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
@@ -39,8 +39,8 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
 }
 
 impl Map {
-    /// Takes an option with the words that follow it; says how many of them are its arguments, or
-    /// `None` if the word is no option.
+    /// Applies an option with the words that follow it; returns how many of them are its arguments,
+    /// or `None` if the word is no option.
     fn option(&mut self, word: &str, following: &[(usize, &str)]) -> Option<usize> {
         let numbers = |most: usize| -> Vec<f64> {
             let words = following.iter().take(most);
@@ -69,9 +69,9 @@ impl Map {
     }
 }
 
-/// The words of a text, each with where it begins.
+/// The words of a text, each with its offset.
 fn words_with_places(text: &str) -> Vec<(usize, &str)> {
-    // The address of a part of a text tells where in the text it stands.
+    // The address of a part gives its offset in the text.
     let place = |word: &str| word.as_ptr().addr() - text.as_ptr().addr();
     text.split_whitespace().map(|word| (place(word), word)).collect()
 }

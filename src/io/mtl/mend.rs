@@ -1,7 +1,7 @@
-//! What a material is whose statements are missing or nonsense.
+//! Completes materials whose statements are missing or invalid.
 //!
-//! Exporters write Ka as a copy of Kd, or white, which lights everything from everywhere; Ks for
-//! surfaces that are not to shine; no Kd besides a texture. Each rule has its finding.
+//! Exporters write Ka as a copy of Kd, or as white, which lights everything from everywhere; Ks for
+//! dull surfaces; no Kd beside a texture. Each rule has its finding.
 
 use super::Statements;
 use crate::base::Shared;
@@ -20,7 +20,7 @@ impl Statements {
         let ambient = self.mended_ambient(diffuse, &mut note);
         let specular = self.mended_specular(&mut note);
         let exponent = self.exponent.filter(|exponent| *exponent >= 1.0).unwrap_or(1.0);
-        // Without a highlight its size does not matter.
+        // Without a highlight, its exponent does not matter.
         let nonsense = self.exponent.is_some_and(|exponent| exponent < 1.0);
         if nonsense || (self.exponent.is_none() && specular != [0.0; 3]) {
             note(FindingKind::MendedExponent);
@@ -35,7 +35,7 @@ impl Statements {
             return clamped(color, note);
         }
         note(FindingKind::MendedDiffuse);
-        // The texture named is what the material shows, found or not.
+        // A texture that is named counts, whether it was found or not.
         [if self.map.is_some() { 1.0 } else { 0.8 }; 3]
     }
 
@@ -77,7 +77,7 @@ impl Statements {
     }
 }
 
-/// Three numbers brought to 0 to 1.
+/// Three numbers, clamped to 0 to 1.
 fn clamped(color: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
     let within = color.map(|x| x.clamp(0.0, 1.0));
     if within != color {

@@ -1,8 +1,8 @@
-//! The materials of an MTL file, mended where exporters write nonsense.
+//! Reads the materials of an MTL file, and mends what exporters write wrongly.
 //!
-//! A file that cannot be understood is never a reason not to show the model: whatever is wrong is
-//! listed, and the rest is taken. So tobj reads the statements one by one ([`statement`]), and a
-//! statement that it refuses costs no other.
+//! A faulty file is never a reason not to show the model: whatever is wrong is listed, and the rest
+//! is used. tobj therefore reads the statements one by one ([`statement`]), and a statement that it
+//! refuses affects no other.
 
 mod map;
 mod mend;
@@ -26,19 +26,19 @@ use crate::scene::{FileMaterial, NONE, Texture, Wrap};
 /// The most texels of all textures of a model: 2 GB.
 const MOST_TEXELS: usize = 1 << 29;
 
-/// How many different textures are looked for: each is a few looks at the disk.
+/// How many different textures are looked for: each takes several accesses to the disk.
 const MOST_NAMES: usize = 10_000;
 
 /// The materials of the files that a model names, in their order.
 #[derive(Debug)]
 pub(super) struct Library<'a> {
     materials: Vec<FileMaterial>,
-    /// Where each of `materials` was read.
+    /// The origin of each of `materials`.
     origins: Vec<Origin>,
-    /// Of each file that was read.
+    /// The findings of each file that was read.
     findings: Vec<Findings>,
     pub(super) locator: Locator,
-    /// Where each name stands in `materials`.
+    /// The index of each name in `materials`.
     places: BTreeMap<String, u32>,
     /// The files that were read.
     read: BTreeSet<PathBuf>,
@@ -53,17 +53,17 @@ pub(super) struct Library<'a> {
     textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
 }
 
-/// Where a material was read, and how its opacity was given.
+/// The origin of a material, and how its opacity was given.
 #[derive(Debug)]
 struct Origin {
-    /// The place of its file's findings.
+    /// The index of its file's findings.
     file: usize,
     line: u32,
-    /// It is fully transparent by `Tr 1` and nothing else.
+    /// Whether it is fully transparent by `Tr 1` alone.
     hidden_by_tr: bool,
 }
 
-/// A material as its statements say it.
+/// A material as its statements give it.
 #[derive(Debug, Default)]
 struct Statements {
     name: String,
@@ -121,16 +121,16 @@ impl<'a> Library<'a> {
         self.findings.push(findings);
     }
 
-    /// The place of the material with this name.
+    /// The index of the material with this name.
     pub(super) fn place(&self, name: &str) -> Option<u32> {
         self.places.get(name).copied()
     }
 
-    /// The materials, and what was found in their files. `used` are the places of those that the
+    /// The materials, and the findings in their files. `used` are the indices of those that the
     /// model uses.
     ///
-    /// Some programs write `Tr 1` for opaque materials. It is taken so if it would hide all that is
-    /// used.
+    /// Some programs write `Tr 1` for opaque materials. It is ignored if it would hide everything
+    /// that is used.
     pub(super) fn finish(mut self, used: &BTreeSet<u32>) -> (Vec<FileMaterial>, Vec<Finding>) {
         let hidden = |place: &u32| self.origins[*place as usize].hidden_by_tr;
         let other_convention = !used.is_empty() && used.iter().all(hidden);
@@ -200,7 +200,7 @@ impl<'a> Library<'a> {
         Some(texture)
     }
 
-    /// The picture of a file, if it and those before it are not too large for the memory.
+    /// The picture of a file, if it and the earlier ones are not too large for the memory.
     fn picture(
         &mut self,
         path: &Path,
@@ -258,7 +258,7 @@ impl Statements {
             b"ks" => read = set(&mut self.specular, statement::specular(rest)),
             b"ns" => read = set(&mut self.exponent, statement::exponent(rest)),
             b"d" => {
-                // `d -halo x` fades towards the middle; x alone is taken.
+                // `d -halo x` fades towards the centre; only x is used.
                 let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
                 read = set(&mut self.opacity, statement::opacity(rest));
             }
@@ -275,7 +275,7 @@ impl Statements {
             _ if plain.starts_with(b"map_") => {
                 findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
             }
-            // Emission, refraction, filters, sharpness, and what physically based shading has.
+            // Emission, refraction, filters, sharpness, and physically based shading.
             b"ke" | b"kt" | b"ni" | b"tf" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc"
             | b"pcr" | b"aniso" | b"anisor" => {}
             _ => findings.add(FindingKind::Unknown, &decode(keyword), Some(line.number)),
@@ -286,7 +286,7 @@ impl Statements {
     }
 }
 
-/// Sets what could be read; says whether it could.
+/// Sets a value if it could be read; returns whether it could.
 fn set<T>(target: &mut Option<T>, value: Option<T>) -> bool {
     let read = value.is_some();
     if read {
@@ -367,7 +367,8 @@ mod tests {
 
     #[test]
     fn statements_that_stop_tobj_cost_no_other() {
-        // It panics on one or two numbers, and refuses fractions of illum and numbers with comments.
+        // It panics on one or two numbers, and refuses fractions of illum and numbers with
+        // comments.
         let (material, findings) = read(
             "newmtl m\nKa 0 0 0\nkd 0.5\nKd 0.1 0.2\nKs 1 1 1#x\n\
              illum 1.0\nillum 2.5\nNs\nns 9 # x\nD -halo 1\n",

@@ -2,8 +2,8 @@
 //!
 //! A call gets one statement in the form that tobj reads rightly: a grey is spelled as three
 //! numbers, comments are cut off, keywords have their usual case. A statement that tobj does not
-//! know reaches it under the keyword of one with the same argument. Numbers stay in f64, as the file
-//! says them.
+//! know reaches it under the keyword of one with the same argument. Numbers stay in f64, as the
+//! file says them.
 
 use std::panic::catch_unwind;
 
@@ -46,7 +46,7 @@ pub(super) fn texture(name: &str) -> Option<String> {
     material("map_Kd", name)?.diffuse_texture
 }
 
-/// What tobj makes of a statement; `None` if it refuses it.
+/// The material that tobj reads from a statement; `None` if it refuses it.
 fn material(keyword: &str, arguments: &str) -> Option<tobj::Material> {
     let text = format!("newmtl m\n{keyword} {arguments}\n");
     let read = || tobj::load_mtl_buf(&mut text.as_bytes());

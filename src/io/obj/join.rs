@@ -43,7 +43,7 @@ pub(super) struct Content {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
-    /// Red, green and blue of the vertices, 0 to 1; empty where none has a colour.
+    /// Red, green and blue of the vertices, 0 to 1; empty if none has a colour.
     pub(super) colors: Vec<[f32; 3]>,
     /// How many vertices the file has, those that are not finite among them.
     pub(super) vertices: u32,

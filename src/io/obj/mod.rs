@@ -92,7 +92,7 @@ pub(super) fn load_with(
     read_libraries(&mut library, &content, folder, &mut findings);
     let progress = progress.part(0.6, 1.0);
     let mut loaded = model(content, &file, library, options, findings, &progress)?;
-    // Complete, so that it holds wherever the program goes on to work.
+    // The path is absolute, so that it stays valid if the current folder changes.
     loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
     Ok(loaded)
 }

@@ -1,9 +1,9 @@
 //! The numbers of `v`, `vt` and `vn`, read by tobj.
 //!
-//! tobj gives a mesh what its faces name, in the order in which they name it. So the lines of a
-//! kind go to it with polygons between them, each of which names the lines since the last one:
-//! what comes back are all rows in the order of the file, used or not. tobj asks for its text line
-//! by line, and is given the lines where they stand in the chunk.
+//! tobj gives a mesh the rows that its faces name, in the order in which they name them. The lines
+//! of a kind therefore go to it with polygons between them, and each polygon names the lines since
+//! the last one: all rows come back in the order of the file, used or not. tobj reads its text line
+//! by line, and gets the lines directly from the chunk.
 //!
 //! tobj reads numbers in f64 here, so that materials keep their digits. Rounding a coordinate once
 //! more, to f32, gives the f32 that is nearest to its text unless the f64 lies halfway between two
@@ -14,8 +14,8 @@ use std::io::{BufRead, ErrorKind, Read};
 use std::mem::take;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// How many rows a polygon names at most. tobj looks each of them up in a table: this many fill one
-/// of 512 places.
+/// How many rows a polygon names at most. tobj looks each of them up in a table: this number fills
+/// one of 512 places.
 const POLYGON: usize = 448;
 
 /// A statement with a row of numbers.
@@ -44,7 +44,7 @@ pub(super) struct Rows<const N: usize> {
     pub(super) lost: Vec<u32>,
 }
 
-/// Where a line stands.
+/// The position of a line.
 #[derive(Clone, Copy, Debug)]
 struct RowLine {
     begin: u32,

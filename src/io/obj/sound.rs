@@ -13,7 +13,7 @@ pub(super) struct Totals {
 }
 
 impl Totals {
-    /// Where statement `i` stands among those that are kept; `None` if it is lost.
+    /// The index of statement `i` among those that are kept; `None` if it is lost.
     fn place(&self, i: u32) -> Option<u32> {
         match self.lost.binary_search(&i) {
             Ok(_) => None,

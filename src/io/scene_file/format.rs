@@ -1,8 +1,8 @@
 //! The text of a scene file.
 //!
-//! These types are the file's alone: the scene may change its own, and old files still open. A
-//! field that is not there has the value that a new scene gives it; a field that is not known is an
-//! error, for it may be a slip of the hand that would be lost on saving.
+//! These types belong to the file alone: the scene may change its own, and old files still open. A
+//! missing field has the value that a new scene gives it; an unknown field is an error, since it
+//! may be a typing error that would be lost on saving.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ use crate::scene::{
 /// The version that is written, and the latest that is read.
 pub(super) const VERSION: u32 = 1;
 
-/// What every version has.
+/// The part that every version has.
 #[derive(Debug, Deserialize)]
 pub(super) struct Head {
     pub(super) version: u32,
@@ -42,12 +42,12 @@ pub(super) struct FileScene {
     pub(super) settings: Settings,
 }
 
-/// Where a model comes from.
+/// The source of a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum FileModel {
-    /// One that the program carries, by its name.
+    /// A built-in one, by its name.
     Own(String),
-    /// A file, seen from the folder of the scene file.
+    /// A file, relative to the folder of the scene file.
     File {
         path: String,
         #[serde(default)]
@@ -86,7 +86,7 @@ pub(super) struct FileObject {
     pub(super) tint: [u8; 3],
     #[serde(default, with = "written_bare", skip_serializing_if = "Option::is_none")]
     pub(super) sides: Option<Sides>,
-    /// What earlier scene files have in place of `sides`.
+    /// The predecessor of `sides` in earlier scene files.
     #[serde(default, with = "written_bare", skip_serializing_if = "Option::is_none")]
     pub(super) two_sided: Option<bool>,
     #[serde(default = "yes")]
@@ -249,9 +249,10 @@ pub(super) struct FilePolygons {
     pub(super) shown: Numbers,
 }
 
-/// Numbers as `0-7 9 12-20`: a hundred thousand shown polygons are no hundred thousand lines.
+/// Numbers as ranges, `0-7 9 12-20`, so that a hundred thousand shown polygons do not take as many
+/// lines.
 ///
-/// They stay runs until it is known how many there can be.
+/// They stay ranges until it is known how many there can be.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub(super) struct Numbers(Vec<(u32, u32)>);
@@ -276,7 +277,7 @@ impl Numbers {
         let mut numbers = BTreeSet::new();
         let mut next = 0;
         for (first, last) in runs {
-            // However often a number is named, it is taken once.
+            // A number that is named repeatedly counts once.
             numbers.extend(next.max(first)..end.min(last.saturating_add(1)));
             next = next.max(last.saturating_add(1));
         }

@@ -1,9 +1,8 @@
-//! Scenes, to and from the disk.
+//! Saves and opens scene files.
 //!
 //! A file is a text that a person can read and change: RON, a version first, names for everything.
-//! Models are not in it but named, by their path seen from the file's folder, so that a folder with
-//! both can be moved. What is selected, what is shown and how exactly is saved with the scene; what
-//! could be undone is not.
+//! Models are not in it but named, by their path relative to the file's folder, so that a folder
+//! with both can be moved. The view and the settings are saved with the scene; the history is not.
 
 mod format;
 mod open;
@@ -28,7 +27,7 @@ use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::scene::{Crease, LoadOptions, Model, Scale, Scene, Texture, UpAxis, View, Winding};
 
-/// What the names of scene files end in, without the point.
+/// The ending of the names of scene files, without the dot.
 pub const SCENE_ENDING: &str = "marraztu";
 
 /// A scene from a file.
@@ -36,18 +35,18 @@ pub const SCENE_ENDING: &str = "marraztu";
 pub struct Opened {
     /// The scene.
     pub scene: Scene,
-    /// How it was last looked at.
+    /// Its view when it was saved.
     pub view: View,
-    /// How exactly it was last drawn.
+    /// The settings of accuracy when it was saved.
     pub settings: Settings,
-    /// What was mended, left out or odd in its models.
+    /// The findings in its models.
     pub findings: Vec<Finding>,
 }
 
-/// Why a scene file cannot be opened. Nothing has been changed then.
+/// Why a scene file cannot be opened. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SceneFileError {
-    /// The file cannot be read, or holds no scene that could be.
+    /// The file cannot be read, or its scene is not valid.
     #[error("{file}: {reason}")]
     File {
         /// Its path, as the user gave it.
@@ -62,17 +61,17 @@ pub enum SceneFileError {
         file: String,
         /// The line, counted from 1.
         line: usize,
-        /// The place in the line, in characters counted from 1.
+        /// The column, in characters counted from 1.
         column: usize,
         /// What is wrong.
         reason: String,
     },
-    /// Models or textures that it names are not there.
+    /// Models or textures that it names are missing.
     #[error("{file} names files that are not there: {}", listed(missing))]
     Missing {
         /// The scene file's path, as the user gave it.
         file: String,
-        /// The paths that the files should have, for which [`open_with`] is told the real ones.
+        /// The paths that the files should have; [`open_with`] takes the real ones.
         missing: Vec<PathBuf>,
     },
     /// A model or a texture cannot be loaded.
@@ -88,8 +87,7 @@ fn listed(paths: &[PathBuf]) -> String {
 /// Saves a scene; the file that was there is kept, with `~` after its name.
 ///
 /// # Errors
-/// If the file cannot be written, or something in the scene cannot. What was there before still
-/// is.
+/// If the file, or something in the scene, cannot be written. An existing file stays as it was.
 pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
     let text = to_text(path, scene, view, settings)?;
     replace(path, text.as_bytes(), Worth::Work)
@@ -98,7 +96,7 @@ pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Res
 /// The text that [`save()`] would write to `path`.
 ///
 /// # Errors
-/// Where something in the scene cannot be written.
+/// If something in the scene cannot be written.
 pub fn to_text(
     path: &Path,
     scene: &Scene,
@@ -109,7 +107,7 @@ pub fn to_text(
     let file = save::file_scene(scene, view, settings, &complete_folder(path)).map_err(fail)?;
     let config = ron::ser::PrettyConfig::new().new_line("\n");
     let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
-    // A number that is not finite could be written, but not be read again.
+    // A number that is not finite could be written, but not read again.
     let again = file_scene(&text, "").map_err(|error| fail(error.to_string()))?;
     open::check_counts(&again).map_err(fail)?;
     open::scene(&again, &StandIns, &mut Findings::default()).map_err(fail)?;
@@ -125,8 +123,8 @@ pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> 
     open_with(path, &BTreeMap::new(), progress)
 }
 
-/// Opens a scene file of which some models or textures are elsewhere: `relocated` says for the
-/// paths of [`SceneFileError::Missing`] where they are.
+/// Opens a scene file whose models or textures are partly elsewhere: `relocated` maps the paths of
+/// [`SceneFileError::Missing`] to the real ones.
 ///
 /// # Errors
 /// As [`open()`].
@@ -149,7 +147,7 @@ pub fn open_with(
     open_text(&text, &name, folder, relocated, progress)
 }
 
-/// Opens the text of a scene file that is called `name` and seen from `folder`.
+/// Opens the text of a scene file called `name`, with paths relative to `folder`.
 pub(in crate::io) fn open_text(
     text: &str,
     name: &str,
@@ -207,8 +205,8 @@ fn file_scene(text: &str, name: &str) -> Result<FileScene, SceneFileError> {
     Err(SceneFileError::Line { file: name.to_owned(), line, column, reason })
 }
 
-/// What tells one model of a scene file from another: its name or path, and how it is read. The
-/// crease angle comes last: files that differ in it alone stand side by side.
+/// The identity of a model in a scene file: its name or path, and how it is read. The crease angle
+/// comes last, so that files that differ only in it are neighbours.
 type ModelKey = (String, Option<(UpAxis, u64, Winding, u64)>);
 
 fn key(model: &FileModel) -> ModelKey {
@@ -238,7 +236,7 @@ impl<'a> Files<'a> {
         Self { folder, relocated, models, textures, pictures, findings: Vec::new() }
     }
 
-    /// Where a file is that the scene file names.
+    /// The path of a file that the scene file names.
     fn place(&self, path: &str) -> PathBuf {
         if examples::is_example(Path::new(path)) {
             return PathBuf::from(path);
@@ -369,7 +367,7 @@ impl open::Needs for Files<'_> {
     }
 }
 
-/// Stands in for models and textures if only the scene file itself is looked at.
+/// Replaces models and textures if only the scene file itself is checked.
 struct StandIns;
 
 impl open::Needs for StandIns {

@@ -1,7 +1,7 @@
-//! From the text of a file to a scene.
+//! Makes a scene from the text of a file.
 //!
-//! Items are put into the scene by the commands that put them there in the editor: what those
-//! refuse (an id used twice, a number that is NaN) is refused here.
+//! Items are inserted by the same commands as in the editor: whatever those refuse (an id used
+//! twice, a NaN) is refused here.
 
 use std::collections::BTreeSet;
 
@@ -19,13 +19,13 @@ use crate::scene::{
     SpotOwner, Steps, Texture, Tracked, View,
 };
 
-/// The most things of a kind in a scene: each is looked up among all others.
+/// The most items of a kind in a scene: each is looked up among all others.
 const MOST_ITEMS: usize = 10_000;
 
-/// Whether there are few enough things for a scene.
+/// Checks that there are few enough items for a scene.
 ///
 /// # Errors
-/// With the reason where there are not.
+/// The reason, if there are too many.
 pub(super) fn check_counts(file: &FileScene) -> Result<(), String> {
     let counts = [
         ("objects", file.objects.len()),
@@ -40,18 +40,18 @@ pub(super) fn check_counts(file: &FileScene) -> Result<(), String> {
     }
 }
 
-/// What a scene file needs from other files.
+/// The models and textures that a scene file needs.
 pub(super) trait Needs {
-    /// The model that the file means.
+    /// The model that the file names.
     fn model(&self, model: &FileModel) -> Shared<Model>;
-    /// The texture that the file means.
+    /// The texture that the file names.
     fn texture(&self, texture: &FileTexture) -> Shared<Texture>;
 }
 
 /// The scene and the view that a file holds.
 ///
 /// # Errors
-/// With the reason where it holds no scene that could be.
+/// The reason, if its scene is not valid.
 pub(super) fn scene(
     file: &FileScene,
     needs: &dyn Needs,
@@ -102,7 +102,7 @@ pub(super) fn scene(
     Ok((scene, view))
 }
 
-/// Notes spots and cameras that are bound to something that is not there.
+/// Notes spots and cameras that are attached to something that is missing.
 fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
     let mut note = |what: String| findings.add(FindingKind::OwnerMissing, &what, None);
     for (_, light) in scene.lights.iter() {
@@ -171,9 +171,8 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
     })
 }
 
-/// The sides that a scene file names; earlier files name whether there are two. The program's own
-/// models
-/// have one if nothing is named.
+/// The sides that a scene file names; earlier files say whether there are two. Built-in models have
+/// one if nothing is said.
 fn read_sides(object: &FileObject) -> Sides {
     let earlier = object.two_sided.map(|two| if two { Sides::Two } else { Sides::One });
     object.sides.or(earlier).unwrap_or(match object.model {
@@ -250,7 +249,7 @@ fn read_owner(owner: &FileOwner) -> Result<SpotOwner, String> {
     })
 }
 
-/// A direction of length 1, kept bit for bit where it has that length.
+/// A direction of length 1, kept bit for bit if it has that length already.
 fn read_direction(direction: [f64; 3]) -> Result<DVec3, String> {
     finite("its direction", &direction)?;
     let direction = DVec3::from_array(direction);
@@ -266,7 +265,7 @@ fn read_view(file: &FileView, scene: &Scene, findings: &mut Findings) -> Result<
     if translation <= 0.0 || rotation <= 0.0 || scaling <= 1.0 {
         return Err("the steps of the view have to be above 0, and of scaling above 1".to_owned());
     }
-    // A selection of something missing gives way to the selection of a new scene.
+    // If the selected item is missing, the selection of a new scene is used.
     let first = scene.first_view();
     let mut check = |what: &str, id: u32, is_there: bool| {
         if !is_there {

@@ -1,8 +1,8 @@
-//! Paths as a scene file writes them: seen from its own folder, with slashes.
+//! Paths in scene files: relative to the file's folder, with slashes.
 
 use std::path::{Component, Path, PathBuf};
 
-/// `path` without `.` and with `..` worked off, as far as the text of it tells.
+/// `path` without `.` and with `..` resolved, by its text alone.
 pub(super) fn plain(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
@@ -19,8 +19,8 @@ pub(super) fn plain(path: &Path) -> PathBuf {
     plain
 }
 
-/// `path` seen from `folder`, both complete; as it is where they have nothing in common. `None`
-/// where it cannot be written as text.
+/// `path` relative to `folder`, both absolute; `path` itself if they have nothing in common. `None`
+/// if it cannot be written as text.
 pub(super) fn relative(folder: &Path, path: &Path) -> Option<String> {
     let (folder, path) = (plain(folder), plain(path));
     let ours: Vec<Component<'_>> = folder.components().collect();

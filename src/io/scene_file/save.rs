@@ -1,7 +1,6 @@
-//! From a scene to the text of its file.
+//! Makes the text of a scene file.
 //!
-//! Every type of the scene is taken apart field by field, so that a field that is new there cannot
-//! be forgotten here.
+//! Every type of the scene is destructured, so that a new field cannot be forgotten here.
 
 use std::path::Path;
 
@@ -17,10 +16,10 @@ use crate::scene::{
     Scene, Spin, SpotOwner, Texture, View,
 };
 
-/// A scene with what is saved beside it, as a file holds it. `folder` is the file's, complete.
+/// A scene with its view and settings, in the types of the file. `folder` is the file's, absolute.
 ///
 /// # Errors
-/// With the reason where a model is in no file, or a path or a number cannot be written.
+/// The reason, if a model is in no file, or a path or a number cannot be written.
 pub(super) fn file_scene(
     scene: &Scene,
     view: &View,

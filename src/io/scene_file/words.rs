@@ -1,7 +1,6 @@
 //! Errors in the text of a scene file, worded for the person who reads it.
 //!
-//! The parser speaks of its own types and of Rust's. Its errors are told apart here, so that each
-//! has a sentence about the file.
+//! The parser's errors name its own types and Rust's. Here each gets a sentence about the file.
 
 use ron::Error;
 
@@ -47,7 +46,7 @@ pub(super) fn sentence(error: &Error) -> String {
             format!("{} is expected here, but {found} were found", plain(expected))
         }
         Error::Message(text) | Error::Io(text) => text.chars().take(MOST_SIGNS).collect(),
-        // What a scene file cannot bring about.
+        // No scene file can cause these.
         _ => "this cannot be understood".to_owned(),
     }
 }
@@ -121,7 +120,7 @@ fn is(outer: Option<&str>, name: &str) -> bool {
     outer == Some(name)
 }
 
-/// What a type of the file stands for.
+/// What a type of the file represents.
 fn thing(outer: Option<&str>) -> &str {
     match outer.unwrap_or_default() {
         "Head" | "FileScene" => "the scene",
@@ -170,7 +169,7 @@ fn plain(value: &str) -> String {
         "option" => "Some(...) or None",
         "unit" | "the unit value" => "()",
         _ if is_rust("struct") || is_rust("tuple") || is_rust("sequence") => "a list in brackets",
-        _ if is_rust("array") => "a list of as many values as there should be",
+        _ if is_rust("array") => "a list with the right number of values",
         _ if is_rust("enum") || is_rust("variant") || is_rust("identifier") => "a name",
         _ => return short(&value.replace("floating point", "number").replace("integer", "number")),
     };

@@ -9,9 +9,9 @@ use crate::scene::mesh::index;
 /// The corners around each vertex, vertex after vertex.
 #[derive(Debug)]
 pub(crate) struct Around {
-    /// Where the corners of each vertex begin, and where the last one's end.
+    /// The beginning of each vertex's corners, and the end of the last one's.
     starts: Vec<u32>,
-    /// Those of a vertex in ascending order.
+    /// The corners, in ascending order for each vertex.
     corners: Vec<u32>,
     polygons: Polygons,
 }
@@ -54,7 +54,7 @@ impl Around {
         }
         shares.into_par_iter().for_each(|(begin, starts, share)| {
             let mut places: Vec<u32> = starts.iter().map(|start| start - starts[0]).collect();
-            // The last one is where the corners end.
+            // The last one is the end of all corners.
             places.pop();
             for (corner, vertex) in (0..).zip(outlines.corners) {
                 if let Some(place) = places.get_mut(vertex.wrapping_sub(begin) as usize) {
@@ -66,7 +66,8 @@ impl Around {
         Self { starts, corners, polygons: Polygons::of(outlines) }
     }
 
-    /// The normals of all polygons, if some are so large that one cannot be computed for each corner.
+    /// The normals of all polygons, if some are so large that one cannot be computed for each
+    /// corner.
     pub(crate) fn large_normals(&self, outlines: &Outlines<'_>) -> Option<Vec<Option<DVec3>>> {
         matches!(self.polygons, Polygons::Mixed(_)).then(|| {
             let polygons = 0..outlines.starts.len() - 1;

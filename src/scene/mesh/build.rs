@@ -1,7 +1,7 @@
-//! From the parts of a mesh to the mesh: checks, normals of polygons, triangles.
+//! Builds a mesh from its source: checks, normals of polygons, triangles.
 //!
-//! Everything that is long is made by all threads, each its own stretch of it, and is the same
-//! whatever their number.
+//! All threads work on every long list, each on its own range. The result is the same for any
+//! number of threads.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,19 +21,19 @@ use crate::scene::{
 /// Polygons that a thread takes at a time.
 const SHARE: usize = 4096;
 
-/// The corners of all polygons, one after the other, as a list for each thing that they name.
+/// The corners of all polygons, as one list for each of their attributes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CornerLists {
     /// The vertex of each corner.
     pub positions: Vec<u32>,
-    /// Its place on the texture, or [`NONE`]; empty where no corner has one.
+    /// The uv of each corner, or [`NONE`]; empty if no corner has one.
     pub uvs: Vec<u32>,
-    /// Its normal, or [`NONE`]; empty where no corner has one.
+    /// The normal of each corner, or [`NONE`]; empty if no corner has one.
     pub normals: Vec<u32>,
 }
 
 impl CornerLists {
-    /// The place on the texture of a corner, or [`NONE`].
+    /// The uv of a corner, or [`NONE`].
     #[must_use]
     pub fn uv(&self, corner: usize) -> u32 {
         self.uvs.get(corner).copied().unwrap_or(NONE)
@@ -50,7 +50,7 @@ impl Mesh {
     /// Checks the parts, triangulates the polygons and computes their normals.
     ///
     /// # Errors
-    /// Where a number is not finite, an index out of range, or a list of the wrong length.
+    /// If a number is not finite, an index out of range, or a list of the wrong length.
     pub fn new(mut source: MeshSource) -> Result<Self, MeshError> {
         let corners = std::mem::take(&mut source.corners);
         let list = |some: fn(&SourceCorner) -> u32| -> Vec<u32> {
@@ -68,8 +68,8 @@ impl Mesh {
         Self::from_lists(source, corners)
     }
 
-    /// As [`Self::new`], of corners in lists, which take less room; those of `source` are passed
-    /// over.
+    /// As [`Self::new`], with corners in lists, which take less memory; those of `source` are
+    /// ignored.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -78,7 +78,7 @@ impl Mesh {
         let starts = running_sum(&source.arities);
         let triangles_only = corners.positions.len() == 3 * source.arities.len();
         let positions = || source.positions.iter().copied().map(dvec3);
-        // Two sums that have to be taken in their order, beside what is not summed.
+        // Two sums whose order has to be kept run beside everything that is not summed.
         let ((computed, corner_points), (bounds, mean)) = rayon::join(
             || points_and_corners(&source, &corners, &starts),
             || (Bounds::of(positions()), mean(positions())),
@@ -107,8 +107,8 @@ impl Mesh {
         })
     }
 
-    /// The mesh with another crease angle, which shares all but the normals with this one. A mesh
-    /// with smoothing groups stays as it is.
+    /// The mesh with another crease angle, which shares everything but the normals with this one. A
+    /// mesh with smoothing groups stays as it is.
     #[must_use]
     pub fn with_crease(&self, crease: Crease) -> Self {
         let smoothing = match &self.smoothing {
@@ -142,7 +142,7 @@ pub(crate) struct Outlines<'a> {
     pub(crate) places: &'a [[f32; 3]],
     /// The vertices of all corners.
     pub(crate) corners: &'a [u32],
-    /// Where each polygon's corners begin, and where the last one's end.
+    /// The beginning of each polygon's corners, and the end of the last one's.
     pub(crate) starts: &'a [u32],
 }
 
@@ -152,7 +152,7 @@ impl<'a> Outlines<'a> {
         &self.corners[self.starts[polygon] as usize..self.starts[polygon + 1] as usize]
     }
 
-    /// Where a polygon's corners are.
+    /// The positions of a polygon's corners.
     pub(crate) fn of(&self, polygon: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone + 'a {
         let places = self.places;
         self.vertices(polygon).iter().map(|vertex| dvec3(places[*vertex as usize]))
@@ -164,7 +164,7 @@ impl<'a> Outlines<'a> {
     }
 }
 
-/// Where each list begins whose lengths are `counts`, and where the last one ends.
+/// The beginnings of consecutive lists with these lengths, and the end of the last one.
 fn running_sum(counts: &[u32]) -> Vec<u32> {
     let mut sums = Vec::with_capacity(counts.len() + 1);
     let mut sum = 0;
@@ -191,7 +191,7 @@ pub(crate) fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
         let mut triangulator = Triangulator::default();
         for polygon in share * SHARE..count.min((share + 1) * SHARE) {
             let begin = outlines.starts[polygon];
-            // With all its digits: where a polygon is cut depends on them.
+            // The normal keeps all its digits, since they decide how the polygon is cut.
             let normal = outlines.normal(polygon).unwrap_or(DVec3::Z);
             let cut = triangulator.cut(outlines.of(polygon), normal);
             let polygon = index(polygon);
@@ -206,7 +206,7 @@ pub(crate) fn triangles(outlines: &Outlines<'_>) -> Vec<Triangle> {
 /// Checks that every index is in range and every number finite.
 fn check(source: &MeshSource, corners: &CornerLists) -> Result<(), MeshError> {
     let room = |what, length: usize| {
-        // A vertex may need one point a corner, and NONE is taken.
+        // A vertex may need one point per corner, and NONE is reserved.
         if length < NONE as usize / 4 { Ok(()) } else { Err(MeshError::TooMany(what)) }
     };
     room("vertices", source.positions.len())?;

@@ -1,7 +1,7 @@
-//! What of a mesh is found when it is first asked for.
+//! The derived data of a mesh, computed when it is first needed.
 //!
-//! A picture needs a part of it: to find the rest, and to have memory filled with it, would take
-//! longer than the drawing.
+//! A picture needs only a part of it; computing and storing the rest would take longer than
+//! drawing.
 
 use std::sync::OnceLock;
 
@@ -15,7 +15,7 @@ use crate::scene::mesh::points::shown_normal;
 use crate::scene::mesh::{Shape, index};
 use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
 
-/// A polygon that is lit as a whole. What is fetched together lies together, in one line of the cache.
+/// The data for flat shading of a polygon, in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub struct Facet {
@@ -25,7 +25,7 @@ pub struct Facet {
     pub normal: [f32; 3],
 }
 
-/// What follows from a mesh, and is computed when it is first needed.
+/// A kind of data that is derived from a mesh when it is first needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Derived {
     /// [`Mesh::corners`].
@@ -44,14 +44,14 @@ pub enum Derived {
     EdgeOrder,
 }
 
-/// What was asked for.
+/// The data that has been computed.
 #[derive(Default)]
 pub(crate) struct Found {
     corners: OnceLock<Vec<Corner>>,
     order: OnceLock<DrawOrder>,
 }
 
-/// What was asked for, and does not depend on the normals of vertices.
+/// The data that has been computed and does not depend on the normals of vertices.
 #[derive(Default)]
 pub(crate) struct FoundOfShape {
     triangles: OnceLock<Vec<Triangle>>,
@@ -94,7 +94,7 @@ impl Mesh {
         self.triangles()[triangle as usize].polygon
     }
 
-    /// Computes something of the mesh now, so that it can be read inside of
+    /// Computes some data of the mesh now, so that it can be read inside
     /// [`without_computing`](crate::base::once::without_computing).
     pub fn prepare(&self, what: Derived) {
         match what {
@@ -115,7 +115,7 @@ impl Mesh {
         self.triangles_only
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.shape.corners.len() - 2 * self.polygon_count()
@@ -139,7 +139,7 @@ impl Mesh {
         })
     }
 
-    /// What it takes to light each polygon as a whole.
+    /// The data for flat shading of each polygon.
     #[must_use]
     pub fn facets(&self) -> &[Facet] {
         get_or_compute::<Vec<_>>(&self.shape.found.facets, || {
@@ -152,8 +152,8 @@ impl Mesh {
         })
     }
 
-    /// Whether the polygons form closed surfaces: every edge is passed as often in one direction as in
-    /// the other.
+    /// Whether the polygons form closed surfaces: every edge is traversed as often in one direction
+    /// as in the other.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))
@@ -165,8 +165,8 @@ impl Mesh {
         get_or_compute(&self.found.order, || DrawOrder::along_curve(self))
     }
 
-    /// Has the mesh drawn in the order of its file, unless another one has been found: for the one
-    /// picture of a program that then ends, a better order is not worth finding.
+    /// Draws the mesh in the order of its file, unless a better one has been computed: for a
+    /// program that draws one picture and ends, that is not worth its time.
     pub fn draw_as_filed(&self) {
         get_or_compute(&self.found.order, || DrawOrder::as_filed(self));
     }

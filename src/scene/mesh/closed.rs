@@ -1,15 +1,15 @@
 //! Whether a mesh is a closed surface.
 //!
-//! A surface without boundary passes each of its edges as often in one direction as in the other.
-//! The sum over all sides (p, q) of polygons
+//! A surface without boundary traverses each of its edges as often in one direction as in the
+//! other. The sum over all sides (p, q) of polygons
 //!
 //! ```text
 //!   S = sum  h(p, q),   h(p, q) = -h(q, p)
 //! ```
 //!
 //! is then 0 for any such h. With h a hash of 64 bits, S of an open surface is 0 with a chance of
-//! 2^-64. It takes one pass and no table of edges. Corners are compared by their positions, so that a
-//! surface that a file takes apart at seams is closed all the same.
+//! 2^-64. This takes one pass and no table of edges. Corners are compared by their positions, so a
+//! surface that a file splits at seams is closed nevertheless.
 
 use rayon::prelude::*;
 
@@ -18,8 +18,9 @@ use crate::scene::mesh::build::Outlines;
 /// Polygons that a thread takes at a time.
 const SHARE: usize = 4096;
 
-/// Whether the polygons form closed surfaces, each with one side outside. Polygons that turn against
-/// their neighbours leave an edge that is passed twice in one direction: open.
+/// Whether the polygons form closed surfaces, each with one side outside. A polygon whose
+/// orientation differs from its neighbours' leaves an edge that is traversed twice in one
+/// direction, so the surface is open.
 pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
     let keys: Vec<u64> = outlines.places.par_iter().map(|place| key(*place)).collect();
     let polygons = (0..outlines.starts.len() - 1).into_par_iter().with_min_len(SHARE);
@@ -27,7 +28,7 @@ pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
     sum.reduce(|| 0, u64::wrapping_add) == 0
 }
 
-/// The hashes of a polygon's sides, added up.
+/// The sum of the hashes of a polygon's sides.
 fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
     let Some(mut from) = vertices.last().map(|last| keys[*last as usize]) else { return 0 };
     let mut sum = 0_u64;
@@ -50,8 +51,8 @@ fn key([x, y, z]: [f32; 3]) -> u64 {
     mixed(mixed(bits(x) << 32 | bits(y)) ^ bits(z))
 }
 
-/// A permutation of the 64-bit numbers without visible order: SplitMix64's, by Steele, Lea and Flood,
-/// "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
+/// The mixing function of SplitMix64, a permutation of the 64-bit numbers: Steele, Lea and
+/// Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
 const fn mixed(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,28 +1,28 @@
-//! Bounds of triangles that lie side by side, so that many are left out at once.
+//! Bounds of neighbouring triangles, so that many can be culled at once.
 //!
-//! A cluster knows a ball about its corners and a cone about its normals: Shirman and Abi-Ezzi, "The Cone
-//! of Normals Technique for Fast Processing of Curved Patches", Eurographics 1993. It also knows how thin
-//! its triangles are, since one that is thinner than a part of a pixel may be turned round by snapping.
-//! All bounds are rounded outwards.
+//! A cluster has a bounding sphere of its corners and a cone of its normals: Shirman and Abi-Ezzi,
+//! "The Cone of Normals Technique for Fast Processing of Curved Patches", Eurographics 1993. It
+//! also has the thinness of its triangles, since snapping may turn round a triangle that is thinner
+//! than a fraction of a pixel. All bounds are rounded outwards.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::scene::mesh::draw_order::DrawTriangle;
 
-/// Triangles of a cluster; the last has what is left.
+/// The triangles of a cluster; the last cluster may have fewer.
 pub const CLUSTER: usize = 64;
 
 /// Some triangles of a [`DrawOrder`](crate::scene::DrawOrder), in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cluster {
-    /// The middle of a ball about all corners.
+    /// The centre of the bounding sphere.
     pub centre: [f32; 3],
     /// Its radius.
     pub radius: f32,
-    /// The axis of a cone about the normals of all triangles, of no certain length.
+    /// The axis of the cone of all normals, of any length.
     pub axis: [f32; 3],
-    /// The cosine of its half-angle; -1 where a triangle has no normal.
+    /// The cosine of its half-angle; -1 if a triangle has no normal.
     pub cosine: f32,
     /// The least height of a triangle over its longest side.
     pub least_height: f32,
@@ -30,11 +30,11 @@ pub struct Cluster {
     pub least_area: f32,
 }
 
-/// More than what rounding to f32 takes from a number, as a part of it.
+/// An upper bound of the relative error of rounding to f32.
 const ROUNDING: f64 = 1e-6;
 
 impl Cluster {
-    /// The bounds of triangles whose corners `place` knows.
+    /// The bounds of triangles; `place` gives the positions of their corners.
     #[expect(clippy::cast_possible_truncation, reason = "rounded outwards")]
     fn of(triangles: &[DrawTriangle], place: impl Fn(u32) -> DVec3) -> Self {
         let corners = || triangles.iter().flat_map(|triangle| triangle.vertices).map(&place);
@@ -70,7 +70,7 @@ impl Cluster {
     }
 }
 
-/// The clusters of some triangles, whose corners `place` knows.
+/// The clusters of some triangles; `place` gives the positions of their corners.
 pub(crate) fn clusters(
     triangles: &[DrawTriangle],
     place: impl Fn(u32) -> DVec3 + Sync,
@@ -91,10 +91,10 @@ mod tests {
     }
 
     #[test]
-    fn every_corner_lies_in_the_ball_and_every_normal_in_the_cone() {
+    fn every_corner_lies_in_the_sphere_and_every_normal_in_the_cone() {
         let mut state = 1;
         for round in 0..200 {
-            // Leaves that are nearly flat, far from the origin, to triangles in all directions.
+            // From nearly flat patches far from the origin to triangles in all directions.
             let rough = [1e-3, 0.1, 1.0][round % 3];
             let away = DVec3::splat([0.0, 5e3][round % 2]);
             let mut place = || {

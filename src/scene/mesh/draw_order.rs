@@ -1,9 +1,9 @@
 //! A mesh in the order in which it is drawn fastest.
 //!
-//! Triangles along a Morton curve through the mesh's box, vertices numbered by first use: what is
-//! near in space is near in memory. Each triangle keeps its number in the file's order, which decides
-//! between equal depths, so that the order cannot show. Morton, "A Computer Oriented Geodetic Data
-//! Base", IBM 1966.
+//! Triangles follow a Morton curve through the mesh's box, and vertices are numbered by first use,
+//! so that neighbours in space are neighbours in memory. Each triangle keeps its number in the
+//! file's order, which decides between equal depths; the order is therefore invisible. Morton, "A
+//! Computer Oriented Geodetic Data Base", IBM 1966.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -15,9 +15,9 @@ use crate::scene::{Bounds, Mesh, NONE, dvec3};
 /// A triangle as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawTriangle {
-    /// Its vertices, as places in [`DrawOrder::x`].
+    /// Its vertices, as indices into [`DrawOrder::x`].
     pub vertices: [u32; 3],
-    /// Its place in [`Mesh::triangles`].
+    /// Its index in [`Mesh::triangles`].
     pub number: u32,
 }
 
@@ -34,7 +34,7 @@ impl DrawTriangle {
 /// The triangles and vertices of a mesh in the order in which they are drawn fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawOrder {
-    /// Where the vertices are, coordinate by coordinate; only those that a triangle uses.
+    /// The x coordinates of the vertices that triangles use.
     pub x: Vec<f32>,
     /// See [`Self::x`].
     pub y: Vec<f32>,
@@ -42,39 +42,38 @@ pub struct DrawOrder {
     pub z: Vec<f32>,
     /// The triangles.
     pub triangles: Vec<DrawTriangle>,
-    /// What is known of the triangles many at a time; empty where nobody has looked.
+    /// The clusters of the triangles; empty if they were not computed.
     pub clusters: Vec<Cluster>,
-    /// For each triangle of the mesh its place in [`Self::triangles`]; empty where that is its
-    /// number.
+    /// For each triangle of the mesh its index in [`Self::triangles`]; empty if that is its number.
     places: Vec<u32>,
     smooth: Points,
-    /// Empty where no polygon has normals of the file's own.
+    /// Empty if no polygon has normals of the file.
     filed: Points,
 }
 
 /// The points of a mesh with one kind of normals, numbered by first use.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Points {
-    /// The points of each triangle, in the order of [`DrawOrder::triangles`]; empty where they have
-    /// the numbers of its vertices, each of which has one normal.
+    /// The points of each triangle, in the order of [`DrawOrder::triangles`]; empty if they have
+    /// the numbers of its vertices, since each vertex has one normal.
     of: Vec<[u32; 3]>,
     /// Their normals, of length 1.
     pub normals: Vec<[f32; 3]>,
-    /// Their vertices, as places in [`DrawOrder::x`]; empty where they have the numbers of these.
+    /// Their vertices, as indices into [`DrawOrder::x`]; empty if both have the same numbers.
     pub vertices: Vec<u32>,
 }
 
-/// Which of a file's normals are meant.
+/// The normals of vertices that light uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalSource {
-    /// The mean of those of the faces around.
+    /// The means of the normals of the faces around each vertex.
     Computed,
-    /// The file's own, where a polygon has them.
+    /// The file's normals, for polygons that have them.
     File,
 }
 
 impl Points {
-    /// The points of a triangle of the mesh, with these vertices, in the order that they belong to.
+    /// The points of a triangle with these vertices, in the draw order `order`.
     #[inline(always)]
     #[must_use]
     pub fn of(&self, order: &DrawOrder, number: u32, vertices: [u32; 3]) -> [u32; 3] {
@@ -100,14 +99,14 @@ impl DrawOrder {
         Self { clusters: clusters(&order.triangles, place), ..order }
     }
 
-    /// As the mesh has them.
+    /// In the order of the file.
     pub(crate) fn as_filed(mesh: &Mesh) -> Self {
         let triangle = |number| DrawTriangle { vertices: vertices(mesh, number as usize), number };
         let numbers = (0..index(mesh.triangle_count())).into_par_iter();
         Self::of(mesh, numbers.map(triangle).collect())
     }
 
-    /// Triangles in this order, which name vertices of the mesh.
+    /// Numbers the vertices of these triangles, which still refer to vertices of the mesh.
     fn of(mesh: &Mesh, mut triangles: Vec<DrawTriangle>) -> Self {
         // Vertices by their first use.
         let mut places = vec![NONE; mesh.positions().len()];
@@ -143,14 +142,14 @@ impl DrawOrder {
         order
     }
 
-    /// The vertices of a triangle of the mesh, as places in [`Self::x`].
+    /// The vertices of a triangle of the mesh, as indices into [`Self::x`].
     #[inline(always)]
     #[must_use]
     pub fn vertices_of(&self, number: u32) -> [u32; 3] {
         self.triangles[self.place(number) as usize].vertices
     }
 
-    /// Where a triangle of the mesh stands in [`Self::triangles`].
+    /// The index of a triangle of the mesh in [`Self::triangles`].
     #[inline(always)]
     fn place(&self, number: u32) -> u32 {
         if self.places.is_empty() { number } else { self.places[number as usize] }
@@ -189,7 +188,7 @@ impl DrawOrder {
         points
     }
 
-    /// Where a vertex is.
+    /// The position of a vertex.
     #[inline(always)]
     #[must_use]
     pub fn position(&self, vertex: u32) -> [f64; 3] {
@@ -203,7 +202,7 @@ fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
     mesh.triangle(number).map(|corner| mesh.shape.corners[corner])
 }
 
-/// The place of a triangle's middle on the curve, ten bits for each axis.
+/// The position of a triangle's centre on the curve, with ten bits for each axis.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

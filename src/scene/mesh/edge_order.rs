@@ -1,8 +1,8 @@
 //! The edges of a mesh in the order in which they are drawn fastest.
 //!
-//! Along the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so that what is near in space
-//! is near in memory. Each edge keeps its number among the mesh's edges, which decides between equal
-//! depths, so that the order cannot show.
+//! Edges follow the vertices as [`DrawOrder`](crate::scene::DrawOrder) numbers them, so that
+//! neighbours in space are neighbours in memory. Each edge keeps its number among the mesh's edges,
+//! which decides between equal depths; the order is therefore invisible.
 
 use crate::scene::mesh::index;
 use crate::scene::{Mesh, NONE};
@@ -10,16 +10,16 @@ use crate::scene::{Mesh, NONE};
 /// An edge as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawEdge {
-    /// The vertices at its ends, as places in [`DrawOrder::x`](crate::scene::DrawOrder::x); [`NONE`] where no
-    /// triangle uses them.
+    /// The vertices at its ends, as indices into [`DrawOrder::x`](crate::scene::DrawOrder::x);
+    /// [`NONE`] if no triangle uses them.
     pub vertices: [u32; 2],
-    /// Its two polygons, or the same twice where it has one; the second is [`NONE`] where it has more.
+    /// Its two polygons, or its only one twice; the second is [`NONE`] if it has more.
     pub polygons: [u32; 2],
-    /// Its place in [`Mesh::edges`].
+    /// Its index in [`Mesh::edges`].
     pub number: u32,
 }
 
-/// The edges of a mesh as they are drawn, and whether all of its polygons are triangles.
+/// The edges of a mesh in the order in which they are drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeOrder {
     /// The edges.

@@ -9,7 +9,7 @@ use crate::scene::mesh::{Mesh, index};
 pub struct Edge {
     /// The vertices at its ends, the smaller index first.
     pub ends: [u32; 2],
-    /// Where its polygons begin in the list that [`Mesh::edge_polygons`] reads.
+    /// The beginning of its polygons in the list that [`Mesh::edge_polygons`] reads.
     first: u32,
     count: u32,
 }

@@ -1,8 +1,9 @@
 //! The computed normals of corners if some edges stay sharp.
 //!
-//! The faces around a vertex fall into fans: the faces of a fan are smooth with each other, directly
-//! or through other faces of the fan, and their corners have the mean of the fan's unit normals. The
-//! first fan has the point with the vertex's own number, the others have further points.
+//! The faces around a vertex fall into fans: the faces of a fan are smooth with each other,
+//! directly or through other faces of the fan, and their corners have the mean of the fan's unit
+//! normals. The first fan has the point with the vertex's own number, the others have further
+//! points.
 //!
 //! In a fine model nearly every vertex has one fan, which is found without looking at its edges: if
 //! the unit normals n_i of k faces have the sum S, then |S| = sum of n_i . S/|S|, so
@@ -10,8 +11,8 @@
 //!   |S| >= k - 1 + cos(crease / 2)
 //!
 //! holds only if no n_i is farther from S than half the crease, and no two are farther apart than
-//! the crease. What remains to be seen is whether the faces are connected. At all other vertices
-//! faces are joined edge by edge, in time k log k.
+//! the crease. It remains to check that the faces are connected. At all other vertices, faces are
+//! joined edge by edge, in time k log k.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -23,8 +24,8 @@ use crate::scene::mesh::index;
 use crate::scene::mesh::points::{cancels, narrow, shown_normal};
 use crate::scene::{Crease, NONE, Point, dvec3};
 
-/// How much sharper than the crease angle a smooth edge may be, in degrees. Files have numbers of
-/// some six digits, so a right angle in them is right only up to that.
+/// How much sharper than the crease angle a smooth edge may be, in degrees. Numbers in files have
+/// some six digits, so a right angle is exact only up to that.
 const TOLERANCE: f64 = 1e-4;
 
 /// More faces than this around a vertex or an edge are sorted before they are compared.
@@ -36,13 +37,13 @@ const BLOCK: usize = 4096;
 /// Which faces around a vertex are smooth with each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Rule<'a> {
-    /// Those that share an edge at the vertex that is not too sharp.
+    /// Those that share a smooth edge at the vertex.
     Crease(Limit),
-    /// Those of the same smoothing group; each polygon's, 0 for none.
+    /// Those in the same smoothing group: the group of each polygon, 0 for none.
     Groups(&'a [u32]),
 }
 
-/// The crease angle c, as it is compared with.
+/// The crease angle c, in the forms that comparisons need.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limit {
     /// cos^2(c / 2)
@@ -73,8 +74,8 @@ impl Limit {
     }
 }
 
-/// The points of all corners, the first of them one a vertex; and the point of each corner, or
-/// nothing if each has its vertex's. `sums` are those of the unit normals around each vertex.
+/// The points of all corners, beginning with one for each vertex, and the point of each corner, or
+/// nothing if each has its vertex's. `sums` are the sums of the unit normals around each vertex.
 pub(crate) fn fan_points(
     outlines: &Outlines<'_>,
     sums: &[DVec3],
@@ -101,7 +102,7 @@ pub(crate) fn fan_points(
     (points, of_corners)
 }
 
-/// What a run of vertices has beyond a point each.
+/// The points of a block of vertices beyond one for each vertex.
 #[derive(Debug, Default)]
 struct Block {
     points: Vec<Point>,
@@ -109,18 +110,18 @@ struct Block {
     corners: Vec<(u32, u32)>,
 }
 
-/// The faces around one vertex, while they are sorted into fans. Faces have places in the order of
+/// The faces around one vertex, while they are sorted into fans. Faces are indexed in the order of
 /// the polygons; those without area are left out.
 #[derive(Debug, Default)]
 struct Fans {
     polygons: Vec<u32>,
     normals: Vec<DVec3>,
-    /// Each corner with the place of its face.
+    /// Each corner with the index of its face.
     corners: Vec<(u32, u32)>,
     /// An earlier face of the same fan; the first one names itself.
     earlier: Vec<u32>,
     sums: Vec<DVec3>,
-    /// Where the point of each face is among those of the block; [`NONE`] for the vertex's own.
+    /// The index of each face's point among those of the block; [`NONE`] for the vertex's own.
     points: Vec<u32>,
     /// The other ends of edges, or smoothing groups, each with a face.
     keys: Vec<(u32, u32)>,
@@ -182,8 +183,9 @@ impl Sorter<'_> {
         }
     }
 
-    /// Whether all faces around a vertex are one fan, as far as that is quickly seen. Those without
-    /// area, and those that name the vertex twice, make the sum of the normals too short for it.
+    /// Whether all faces around a vertex are one fan, as far as a quick check can tell. Faces
+    /// without area, and those that name the vertex twice, make the sum of the normals too short
+    /// for it.
     #[expect(clippy::cast_precision_loss, reason = "few faces")]
     fn is_one_fan(&self, corners: &[u32], sum: DVec3) -> bool {
         if corners.len() < 2 {
@@ -210,7 +212,7 @@ impl Sorter<'_> {
             *sides = self.neighbours(*corner);
         }
         let sides = &mut sides[..corners.len()];
-        // The ends of a row of faces, which the others are put to.
+        // The ends of a row of faces, to which the others are appended.
         let [mut a, mut b] = sides[0];
         for done in 1..sides.len() {
             let meets = |[p, q]: &[u32; 2]| [a, b].contains(p) || [a, b].contains(q);

@@ -1,13 +1,13 @@
 //! The shape of a model: polygons of any size over shared vertices.
 //!
-//! A vertex is a `v` of the file; polygons that name the same `v` share it, whatever group they stand
-//! in. Where light is evaluated, a vertex and a normal together make a [`Point`]; each corner of a
-//! polygon names the point it has with computed normals and the one it has with the file's.
+//! A vertex is a `v` of the file; polygons that name the same `v` share it, in whatever group they
+//! are. For light, a vertex and a normal make a [`Point`]; each corner of a polygon has one point
+//! with computed normals and one with the file's.
 //!
-//! What not every picture needs is found when it is first asked for (`cache`). Meshes that
-//! differ in their computed normals alone share everything else.
+//! Data that not every picture needs is computed when it is first needed (`cache`). Meshes that
+//! differ only in their computed normals share everything else.
 //!
-//! The fields are private and the constructor checks them, so that no index is ever out of range.
+//! The fields are private and the constructor checks them, so no index is ever out of range.
 
 mod around;
 pub(super) mod build;
@@ -28,17 +28,17 @@ use crate::base::Shared;
 use crate::scene::mesh::cache::{Found, FoundOfShape};
 use crate::scene::mesh::points::CornerPoints;
 
-/// In place of an index: there is none.
+/// Stands for a missing index.
 pub const NONE: u32 = u32::MAX;
 
-/// What a mesh is made of. Indices count from 0.
+/// The source of a mesh. Indices count from 0.
 #[derive(Clone, Debug, Default)]
 pub struct MeshSource {
-    /// Where vertices are, in object space; all finite.
+    /// The positions of vertices, in object space; all finite.
     pub positions: Vec<[f32; 3]>,
-    /// Red, green and blue of each vertex, 0 to 1; empty where the file has none.
+    /// Red, green and blue of each vertex, 0 to 1; empty if the file has none.
     pub colors: Vec<[f32; 3]>,
-    /// Places on the texture, (0, 0) lower left; all finite.
+    /// Texture coordinates, with (0, 0) at the lower left; all finite.
     pub uvs: Vec<[f32; 2]>,
     /// Normals of the file, of any length; all finite.
     pub normals: Vec<[f32; 3]>,
@@ -48,9 +48,9 @@ pub struct MeshSource {
     pub arities: Vec<u32>,
     /// The part that each polygon belongs to.
     pub polygon_parts: Vec<u32>,
-    /// The parts; at least one where there is a polygon.
+    /// The parts; at least one if there is a polygon.
     pub parts: Vec<Part>,
-    /// Which polygons share the normals that are computed.
+    /// Which polygons share computed normals.
     pub smoothing: Smoothing,
 }
 
@@ -59,7 +59,7 @@ pub struct MeshSource {
 pub struct SourceCorner {
     /// Its vertex.
     pub position: u32,
-    /// Its place on the texture, or [`NONE`].
+    /// Its texture coordinates, or [`NONE`].
     pub uv: u32,
     /// Its normal, or [`NONE`].
     pub normal: u32,
@@ -68,9 +68,9 @@ pub struct SourceCorner {
 /// A run of a file's `o`, `g` and `usemtl`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// As the file calls it.
+    /// Its name in the file.
     pub name: String,
-    /// Its material, as a place in the model's list; `None` where the file names none that exists.
+    /// Its material, as an index into the model's list; `None` if the file names none that exists.
     pub material: Option<u32>,
 }
 
@@ -79,15 +79,15 @@ pub struct Part {
 pub struct Corner {
     /// Its vertex.
     pub position: u32,
-    /// Its place on the texture, or [`NONE`].
+    /// Its texture coordinates, or [`NONE`].
     pub uv: u32,
     /// Its point with the computed normal.
     pub smooth: u32,
-    /// Its point with the file's normal where every corner of the polygon has one, else `smooth`.
+    /// Its point with the file's normal if every corner of the polygon has one, else `smooth`.
     pub filed: u32,
 }
 
-/// Where light is evaluated for vertices: a vertex with one of its normals.
+/// A vertex with one of its normals, at which light is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// The vertex.
@@ -99,13 +99,13 @@ pub struct Point {
 /// A triangle of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Triangle {
-    /// Its corners, as places in [`Mesh::corners`], in the polygon's own order of rotation.
+    /// Its corners, as indices into [`Mesh::corners`], with the orientation of the polygon.
     pub corners: [u32; 3],
     /// The polygon.
     pub polygon: u32,
 }
 
-/// The shape of a model: polygons over shared vertices, and what follows from them.
+/// The shape of a model: polygons over shared vertices, with the data derived from them.
 pub struct Mesh {
     pub(super) shape: Shared<Shape>,
     pub(super) smoothing: Smoothing,
@@ -116,14 +116,14 @@ pub struct Mesh {
     pub(super) found: Found,
 }
 
-/// What of a mesh does not depend on its normals.
+/// The part of a mesh that does not depend on computed normals.
 pub(super) struct Shape {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) colors: Vec<[f32; 3]>,
     pub(super) uvs: Vec<[f32; 2]>,
     /// The vertex of each corner.
     pub(super) corners: Vec<u32>,
-    /// The place on the texture of each corner, or [`NONE`]; empty if no corner has one.
+    /// The texture coordinates of each corner, or [`NONE`]; empty if no corner has one.
     pub(super) corner_uvs: Vec<u32>,
     pub(super) starts: Vec<u32>,
     pub(super) polygon_parts: Vec<u32>,
@@ -147,7 +147,7 @@ impl PartialEq for Shape {
     }
 }
 
-/// What is worked out when it is first asked for is left out: it is no part of what a mesh is.
+/// Derived data is not compared: it follows from the rest.
 impl std::fmt::Debug for Mesh {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Mesh")
@@ -162,10 +162,10 @@ impl std::fmt::Debug for Mesh {
 /// Why a mesh cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
-    /// A list is not as long as another says it is.
+    /// A list has the wrong length.
     #[error("the mesh's list of {0} has the wrong length")]
     Length(&'static str),
-    /// A number is infinite or none.
+    /// A number is infinite or NaN.
     #[error("the mesh has {0} that are not finite")]
     NotFinite(&'static str),
     /// An index points past the end.
@@ -174,7 +174,7 @@ pub enum MeshError {
     /// A polygon has fewer than three corners.
     #[error("polygon {0} has fewer than three corners")]
     Short(u32),
-    /// More than 2^32 - 2 of something.
+    /// A list has more than 2^32 - 2 elements.
     #[error("the mesh has more {0} than can be numbered")]
     TooMany(&'static str),
 }
@@ -189,32 +189,33 @@ impl PartialEq for Mesh {
 }
 
 impl Mesh {
-    /// Where the vertices are, in object space.
+    /// The positions of the vertices, in object space.
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
         &self.shape.positions
     }
 
-    /// Red, green and blue of each vertex, or nothing where the file has no colours.
+    /// Red, green and blue of each vertex; empty if the file has no colours.
     #[must_use]
     pub fn colors(&self) -> &[[f32; 3]] {
         &self.shape.colors
     }
 
-    /// Places on the texture.
+    /// Texture coordinates.
     #[must_use]
     pub fn uvs(&self) -> &[[f32; 2]] {
         &self.shape.uvs
     }
 
-    /// Vertices with their normals. The first are one a vertex, each with a computed normal, in the
-    /// order of [`Self::positions`]; further computed normals follow, then those of the file.
+    /// Vertices with their normals. The first ones are one for each vertex, with a computed normal,
+    /// in the order of [`Self::positions`]; further computed normals follow, then those of the
+    /// file.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// How many polygons there are.
+    /// The number of polygons.
     #[must_use]
     pub fn polygon_count(&self) -> usize {
         self.shape.polygon_parts.len()
@@ -226,7 +227,7 @@ impl Mesh {
         &self.corners()[self.corners_of(polygon)]
     }
 
-    /// Where the corners of one polygon stand in [`Self::corners`].
+    /// The range of one polygon's corners in [`Self::corners`].
     #[must_use]
     pub fn corners_of(&self, polygon: u32) -> std::ops::Range<usize> {
         self.shape.starts[polygon as usize] as usize
@@ -251,7 +252,7 @@ impl Mesh {
         mean(self.outlines().of(polygon as usize))
     }
 
-    /// Where the triangles of one polygon stand in [`Self::triangles`].
+    /// The range of one polygon's triangles in [`Self::triangles`].
     #[must_use]
     pub fn triangles_of(&self, polygon: u32) -> std::ops::Range<usize> {
         // Every polygon before this one has two triangles less than it has corners.
@@ -266,31 +267,31 @@ impl Mesh {
         &self.shape.parts
     }
 
-    /// Whether any polygon has normals of the file's own.
+    /// Whether any polygon has normals of the file.
     #[must_use]
     pub const fn has_file_normals(&self) -> bool {
         !self.corners.filed.is_empty()
     }
 
-    /// Whether every polygon has normals of the file's own.
+    /// Whether every polygon has normals of the file.
     #[must_use]
     pub const fn has_file_normals_only(&self) -> bool {
         self.has_file_normals() && self.corners.filed_only
     }
 
-    /// Which polygons share the normals that are computed.
+    /// Which polygons share computed normals.
     #[must_use]
     pub const fn smoothing(&self) -> &Smoothing {
         &self.smoothing
     }
 
-    /// The extent of the vertices; `None` where there are none.
+    /// The extent of the vertices; `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.shape.bounds
     }
 
-    /// The mean of the vertices: what cameras in analysis look at.
+    /// The mean of the vertices, which orbiting cameras look at.
     #[must_use]
     pub fn mean(&self) -> DVec3 {
         self.shape.mean
@@ -301,9 +302,9 @@ impl Mesh {
 ///
 ///   n = sum over sides p, q of (p - o) x (q - o),   o the first corner
 ///
-/// Newell's method; taking the corners from the first one keeps small polygons far from the origin
-/// exact. Sutherland, Sproull and Schumacker, "A Characterization of Ten Hidden-Surface
-/// Algorithms", ACM Computing Surveys 1974.
+/// This is Newell's method, with corners relative to the first one, which keeps small polygons far
+/// from the origin exact. Sutherland, Sproull and Schumacker, "A Characterization of Ten
+/// Hidden-Surface Algorithms", ACM Computing Surveys 1974.
 pub fn newell(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
     let Some(origin) = corners.clone().next() else { return DVec3::ZERO };
     let from = corners.clone().map(|p| p - origin);

@@ -9,21 +9,21 @@ use crate::scene::mesh::fans::{Limit, Rule, fan_points};
 use crate::scene::mesh::index;
 use crate::scene::{CornerLists, Crease, MeshSource, NONE, Point, Smoothing, dvec3};
 
-/// Unit normals that cancel out leave only their rounding errors, which are less.
+/// The sum of unit normals that cancel out is shorter than this: only rounding errors.
 const CANCELLED: f64 = 1e-9;
 
-/// How many normals of a vertex are looked through; a vertex with more may have a point twice.
+/// How many normals of a vertex are compared; a vertex with more may have a point twice.
 const LONGEST: usize = 64;
 
-/// Polygons whose normals are held with all their digits at a time: few enough to stay in a cache.
+/// How many polygons' normals are held in f64 at a time: few enough to stay in a cache.
 const BLOCK: usize = 1 << 15;
 
-/// What is computed of the normals of polygons.
+/// The data computed from the normals of polygons.
 #[derive(Debug)]
 pub(crate) struct Computed {
     /// The polygons without area; ascending.
     pub(crate) without_area: Vec<u32>,
-    /// The points of corners: the first are one a vertex.
+    /// The points of corners, beginning with one for each vertex.
     pub(crate) points: Vec<Point>,
     /// The point of each corner; empty if each has its vertex's.
     of_corners: Vec<u32>,
@@ -47,7 +47,7 @@ impl Computed {
     }
 }
 
-/// What the normals of polygons are around each vertex.
+/// The normals of the polygons around each vertex.
 #[derive(Debug)]
 struct Normals {
     /// The polygons without area; ascending.
@@ -91,8 +91,8 @@ impl Normals {
     }
 
     /// Adds the normals of polygons from `first` on to those of their vertices. Every thread goes
-    /// through all of them and adds to its own vertices: the order of no sum depends on how many
-    /// threads there are.
+    /// through all of them and adds to its own vertices, so the order of a sum does not depend on
+    /// the number of threads.
     fn add(
         &mut self,
         outlines: &Outlines<'_>,
@@ -172,7 +172,7 @@ impl CornerPoints {
     }
 }
 
-/// What is computed of a mesh's normals, with the file's normals behind, and the points of its
+/// The computed points of a mesh, followed by those with the file's normals, and the points of its
 /// corners.
 pub(crate) fn points_and_corners(
     source: &MeshSource,
@@ -191,13 +191,13 @@ pub(crate) fn points_and_corners(
     (computed, corners)
 }
 
-/// Whether the unit normals whose sum this is cancel out.
+/// Whether the unit normals with this sum cancel out.
 pub(crate) fn cancels(sum: DVec3) -> bool {
     sum.length() <= CANCELLED
 }
 
-/// Gives each corner its polygon's normal where those around its vertex cancel out; empty where none
-/// do around any vertex of a polygon that has a normal.
+/// Gives each corner its polygon's normal if those around its vertex cancel out; empty if that is
+/// so at no vertex of a polygon that has a normal.
 fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) -> Vec<u32> {
     let cancelled: Vec<bool> = normals.sums.par_iter().map(|sum| cancels(*sum)).collect();
     let vertices = outlines.corners;
@@ -222,8 +222,8 @@ fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) ->
     smooth
 }
 
-/// Gives corners the file's normals, where every corner of the polygon has one; empty where that is
-/// so of none.
+/// Gives corners the file's normals if every corner of the polygon has one; empty if no polygon
+/// has.
 fn filed_points(
     source: &MeshSource,
     lists: &CornerLists,
@@ -267,7 +267,7 @@ fn filed_points(
     if chained.is_empty() { Vec::new() } else { filed }
 }
 
-/// A normal as it is shown: (0, 0, 1) where there is none.
+/// A normal as it is shown: (0, 0, 1) if there is none.
 pub(crate) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
     narrow(normal.unwrap_or(DVec3::Z))
 }

@@ -1,9 +1,9 @@
-//! Edges that a corner of another face stands on.
+//! Finds edges that a corner of another face lies on (T-junctions).
 //!
-//! Such a corner is in one face and not in the other, so what is drawn of the two edges parts by a
-//! rounding: pixels between them may be missed. Only edges with a face on one side can be split, and
-//! only by ends of such edges. They are sought through a grid whose cells are as wide as these edges
-//! are long on the average.
+//! Such a corner belongs to one face and not to the other, so rounding separates the two edges and
+//! pixels between them may be missed. Only edges with a face on one side can be split, and only by
+//! ends of such edges. They are found by a grid whose cells are as wide as the mean length of these
+//! edges.
 
 use std::collections::HashMap;
 
@@ -11,15 +11,15 @@ use glam::DVec3;
 
 use crate::scene::{Edge, Mesh, dvec3};
 
-/// A corner stands on an edge where it is nearer to it than this part of the edge's length.
+/// A corner lies on an edge if its distance is less than this fraction of the edge's length.
 const NEAR: f64 = 1e-6;
 
 /// How many pairs of edge and corner are looked at: a few seconds' worth.
 const BUDGET: usize = 50_000_000;
 
 impl Mesh {
-    /// How many edges are split by corners of other faces. In meshes where a great many edges have a
-    /// face on one side only, some may be overlooked.
+    /// How many edges are split by corners of other faces. In meshes with very many edges that have
+    /// a face on one side only, some may be overlooked.
     #[must_use]
     pub fn split_edges(&self) -> usize {
         let open: Vec<&Edge> =
@@ -62,11 +62,11 @@ impl Mesh {
     }
 }
 
-/// Whether a place is on the way from `a` to `b`, and neither of both.
+/// Whether a point lies on the segment from `a` to `b`, but at neither end.
 fn stands_on(p: DVec3, a: DVec3, b: DVec3) -> bool {
     let along = b - a;
     let square = along.length_squared();
     let t = (p - a).dot(along) / square;
-    // What is as near to an end as to the edge is at the end.
+    // A point as near to an end as to the edge is at the end.
     t > NEAR && t < 1.0 - NEAR && (p - a - along * t).length_squared() < square * NEAR * NEAR
 }

@@ -1,16 +1,16 @@
-//! Corners by where they are, so that few have to be looked at.
+//! A uniform grid of corners, so that few have to be looked at.
 //!
-//! Cells as square as can be over the box of all corners, about four of them in each; a corner that
-//! is of no use any more is forgotten when it is met. Akman, Franklin, Kankanhalli and Narayanaswami,
-//! "Geometric Computing and Uniform Grid Technique", Computer-Aided Design 1989.
+//! The cells are as square as possible, with about four corners in each; a corner that is no longer
+//! needed is removed when it is met. Akman, Franklin, Kankanhalli and Narayanaswami, "Geometric
+//! Computing and Uniform Grid Technique", Computer-Aided Design 1989.
 
 use glam::DVec2;
 
-/// Corners by where they are.
+/// Corners, by the cell that they lie in.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
     origin: DVec2,
-    /// Cells in a unit of length.
+    /// Cells per unit of length.
     scale: DVec2,
     columns: usize,
     rows: usize,
@@ -48,8 +48,7 @@ impl Grid {
         self.cells[row * self.columns + column].push(corner);
     }
 
-    /// Whether one of the corners in a box is what is looked for; `None` says that a corner is of no
-    /// use any more.
+    /// Whether one of the corners in a box matches; `None` says that a corner is no longer needed.
     pub(super) fn any(
         &mut self,
         [min, max]: [DVec2; 2],
@@ -74,7 +73,7 @@ impl Grid {
         false
     }
 
-    /// How many cells were looked at since this was last asked.
+    /// The number of cells looked at since the last call.
     pub(super) fn cells_looked_at(&mut self) -> usize {
         std::mem::take(&mut self.looked_at)
     }

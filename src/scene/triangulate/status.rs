@@ -1,8 +1,7 @@
-//! Edges from left to right, as a line meets them that sweeps over a polygon.
+//! The edges that a sweep line crosses, from left to right.
 //!
-//! A list in chunks: an edge is put in and taken out in the time that a chunk takes. Nothing is
-//! compared but when an edge is put in, so that the list stays a list whatever the order of edges
-//! that cross.
+//! A list in chunks: inserting or removing an edge takes time in proportion to a chunk. Edges are
+//! compared only when one is inserted, so the list stays valid even if edges cross.
 
 /// The most edges of a chunk.
 const CHUNK: usize = 512;
@@ -10,7 +9,7 @@ const CHUNK: usize = 512;
 /// Edges from left to right.
 #[derive(Debug)]
 pub(super) struct Status {
-    /// The chunks that have edges, from left to right, by their places in `chunks`.
+    /// The chunks that have edges, from left to right, as indices into `chunks`.
     order: Vec<u32>,
     chunks: Vec<Vec<u32>>,
     /// The chunk of each edge, or [`NOWHERE`].
@@ -20,7 +19,7 @@ pub(super) struct Status {
 const NOWHERE: u32 = u32::MAX;
 
 impl Status {
-    /// Nothing yet of so many edges.
+    /// An empty list for this number of edges.
     pub(super) fn new(edges: usize) -> Self {
         Self { order: Vec::new(), chunks: Vec::new(), home: vec![NOWHERE; edges] }
     }
@@ -29,13 +28,13 @@ impl Status {
         self.home[edge as usize] != NOWHERE
     }
 
-    /// The last edge of those that are what is asked for; these come first.
+    /// The last edge for which `is` holds; such edges come first.
     pub(super) fn last_of(&self, is: impl Fn(u32) -> bool) -> Option<u32> {
         let (chunk, place) = self.place(is)?;
         place.checked_sub(1).map(|place| self.chunks[chunk as usize][place])
     }
 
-    /// Puts in an edge behind those that are left of it.
+    /// Inserts an edge after those on its left.
     pub(super) fn insert(&mut self, edge: u32, is_left: impl Fn(u32) -> bool) {
         let (chunk, place) = self.place(is_left).unwrap_or_else(|| {
             self.order.push(super::number(self.chunks.len()));
@@ -57,7 +56,7 @@ impl Status {
         }
     }
 
-    /// Puts an edge in the place of another, if that is there.
+    /// Replaces an edge by another, if it is in the list.
     pub(super) fn replace(&mut self, old: u32, new: u32) {
         let chunk = std::mem::replace(&mut self.home[old as usize], NOWHERE);
         let Some(edges) = self.chunks.get_mut(chunk as usize) else { return };
@@ -67,7 +66,7 @@ impl Status {
         }
     }
 
-    /// Takes out an edge, if it is there.
+    /// Removes an edge, if it is in the list.
     pub(super) fn remove(&mut self, edge: u32) {
         let chunk = std::mem::replace(&mut self.home[edge as usize], NOWHERE);
         let Some(edges) = self.chunks.get_mut(chunk as usize) else { return };
@@ -77,7 +76,7 @@ impl Status {
         }
     }
 
-    /// Behind the edges that are what is asked for: a chunk, and a place in it.
+    /// The chunk, and the index in it, after the edges for which `is` holds.
     fn place(&self, is: impl Fn(u32) -> bool) -> Option<(u32, usize)> {
         let first = |chunk: &u32| is(self.chunks[*chunk as usize][0]);
         let chunk = *self.order.get(self.order.partition_point(first).saturating_sub(1))?;

@@ -1,8 +1,8 @@
-//! A polygon of any number of corners in the time that it takes to sort them.
+//! Triangulates a polygon in the time that it takes to sort its corners.
 //!
-//! A line sweeps the corners from below to above and divides the polygon by diagonals into pieces
-//! that it meets in one stretch; each piece is then cut in one pass over its corners. The corners
-//! are taken to 2^-50 of the polygon's size, and all that follows is integer arithmetic.
+//! A line sweeps upwards over the corners and divides the polygon by diagonals into monotone
+//! pieces; each piece is then cut in one pass over its corners. Corners are rounded to 2^-50 of the
+//! polygon's size, and everything after that is integer arithmetic.
 //!
 //! If the polygon crosses itself, some diagonals are wrong. Those that would cross others in the
 //! order of the corners are left out, so that there are as many triangles as for any other polygon.
@@ -31,36 +31,36 @@ pub(super) fn cut(flat: &[DVec2], ring: &[u32], triangles: &mut Vec<[u32; 3]>) {
     }
 }
 
-/// The corners of a ring, by their places in it.
+/// The corners of a ring, by their indices in it.
 struct Sweep {
     points: Vec<[i64; 2]>,
-    /// The places from below to above; of those at one height from left to right.
+    /// The indices from bottom to top, and from left to right at equal heights.
     upwards: Vec<u32>,
-    /// Where each place stands in `upwards`.
+    /// The position of each index in `upwards`.
     rank: Vec<u32>,
 }
 
-/// What is left of the line of the sweep: edges that have the polygon on their right. An edge has
-/// the place of its first corner, which is its upper one.
+/// The sweep line: the edges that have the polygon on their right. An edge has the index of its
+/// first corner, which is its upper one.
 struct Line {
     edges: Status,
-    /// The last corner that was met between an edge and what is next on its right.
+    /// The last corner that was met between an edge and the next one on its right.
     helper: Vec<u32>,
     diagonals: Vec<[u32; 2]>,
 }
 
-/// Coordinates as whole numbers.
+/// Rounds coordinates to integers.
 fn on_a_grid(flat: Vec<DVec2>) -> Vec<[i64; 2]> {
     let extent = flat.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
-    // A power of two, so that only what is too small is rounded.
+    // A power of two, so that only digits that are too small are rounded.
     let scale = libm::scalbn(1.0, BITS - libm::ilogb(extent.max(f64::MIN_POSITIVE)) - 1);
     #[expect(clippy::cast_possible_truncation, reason = "the scale sees to that")]
     let point = |p: DVec2| [libm::rint(p.x * scale) as i64, libm::rint(p.y * scale) as i64];
     flat.into_iter().map(point).collect()
 }
 
-/// A ring and its points without corners that are where the one before them is. Each of these is
-/// cut off as a triangle without area; three corners stay.
+/// A ring and its points without corners that repeat the one before. Each repeated corner is cut
+/// off as a triangle without area; three corners stay.
 fn without_repeats(
     points: &[[i64; 2]],
     ring: &[u32],
@@ -123,14 +123,14 @@ impl Sweep {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     }
 
-    /// Whether a corner is to the right of an edge. If it is on it, the others decide.
+    /// Whether a corner is to the right of an edge. If it is on the edge, the other corners decide.
     fn is_right_of(&self, edge: u32, corners: [u32; 3]) -> bool {
         let lower = self.next(edge);
         let side = |corner: u32| Some(self.area(lower, edge, corner)).filter(|area| *area != 0);
         corners.into_iter().find_map(side).is_none_or(|area| area < 0)
     }
 
-    /// Diagonals that divide the ring into pieces which a horizontal line meets in one stretch.
+    /// Diagonals that divide the ring into monotone pieces.
     fn diagonals(&self) -> Vec<[u32; 2]> {
         let corners = self.points.len();
         let helper = vec![0; corners];
@@ -193,7 +193,7 @@ impl Sweep {
     /// Makes a corner the helper of the edge on its left.
     fn reach_left(&self, corner: u32, joined: Helper, line: &mut Line) {
         let others = [corner, self.next(corner), self.last(corner)];
-        // Only a polygon that crosses itself has none.
+        // Only a polygon that crosses itself has no such edge.
         let Some(edge) = line.edges.last_of(|edge| self.is_right_of(edge, others)) else { return };
         let helper = &mut line.helper[edge as usize];
         let before = std::mem::replace(helper, corner);
@@ -239,8 +239,8 @@ impl Sweep {
         }
     }
 
-    /// The corners of a piece from below to above, with the side on which each is; `None` if a
-    /// horizontal line meets it in several stretches.
+    /// The corners of a piece from bottom to top, each with its side; `None` if the piece is not
+    /// monotone.
     fn in_one_stretch(&self, piece: &[u32]) -> Option<Vec<(u32, Side)>> {
         let rank = |place: &usize| self.rank[piece[*place] as usize];
         let lowest = (0..piece.len()).min_by_key(rank)?;
@@ -264,7 +264,7 @@ impl Sweep {
         Some(all)
     }
 
-    /// Cuts off what turns to the left, again and again; what is left is a fan.
+    /// Cuts off corners that turn left until none is left; the rest is a fan.
     fn cut_any(&self, piece: &[u32], triangle: &mut dyn FnMut(u32, u32, u32)) {
         let mut stack: Vec<u32> = Vec::new();
         for &corner in piece {
@@ -283,26 +283,26 @@ impl Sweep {
     }
 }
 
-/// With which helper of an edge a corner is joined.
+/// Which helpers of an edge a corner is joined with.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Helper {
     Any,
     OnlyMerges,
 }
 
-/// Of the two ways up along a piece.
+/// One of the two chains of a monotone piece.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Side {
     Left,
     Right,
 }
 
-/// Divides a ring of so many corners by diagonals; of two that cross, one is left out.
+/// Divides a ring of corners by diagonals; if two cross, one is left out.
 fn pieces(corners: u32, mut diagonals: Vec<[u32; 2]>) -> Vec<Vec<u32>> {
     for diagonal in &mut diagonals {
         diagonal.sort_unstable();
     }
-    // By their ends; of those with one end the shortest first.
+    // Sorted by their ends, the shortest first if one end is the same.
     diagonals.sort_unstable_by_key(|[begin, end]| (*end, std::cmp::Reverse(*begin)));
     let mut diagonals = diagonals.into_iter().peekable();
     let mut pieces = Vec::new();

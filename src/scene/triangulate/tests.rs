@@ -1,4 +1,5 @@
-//! Polygons from the hard places: notches, bridges, corners in a row, outlines that touch themselves.
+//! Polygons from the hard places: notches, bridges, corners in a row, outlines that touch
+//! themselves.
 
 use proptest::prelude::*;
 
@@ -211,7 +212,8 @@ fn a_polygon_that_crosses_itself_has_as_many_triangles_as_any_other() {
     }
 }
 
-/// Polygons of so many corners in which ears are far between or hard to tell; whether each is simple.
+/// Polygons of this number of corners in which ears are rare or hard to find, and whether each is
+/// simple.
 fn hard_shapes(corners: u32) -> Vec<(&'static str, bool, Vec<DVec3>)> {
     let n = f64::from(corners);
     let round = |i: u32, radius: f64, turns: f64| {
@@ -258,7 +260,7 @@ fn hard_shapes(corners: u32) -> Vec<(&'static str, bool, Vec<DVec3>)> {
 }
 
 #[test]
-fn polygons_of_many_corners_are_cut_rightly_whatever_their_shape() {
+fn polygons_of_many_corners_are_cut_correctly_whatever_their_shape() {
     for (name, is_simple, corners) in hard_shapes(30_000) {
         if is_simple {
             sound(&corners);
@@ -274,8 +276,8 @@ fn polygons_of_many_corners_are_cut_rightly_whatever_their_shape() {
     }
 }
 
-/// How many corners are looked at does not grow faster than they do, in shapes in which each stands
-/// in the way of many.
+/// The number of corners that are looked at grows no faster than the polygon, in shapes in which
+/// each corner blocks many ears.
 #[test]
 fn the_work_on_a_polygon_grows_with_its_corners_whatever_its_shape() {
     for corners in [10_000, 100_000] {

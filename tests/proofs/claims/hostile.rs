@@ -1,5 +1,5 @@
 //! Generates scenes of hostile numbers: NaN, infinite, subnormal and huge ones; flat placements,
-//! lamps on surfaces, cameras inside objects.
+//! lights on surfaces, cameras inside objects.
 //!
 //! They enter the scene as a user's do, by meshes and commands, which may refuse them and then
 //! change nothing.
@@ -67,7 +67,7 @@ pub(crate) struct Hostile {
     pub(crate) rng: Rng,
     /// One in this many numbers is hostile.
     rarity: u64,
-    /// Positions on surfaces, where some lamps are placed.
+    /// Positions on surfaces, where some lights are placed.
     surfaces: Vec<DVec3>,
 }
 

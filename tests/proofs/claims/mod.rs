@@ -30,11 +30,11 @@ use rayon::prelude::*;
 /// A claim, with what generates cases of it and checks them.
 #[derive(Debug)]
 pub(crate) struct Proof {
-    /// What the command line calls it.
+    /// Its name on the command line.
     pub(crate) name: &'static str,
-    /// What is claimed of every case.
+    /// The claim about every case.
     pub(crate) claim: &'static str,
-    /// What a case is.
+    /// The unit of its cases.
     pub(crate) unit: &'static str,
     /// The number of cases in a batch.
     pub(crate) batch: u64,
@@ -42,7 +42,7 @@ pub(crate) struct Proof {
     pub(crate) quick: u64,
     /// The number of cases that `docs/stability.md` reports.
     pub(crate) whole: u64,
-    /// What a thousand cases have to show at least, so that the check is not idle.
+    /// The least that a thousand cases have to show, so that the check is not vacuous.
     pub(crate) shows: &'static [(&'static str, u64)],
     /// Batches in which the claim once failed.
     pub(crate) regressions: &'static [u64],
@@ -63,7 +63,7 @@ pub(crate) static PROOFS: &[Proof] = &[
     absent::PROOF,
 ];
 
-/// What was counted in the cases of a proof.
+/// The counts in the cases of a proof.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Tally {
     /// How often each thing occurred.
@@ -111,7 +111,7 @@ impl std::fmt::Display for Tally {
 pub(crate) struct Counterexample {
     /// Its number.
     pub(crate) batch: u64,
-    /// What went wrong in it.
+    /// The failure in it.
     pub(crate) what: String,
 }
 
@@ -125,7 +125,7 @@ impl Proof {
     /// Checks some batches, on all threads. `checked` is called after each.
     ///
     /// # Errors
-    /// With a batch in which the claim does not hold, or in which something panics.
+    /// A batch in which the claim does not hold, or in which something panics.
     pub(crate) fn run(
         &self,
         batches: Range<u64>,
@@ -147,7 +147,7 @@ impl Proof {
         cases.div_ceil(self.batch)
     }
 
-    /// What the cases should have shown and did not, if there were a thousand of them.
+    /// The things that a thousand cases should have shown and did not.
     pub(crate) fn missing(&self, tally: &Tally, cases: u64) -> Option<String> {
         let missing = self.shows.iter().find(|(what, per_thousand)| {
             tally.counts.get(what).copied().unwrap_or_default() < per_thousand * (cases / 1000)

@@ -1,6 +1,5 @@
-//! What a plan leaves out changes nothing: pictures of randomly generated scenes against pictures
-//! by plans that leave out nothing. `tests/breakages` breaks the rules one by one and sees this
-//! fail.
+//! Leaving out changes nothing: pictures of randomly generated scenes are compared with pictures by
+//! plans that leave out nothing. `tests/breakages` breaks the rules one by one and sees this fail.
 
 use marraztu::accuracy::Shot;
 use marraztu::base::image::Picture;

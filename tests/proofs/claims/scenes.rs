@@ -1,5 +1,5 @@
 //! Scenes of hostile numbers are drawn without a panic, the same on all instructions, with depths
-//! from 0 to 1, and never dark in f32 where f64 shows light.
+//! from 0 to 1, and never dark in f32 if f64 shows light.
 
 use fearless_simd::Level;
 use glam::{DMat4, DVec3, DVec4};
@@ -126,10 +126,10 @@ fn has_measure(scene: &Scene) -> bool {
     })
 }
 
-/// How often lamps and objects are moved to find out whether a pixel is on a border of light.
+/// How often lights and objects are moved to find out whether a pixel is on a border of light.
 const NUDGES: usize = 32;
 
-/// The scene with its lamps moved by a millionth of their distances, and its objects turned and
+/// The scene with its lights moved by a millionth of their distances, and its objects turned and
 /// stretched by as much: some last places of f32. For an almost flat placement this is the accuracy
 /// of its normals.
 fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {

@@ -36,7 +36,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         };
         let lesson = &axis.lesson;
         for (title, sentence) in
-            [("What it is", lesson.what), (coarse, lesson.coarse), ("Where it shows", lesson.shows)]
+            [("What it is", lesson.what), (coarse, lesson.coarse), ("Where to look", lesson.shows)]
         {
             ui.label(RichText::new(title).small().strong());
             ui.add(egui::Label::new(sentence).wrap());

@@ -213,7 +213,7 @@ fn tip_ui(ui: &mut Ui, mark: &Mark, report: &Report) {
             ui.label("Another model: judged against its own exact picture, and not scored.");
         }
         MarkKind::Apart => {
-            ui.label("Judged against 64 samples a pixel, each lit: a front of its own.");
+            ui.label("Judged against 64 samples per pixel, each lit: a front of its own.");
         }
         MarkKind::Default | MarkKind::Preset | MarkKind::Axis | MarkKind::Combination => {
             if !report.is_scored(mark.point) {

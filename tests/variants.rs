@@ -1,4 +1,4 @@
-//! What each axis of accuracy makes of a picture, held to the figures that its table states.
+//! The effect of each axis of accuracy on pictures, compared with the errors that its table states.
 
 #![expect(clippy::cast_precision_loss, reason = "small numbers")]
 
@@ -30,7 +30,7 @@ fn unmarked(view: View) -> View {
     View { marks: false, ..view }
 }
 
-/// What each pixel of a picture shows.
+/// The primitive that each pixel of a picture shows.
 fn primitives(scene: &Scene, view: &View, settings: &Settings, side: usize) -> Vec<u32> {
     let mut renderer = Renderer::default();
     renderer.render(&plan_frame(&Shot::new(scene, view, settings, Size::new(side, side))));
@@ -96,7 +96,7 @@ fn highlights_are_as_wrong_as_their_powers() {
 }
 
 #[test]
-fn quick_roots_grain_highlights_and_newton_mends_them() {
+fn rsqrt_makes_highlights_grainy_and_a_newton_step_repairs_them() {
     use marraztu::accuracy::Normalising;
     let opened = lesson_scene("ball").unwrap();
     let picture = |normalising| {
@@ -110,7 +110,7 @@ fn quick_roots_grain_highlights_and_newton_mends_them() {
 
 /// A floor that leans by 45 degrees, pressed to a tenth: it nearly lies, and the sun is overhead.
 #[test]
-fn normals_placed_by_the_matrix_as_it_is_lean_by_79_degrees() {
+fn normals_transformed_by_the_objects_own_matrix_lean_by_79_degrees() {
     let press = DMat4::from_scale(DVec3::new(1.0, 0.1, 1.0))
         * DMat4::from_rotation_x(-0.25 * std::f64::consts::PI);
     let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0) * press)]);
@@ -212,7 +212,7 @@ fn far_from_the_origin_32_bits_lose_the_shape_of_things() {
 
 /// Case 29, drawn.
 #[test]
-fn points_every_tenth_of_a_unit_leave_holes_nearer_than_97_and_none_beyond() {
+fn points_every_tenth_of_a_unit_leave_holes_nearer_than_97_units_and_none_beyond() {
     let pixel = |distance: f64| 2.0 * (2.0_f64.sqrt() - 1.0) * distance / 800.0;
     let holes = |distance: f64| {
         let place = at(10.0 * pixel(distance), 0.0, 0.0, 400.0 - distance);
@@ -232,7 +232,7 @@ fn points_every_tenth_of_a_unit_leave_holes_nearer_than_97_and_none_beyond() {
 }
 
 #[test]
-fn rounded_rows_and_32_bit_edges_cover_what_is_covered_and_a_little_more() {
+fn rounded_rows_and_32_bit_edges_cover_every_covered_pixel_and_a_few_more() {
     let (scene, view) = scene(&[(ball(12), at(90.0, 3.3, -7.7, 0.0))]);
     let view = unmarked(view);
     let seen = |coverage| {
@@ -244,7 +244,7 @@ fn rounded_rows_and_32_bit_edges_cover_what_is_covered_and_a_little_more() {
     for (coverage, most) in [(Coverage::ScanLines, 1.06), (Coverage::F32Edges, 1.0005)] {
         let other = seen(coverage);
         let lost = exact.iter().zip(&other).filter(|(exact, other)| **exact && !**other).count();
-        // What is rounded away at one side is put on at the other.
+        // Rounding removes at one side what it adds at the other.
         assert!(lost as f64 <= 0.01 * count(&exact), "{coverage:?}: {lost}");
         let ratio = count(&other) / count(&exact);
         assert!((0.9995..most).contains(&ratio), "{coverage:?}: {ratio}");
@@ -252,7 +252,7 @@ fn rounded_rows_and_32_bit_edges_cover_what_is_covered_and_a_little_more() {
 }
 
 #[test]
-fn where_nothing_is_near_to_anything_every_format_of_depth_shows_the_same() {
+fn if_surfaces_are_far_apart_every_depth_format_shows_the_same() {
     let (scene, view) = marraztu::io::default_scene();
     let seen = |depth| {
         let settings = Settings { depth, ..Settings::default() };
