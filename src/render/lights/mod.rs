@@ -1,10 +1,11 @@
 //! The kinds of light, and the table of them.
 //!
-//! A kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. It says when a scene
-//! calls for it and how it lights a surface, once, over [`Real`](super::simd::Real); the row holds its
-//! compiled variants. A frame pays for the lights that it has and for no other.
+//! A kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. It says when a
+//! scene calls for it and how it lights a surface, once, over [`Real`](super::simd::Real); the row
+//! holds its compiled variants. A frame pays for the lights that it has and for no other.
 //!
-//! Light is computed in view space, for a batch of positions at a time: pixels, vertices or faces alike.
+//! Light is computed in view space, for a batch of positions at a time: pixels, vertices or faces
+//! alike.
 
 mod ambient;
 mod batch;

@@ -45,15 +45,15 @@ pub struct PhongMaterial {
 impl PhongMaterial {
     /// Whether any of a lamp's light can come back as a highlight.
     #[must_use]
-    pub fn mirrors(&self, lamp: &ViewLight) -> bool {
-        self.specular.iter().zip(lamp.color).any(|(ks, color)| ks * color != 0.0)
+    pub fn mirrors(&self, light: &ViewLight) -> bool {
+        self.specular.iter().zip(light.color).any(|(ks, color)| ks * color != 0.0)
     }
 
     /// Sets from where on a power counts as 0, by the way that powers are taken.
     #[must_use]
-    pub fn with_floor(self, floor: f64, way: SpecularPower) -> Self {
+    pub fn with_floor(self, floor: f64, variant: SpecularPower) -> Self {
         // The cosine whose power is the floor; a little less, so that rounding leaves nothing out.
-        let least = least_cosine(way, self.exponent, floor);
+        let least = least_cosine(variant, self.exponent, floor);
         Self { floor, least_cosine: least * (1.0 - 1e-5), ..self }
     }
 }
@@ -84,28 +84,28 @@ pub struct LightTerm<T> {
     /// See [`PhongMaterial::least_cosine`].
     pub least_cosine: T,
     /// By which rare way, where it is one.
-    pub(super) way: Option<Normalising>,
+    pub(super) variant: Option<Normalising>,
 }
 
 impl<T: Number> LightTerm<T> {
     /// What a lamp does to a surface.
     #[must_use]
-    pub fn new(lamp: &ViewLight, matter: &PhongMaterial) -> Self {
+    pub fn new(light: &ViewLight, material: &PhongMaterial) -> Self {
         let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
-        let times = |k: [f64; 3]| all([0, 1, 2].map(|i| lamp.color[i] * k[i]));
+        let times = |k: [f64; 3]| all([0, 1, 2].map(|i| light.color[i] * k[i]));
         Self {
-            ambient: times(matter.ambient),
-            diffuse: times(matter.diffuse),
-            specular: times(matter.specular),
-            position: all(lamp.position),
-            axis: all(lamp.direction.map(|x| -x)),
-            attenuation: all(lamp.attenuation),
-            fades: lamp.attenuation != [1.0, 0.0, 0.0],
-            cos_half_aperture: T::from_f64(lamp.cos_half_aperture),
-            gathered: Power::new(lamp.exponent, GATHERED_FLOOR),
-            highlight: Power::new(matter.exponent, matter.floor),
-            least_cosine: T::from_f64(matter.least_cosine),
-            way: None,
+            ambient: times(material.ambient),
+            diffuse: times(material.diffuse),
+            specular: times(material.specular),
+            position: all(light.position),
+            axis: all(light.direction.map(|x| -x)),
+            attenuation: all(light.attenuation),
+            fades: light.attenuation != [1.0, 0.0, 0.0],
+            cos_half_aperture: T::from_f64(light.cos_half_aperture),
+            gathered: Power::new(light.exponent, GATHERED_FLOOR),
+            highlight: Power::new(material.exponent, material.floor),
+            least_cosine: T::from_f64(material.least_cosine),
+            variant: None,
         }
     }
 
@@ -113,13 +113,13 @@ impl<T: Number> LightTerm<T> {
     #[must_use]
     pub(crate) fn by(
         variant: Option<Normalising>,
-        lamp: &ViewLight,
-        matter: &PhongMaterial,
+        light: &ViewLight,
+        material: &PhongMaterial,
         highlight: &Power,
     ) -> Self {
         match variant {
-            None => Self::new(lamp, matter),
-            way => Self { highlight: highlight.clone(), way, ..Self::new(lamp, matter) },
+            None => Self::new(light, material),
+            variant => Self { highlight: highlight.clone(), variant, ..Self::new(light, material) },
         }
     }
 }
@@ -167,11 +167,12 @@ impl Highlight for HalfVector {
     }
 }
 
-/// Light that comes in along a surface, to this cosine of its angle to the normal, has no highlight.
+/// Light that comes in along a surface, to this cosine of its angle to the normal, has no
+/// highlight.
 ///
 /// A highlight begins at once where N.L comes above 0. A lamp in the very plane of a face, which is
-/// nothing rare, leaves N.L to rounding; without this, rounding would decide whether all of the face
-/// has a highlight. It is a hundred times the rounding error, and 0.0006 degrees.
+/// nothing rare, leaves N.L to rounding; without this, rounding would decide whether all of the
+/// face has a highlight. It is a hundred times the rounding error, and 0.0006 degrees.
 const GRAZING: f64 = 1e-5;
 
 /// What is left of a part of light.
@@ -187,29 +188,29 @@ fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
 ///
 ///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
 ///
-/// with s the `strength` that is left of the lamp's light I (1 where it is `None`), L the direction `to_light`, and c the
-/// cosine of the [`Highlight`].
+/// with s the `strength` that is left of the lamp's light I (1 where it is `None`), L the direction
+/// `to_light`, and c the cosine of the [`Highlight`].
 #[inline(always)]
 pub(super) fn phong<M: Lanes, H: Highlight>(
     lanes: M,
     sample: Sample<M::R>,
     to_light: Vec3<M::R>,
     strength: Option<M::R>,
-    shine: &LightTerm<M::Number>,
+    term: &LightTerm<M::Number>,
 ) -> Option<Reflected<M::R>> {
     let zero = lanes.lift(0.0);
     let n_l = sample.normal.dot(to_light);
     if !lanes.any_more(n_l, zero) {
         return None;
     }
-    let diffuse = set(lanes, shine.diffuse).times(weakened(Real::max(n_l, zero), strength));
+    let diffuse = set(lanes, term.diffuse).times(weakened(Real::max(n_l, zero), strength));
     let mut specular = None;
     if let Some(cosine) = H::cosine(sample, to_light, n_l) {
         let lit = n_l.if_more(lanes.lift(GRAZING), cosine, zero);
-        if lanes.any_more(lit, lanes.set(shine.least_cosine)) {
+        if lanes.any_more(lit, lanes.set(term.least_cosine)) {
             // Rounding can bring a cosine above 1.
-            let power = Real::min(lit, lanes.lift(1.0)).power(&shine.highlight);
-            specular = Some(set(lanes, shine.specular).times(weakened(power, strength)));
+            let power = Real::min(lit, lanes.lift(1.0)).power(&term.highlight);
+            specular = Some(set(lanes, term.specular).times(weakened(power, strength)));
         }
     }
     Some(Reflected { diffuse, specular })
@@ -221,18 +222,18 @@ pub(super) fn max_channel(color: [f64; 3], sent_back: [f64; 3]) -> f64 {
 }
 
 /// The largest part of a lamp's light that is left at its distance from a region.
-pub(super) fn max_attenuation(lamp: &ViewLight, region: Option<&Region>) -> f64 {
-    let d = region.map_or(0.0, |region| region.least_distance(lamp.position.into()));
-    let [a0, a1, a2] = lamp.attenuation;
+pub(super) fn max_attenuation(light: &ViewLight, region: Option<&Region>) -> f64 {
+    let d = region.map_or(0.0, |region| region.least_distance(light.position.into()));
+    let [a0, a1, a2] = light.attenuation;
     1.0 / (a0 + (a1 + a2 * d) * d)
 }
 
 /// Why a lamp needs not be looked at for a surface.
-pub(super) fn lamp_is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str> {
+pub(super) fn light_is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
     let zero = |color: [f64; 3]| color == [0.0; 3];
-    if zero(lamp.color) {
+    if zero(light.color) {
         Some("its colour is black")
-    } else if zero(matter.diffuse) && zero(matter.specular) {
+    } else if zero(material.diffuse) && zero(material.specular) {
         Some("Kd and Ks of the material are 0")
     } else {
         None

@@ -2,8 +2,8 @@
 //! light reaches.
 //!
 //! A region is the hull of eight points, and a distance by which a place that the renderer computes
-//! may lie outside of it. Whatever is said of a region holds of every place as it is computed, in 32
-//! bits or in 64: all bounds are rounded outwards.
+//! may lie outside of it. Whatever is said of a region holds of every place as it is computed, in
+//! 32 bits or in 64: all bounds are rounded outwards.
 
 use glam::{DMat4, DVec3};
 
@@ -14,8 +14,8 @@ const ROUNDING: f64 = 2e-6;
 /// What the computed cosine of an angle may be wrong by: some 10 times as much as was ever seen.
 const COSINE_ROUNDING: f64 = 4e-6;
 
-/// The part of its distance by which a region's middle has to lie off a cone's axis: nearer to it, the
-/// way there from the axis is rounding.
+/// The part of its distance by which a region's middle has to lie off a cone's axis: nearer to it,
+/// the way there from the axis is rounding.
 const LEAST_ASIDE: f64 = 1e-6;
 
 /// The cosine up to which light along a face may be taken to come from either side of it.
@@ -49,16 +49,16 @@ impl Region {
     }
 
     /// What the way from a lamp to a place may be wrong by.
-    fn error_from(&self, lamp: DVec3) -> f64 {
-        self.error + ROUNDING * (self.reach + lamp.length())
+    fn error_from(&self, light: DVec3) -> f64 {
+        self.error + ROUNDING * (self.reach + light.length())
     }
 
     /// Whether a face with this normal (of length 1), at any place, is turned away from a lamp.
-    pub(crate) fn faces_away(&self, normal: DVec3, lamp: DVec3) -> bool {
-        let error = self.error_from(lamp);
+    pub(crate) fn faces_away(&self, normal: DVec3, light: DVec3) -> bool {
+        let error = self.error_from(light);
         self.corners.iter().all(|corner| {
-            let way = lamp - *corner;
-            normal.dot(way) < -(error + EDGE_ON * way.length())
+            let offset = light - *corner;
+            normal.dot(offset) < -(error + EDGE_ON * offset.length())
         })
     }
 
@@ -73,19 +73,19 @@ impl Region {
         if least > 0.0 { least } else { 0.0 }
     }
 
-    /// At most this is the cosine between `axis` (of length 1) and the way from `apex` to any place;
-    /// 1 where that is not known.
+    /// At most this is the cosine between `axis` (of length 1) and the way from `apex` to any
+    /// place; 1 where that is not known.
     ///
-    /// With a ball about the corners, of radius r and at the distance d: the angle to its middle, less
-    /// asin(r / d).
+    /// With a ball about the corners, of radius r and at the distance d: the angle to its middle,
+    /// less asin(r / d).
     #[must_use]
     pub fn most_cosine(&self, apex: DVec3, axis: DVec3) -> f64 {
         let middle = self.corners.iter().sum::<DVec3>() / 8.0;
         let radius = self.corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
-        let (radius, way) = (radius + self.error_from(apex), middle - apex);
-        let distance = way.length();
+        let (radius, offset) = (radius + self.error_from(apex), middle - apex);
+        let distance = offset.length();
         if distance > radius {
-            let angle = libm::acos((axis.dot(way) / distance).clamp(-1.0, 1.0));
+            let angle = libm::acos((axis.dot(offset) / distance).clamp(-1.0, 1.0));
             let least = (angle - libm::asin(radius / distance)).max(0.0);
             (libm::cos(least) + COSINE_ROUNDING).min(1.0)
         } else {
@@ -94,11 +94,11 @@ impl Region {
         }
     }
 
-    /// Whether no place lies in the cone of half-angle acos `border` about `axis` (of length 1) from
-    /// `apex`, its border taken to be outside.
+    /// Whether no place lies in the cone of half-angle acos `border` about `axis` (of length 1)
+    /// from `apex`, its border taken to be outside.
     ///
-    /// Either the bound of the cosine says so, or a plane through the apex that the cone touches and
-    /// all corners lie beyond.
+    /// Either the bound of the cosine says so, or a plane through the apex that the cone touches
+    /// and all corners lie beyond.
     #[must_use]
     pub fn misses_cone(&self, apex: DVec3, axis: DVec3, border: f64) -> bool {
         if self.most_cosine(apex, axis) <= border {

@@ -21,13 +21,14 @@ pub trait LightShader {
     /// Whether it shines on a part of space only, so that `is_culled` may say so.
     const HAS_REACH: bool = false;
     /// Why the surface needs none of it, where it does not: leaving it out then changes no bit.
-    fn is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str>;
-    /// Why none of it arrives in a region, where that is so: leaving it out there then changes no bit.
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str>;
+    /// Why none of it arrives in a region, where that is so: leaving it out there then changes no
+    /// bit.
     fn is_culled(_: &ViewLight, _: &Region) -> Option<&'static str> {
         None
     }
-    /// Whether it comes from behind all faces of a region, which are turned as `turning` says: leaving
-    /// it out there then changes no bit.
+    /// Whether it comes from behind all faces of a region, which are turned as `turning` says:
+    /// leaving it out there then changes no bit.
     fn is_behind(_: &ViewLight, _: &Region, _: &Turning) -> bool {
         false
     }
@@ -35,27 +36,27 @@ pub trait LightShader {
     fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
         1.0
     }
-    /// The most that it adds to a channel at any place of a region, with its highlight or without, as
-    /// a factor; a surface's texture takes away from that at most.
+    /// The most that it adds to a channel at any place of a region, with its highlight or without,
+    /// as a factor; a surface's texture takes away from that at most.
     fn max_contribution(
-        lamp: &ViewLight,
-        matter: &PhongMaterial,
+        light: &ViewLight,
+        material: &PhongMaterial,
         highlight: bool,
         region: Option<&Region>,
     ) -> f64 {
-        let mut sent_back = matter.diffuse;
+        let mut sent_back = material.diffuse;
         if highlight {
-            for (kd, ks) in sent_back.iter_mut().zip(matter.specular) {
+            for (kd, ks) in sent_back.iter_mut().zip(material.specular) {
                 *kd += ks;
             }
         }
-        max_channel(lamp.color, sent_back) * Self::max_falloff(lamp, region)
+        max_channel(light.color, sent_back) * Self::max_falloff(light, region)
     }
     /// What the observer gets from some places; `None` where that is nothing at all of them.
     fn shade<M: Lanes, H: Highlight>(
         lanes: M,
         sample: Sample<M::R>,
-        shine: &LightTerm<M::Number>,
+        term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>>;
 }
 
@@ -120,14 +121,14 @@ const fn variant<E: LightShader, H: Highlight>() -> Variant {
 fn shade<T: Number, E: LightShader, H: Highlight>(
     level: Level,
     batch: &mut Batch<T>,
-    shine: &LightTerm<T>,
+    term: &LightTerm<T>,
 ) {
-    T::run_by(level, shine.way, Shade::<T, E, H> { batch, shine, of: PhantomData });
+    T::run_variant(level, term.variant, Shade::<T, E, H> { batch, term, of: PhantomData });
 }
 
 struct Shade<'a, T, E, H> {
     batch: &'a mut Batch<T>,
-    shine: &'a LightTerm<T>,
+    term: &'a LightTerm<T>,
     of: PhantomData<(E, H)>,
 }
 
@@ -141,7 +142,7 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
                 normal: load(lanes, &batch.normal, at),
                 to_eye: load(lanes, &batch.to_eye, at),
             };
-            let Some(reflected) = E::shade::<M, H>(lanes, sample, self.shine) else {
+            let Some(reflected) = E::shade::<M, H>(lanes, sample, self.term) else {
                 continue;
             };
             add(lanes, reflected.diffuse, &mut batch.diffuse, at);
@@ -155,27 +156,17 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
 /// Numbers that effects are compiled for.
 pub trait Light: Number {
     /// Adds what an effect reflects at every place of the batch.
-    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &LightTerm<Self>);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
 }
 
 impl Light for f64 {
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        shine: &LightTerm<Self>,
-    ) {
-        (variant.reference)(level, batch, shine);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+        (variant.reference)(level, batch, term);
     }
 }
 
 impl Light for f32 {
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        shine: &LightTerm<Self>,
-    ) {
-        (variant.fast)(level, batch, shine);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+        (variant.fast)(level, batch, term);
     }
 }

@@ -20,8 +20,8 @@ pub(crate) struct AlphaTest<'a> {
 }
 
 impl<'a> AlphaTest<'a> {
-    /// Those of a triangle, in places of pixels that are shifted by so many parts of a pixel from their
-    /// middles; `None` where it has none.
+    /// Those of a triangle, in places of pixels that are shifted by so many parts of a pixel from
+    /// their middles; `None` where it has none.
     pub(crate) fn of(
         plan: &'a FramePlan,
         frame: &ScreenGeometry,

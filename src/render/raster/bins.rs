@@ -1,7 +1,7 @@
 //! What may be seen in which tile.
 //!
-//! Every thread that sets up triangles and lines has bins of its own, so that none waits for another.
-//! What is seen does not depend on the order in which a tile looks at them.
+//! Every thread that sets up triangles and lines has bins of its own, so that none waits for
+//! another. What is seen does not depend on the order in which a tile looks at them.
 
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
@@ -38,7 +38,7 @@ pub(crate) struct Bins {
     columns: i32,
     rows: i32,
     /// Where pixels are looked at.
-    pub(crate) places: SamplePositions,
+    pub(crate) sample_positions: SamplePositions,
     pub(crate) tiles: Vec<Bin>,
     pub(crate) hits: Hits,
     pub(crate) large: Vec<LargeTriangle>,
@@ -53,8 +53,8 @@ pub(crate) struct Bins {
 
 impl Bins {
     /// Empties the bins, for a picture of this size that is looked at in these places.
-    pub(crate) fn clear(&mut self, size: Size, places: SamplePositions) {
-        self.places = places;
+    pub(crate) fn clear(&mut self, size: Size, sample_positions: SamplePositions) {
+        self.sample_positions = sample_positions;
         [self.columns, self.rows] = tiles_of(size);
         let count = usize::try_from(self.columns * self.rows).expect("not negative");
         self.tiles.resize_with(count, Bin::default);
@@ -110,7 +110,7 @@ impl Bins {
         let picture =
             PixelBox { left: 0, top: 0, right: self.columns * TILE, bottom: self.rows * TILE };
         // Seen from a place off the middle, it takes the next pixel at the most.
-        let width = if self.places.are_many() { width + 1 } else { width };
+        let width = if self.sample_positions.are_many() { width + 1 } else { width };
         for bounds in lines::stretches(&line, width, picture) {
             self.each(bounds, |bin| bin.lines.push(number));
         }

@@ -1,11 +1,13 @@
 //! Which pixels a triangle covers, by each way: one pixel after the other.
 //!
-//! * By edge functions of whole numbers, as everywhere, but in the parts of a pixel that are chosen.
-//! * By edge functions of 32-bit numbers and corners that are not snapped. A centre on an edge is taken
-//!   by both sides, and rounding may give one next to it to both or to none.
-//! * By scan lines, as software did it before edge functions: corners are rounded to whole pixels, and
-//!   each row goes from the left edge to the right edge, rounded, both ends with it. So neighbours write
-//!   the pixels that they share twice, and pixels are covered whose centres lie outside.
+//! * By edge functions of whole numbers, as everywhere, but in the parts of a pixel that are
+//!   chosen.
+//! * By edge functions of 32-bit numbers and corners that are not snapped. A centre on an edge is
+//!   taken by both sides, and rounding may give one next to it to both or to none.
+//! * By scan lines, as software did it before edge functions: corners are rounded to whole pixels,
+//!   and each row goes from the left edge to the right edge, rounded, both ends with it. So
+//!   neighbours write the pixels that they share twice, and pixels are covered whose centres lie
+//!   outside.
 
 use crate::base::math::each;
 use crate::render::raster::unsnapped::UnsnappedTriangle;
@@ -26,14 +28,14 @@ pub(crate) fn exactly(plain: &UnsnappedTriangle, parts: i32, clip: PixelBox, tak
     let edges = [Edge::new(q, r, area), Edge::new(r, p, area), Edge::new(p, q, area)];
     let [a, b, c] = plain.depths.map(f64::from);
     let per_area = 1.0 / area.abs() as f64;
-    let held = held(plain);
+    let clamped = clamped(plain);
     let middle = |i: i32| i64::from(i) * i64::from(parts) + i64::from(parts / 2);
     for y in clip.top..clip.bottom {
         for x in clip.left..clip.right {
             let values = each(edges, |edge| edge.at(middle(x), middle(y)));
             if edges.iter().zip(values).all(|(edge, value)| edge.covers(value)) {
                 let [_, second, third] = values.map(|value| value as f64 * per_area);
-                take(x, y, held((a + second * (b - a) + third * (c - a)) as f32));
+                take(x, y, clamped((a + second * (b - a) + third * (c - a)) as f32));
             }
         }
     }
@@ -73,14 +75,14 @@ pub(crate) fn in_32_bits(plain: &UnsnappedTriangle, clip: PixelBox, take: Take<'
         ((p[1] - q[1]) * x + (q[0] - p[0]) * y + (p[0] * q[1] - p[1] * q[0])) * area.signum()
     };
     let [a, b, c] = plain.depths;
-    let held = held(plain);
+    let clamped = clamped(plain);
     for y in clip.top..clip.bottom {
         for x in clip.left..clip.right {
             let (cx, cy) = (x as f32 + 0.5, y as f32 + 0.5);
             let values = [edge(q, r, cx, cy), edge(r, p, cx, cy), edge(p, q, cx, cy)];
             if values.iter().all(|value| *value >= 0.0) {
                 let [second, third] = [values[1], values[2]].map(|value| value / area.abs());
-                take(x, y, held(a + second * (b - a) + third * (c - a)));
+                take(x, y, clamped(a + second * (b - a) + third * (c - a)));
             }
         }
     }
@@ -116,17 +118,17 @@ pub(crate) fn by_scan_lines(plain: &UnsnappedTriangle, clip: PixelBox, take: Tak
         }
         let [[left, from], [right, to]] = ends;
         let per_pixel = if right > left { (to - from) / (right - left) } else { 0.0 };
-        let held = held(plain);
+        let clamped = clamped(plain);
         let columns =
             (left.round() as i32).max(clip.left)..(right.round() as i32 + 1).min(clip.right);
         for x in columns {
-            take(x, y, held(from + per_pixel * (x as f32 - left)));
+            take(x, y, clamped(from + per_pixel * (x as f32 - left)));
         }
     }
 }
 
 /// Holds a depth to those of the corners.
-fn held(plain: &UnsnappedTriangle) -> impl Fn(f32) -> f32 {
+fn clamped(plain: &UnsnappedTriangle) -> impl Fn(f32) -> f32 {
     let [a, b, c] = plain.depths;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     move |depth| {

@@ -1,11 +1,11 @@
 //! How depths are kept: as what the word of a pixel has above the number of its primitive.
 //!
-//! Everywhere the larger is the nearer. So formats in which 0 is near are kept as what is left to their
-//! largest number; what two depths have in common after rounding, they have in common here.
+//! Everywhere the larger is the nearer. So formats in which 0 is near are kept as what is left to
+//! their largest number; what two depths have in common after rounding, they have in common here.
 //!
-//! One step of depth at z 1000, between near 1 and far 2000, is 15.3 units in 16 bits, 0.06 in 24, and
-//! in 32-bit numbers 0.06 too, for their finest steps are next to 0, where nothing is far; turned round,
-//! with 0 far, they are 5.8e-5. Reed, "Depth Precision Visualized", 2015.
+//! One step of depth at z 1000, between near 1 and far 2000, is 15.3 units in 16 bits, 0.06 in 24,
+//! and in 32-bit numbers 0.06 too, for their finest steps are next to 0, where nothing is far;
+//! turned round, with 0 far, they are 5.8e-5. Reed, "Depth Precision Visualized", 2015.
 
 use crate::accuracy::DepthFormat;
 

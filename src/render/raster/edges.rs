@@ -40,7 +40,7 @@ pub(crate) struct EdgeSetup<'a> {
 impl EdgeSetup<'_> {
     /// Puts some of the draw's edges into bins.
     pub(crate) fn run(&self, level: Level, edges: &[DrawEdge], bins: &mut Bins) {
-        if bins.places.are_many() {
+        if bins.sample_positions.are_many() {
             dispatch!(level, simd => self.all::<_, FOUR>(simd, edges, bins));
         } else {
             dispatch!(level, simd => self.all::<_, 1>(simd, edges, bins));
@@ -89,7 +89,7 @@ impl EdgeSetup<'_> {
         let some = short & mask32x16::from_bitmask(simd, shown);
         let number = i32x16::from_slice(simd, &numbers).bitcast();
         for sample in 0..N {
-            let [x, y] = bins.places.shift::<N>(sample);
+            let [x, y] = bins.sample_positions.shift::<N>(sample);
             let seen = |[ex, ey, depth]: Ends<S>| [ex - x, ey - y, depth];
             let (width, nearer) = (self.width, self.nearer());
             let short = Short { some, number, width, nearer, sample };
@@ -223,8 +223,8 @@ fn point_of(draw: &Draw, corner: &Corner) -> u32 {
     }
 }
 
-/// A drawn normal in object space: it stands on the placed surface, and is as long as `length` units
-/// of object space along the unplaced normal.
+/// A drawn normal in object space: it stands on the placed surface, and is as long as `length`
+/// units of object space along the unplaced normal.
 fn normal_in_object(draw: &Draw, normal: DVec3, length: f64) -> DVec3 {
     let linear = DMat3::from_mat4(draw.view_from_object);
     let across = linear.inverse() * (draw.view_from_normal * normal);

@@ -55,15 +55,15 @@ impl<'a> Facing<'a> {
         let back = match draw.back {
             Back::Lit => Outline::Own,
             Back::Red => Outline::Back,
-            Back::Left => Outline::Not,
+            Back::Culled => Outline::Not,
         };
         let outlines = if draw.mirrored { [back, Outline::Own] } else { [Outline::Own, back] };
         let screen = Screen::new(draw.clip_from_object, size);
         Self { draw, mesh: &draw.model.mesh, vertices, screen, outlines }
     }
 
-    /// Finds the outlines of the polygons of some triangles that are drawn, each of which is the only
-    /// one of its polygon.
+    /// Finds the outlines of the polygons of some triangles that are drawn, each of which is the
+    /// only one of its polygon.
     pub(crate) fn of_triangles(&self, level: Level, triangles: &[DrawTriangle], all: &[AtomicU8]) {
         dispatch!(level, simd => self.all(simd, triangles, all));
     }

@@ -28,7 +28,7 @@ use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::SUBPIXELS;
 use crate::render::screen::interpolation;
 use crate::render::screen::sample_positions::SamplePositions;
-use crate::render::timings::{Laps, Stages};
+use crate::render::timings::{Laps, Timings};
 use crate::scene::Model;
 
 /// Everything of a frame that is on the screen.
@@ -54,7 +54,7 @@ pub(crate) struct ScreenGeometry {
     lines: WorkList<What>,
     bins: Vec<Bins>,
     /// Where its pixels are looked at.
-    places: SamplePositions,
+    sample_positions: SamplePositions,
 }
 
 /// What the screen vertices of a draw were made of.
@@ -89,17 +89,18 @@ impl ScreenGeometry {
         self.held.clear();
     }
 
-    /// Brings everything that the plan draws onto the screen, to be looked at in some places of each
-    /// pixel, as long as that is wanted. Vertices that are there already stay. Says how long it took.
+    /// Brings everything that the plan draws onto the screen, to be looked at in some places of
+    /// each pixel, as long as that is wanted. Vertices that are there already stay. Says how long
+    /// it took.
     pub(crate) fn build(
         &mut self,
         level: Level,
         plan: &FramePlan,
-        places: SamplePositions,
+        sample_positions: SamplePositions,
         watch: &Cancellation<'_>,
-    ) -> Stages {
+    ) -> Timings {
         let mut laps = Laps::start();
-        self.places = places;
+        self.sample_positions = sample_positions;
         self.number(plan);
         self.place(level, plan, watch);
         let vertices = laps.lap();
@@ -108,7 +109,7 @@ impl ScreenGeometry {
         if !watch.is_given_up() {
             self.add_lines(level, plan, watch);
         }
-        Stages { vertices, set_up, lines: laps.lap(), ..Stages::default() }
+        Timings { vertices, set_up, lines: laps.lap(), ..Timings::default() }
     }
 
     /// Where the numbers of each draw begin.
@@ -162,7 +163,7 @@ impl ScreenGeometry {
                 let screen = Screen::new(draw.clip_from_object, plan.size);
                 let order = draw.model.mesh.draw_order();
                 let out = &mut *pieces[work.place].lock().unwrap_or_else(PoisonError::into_inner);
-                if plan.variants.has_plain_vertices() {
+                if plan.variants.has_default_vertices() {
                     vertices::transform(level, &screen, order, work.from, out);
                 } else {
                     vertex_variants::transform(
@@ -210,8 +211,8 @@ impl ScreenGeometry {
         }
     }
 
-    /// Triangles into bins: one set of bins for each thread that takes part. And which polygons face
-    /// the observer, for their outlines.
+    /// Triangles into bins: one set of bins for each thread that takes part. And which polygons
+    /// face the observer, for their outlines.
     fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
         self.set_up.clear();
         for (i, draw) in plan.draws.iter().enumerate() {
@@ -232,7 +233,7 @@ impl ScreenGeometry {
         }
         self.bins.resize_with(self.set_up.threads(), Bins::default);
         for bins in &mut self.bins {
-            bins.clear(plan.size, self.places);
+            bins.clear(plan.size, self.sample_positions);
         }
         let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
         share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
@@ -277,8 +278,8 @@ impl ScreenGeometry {
     }
 
     /// Where its pixels are looked at.
-    pub(crate) const fn places(&self) -> SamplePositions {
-        self.places
+    pub(crate) const fn sample_positions(&self) -> SamplePositions {
+        self.sample_positions
     }
 
     /// Whether nothing reaches into a tile.

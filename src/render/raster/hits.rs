@@ -137,7 +137,8 @@ impl Hits {
         }
     }
 
-    /// Adds those of sixteen pixels that are covered in one of their `N` samples and in the picture.
+    /// Adds those of sixteen pixels that are covered in one of their `N` samples and in the
+    /// picture.
     #[inline(always)]
     pub(crate) fn add<S: Simd, const N: usize>(
         &mut self,

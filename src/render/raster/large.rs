@@ -2,8 +2,8 @@
 //!
 //! Its edge functions are whole numbers of 64 bits. First all blocks of the tile are asked at once
 //! which of them it may touch and which it covers as a whole; then only blocks that it touches are
-//! looked at, a row of eight pixels at a time. So what is large costs by its blocks, not its pixels,
-//! until its depths are asked for.
+//! looked at, a row of eight pixels at a time. So what is large costs by its blocks, not its
+//! pixels, until its depths are asked for.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
@@ -85,7 +85,7 @@ impl Large {
         &self,
         simd: S,
         area: PixelBox,
-        places: &SamplePositions,
+        sample_positions: &SamplePositions,
     ) -> Touched {
         let mut touched = Touched::default();
         let columns = eight_bits(area.left / BLOCK, (area.right - 1) / BLOCK);
@@ -96,7 +96,7 @@ impl Large {
         if N > 1 {
             (most, least) = ([i64::MIN; 3], [i64::MAX; 3]);
             for sample in 0..N {
-                let gain = self.gain(places.shift::<N>(sample));
+                let gain = self.gain(sample_positions.shift::<N>(sample));
                 most = [0, 1, 2].map(|i: usize| most[i].max(gain[i]));
                 least = [0, 1, 2].map(|i: usize| least[i].min(gain[i]));
             }
@@ -124,8 +124,8 @@ impl Large {
         [at(0), at(1), at(2)]
     }
 
-    /// The least and the largest depth that it may have in the `N` samples of a block that it covers as
-    /// a whole.
+    /// The least and the largest depth that it may have in the `N` samples of a block that it
+    /// covers as a whole.
     #[inline(always)]
     #[expect(
         clippy::cast_precision_loss,
@@ -150,23 +150,23 @@ impl Large {
         [low.max(self.low), high.min(self.high)]
     }
 
-    /// Draws the triangle into the words that a block has for the samples with this shift; it covers all
-    /// of them or some.
+    /// Draws the triangle into the words that a block has for the samples with this shift; it
+    /// covers all of them or some.
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
-        words: &mut [u64; BLOCK_PIXELS],
+        visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
         let (first, gain) = (self.edges_at(block), self.gain(shift));
         let first = [first[0] + gain[0], first[1] + gain[1], first[2] + gain[2]];
         let [a, b, c] = self.right;
         let mut edges = [across * a + first[0], across * b + first[1], across * c + first[2]];
-        let (two, _) = words.as_chunks_mut::<16>();
-        for words in two {
+        let (two, _) = visibility.as_chunks_mut::<16>();
+        for visibility in two {
             let upper = edges;
             let lower = self.below(upper);
             edges = self.below(lower);
@@ -180,18 +180,18 @@ impl Large {
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
             let (upper, lower) = depth.bitcast::<u32x16<S>>().widen();
-            let (up, down) = words.split_at_mut(8);
+            let (up, down) = visibility.split_at_mut(8);
             self.put(simd, upper, covered[0], up);
             self.put(simd, lower, covered[1], down);
         }
     }
 
     #[inline(always)]
-    fn put<S: Simd>(&self, simd: S, depth: u64x8<S>, covered: u64, words: &mut [u64]) {
+    fn put<S: Simd>(&self, simd: S, depth: u64x8<S>, covered: u64, visibility: &mut [u64]) {
         let new = (depth << 32) | u64::from(!self.number);
         let covered = fearless_simd::mask64x8::from_bitmask(simd, covered & 0xff);
         let new = covered.select(new, u64x8::splat(simd, 0));
-        new.max(u64x8::from_slice(simd, words)).store_slice(words);
+        new.max(u64x8::from_slice(simd, visibility)).store_slice(visibility);
     }
 
     #[inline(always)]

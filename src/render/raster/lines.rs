@@ -1,13 +1,13 @@
 //! Which pixels a line takes.
 //!
-//! A line takes, in each column that it crosses (or each row, where it is steep), the pixel that holds
-//! it in the column's middle; at its ends the rule of diamonds decides: a pixel is taken when the line
-//! leaves the diamond |x| + |y| < 1/2 around its centre. So a line of length 0 takes none, and two that
-//! follow one another take no pixel twice. The ends are snapped and everything is computed in whole
-//! numbers.
+//! A line takes, in each column that it crosses (or each row, where it is steep), the pixel that
+//! holds it in the column's middle; at its ends the rule of diamonds decides: a pixel is taken when
+//! the line leaves the diamond |x| + |y| < 1/2 around its centre. So a line of length 0 takes none,
+//! and two that follow one another take no pixel twice. The ends are snapped and everything is
+//! computed in whole numbers.
 //!
-//! Short lines are drawn sixteen at a time, one in each lane, and become hits; the others are stepped
-//! through in each tile. Both ways take the same pixels at the same depths.
+//! Short lines are drawn sixteen at a time, one in each lane, and become hits; the others are
+//! stepped through in each tile. Both ways take the same pixels at the same depths.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
@@ -92,8 +92,8 @@ pub(crate) fn bounds([a, b]: [Snapped; 2], width: i32) -> PixelBox {
     }
 }
 
-/// Boxes that hold the pixels of a line that lie in `clip`: one for each column of tiles, or each row
-/// where it is steep.
+/// Boxes that hold the pixels of a line that lie in `clip`: one for each column of tiles, or each
+/// row where it is steep.
 pub(crate) fn stretches(
     line: &ScreenLine,
     width: i32,
@@ -401,8 +401,8 @@ mod tests {
         }
     }
 
-    /// The rule itself, tried at many places of the line: the last place inside a diamond is not the
-    /// end of the line.
+    /// The rule itself, tried at many places of the line: the last place inside a diamond is not
+    /// the end of the line.
     fn by_the_rule([from, to]: [(f64, f64); 2]) -> Vec<(i32, i32)> {
         let n = 200_000;
         let mut entered = Vec::new();

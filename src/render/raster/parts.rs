@@ -1,4 +1,5 @@
-//! What all threads do while a frame is set up: triangles and lines into bins, each thread into its own.
+//! What all threads do while a frame is set up: triangles and lines into bins, each thread into its
+//! own.
 
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU8;

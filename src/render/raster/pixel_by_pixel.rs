@@ -18,11 +18,12 @@ use crate::render::screen::tiles::pixel_at;
 /// How many steps of a format of its own lines are nearer than the surfaces that they lie on.
 const LINES_NEARER: u32 = 2;
 
-/// Where a primitive is seen: column and row from the tile's first, what its word has above, its number.
+/// Where a primitive is seen: column and row from the tile's first, what its word has above, its
+/// number.
 pub(crate) type Put<'a> = &'a mut dyn FnMut([i32; 2], u32, u32);
 
-/// Draws everything that reaches into a tile, as a sample of its pixels sees it: the sample's number,
-/// and how many parts of a pixel it lies from the middle.
+/// Draws everything that reaches into a tile, as a sample of its pixels sees it: the sample's
+/// number, and how many parts of a pixel it lies from the middle.
 pub(crate) fn paint(
     variants: Variants,
     plan: &FramePlan,
@@ -80,7 +81,7 @@ fn paint_lines(
 ) {
     let nearer = if variants.depth == DepthFormat::F32Reversed { 0 } else { LINES_NEARER };
     let key = |depth: f32| key(variants.depth, depth) + nearer;
-    let samples = bins.places.count();
+    let samples = bins.sample_positions.count();
     bins.hits.each(tile, |place, depth, number| {
         let (at, own) = pixel_at(place as usize, samples);
         if own == sample {

@@ -1,5 +1,5 @@
-//! Triangles for pictures that are drawn one by one: kept with their corners as they were before they
-//! were snapped, for some ways of covering pixels want those.
+//! Triangles for pictures that are drawn one by one: kept with their corners as they were before
+//! they were snapped, for some ways of covering pixels want those.
 
 use crate::base::image::Size;
 use crate::render::frame::draw::{Back, Pipeline};
@@ -72,7 +72,7 @@ fn add_triangle(
     let snapped = corners.map(|corner| coarse(variants, corner.snapped(parts)).at());
     let area = doubled_area(snapped);
     let front = (area < 0) != setup.draw.mirrored;
-    if area == 0 || (!front && setup.draw.back == Back::Left) {
+    if area == 0 || (!front && setup.draw.back == Back::Culled) {
         return;
     }
     let pixels = corners.map(|corner| corner.at);

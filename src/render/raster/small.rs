@@ -1,9 +1,9 @@
 //! Small triangles, sixteen at a time: one in each lane.
 //!
 //! Triangles whose box of pixels has at most 8 x 8 wait in queues by the size of their boxes. When
-//! there are sixteen, their edge functions are stepped together over the pixels of the boxes, and the
-//! pixels that they cover become hits in the bins. The arithmetic is in f32, in which whole numbers
-//! below 2^24 are exact: no edge function of such a box is larger.
+//! there are sixteen, their edge functions are stepped together over the pixels of the boxes, and
+//! the pixels that they cover become hits in the bins. The arithmetic is in f32, in which whole
+//! numbers below 2^24 are exact: no edge function of such a box is larger.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
@@ -47,11 +47,11 @@ pub(crate) fn draw_rest<S: Simd, const N: usize>(simd: S, queue: usize, bins: &m
 /// Draws sixteen triangles whose boxes have at most 8 x 8 pixels.
 #[inline(always)]
 pub(crate) fn draw<S: Simd, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
-    let places = bins.places;
-    let lanes = Lanes::new(simd, pack, places.reach::<N>());
+    let sample_positions = bins.sample_positions;
+    let lanes = Lanes::new(simd, pack, sample_positions.reach::<N>());
     let reach = bins.hits.reach(lanes.bounds());
     lanes.each_sample::<N>(
-        &places,
+        &sample_positions,
         #[inline(always)]
         |[x, y], sample, covered, depth| {
             let pixels = Pixels { x, y, depth: depth.bitcast(), number: lanes.number };
@@ -135,15 +135,15 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Calls `take` with a pixel of each box and one of its `N` samples, where some triangle covers its
-    /// own, and with the depths there.
+    /// Calls `take` with a pixel of each box and one of its `N` samples, where some triangle covers
+    /// its own, and with the depths there.
     #[inline(always)]
     fn each_sample<const N: usize>(
         &self,
-        places: &SamplePositions,
+        sample_positions: &SamplePositions,
         mut take: impl FnMut([i32x16<S>; 2], usize, mask32x16<S>, f32x16<S>),
     ) {
-        let shifts = self.shifts::<N>(places);
+        let shifts = self.shifts::<N>(sample_positions);
         let columns = (self.right - self.left).reduce_max();
         let rows = (self.bottom - self.top).reduce_max();
         let mut row = self.first;
@@ -168,10 +168,10 @@ impl<S: Simd> Lanes<S> {
 
     /// What the edge functions gain from the middle of a pixel to its samples.
     #[inline(always)]
-    fn shifts<const N: usize>(&self, places: &SamplePositions) -> [[f32x16<S>; 3]; N] {
+    fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [[f32x16<S>; 3]; N] {
         let mut shifts = [[f32x16::splat(self.depth.simd, 0.0); 3]; N];
         for (sample, shift) in shifts.iter_mut().enumerate() {
-            let [x, y] = places.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
+            let [x, y] = sample_positions.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
             *shift = [
                 self.a[0] * x + self.b[0] * y,
                 self.a[1] * x + self.b[1] * y,
@@ -203,8 +203,8 @@ struct LanesEdge<S: Simd> {
     b: f32x16<S>,
 }
 
-/// As in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0; turned
-/// by the sign of the area, and with what it gains by a whole pixel.
+/// As in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0;
+/// turned by the sign of the area, and with what it gains by a whole pixel.
 #[inline(always)]
 fn edge<S: Simd>(
     [px, py]: [f32x16<S>; 2],

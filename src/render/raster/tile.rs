@@ -1,19 +1,21 @@
 //! What is seen at each pixel of a tile.
 //!
-//! Each pixel has a word ([`words`](crate::render::raster::visibility_buffer)), and the larger word wins: what is nearer, and among
-//! what is equally near the primitive with the lower number, that is of the older object, the earlier
-//! face. The order in which primitives are drawn cannot show, so it is nobody's concern.
+//! Each pixel has a word ([`words`](crate::render::raster::visibility_buffer)), and the larger word
+//! wins: what is nearer, and among what is equally near the primitive with the lower number, that
+//! is of the older object, the earlier face. The order in which primitives are drawn cannot show,
+//! so it is nobody's concern.
 //!
 //! Which pixels a triangle covers, and how near it is there, is computed in one of two ways, chosen
-//! by the triangle's own size alone: in f32 for boxes up to 8 x 8, where whole numbers below 2^24 are
-//! exact, sixteen triangles at once (`small`); and in 64 bits for all others, a block of 8 x 8 pixels
-//! at once (`large`). So neither tiles nor threads nor instructions show in the picture.
+//! by the triangle's own size alone: in f32 for boxes up to 8 x 8, where whole numbers below 2^24
+//! are exact, sixteen triangles at once (`small`); and in 64 bits for all others, a block of 8 x 8
+//! pixels at once (`large`). So neither tiles nor threads nor instructions show in the picture.
 //!
-//! A block that nothing reaches is never touched, and one that a single large triangle covers is not
-//! asked for its depths: that it is covered is all that is noted, until something else comes near.
+//! A block that nothing reaches is never touched, and one that a single large triangle covers is
+//! not asked for its depths: that it is covered is all that is noted, until something else comes
+//! near.
 //!
-//! Where pixels are looked at in four places, a block has four planes of words, one for each place: what
-//! covers a pixel in a place is what covers its middle as seen from there.
+//! Where pixels are looked at in four places, a block has four planes of words, one for each place:
+//! what covers a pixel in a place is what covers its middle as seen from there.
 
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -33,9 +35,9 @@ use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at
 /// The words of one tile, block by block, in each block sample by sample, and these row by row.
 #[derive(Debug)]
 pub(crate) struct Visibility {
-    words: Box<[u64; FOUR * PIXELS]>,
+    buffer: Box<[u64; FOUR * PIXELS]>,
     /// Where pixels are looked at.
-    places: SamplePositions,
+    sample_positions: SamplePositions,
     /// The blocks whose words are written, a bit for each.
     written: u64,
     /// The blocks that are known to show one triangle, and have no words yet.
@@ -54,8 +56,8 @@ pub(crate) struct Visibility {
 impl Default for Visibility {
     fn default() -> Self {
         Self {
-            words: Box::new([0; FOUR * PIXELS]),
-            places: SamplePositions::default(),
+            buffer: Box::new([0; FOUR * PIXELS]),
+            sample_positions: SamplePositions::default(),
             written: 0,
             whole: 0,
             shown: [0; BLOCK_PIXELS],
@@ -76,11 +78,11 @@ impl Visibility {
         frame: &ScreenGeometry,
         (tile, bounds): (usize, PixelBox),
     ) {
-        self.clear(bounds, frame.places());
+        self.clear(bounds, frame.sample_positions());
         if plan.variants.draws_one_by_one() {
             return self.draw_one_by_one(plan, frame, (tile, bounds));
         }
-        if self.places.are_many() {
+        if self.sample_positions.are_many() {
             self.draw_in::<FOUR>(level, plan, frame, tile);
         } else {
             self.draw_in::<1>(level, plan, frame, tile);
@@ -117,11 +119,11 @@ impl Visibility {
         frame: &ScreenGeometry,
         (tile, bounds): (usize, PixelBox),
     ) {
-        self.words.fill(0);
+        self.buffer.fill(0);
         self.written = u64::MAX;
-        let (places, count) = (self.places, self.places.count());
+        let (sample_positions, count) = (self.sample_positions, self.sample_positions.count());
         for sample in 0..count {
-            let shift = if count == 1 { [0; 2] } else { places.shift::<FOUR>(sample) };
+            let shift = if count == 1 { [0; 2] } else { sample_positions.shift::<FOUR>(sample) };
             pixel_by_pixel::paint(
                 plan.variants,
                 plan,
@@ -130,15 +132,15 @@ impl Visibility {
                 (sample, shift),
                 &mut |[x, y], key, number| {
                     let plane = (block_at(x, y) * count + sample) * BLOCK_PIXELS;
-                    let word = &mut self.words[plane + within(x, y)];
+                    let word = &mut self.buffer[plane + within(x, y)];
                     *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
                 },
             );
         }
     }
 
-    fn clear(&mut self, bounds: PixelBox, places: SamplePositions) {
-        self.places = places;
+    fn clear(&mut self, bounds: PixelBox, sample_positions: SamplePositions) {
+        self.sample_positions = sample_positions;
         (self.written, self.whole) = (0, 0);
         self.large.clear();
         self.farthest.fill(0.0);
@@ -162,24 +164,24 @@ impl Visibility {
     }
 
     /// The blocks that one triangle is known to cover as a whole, a bit for each.
-    pub(crate) const fn whole_blocks(&self) -> u64 {
+    pub(crate) const fn full_blocks(&self) -> u64 {
         self.whole
     }
 
     /// The words of a block that shows something, row by row, where pixels have one sample.
     pub(crate) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
-        &self.words.as_chunks().0[block]
+        &self.buffer.as_chunks().0[block]
     }
 
     /// The words of a block that shows something, where pixels have four samples.
     pub(crate) fn planes(&self, block: usize) -> &Planes {
-        &self.words.as_chunks().0.as_chunks().0[block]
+        &self.buffer.as_chunks().0.as_chunks().0[block]
     }
 
     /// All words of a block that shows something.
-    fn words(&self, block: usize) -> &[u64] {
-        let count = BLOCK_PIXELS * self.places.count();
-        &self.words[block * count..][..count]
+    fn block_samples(&self, block: usize) -> &[u64] {
+        let count = BLOCK_PIXELS * self.sample_positions.count();
+        &self.buffer[block * count..][..count]
     }
 
     /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
@@ -191,7 +193,7 @@ impl Visibility {
             let [own_low, own_high] = if self.whole(block).is_some() {
                 [self.farthest[block].to_bits(), self.nearest[block].to_bits()]
             } else {
-                dispatch!(level, simd => depths_of(simd, self.words(block)))
+                dispatch!(level, simd => depths_of(simd, self.block_samples(block)))
             };
             (low, high) = (low.min(own_low), high.max(own_high));
         }
@@ -204,13 +206,14 @@ impl Visibility {
         [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
     }
 
-    /// The word of a pixel of the tile: of its samples the one that shows what most of them show, the
-    /// first of equals.
+    /// The word of a pixel of the tile: of its samples the one that shows what most of them show,
+    /// the first of equals.
     pub(crate) fn word(&mut self, level: Level, x: i32, y: i32) -> u64 {
-        let (words, count) = self.samples(level, x, y);
-        let alike = |word: &u64| words.iter().filter(|other| seen(**other) == seen(*word)).count();
-        let mut most = words[0];
-        for word in &words[1..count] {
+        let (samples, count) = self.samples(level, x, y);
+        let alike =
+            |word: &u64| samples.iter().filter(|other| seen(**other) == seen(*word)).count();
+        let mut most = samples[0];
+        for word in &samples[1..count] {
             if alike(word) > alike(&most) {
                 most = *word;
             }
@@ -220,20 +223,20 @@ impl Visibility {
 
     /// The words of the samples of a pixel of the tile, and how many they are.
     pub(crate) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; FOUR], usize) {
-        let count = self.places.count();
+        let count = self.sample_positions.count();
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
         let block = block_at(x, y);
-        let mut words = [0; FOUR];
+        let mut samples = [0; FOUR];
         if self.shows(block) {
             match count {
                 1 => dispatch!(level, simd => self.write::<_, 1>(simd, block)),
                 _ => dispatch!(level, simd => self.write::<_, FOUR>(simd, block)),
             }
-            for (sample, word) in words[..count].iter_mut().enumerate() {
-                *word = self.words(block)[sample * BLOCK_PIXELS + within(x, y)];
+            for (sample, word) in samples[..count].iter_mut().enumerate() {
+                *word = self.block_samples(block)[sample * BLOCK_PIXELS + within(x, y)];
             }
         }
-        (words, count)
+        (samples, count)
     }
 
     /// Sees to it that a block has words for `N` samples a pixel.
@@ -256,7 +259,7 @@ impl Visibility {
     /// The words of a block for one of `N` samples.
     #[inline(always)]
     fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
-        &mut self.words.as_chunks_mut().0[block * N + sample]
+        &mut self.buffer.as_chunks_mut().0[block * N + sample]
     }
 
     /// Draws a triangle into a block, of which it covers all or part.
@@ -268,9 +271,9 @@ impl Visibility {
         block: usize,
         whole: bool,
     ) {
-        let places = self.places;
+        let sample_positions = self.sample_positions;
         for sample in 0..N {
-            let shift = places.shift::<N>(sample);
+            let shift = sample_positions.shift::<N>(sample);
             large.draw(simd, (block, shift), whole, self.plane::<N>(block, sample));
         }
     }
@@ -314,7 +317,8 @@ impl Visibility {
     ) {
         for &place in &bins.tiles[tile].lines {
             for sample in 0..N {
-                let line = bins.lines[place as usize].seen_from(self.places.shift::<N>(sample));
+                let line =
+                    bins.lines[place as usize].seen_from(self.sample_positions.shift::<N>(sample));
                 lines::pixels(
                     &line,
                     width,
@@ -335,7 +339,7 @@ impl Visibility {
         large: &LargeTriangle,
     ) {
         for sample in 0..N {
-            let shift = self.places.shift::<N>(sample);
+            let shift = self.sample_positions.shift::<N>(sample);
             let corners = each(large.corners, |corner| corner.at().seen_from(shift));
             let Some(triangle) = Triangle::new(corners) else { return };
             let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
@@ -368,7 +372,7 @@ impl Visibility {
                     self.write::<S, N>(simd, block);
                 }
                 let word = u64::from(depth) << 32 | u64::from(!number);
-                self.words[place] = self.words[place].max(word);
+                self.buffer[place] = self.buffer[place].max(word);
             },
         );
     }
@@ -390,7 +394,7 @@ impl Visibility {
         let Some(triangle) = Triangle::new(corners) else {
             return;
         };
-        let reached = PixelBox::reached(corners, self.places.reach::<N>());
+        let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
         let area = reached.intersection(self.bounds);
         if area.is_empty() {
             return;
@@ -403,7 +407,7 @@ impl Visibility {
             right: area.right - left,
             bottom: area.bottom - top,
         };
-        let touched = large.blocks::<S, N>(simd, area, &self.places);
+        let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
         let mut some = touched.some;
         let mut place = None;
         while some != 0 {
@@ -413,7 +417,7 @@ impl Visibility {
                 continue;
             }
             if touched.whole >> block & 1 != 0 {
-                self.draw_whole::<S, N>(simd, &large, block, &mut place);
+                self.draw_full_block::<S, N>(simd, &large, block, &mut place);
             } else {
                 self.write::<S, N>(simd, block);
                 self.draw_planes::<S, N>(simd, &large, block, false);
@@ -421,9 +425,10 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle into a block that it covers; `place` is where it stands among those that do.
+    /// Draws a triangle into a block that it covers; `place` is where it stands among those that
+    /// do.
     #[inline(always)]
-    fn draw_whole<S: Simd, const N: usize>(
+    fn draw_full_block<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         large: &Large,

@@ -17,8 +17,8 @@ pub(crate) struct UnsnappedTriangle {
 }
 
 impl UnsnappedTriangle {
-    /// The same as a place sees it that lies so many 256th parts of a pixel from a pixel's middle, where
-    /// pixels have `parts`.
+    /// The same as a place sees it that lies so many 256th parts of a pixel from a pixel's middle,
+    /// where pixels have `parts`.
     pub(crate) fn seen_from(&self, shift: [i32; 2], parts: i32) -> Self {
         let [x, y] = shift.map(|shift| shift * (parts / SUBPIXELS));
         let [dx, dy] = shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));

@@ -1,8 +1,9 @@
 //! Vertices to the screen by rare ways: in 32 bits, or snapped to other parts of a pixel.
 //!
-//! Coarser parts are multiples of those that everything else counts in, so nothing but the place changes.
-//! Finer ones do not fit there: such corners are kept beside the others, in parts of 1/4096, and with a
-//! guard band of 2^17 pixels instead of 2^20, so that edge functions stay below 2^62.
+//! Coarser parts are multiples of those that everything else counts in, so nothing but the place
+//! changes. Finer ones do not fit there: such corners are kept beside the others, in parts of
+//! 1/4096, and with a guard band of 2^17 pixels instead of 2^20, so that edge functions stay below
+//! 2^62.
 
 use fearless_simd::Level;
 
@@ -137,8 +138,8 @@ mod tests {
     use crate::base::image::Size;
     use crate::base::math;
 
-    /// How far from where it belongs a vertex is seen that is 400 in front of a camera, itself `offset`
-    /// from the origin, in pixels; the worst of some.
+    /// How far from where it belongs a vertex is seen that is 400 in front of a camera, itself
+    /// `offset` from the origin, in pixels; the worst of some.
     fn worst(vertices: VertexArithmetic, offset: f64) -> f64 {
         let size = Size::new(800, 800);
         let clip_from_view = math::perspective(22.5_f64.to_radians(), 1.0, 2000.0, size);

@@ -28,8 +28,8 @@ fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [Scre
     }
 }
 
-/// x, y, depth and one by w of sixteen vertices, by their numbers. A number beyond the last means the
-/// last, which spares a check in each lane.
+/// x, y, depth and one by w of sixteen vertices, by their numbers. A number beyond the last means
+/// the last, which spares a check in each lane.
 #[inline(always)]
 pub(crate) fn fetch_vertices<S: Simd>(
     simd: S,

@@ -27,8 +27,8 @@ pub(crate) const fn seen(word: u64) -> Visible {
     seen_number(!(word as u32))
 }
 
-/// What the number of a primitive says is seen. The background has that of the word 0, which is none of
-/// a line.
+/// What the number of a primitive says is seen. The background has that of the word 0, which is
+/// none of a line.
 #[inline(always)]
 pub(crate) const fn seen_number(number: u32) -> Visible {
     match LineNumber::of(number) {
@@ -54,9 +54,9 @@ pub(crate) type Planes = [[u64; BLOCK_PIXELS]; FOUR];
 /// The bits of the least and of the largest depth of the triangles among some words.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
-pub(crate) fn depths_of<S: Simd>(_: S, words: &[u64]) -> [u32; 2] {
+pub(crate) fn depths_of<S: Simd>(_: S, visibility: &[u64]) -> [u32; 2] {
     let (mut low, mut high) = (u32::MAX, 0);
-    for word in words {
+    for word in visibility {
         let depth = (*word >> 32) as u32;
         // The numbers of lines are the upper half of all; the background has the lowest word.
         let is_triangle = *word as u32 >> 31 == 1;

@@ -1,8 +1,9 @@
 //! What threads do to bring a frame onto the screen, piece by piece.
 //!
-//! A piece is so many vertices, triangles or edges of one draw. They lie side by side, so a piece has a home
-//! on the screen: the tile that its middle is in. Pieces are handed out in the order of these homes, and
-//! tiles are in the same order, so that each thread draws mostly what it has set up itself.
+//! A piece is so many vertices, triangles or edges of one draw. They lie side by side, so a piece
+//! has a home on the screen: the tile that its middle is in. Pieces are handed out in the order of
+//! these homes, and tiles are in the same order, so that each thread draws mostly what it has set
+//! up itself.
 
 use crate::base::image::Size;
 use crate::base::work_stealing::WorkStealing;
@@ -11,8 +12,8 @@ use crate::render::screen::clip::Screen;
 use crate::render::screen::tiles::{TILE, tiles_of};
 use crate::scene::{CLUSTER, NONE};
 
-/// How many pieces are made of many vertices, triangles, polygons or edges: the smaller they are, the more
-/// of them are at home where they are drawn.
+/// How many pieces are made of many vertices, triangles, polygons or edges: the smaller they are,
+/// the more of them are at home where they are drawn.
 const PIECES: usize = 256;
 
 /// The least and the most of a piece.

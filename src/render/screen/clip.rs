@@ -1,12 +1,12 @@
 //! From object space to the screen, and what becomes of what reaches beyond it.
 //!
 //! Placement is composed and applied in f64; clipping is done in homogeneous space, before any
-//! division, against the near and the far plane and a guard band of 2^20 pixels to each side; what is
-//! left is snapped to 1/256 of a pixel.
+//! division, against the near and the far plane and a guard band of 2^20 pixels to each side; what
+//! is left is snapped to 1/256 of a pixel.
 //!
 //! Clipping: Blinn and Newell, "Clipping Using Homogeneous Coordinates", SIGGRAPH 1978; Sutherland
-//! and Hodgman, "Reentrant Polygon Clipping", CACM 1974. A cut is computed from the inner end of its
-//! edge, so that two triangles which share the edge get the same bits.
+//! and Hodgman, "Reentrant Polygon Clipping", CACM 1974. A cut is computed from the inner end of
+//! its edge, so that two triangles which share the edge get the same bits.
 
 use glam::{DMat4, DVec3};
 
@@ -106,7 +106,8 @@ impl Screen {
         }
     }
 
-    /// The same, where what is cut is seen from a place that is shifted by so many parts of a pixel.
+    /// The same, where what is cut is seen from a place that is shifted by so many parts of a
+    /// pixel.
     pub(crate) const fn seen_from(self, shift: [i32; 2]) -> Self {
         Self { shift, ..self }
     }
@@ -257,9 +258,9 @@ pub(crate) fn homogeneous_weights(corners: [Clip; 3], [x, y]: [f64; 2]) -> DVec3
     let place = DVec3::new(x, y, 1.0);
     let weights = DVec3::new(q.cross(r).dot(place), r.cross(p).dot(place), p.cross(q).dot(place));
     let weights = if weights.element_sum() < 0.0 { -weights } else { weights };
-    let held = weights.max(DVec3::ZERO);
-    let sum = held.element_sum();
-    if sum > 0.0 { held / sum } else { DVec3::splat(1.0 / 3.0) }
+    let clamped = weights.max(DVec3::ZERO);
+    let sum = clamped.element_sum();
+    if sum > 0.0 { clamped / sum } else { DVec3::splat(1.0 / 3.0) }
 }
 
 /// Whether the corners of a triangle of clip space run counter-clockwise for the observer.

@@ -1,14 +1,14 @@
 //! Which pixels a triangle covers.
 //!
-//! Corners are snapped to 1/256 of a pixel and the rest is whole-number arithmetic, so a pixel is in
-//! or out by a rule, never by a rounding, and every arithmetic of light covers the same pixels.
+//! Corners are snapped to 1/256 of a pixel and the rest is whole-number arithmetic, so a pixel is
+//! in or out by a rule, never by a rounding, and every arithmetic of light covers the same pixels.
 //! Triangles that share an edge leave no pixel of it out and take none twice.
 //!
 //! The edge functions are those of Pineda, "A Parallel Algorithm for Polygon Rasterization",
 //! SIGGRAPH 1988; the rule for centres on an edge is that of Direct3D and Vulkan.
 //!
-//! Coordinates stay within 2^28 (the guard band of 2^20 pixels), so that an edge function stays below
-//! 2^59 and nothing overflows.
+//! Coordinates stay within 2^28 (the guard band of 2^20 pixels), so that an edge function stays
+//! below 2^59 and nothing overflows.
 
 use crate::base::math::each;
 
@@ -54,13 +54,14 @@ impl PixelBox {
         Self::reached(corners, [[0; 2]; 2])
     }
 
-    /// The pixels of which places that lie from `least` to `most` off the centre may lie in the box of
-    /// three places.
+    /// The pixels of which places that lie from `least` to `most` off the centre may lie in the box
+    /// of three places.
     #[inline(always)]
     #[must_use]
     pub fn reached([a, b, c]: [Snapped; 3], [least, most]: [[i32; 2]; 2]) -> Self {
         let half = SUBPIXELS / 2;
-        // The first centre at or after the smallest coordinate; past the last one before the largest.
+        // The first centre at or after the smallest coordinate; past the last one before the
+        // largest.
         let first = |a: i32, b: i32, c: i32, most: i32| {
             (a.min(b).min(c) + half - 1 - most).div_euclid(SUBPIXELS)
         };
@@ -123,8 +124,8 @@ impl Edge {
         Self { a: py - qy, b: qx - px, c: px * qy - py * qx }
     }
 
-    /// 0 where a centre on the edge is covered: on a top edge (level, the triangle under it) and on a
-    /// left one (going up); -1 elsewhere, which moves no other centre across, for e is whole.
+    /// 0 where a centre on the edge is covered: on a top edge (level, the triangle under it) and on
+    /// a left one (going up); -1 elsewhere, which moves no other centre across, for e is whole.
     #[inline(always)]
     fn bias(self) -> i64 {
         if self.a > 0 || (self.a == 0 && self.b > 0) { 0 } else { -1 }
@@ -214,8 +215,8 @@ impl Triangle {
         [-p.bias(), -q.bias(), -r.bias()]
     }
 
-    /// Whether a block of 8 x 8 pixels, at whose first pixel the edge functions have these values, is
-    /// covered as a whole; `None` where one of the edges leaves all of it out.
+    /// Whether a block of 8 x 8 pixels, at whose first pixel the edge functions have these values,
+    /// is covered as a whole; `None` where one of the edges leaves all of it out.
     #[inline(always)]
     #[must_use]
     pub fn touches_block(&self, edges: [i64; 3]) -> Option<bool> {

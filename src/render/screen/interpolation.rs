@@ -1,10 +1,10 @@
 //! Where a pixel lies in its triangle, where that is not found sixteen pixels at a time: by affine
-//! interpolation, by perspective at every sixteenth pixel, in fine parts of a pixel, or at pixels whose
-//! centres no triangle covers.
+//! interpolation, by perspective at every sixteenth pixel, in fine parts of a pixel, or at pixels
+//! whose centres no triangle covers.
 //!
-//! Every sixteenth pixel: a division a pixel was too slow for games of 1996; so a row of a triangle was
-//! cut into pieces of sixteen pixels from its left end, the last one shorter, with perspective at their
-//! ends and evenly between. Abrash, "Graphics Programming Black Book", 1997, chapter 70.
+//! Every sixteenth pixel: a division a pixel was too slow for games of 1996; so a row of a triangle
+//! was cut into pieces of sixteen pixels from its left end, the last one shorter, with perspective
+//! at their ends and evenly between. Abrash, "Graphics Programming Black Book", 1997, chapter 70.
 
 use crate::accuracy::{Coverage, Interpolation};
 use crate::render::frame::variants::Variants;
@@ -28,12 +28,12 @@ pub(crate) fn parts_at(
     corners: [Snapped; 3],
     by_w: [f64; 3],
     ([x, y], shift): ([i32; 2], [i32; 2]),
-    held: bool,
+    clamped: bool,
 ) -> (Parts, f64) {
     let [dx, dy] = shift.map(|shift| shift * (subpixels(variants) / SUBPIXELS));
     let corners = corners.map(|at| Snapped { x: at.x - dx, y: at.y - dy });
-    let held = held || variants.coverage != Coverage::Exact;
-    let linear = |x: f64| linear(variants, corners, [x, f64::from(y)], held);
+    let clamped = clamped || variants.coverage != Coverage::Exact;
+    let linear = |x: f64| linear(variants, corners, [x, f64::from(y)], clamped);
     let own = linear(f64::from(x));
     let (exact, w) = perspective(own, by_w);
     let parts = match variants.interpolation {
@@ -53,7 +53,7 @@ pub(crate) fn parts_at(
 
 /// The parts in a place, by column and row of pixels, linear on the screen.
 #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
-fn linear(variants: Variants, corners: [Snapped; 3], at: [f64; 2], held: bool) -> Parts {
+fn linear(variants: Variants, corners: [Snapped; 3], at: [f64; 2], clamped: bool) -> Parts {
     let parts = f64::from(subpixels(variants));
     let [x, y] = at.map(|i| (i + 0.5) * parts);
     let [p, q, r] = corners.map(|Snapped { x, y }| [f64::from(x), f64::from(y)]);
@@ -61,13 +61,13 @@ fn linear(variants: Variants, corners: [Snapped; 3], at: [f64; 2], held: bool) -
     let area = doubled_area(corners) as f64;
     let edge = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
     let [second, third] = [edge(r, p) / area, edge(p, q) / area];
-    if !held {
+    if !clamped {
         return [second, third];
     }
     // The centre may lie outside: the nearest that does not extrapolate.
-    let held = [1.0 - second - third, second, third].map(|part| part.max(0.0));
-    let sum: f64 = held.iter().sum();
-    if sum > 0.0 { [held[1] / sum, held[2] / sum] } else { [1.0 / 3.0; 2] }
+    let clamped = [1.0 - second - third, second, third].map(|part| part.max(0.0));
+    let sum: f64 = clamped.iter().sum();
+    if sum > 0.0 { [clamped[1] / sum, clamped[2] / sum] } else { [1.0 / 3.0; 2] }
 }
 
 /// The first and the last column of the piece of a row that a pixel is in; `None` where it is one
@@ -113,8 +113,8 @@ fn perspective([second, third]: Parts, [w0, w1, w2]: [f64; 3]) -> (Parts, f64) {
 mod tests {
     use super::*;
 
-    /// A wall from z 2.2 to 100, 800 pixels wide, with 1024 texels along it: how many texels off the worst
-    /// pixel of its row is.
+    /// A wall from z 2.2 to 100, 800 pixels wide, with 1024 texels along it: how many texels off
+    /// the worst pixel of its row is.
     fn worst(interpolation: Interpolation) -> f64 {
         let ways = Variants { interpolation, ..Variants::default() };
         let at = |x: i32, y: i32| Snapped { x: x * 256, y: y * 256 };
@@ -128,8 +128,8 @@ mod tests {
         (0..799).map(apart).fold(0.0, f64::max)
     }
 
-    /// What even steps are off by between two ends whose distances have this ratio, as a part of the way
-    /// between them: (sqrt r - 1) / (sqrt r + 1), where they are off most.
+    /// What even steps are off by between two ends whose distances have this ratio, as a part of
+    /// the way between them: (sqrt r - 1) / (sqrt r + 1), where they are off most.
     fn most(ratio: f64) -> f64 {
         (ratio.sqrt() - 1.0) / (ratio.sqrt() + 1.0)
     }

@@ -1,12 +1,12 @@
 //! Where in its pixels a picture is looked at.
 //!
-//! A sample is the middle of its pixel moved by whole parts of a pixel, so what it shows is what the
-//! middle would show if all corners were moved the other way: everything that is exact with one sample
-//! is exact with many. Samples are looked at four at a time, each four around the middle; sixteen and
-//! sixty-four are four and sixteen passes, whose colours are added up.
+//! A sample is the middle of its pixel moved by whole parts of a pixel, so what it shows is what
+//! the middle would show if all corners were moved the other way: everything that is exact with one
+//! sample is exact with many. Samples are looked at four at a time, each four around the middle;
+//! sixteen and sixty-four are four and sixteen passes, whose colours are added up.
 //!
-//! Four and sixteen lie where Vulkan has them ("Standard sample locations", in multiples of 1/16 of a
-//! pixel), sixty-four on a grid of 8 x 8.
+//! Four and sixteen lie where Vulkan has them ("Standard sample locations", in multiples of 1/16 of
+//! a pixel), sixty-four on a grid of 8 x 8.
 
 use crate::accuracy::Samples;
 
@@ -33,21 +33,21 @@ impl SamplePositions {
 
     /// Four places, by sixteenths of a pixel from the upper left corner.
     const fn new(sixteenths: [[i32; 2]; FOUR]) -> Self {
-        let mut places = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
+        let mut positions = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
         let mut i = 0;
         while i < 2 * FOUR {
             let (sample, axis) = (i / 2, i % 2);
             let shift = (sixteenths[sample][axis] - 8) * 16;
-            places.shifts[sample][axis] = shift;
-            if shift < places.least[axis] {
-                places.least[axis] = shift;
+            positions.shifts[sample][axis] = shift;
+            if shift < positions.least[axis] {
+                positions.least[axis] = shift;
             }
-            if shift > places.most[axis] {
-                places.most[axis] = shift;
+            if shift > positions.most[axis] {
+                positions.most[axis] = shift;
             }
             i += 1;
         }
-        places
+        positions
     }
 
     /// How many there are: [`FOUR`], or one.
@@ -118,15 +118,15 @@ mod tests {
     use super::*;
 
     fn all(samples: Samples) -> Vec<[i32; 2]> {
-        passes(samples).iter().flat_map(|places| places.shifts).collect()
+        passes(samples).iter().flat_map(|positions| positions.shifts).collect()
     }
 
     #[test]
     fn each_four_lie_around_the_middle() {
         for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
             for SamplePositions { shifts, .. } in passes(samples) {
-                // In every direction, some lie on one side of a line through the middle, some on the
-                // other.
+                // In every direction, some lie on one side of a line through the middle, some on
+                // the other.
                 for line in shifts {
                     let sides = shifts.map(|at| line[0] * at[1] - line[1] * at[0]);
                     assert!(sides.iter().any(|side| *side > 0), "{shifts:?}");

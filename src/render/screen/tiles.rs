@@ -1,7 +1,7 @@
 //! How a picture is cut into tiles and these into blocks, and where the words of a pixel stand.
 //!
-//! A tile has 64 x 64 pixels, a block 8 x 8. Words stand block by block, in each block sample by sample,
-//! and these row by row.
+//! A tile has 64 x 64 pixels, a block 8 x 8. Words stand block by block, in each block sample by
+//! sample, and these row by row.
 
 use fearless_simd::{Simd, i32x16};
 
@@ -33,8 +33,8 @@ pub(crate) const fn block_at(x: i32, y: i32) -> usize {
     (y / BLOCK * BLOCKS + x / BLOCK) as usize
 }
 
-/// The column and row of the tile, and the sample, whose word stands at a place where pixels have so many
-/// samples.
+/// The column and row of the tile, and the sample, whose word stands at a place where pixels have
+/// so many samples.
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 pub(crate) const fn pixel_at(place: usize, samples: usize) -> ([i32; 2], usize) {
     let (plane, pixel) = (place / BLOCK_PIXELS, (place % BLOCK_PIXELS) as i32);

@@ -1,5 +1,5 @@
-//! Where a pixel lies in one triangle, in f64: for what is looked at one by one, and for triangles that
-//! were cut.
+//! Where a pixel lies in one triangle, in f64: for what is looked at one by one, and for triangles
+//! that were cut.
 
 use glam::DVec3;
 
@@ -10,24 +10,24 @@ use crate::render::frame::draw::Draw;
 use crate::render::screen::clip::{Screen, ScreenVertex, homogeneous_weights};
 use crate::render::screen::coverage::{SUBPIXELS, Snapped, Triangle};
 
-/// The parts that the corners of one triangle have in places of pixels that are shifted by so many parts of
-/// a pixel from their middles, with perspective, in f64.
+/// The parts that the corners of one triangle have in places of pixels that are shifted by so many
+/// parts of a pixel from their middles, with perspective, in f64.
 #[derive(Debug)]
 pub(crate) struct Weights<'a> {
     plan: &'a FramePlan,
     draw: &'a Draw,
     number: u32,
     shift: [i32; 2],
-    way: Way,
+    method: Method,
 }
 
 /// How they are found.
 #[derive(Debug)]
-enum Way {
+enum Method {
     /// The triangle is cut.
     Cut,
     /// By one of the rare ways, from its corners and one by w of each.
-    Rare([Snapped; 3], [f64; 3]),
+    Variant([Snapped; 3], [f64; 3]),
     /// From edge functions, where it has an area, and w of each corner.
     Edges(Option<Triangle>, DVec3),
 }
@@ -45,28 +45,28 @@ impl<'a> Weights<'a> {
         let own = each(ids, |vertex| vertices[vertex as usize]);
         let screen = Screen::new(draw.clip_from_object, plan.size);
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
-        let way = if !own.iter().all(ScreenVertex::is_inside) {
-            Way::Cut
-        } else if plan.variants.has_rare_places() {
-            Way::Rare(own.map(|vertex| vertex.at()), w.map(|w| 1.0 / w))
+        let method = if !own.iter().all(ScreenVertex::is_inside) {
+            Method::Cut
+        } else if plan.variants.locates_one_by_one() {
+            Method::Variant(own.map(|vertex| vertex.at()), w.map(|w| 1.0 / w))
         } else {
             let triangle = Triangle::new(own.map(|vertex| vertex.at().seen_from(shift)));
-            Way::Edges(triangle, DVec3::from_array(w))
+            Method::Edges(triangle, DVec3::from_array(w))
         };
-        Self { plan, draw, number, shift, way }
+        Self { plan, draw, number, shift, method }
     }
 
     /// Those in a pixel.
     #[inline(always)]
     pub(crate) fn at(&self, pixel: [i32; 2]) -> DVec3 {
-        match &self.way {
-            Way::Cut => cut_weights(self.plan, self.draw, self.number, (pixel, self.shift)),
-            Way::Rare(corners, by_w) => {
+        match &self.method {
+            Method::Cut => cut_weights(self.plan, self.draw, self.number, (pixel, self.shift)),
+            Method::Variant(corners, by_w) => {
                 let at = (pixel, self.shift);
                 let ([second, third], _) = parts_at(self.plan.variants, *corners, *by_w, at, false);
                 DVec3::new(1.0 - second - third, second, third)
             }
-            Way::Edges(triangle, w) => {
+            Method::Edges(triangle, w) => {
                 let parts = triangle.as_ref().map(|triangle| barycentric(triangle, pixel));
                 let [second, third] = parts.unwrap_or_default();
                 let by_w = DVec3::new(1.0 - second - third, second, third) / *w;
@@ -113,8 +113,8 @@ pub(crate) fn cut_w(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) 
     weights.dot(DVec3::from_array(w))
 }
 
-/// Where the point of a cut triangle whose corners have these parts lies in the picture, in pixels. What
-/// lies in the observer's own plane is nowhere: then it is some place.
+/// Where the point of a cut triangle whose corners have these parts lies in the picture, in pixels.
+/// What lies in the observer's own plane is nowhere: then it is some place.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn cut_place(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> [f64; 2] {
     let screen = Screen::new(draw.clip_from_object, plan.size);

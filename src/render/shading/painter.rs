@@ -1,9 +1,9 @@
 //! Paints tiles: what is seen in a tile, its colours, and the copy into the picture.
 //!
-//! A painter stays with its thread from frame to frame, so that a frame allocates and clears nothing
-//! for its tiles. A tile that showed nothing but the background and still does is not touched. Tiles
-//! are painted straight into the picture, or, where another thread is at work in the same rows or the
-//! picture ends inside of the tile, beside it and copied.
+//! A painter stays with its thread from frame to frame, so that a frame allocates and clears
+//! nothing for its tiles. A tile that showed nothing but the background and still does is not
+//! touched. Tiles are painted straight into the picture, or, where another thread is at work in the
+//! same rows or the picture ends inside of the tile, beside it and copied.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -104,11 +104,11 @@ impl<T: ShadingNumber> Painter<T> {
         }
         self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
-        let (column, place) = Self::place(tile, size);
+        let (column, columns) = Self::columns(tile, size);
         if let (true, Ok(mut band)) = (whole, band.try_lock()) {
             // Straight into the picture, where nobody else is at work in these rows.
             let Band { pixels, filled } = &mut *band;
-            let mut canvas = Canvas { pixels: &mut pixels[place.start..], stride: size.width };
+            let mut canvas = Canvas { pixels: &mut pixels[columns.start..], stride: size.width };
             let shows = self.blocks(context, bounds, &mut canvas);
             filled[column] = Some(background).filter(|_| !shows);
             return;
@@ -132,7 +132,7 @@ impl<T: ShadingNumber> Painter<T> {
         bounds: PixelBox,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let mut whole = self.visibility.whole_blocks();
+        let mut whole = self.visibility.full_blocks();
         if whole != u64::MAX {
             for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
                 row[..TILE_SIDE].fill(context.plan.background.opaque());
@@ -147,16 +147,16 @@ impl<T: ShadingNumber> Painter<T> {
                         .fold(0, |which, other| which | 1 << other);
                     whole &= !which;
                     let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
-                    self.shader.whole_blocks(context, number, blocks, canvas);
+                    self.shader.full_blocks(context, number, blocks, canvas);
                 }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
-                let at = canvas.place(corner_in_tile(block));
-                shows |= if context.frame.places().are_many() {
+                let at = canvas.offset(corner_in_tile(block));
+                shows |= if context.frame.sample_positions().are_many() {
                     self.block_of_samples(context, (block, corner), canvas, at)
                 } else {
-                    let words = self.visibility.block(block);
-                    self.shader.block(context, words, corner, (canvas, at))
+                    let visibility = self.visibility.block(block);
+                    self.shader.block(context, visibility, corner, (canvas, at))
                 };
             }
         }
@@ -182,7 +182,8 @@ impl<T: ShadingNumber> Painter<T> {
         shows
     }
 
-    /// Adds the colours of a tile of a picture that one sample of its pixels sees to those of others.
+    /// Adds the colours of a tile of a picture that one sample of its pixels sees to those of
+    /// others.
     fn add_picture(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &mut [Sums]) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let bounds = bounds_of(tile, plan.size);
@@ -198,19 +199,20 @@ impl<T: ShadingNumber> Painter<T> {
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
         self.blocks(context, bounds, &mut canvas);
         for (block, to) in to.iter_mut().enumerate() {
-            let rows = canvas.pixels[canvas.place(corner_in_tile(block))..].chunks(TILE_SIDE);
+            let rows = canvas.pixels[canvas.offset(corner_in_tile(block))..].chunks(TILE_SIDE);
             let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
-            own.enumerate().for_each(|(place, color)| to.add(place, *color, 1));
+            own.enumerate().for_each(|(columns, color)| to.add(columns, *color, 1));
         }
         self.pixels = pixels;
     }
 
-    /// Adds the colours of four samples of a tile, or of the one that is looked at, to those of others.
+    /// Adds the colours of four samples of a tile, or of the one that is looked at, to those of
+    /// others.
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
         to.resize(BLOCK_PIXELS, Sums::default());
-        if !frame.places().are_many() {
+        if !frame.sample_positions().are_many() {
             return self.add_picture(context, tile, &mut to);
         }
         let empty = frame.is_empty(tile);
@@ -227,7 +229,7 @@ impl<T: ShadingNumber> Painter<T> {
             }
             let corner = visibility.corner(block);
             if let Some(number) = visibility.whole(block) {
-                shader.whole_block(context, number, corner, &mut Out::Sums(to));
+                shader.full_block(context, number, corner, &mut Out::Sums(to));
             } else {
                 let planes = visibility.planes(block);
                 samples.compare(level, planes);
@@ -248,7 +250,7 @@ impl<T: ShadingNumber> Painter<T> {
         let FramePlan { size, samples, .. } = *context.plan;
         let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
         for (block, sums) in of.iter().enumerate() {
-            let at = canvas.place(corner_in_tile(block));
+            let at = canvas.offset(corner_in_tile(block));
             canvas.put(at, &sums.means(samples.count().ilog2()));
         }
         self.copy(tile, size, &mut locked(band));
@@ -256,26 +258,26 @@ impl<T: ShadingNumber> Painter<T> {
 
     /// Copies the tile beside the picture into its band.
     fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
-        let (column, place) = Self::place(tile, size);
+        let (column, columns) = Self::columns(tile, size);
         band.filled[column] = None;
         for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width)) {
-            to[place.clone()].copy_from_slice(&from[..place.len()]);
+            to[columns.clone()].copy_from_slice(&from[..columns.len()]);
         }
     }
 
     /// Fills a tile with a colour, where it is not filled with it.
     fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
-        let (column, place) = Self::place(tile, size);
+        let (column, columns) = Self::columns(tile, size);
         if band.filled[column] != Some(color) {
             band.filled[column] = Some(color);
             for row in band.pixels.chunks_mut(size.width) {
-                row[place.clone()].fill(color.opaque());
+                row[columns.clone()].fill(color.opaque());
             }
         }
     }
 
     /// Which tile of its band it is, and its columns of the picture.
-    fn place(tile: usize, size: Size) -> (usize, std::ops::Range<usize>) {
+    fn columns(tile: usize, size: Size) -> (usize, std::ops::Range<usize>) {
         let column = tile % size.width.div_ceil(TILE_SIDE);
         let left = column * TILE_SIDE;
         (column, left..size.width.min(left + TILE_SIDE))

@@ -1,17 +1,17 @@
 //! How colours become bytes: to the nearest, downwards, or by a pattern.
 //!
-//! A byte is the whole part of 255 c + t, with a threshold t from 0 to 1: one half is rounding to the
-//! nearest, and 0 cuts off. A threshold that changes from pixel to pixel rounds as many up as the part
-//! behind the point says, so that a smooth colour stays smooth on average.
+//! A byte is the whole part of 255 c + t, with a threshold t from 0 to 1: one half is rounding to
+//! the nearest, and 0 cuts off. A threshold that changes from pixel to pixel rounds as many up as
+//! the part behind the point says, so that a smooth colour stays smooth on average.
 //!
-//! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973,
-//! of order 8.
+//! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC
+//! 1973, of order 8.
 
 use crate::accuracy::Rounding;
 use crate::render::lights::{Batch, load};
 use crate::render::shading::colors::Colors;
 use crate::render::shading::fragments::Fragments;
-use crate::render::shading::quantize::Own;
+use crate::render::shading::quantize::SurfaceColor;
 use crate::render::simd::BATCH;
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
 
@@ -24,7 +24,8 @@ fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
     }
 }
 
-/// The pattern's number at a place, from 0 to 63: the bits of x xor y and of y in turn, the last first.
+/// The pattern's number at a place, from 0 to 63: the bits of x xor y and of y in turn, the last
+/// first.
 #[expect(clippy::cast_possible_truncation, reason = "the last bits are meant")]
 const fn bayer(x: i32, y: i32) -> u8 {
     let (x, y) = ((x ^ y) as u8, y as u8);
@@ -38,24 +39,24 @@ const fn bayer(x: i32, y: i32) -> u8 {
 }
 
 /// The thresholds of the pixels of a list.
-pub(crate) fn thresholds<T: Number>(rounding: Rounding, items: &Fragments) -> [T; BATCH] {
+pub(crate) fn thresholds<T: Number>(rounding: Rounding, fragments: &Fragments) -> [T; BATCH] {
     let mut all = [T::default(); BATCH];
-    for ((to, x), y) in all.iter_mut().zip(&items.x).zip(&items.y) {
+    for ((to, x), y) in all.iter_mut().zip(&fragments.x).zip(&fragments.y) {
         *to = T::from_f64(threshold(rounding, *x, *y));
     }
     all
 }
 
 /// Makes bytes of colours, as `Finish` does, by thresholds.
-pub(crate) struct FinishBy<'a, T> {
+pub(crate) struct QuantizeWithThresholds<'a, T> {
     pub(crate) batch: &'a Batch<T>,
     pub(crate) lit: bool,
-    pub(crate) own: Own<'a, T>,
+    pub(crate) own: SurfaceColor<'a, T>,
     pub(crate) thresholds: &'a [T; BATCH],
     pub(crate) colors: &'a mut Colors,
 }
 
-impl<T: Number> Kernel<T> for FinishBy<'_, T> {
+impl<T: Number> Kernel<T> for QuantizeWithThresholds<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { batch, lit, own, thresholds, colors } = self;

@@ -1,5 +1,5 @@
-//! What a surface shows of itself at a pixel: the footprint of a pixel on its texture, and the colour
-//! that its vertices give.
+//! What a surface shows of itself at a pixel: the footprint of a pixel on its texture, and the
+//! colour that its vertices give.
 
 use glam::DVec3;
 
@@ -10,7 +10,8 @@ use crate::render::screen::weights::Weights;
 use crate::render::texture::uv::uvs;
 use crate::scene::dvec3;
 
-/// How far off on the texture the pixels to the right and below lie of a pixel of a triangle of a draw.
+/// How far off on the texture the pixels to the right and below lie of a pixel of a triangle of a
+/// draw.
 #[cold]
 pub(crate) fn uv_ways(
     (plan, frame): (&FramePlan, &ScreenGeometry),

@@ -19,22 +19,22 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
     match simd.level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(token) => {
-            let places = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
+            let slots = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
             let picked = match PAGES {
-                1 => x86::of_one(token, page(token, row, 0), places),
-                2 => x86::of_two(token, page(token, row, 0), page(token, row, 1), places),
+                1 => x86::of_one(token, page(token, row, 0), slots),
+                2 => x86::of_two(token, page(token, row, 0), page(token, row, 1), slots),
                 _ => {
-                    let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), places);
-                    let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), places);
-                    places.simd_lt(32).select(low, high)
+                    let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), slots);
+                    let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), slots);
+                    slots.simd_lt(32).select(low, high)
                 }
             };
             i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
         }
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(token) if PAGES == 1 => {
-            let places = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
-            let picked = x86::of_halves(token, page(token, row, 0), places);
+            let slots = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
+            let picked = x86::of_halves(token, page(token, row, 0), slots);
             i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
         }
         _ => {
@@ -96,9 +96,9 @@ mod x86 {
         pub(crate) fn of_one(
             token: Avx512,
             page: i32x16<Avx512>,
-            places: i32x16<Avx512>,
+            slots: i32x16<Avx512>,
         ) -> i32x16<Avx512> {
-            _mm512_permutexvar_epi32(places.into(), page.into()).simd_into(token)
+            _mm512_permutexvar_epi32(slots.into(), page.into()).simd_into(token)
         }
     );
 
@@ -108,27 +108,27 @@ mod x86 {
             token: Avx512,
             low: i32x16<Avx512>,
             high: i32x16<Avx512>,
-            places: i32x16<Avx512>,
+            slots: i32x16<Avx512>,
         ) -> i32x16<Avx512> {
-            _mm512_permutex2var_epi32(low.into(), places.into(), high.into()).simd_into(token)
+            _mm512_permutex2var_epi32(low.into(), slots.into(), high.into()).simd_into(token)
         }
     );
 
     fearless_simd::kernel!(
         #[inline(always)]
-        fn of_eight(token: Avx2, half: i32x8<Avx2>, places: i32x8<Avx2>) -> i32x8<Avx2> {
-            _mm256_permutevar8x32_epi32(half.into(), places.into()).simd_into(token)
+        fn of_eight(token: Avx2, half: i32x8<Avx2>, slots: i32x8<Avx2>) -> i32x8<Avx2> {
+            _mm256_permutevar8x32_epi32(half.into(), slots.into()).simd_into(token)
         }
     );
 
     /// From sixteen places, by halves of eight.
     #[inline(always)]
-    pub(crate) fn of_halves(token: Avx2, page: i32x16<Avx2>, places: i32x16<Avx2>) -> i32x16<Avx2> {
+    pub(crate) fn of_halves(token: Avx2, page: i32x16<Avx2>, slots: i32x16<Avx2>) -> i32x16<Avx2> {
         let (low, high) = page.split();
-        let (first, second) = places.split();
+        let (first, second) = slots.split();
         let from_low = of_eight(token, low, first).combine(of_eight(token, low, second));
         let from_high = of_eight(token, high, first).combine(of_eight(token, high, second));
-        places.simd_lt(8).select(from_low, from_high)
+        slots.simd_lt(8).select(from_low, from_high)
     }
 }
 

@@ -6,8 +6,8 @@ use super::variant_real::VariantReal;
 use super::vec3::Vec3;
 use crate::base::color::byte;
 
-/// Positions lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
-/// that the call of a light's shader costs nothing beside its work.
+/// Positions lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large
+/// enough that the call of a light's shader costs nothing beside its work.
 pub const BATCH: usize = 64;
 
 /// What takes numbers from rows in memory, some at a time, computes with them, and puts them back.
@@ -32,13 +32,13 @@ pub trait Lanes: Copy {
     fn store(self, value: Self::R, row: &mut [Self::Number], at: usize);
     /// The whole numbers of a row that begin at `at`.
     fn whole(self, row: &[i32], at: usize) -> Self::R;
-    /// Puts colours into a row of pixels: red, green, blue and 255, as bytes in this order, each the
-    /// nearest to 255 times the number, as [`Number::byte`] has it.
+    /// Puts colours into a row of pixels: red, green, blue and 255, as bytes in this order, each
+    /// the nearest to 255 times the number, as [`Number::byte`] has it.
     fn store_pixels(self, color: Vec3<Self::R>, row: &mut [u32], at: usize);
     /// The same, each the whole part of 255 times the number and a threshold from 0 to 1.
     fn store_pixels_by(self, color: Vec3<Self::R>, threshold: Self::R, row: &mut [u32], at: usize);
-    /// Puts colours into three rows: red, green and blue as the bytes of [`Self::store_pixels_by`] before
-    /// they are rounded down, in parts of 2^-16.
+    /// Puts colours into three rows: red, green and blue as the bytes of [`Self::store_pixels_by`]
+    /// before they are rounded down, in parts of 2^-16.
     fn store_parts(
         self,
         color: Vec3<Self::R>,
@@ -124,8 +124,8 @@ impl Lanes for Exact {
         at: usize,
     ) {
         for (row, number) in rows.iter_mut().zip(color.0) {
-            let held = Real::min(Real::max(number, 0.0), 1.0);
-            row[at] = ((held * 255.0 + threshold) * PARTS) as u32;
+            let clamped = Real::min(Real::max(number, 0.0), 1.0);
+            row[at] = ((clamped * 255.0 + threshold) * PARTS) as u32;
         }
     }
 

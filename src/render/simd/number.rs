@@ -19,7 +19,7 @@ pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + '
     /// Does the work with the lanes for such numbers, and with instructions of this level.
     fn run(level: Level, kernel: impl Kernel<Self>);
     /// The same by a rare way, where there is one.
-    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>);
+    fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>);
 }
 
 impl Number for f64 {
@@ -39,10 +39,10 @@ impl Number for f64 {
         kernel.run(Exact);
     }
 
-    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>) {
-        match way {
+    fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>) {
+        match variant {
             None => Self::run(level, kernel),
-            Some(way) => kernel.run(VariantLanes { lanes: Exact, way }),
+            Some(variant) => kernel.run(VariantLanes { lanes: Exact, variant }),
         }
     }
 }
@@ -66,11 +66,11 @@ impl Number for f32 {
         dispatch!(level, simd => kernel.run(Sixteen(simd)));
     }
 
-    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>) {
-        match way {
+    fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>) {
+        match variant {
             None => Self::run(level, kernel),
-            Some(way) => {
-                dispatch!(level, simd => kernel.run(VariantLanes { lanes: Sixteen(simd), way }));
+            Some(variant) => {
+                dispatch!(level, simd => kernel.run(VariantLanes { lanes: Sixteen(simd), variant }));
             }
         }
     }

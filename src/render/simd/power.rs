@@ -1,7 +1,7 @@
 //! Powers of cosines, by each way that a highlight may be computed.
 //!
-//! A power that a material calls for is made ready once: its exponent is looked at, and its table is
-//! filled, before any pixel asks. What is below the floor counts as 0 by every way.
+//! A power that a material calls for is made ready once: its exponent is looked at, and its table
+//! is filled, before any pixel asks. What is below the floor counts as 0 by every way.
 
 use std::sync::Arc;
 
@@ -19,17 +19,17 @@ pub struct Power {
     /// The exponent, where it is a whole number that squaring reaches fast.
     pub(crate) whole: Option<u32>,
     /// A number whose power is below the floor, but normal in 32 bits; where the exponent is whole.
-    pub(crate) held: f64,
+    pub(crate) clamped: f64,
     /// By which of the rare ways.
-    pub(super) rare: Rare,
+    pub(super) variant: PowerVariant,
 }
 
 /// The ways that are not those of the numbers themselves.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) enum Rare {
+pub(super) enum PowerVariant {
     /// The number's own.
     #[default]
-    Own,
+    Default,
     /// `libm`'s.
     Library,
     /// The power of sixteen numbers at once: squarings of whole exponents, a polynomial elsewhere.
@@ -40,8 +40,8 @@ pub(super) enum Rare {
     Nearest(Arc<[f64]>),
     /// Powers of the numbers i / 1023: between two of them runs a line.
     Linear(Arc<[f64]>),
-    /// x / (n - n x + x): Schlick, "A Fast Alternative to Phong's Specular Model", Graphics Gems IV,
-    /// 1994. Another curve, that is 0 at 0 and 1 at 1 too.
+    /// x / (n - n x + x): Schlick, "A Fast Alternative to Phong's Specular Model", Graphics Gems
+    /// IV, 1994. Another curve, that is 0 at 0 and 1 at 1 too.
     Schlick,
 }
 
@@ -49,35 +49,47 @@ impl Power {
     /// The largest exponent that is reached by squaring.
     const LARGEST: u32 = 64;
 
-    /// The power with an exponent of at least 0; 0 where it is below 2^`floor`, from -60 to 0. It is
-    /// taken as the numbers do it by themselves.
+    /// The power with an exponent of at least 0; 0 where it is below 2^`floor`, from -60 to 0. It
+    /// is taken as the numbers do it by themselves.
     #[must_use]
     pub fn new(exponent: f64, floor: f64) -> Self {
         let whole = (1..=Self::LARGEST).find(|n| f64::from(*n) == exponent);
-        let held = whole.map_or(0.0, |n| libm::exp2(-f64::from(126 / n)));
-        Self { exponent, floor, least: libm::exp2(floor), whole, held, rare: Rare::Own }
+        let clamped = whole.map_or(0.0, |n| libm::exp2(-f64::from(126 / n)));
+        Self {
+            exponent,
+            floor,
+            least: libm::exp2(floor),
+            whole,
+            clamped,
+            variant: PowerVariant::Default,
+        }
     }
 
     /// The same by a way that settings name. A table that is among `tables` already is used again.
     #[must_use]
-    pub(crate) fn by(way: SpecularPower, exponent: f64, floor: f64, tables: &mut Tables) -> Self {
-        let rare = match way {
-            SpecularPower::Library => Rare::Library,
-            SpecularPower::Polynomial => Rare::Polynomial,
+    pub(crate) fn by(
+        variant: SpecularPower,
+        exponent: f64,
+        floor: f64,
+        tables: &mut Tables,
+    ) -> Self {
+        let variant = match variant {
+            SpecularPower::Library => PowerVariant::Library,
+            SpecularPower::Polynomial => PowerVariant::Polynomial,
             SpecularPower::Squaring => {
-                squarings(exponent).map_or(Rare::Polynomial, Rare::Squarings)
+                squarings(exponent).map_or(PowerVariant::Polynomial, PowerVariant::Squarings)
             }
-            SpecularPower::Table1024 => Rare::Linear(tables.of(exponent, 1024)),
-            SpecularPower::Table256 => Rare::Nearest(tables.of(exponent, 256)),
-            SpecularPower::Schlick => Rare::Schlick,
+            SpecularPower::Table1024 => PowerVariant::Linear(tables.of(exponent, 1024)),
+            SpecularPower::Table256 => PowerVariant::Nearest(tables.of(exponent, 256)),
+            SpecularPower::Schlick => PowerVariant::Schlick,
         };
-        Self { rare, ..Self::new(exponent, floor) }
+        Self { variant, ..Self::new(exponent, floor) }
     }
 
     /// Whether sixteen numbers take it at once, and do it by themselves.
     #[inline(always)]
-    pub(crate) const fn is_own(&self) -> bool {
-        matches!(self.rare, Rare::Own | Rare::Polynomial)
+    pub(crate) const fn is_default(&self) -> bool {
+        matches!(self.variant, PowerVariant::Default | PowerVariant::Polynomial)
     }
 }
 
@@ -111,13 +123,13 @@ impl Tables {
 }
 
 /// The largest number whose power is surely not above 2^`floor`, by a way that settings name.
-pub(crate) fn least_cosine(way: SpecularPower, exponent: f64, floor: f64) -> f64 {
+pub(crate) fn least_cosine(variant: SpecularPower, exponent: f64, floor: f64) -> f64 {
     if exponent <= 0.0 {
         return 0.0;
     }
     let least = libm::exp2(floor);
     let cosine = libm::exp2(floor / exponent);
-    match way {
+    match variant {
         SpecularPower::Library | SpecularPower::Polynomial | SpecularPower::Squaring => cosine,
         // Up to a whole step of the table below.
         SpecularPower::Table1024 | SpecularPower::Table256 => (cosine - 1.0 / 255.0).max(0.0),

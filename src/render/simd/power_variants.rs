@@ -1,6 +1,7 @@
-//! Powers of cosines by the variants that settings name: tables, squarings, Schlick's approximation.
+//! Powers of cosines by the variants that settings name: tables, squarings, Schlick's
+//! approximation.
 
-use super::power::{Power, Rare};
+use super::power::{Power, PowerVariant};
 use super::real::Real as _;
 
 /// The power of a number from 0 to 1.
@@ -10,13 +11,13 @@ pub(crate) fn power(power: &Power, x: f64) -> f64 {
         return 0.0;
     }
     let n = power.exponent;
-    let result = match &power.rare {
-        Rare::Own | Rare::Library => libm::pow(x, n),
-        Rare::Polynomial => in_32_bits(x, power),
-        Rare::Squarings(times) => (0..*times).fold(x, |x, _| x * x),
-        Rare::Nearest(table) => nearest(table, x),
-        Rare::Linear(table) => linear(table, x),
-        Rare::Schlick => x / (n - n * x + x),
+    let result = match &power.variant {
+        PowerVariant::Default | PowerVariant::Library => libm::pow(x, n),
+        PowerVariant::Polynomial => in_32_bits(x, power),
+        PowerVariant::Squarings(times) => (0..*times).fold(x, |x, _| x * x),
+        PowerVariant::Nearest(table) => nearest(table, x),
+        PowerVariant::Linear(table) => linear(table, x),
+        PowerVariant::Schlick => x / (n - n * x + x),
     };
     if result > power.least { result } else { 0.0 }
 }
@@ -26,8 +27,8 @@ pub(crate) fn power(power: &Power, x: f64) -> f64 {
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
 pub(crate) fn power_of_sixteen(power: &Power, x: &mut [f32; 16]) {
     let n = power.exponent as f32;
-    match &power.rare {
-        Rare::Squarings(times) => {
+    match &power.variant {
+        PowerVariant::Squarings(times) => {
             for x in x.iter_mut() {
                 *x = x.max(0.0);
             }
@@ -42,15 +43,19 @@ pub(crate) fn power_of_sixteen(power: &Power, x: &mut [f32; 16]) {
                 *x = if *x > least { *x } else { 0.0 };
             }
         }
-        Rare::Schlick => {
+        PowerVariant::Schlick => {
             let least = power.least as f32;
             for x in x.iter_mut() {
-                let held = x.max(0.0);
-                let result = held / (n - n * held + held);
+                let clamped = x.max(0.0);
+                let result = clamped / (n - n * clamped + clamped);
                 *x = if result > least { result } else { 0.0 };
             }
         }
-        Rare::Own | Rare::Library | Rare::Polynomial | Rare::Nearest(_) | Rare::Linear(_) => {
+        PowerVariant::Default
+        | PowerVariant::Library
+        | PowerVariant::Polynomial
+        | PowerVariant::Nearest(_)
+        | PowerVariant::Linear(_) => {
             for x in x.iter_mut() {
                 *x = self::power(power, f64::from(*x)) as f32;
             }

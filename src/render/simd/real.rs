@@ -4,9 +4,10 @@
 //! at a time, the reference that pictures are judged by; for `f32x16`, sixteen at a time, what the
 //! editor shows; and for `f32`, which does to one number what `f32x16` does to sixteen.
 //!
-//! There is no fused multiply-add here. It rounds once where `a * b + c` rounds twice, and only some
-//! processors have it; without it a picture is the same, bit for bit, on all of them. Nor is there a
-//! minimum or maximum of the processor's own: they disagree about NaN and about the sign of zero.
+//! There is no fused multiply-add here. It rounds once where `a * b + c` rounds twice, and only
+//! some processors have it; without it a picture is the same, bit for bit, on all of them. Nor is
+//! there a minimum or maximum of the processor's own: they disagree about NaN and about the sign of
+//! zero.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -24,8 +25,8 @@ pub trait Real:
     /// A constant beside `self`: as many of it as `self` has numbers.
     #[must_use]
     fn lift(self, constant: f64) -> Self;
-    /// One by the square root; 0 where `self` is not more than 0, and where its bits tell no digits:
-    /// infinity, NaN, and what is below the normal numbers.
+    /// One by the square root; 0 where `self` is not more than 0, and where its bits tell no
+    /// digits: infinity, NaN, and what is below the normal numbers.
     #[must_use]
     fn reciprocal_root(self) -> Self;
     /// `yes` where `self` is more than `than`, `no` elsewhere and where either is NaN.

@@ -35,8 +35,9 @@ const SMALLEST: f64 = 1.2e-38;
 ///   y1 = y0 (1.68191391 - 0.703952253 x y0^2)                  to 6.5e-4
 ///   y2 = y1 (1 + h/2 + 3 h^2/8),  h = 1 - x y1^2               to 7e-10, and rounding
 ///
-/// The first line is half of the logarithm that the bits of a number are. The constants of the first
-/// two: Kadlec, "Improving the fast inverse square root", 2010; the third: Householder's, of order 3.
+/// The first line is half of the logarithm that the bits of a number are. The constants of the
+/// first two: Kadlec, "Improving the fast inverse square root", 2010; the third: Householder's, of
+/// order 3.
 #[inline(always)]
 fn single_reciprocal_root<R: Single>(x: R) -> R {
     let y = x.halved_from(0x5f1f_fff9);
@@ -57,8 +58,9 @@ fn single_power<R: Single>(x: R, power: &Power) -> R {
 /// x^n by squaring: n roundings at the most.
 #[inline(always)]
 fn whole_power<R: Single>(x: R, n: u32, power: &Power) -> R {
-    // Held up so far that nothing on the way becomes subnormal, and the power stays below the floor.
-    let mut square = Real::max(x, x.lift(power.held));
+    // Held up so far that nothing on the way becomes subnormal, and the power stays below the
+    // floor.
+    let mut square = Real::max(x, x.lift(power.clamped));
     let mut result = x.lift(1.0);
     let mut left = n;
     loop {
@@ -110,9 +112,9 @@ fn any_power<R: Single>(x: R, power: &Power) -> R {
 
     let log2 = log2 * x.lift(power.exponent);
     // Held to what 2^n can be made of; what is below the floor is thrown away in the end.
-    let held = Real::max(log2, x.lift(-126.0));
-    let whole = held.round();
-    let result = polynomial(held - whole, &EXPONENTIAL) * whole.power_of_two();
+    let clamped = Real::max(log2, x.lift(-126.0));
+    let whole = clamped.round();
+    let result = polynomial(clamped - whole, &EXPONENTIAL) * whole.power_of_two();
     let zero = x.lift(0.0);
     x.if_more(zero, log2.if_more(x.lift(power.floor), result, zero), zero)
 }
@@ -188,8 +190,8 @@ impl Single for f32 {
     }
 }
 
-/// Whether the processor's own maximum of a and b is a where a > b, else b, also of NaN and of zeros:
-/// that of x86 is. "Intel 64 and IA-32 Architectures Software Developer's Manual", MAXPS.
+/// Whether the processor's own maximum of a and b is a where a > b, else b, also of NaN and of
+/// zeros: that of x86 is. "Intel 64 and IA-32 Architectures Software Developer's Manual", MAXPS.
 #[inline(always)]
 fn has_own_maximum<S: Simd>(simd: S) -> bool {
     match simd.level() {

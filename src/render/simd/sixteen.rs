@@ -124,7 +124,8 @@ impl<S: Simd> Lanes for Sixteen<S> {
     }
 }
 
-/// What [`Number::byte`](super::number::Number::byte) does to one number, with a threshold of one half.
+/// What [`Number::byte`](super::number::Number::byte) does to one number, with a threshold of one
+/// half.
 #[inline(always)]
 fn lanes_byte<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> i32x16<S> {
     before_rounding(number, threshold).to_int()

@@ -12,13 +12,13 @@ pub(crate) struct VariantLanes<M> {
     /// The other.
     pub(crate) lanes: M,
     /// How roots are taken.
-    pub(crate) way: Normalising,
+    pub(crate) variant: Normalising,
 }
 
 impl<M: Lanes> VariantLanes<M> {
     #[inline(always)]
     const fn chosen(self, value: M::R) -> VariantNumber<M::R> {
-        VariantNumber { value, way: self.way }
+        VariantNumber { value, variant: self.variant }
     }
 }
 

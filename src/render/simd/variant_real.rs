@@ -1,7 +1,7 @@
 //! Numbers whose reciprocal roots and powers are computed by a variant that settings name.
 //!
-//! Such a number carries its [`Normalising`]; a [`Power`] knows its own variant. The compiler sees the
-//! same variant in all numbers of a batch, so it is asked for once a root.
+//! Such a number carries its [`Normalising`]; a [`Power`] knows its own variant. The compiler sees
+//! the same variant in all numbers of a batch, so it is asked for once a root.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -17,7 +17,7 @@ use crate::accuracy::Normalising;
 pub trait VariantReal: Real {
     /// As [`Real::reciprocal_root`], by a way that is named.
     #[must_use]
-    fn reciprocal_root_by(self, way: Normalising) -> Self;
+    fn reciprocal_root_by(self, variant: Normalising) -> Self;
     /// As [`Real::power`], by the way that the power names.
     #[must_use]
     fn power_by(self, power: &Power) -> Self;
@@ -25,8 +25,8 @@ pub trait VariantReal: Real {
 
 impl VariantReal for f64 {
     #[inline(always)]
-    fn reciprocal_root_by(self, way: Normalising) -> Self {
-        reciprocal_root::one(self, way)
+    fn reciprocal_root_by(self, variant: Normalising) -> Self {
+        reciprocal_root::one(self, variant)
     }
 
     #[inline(always)]
@@ -37,13 +37,13 @@ impl VariantReal for f64 {
 
 impl<S: Simd> VariantReal for f32x16<S> {
     #[inline(always)]
-    fn reciprocal_root_by(self, way: Normalising) -> Self {
-        reciprocal_root::sixteen(self, way)
+    fn reciprocal_root_by(self, variant: Normalising) -> Self {
+        reciprocal_root::sixteen(self, variant)
     }
 
     #[inline(always)]
     fn power_by(self, power: &Power) -> Self {
-        if power.is_own() {
+        if power.is_default() {
             return self.power(power);
         }
         let mut lanes: [f32; 16] = *self;
@@ -56,7 +56,7 @@ impl<S: Simd> VariantReal for f32x16<S> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VariantNumber<R> {
     pub(super) value: R,
-    pub(super) way: Normalising,
+    pub(super) variant: Normalising,
 }
 
 impl<R> VariantNumber<R> {
@@ -65,7 +65,7 @@ impl<R> VariantNumber<R> {
     where
         R: Copy,
     {
-        Self { value, way: self.way }
+        Self { value, variant: self.variant }
     }
 }
 
@@ -103,7 +103,7 @@ impl<R: VariantReal> Real for VariantNumber<R> {
 
     #[inline(always)]
     fn reciprocal_root(self) -> Self {
-        self.with(self.value.reciprocal_root_by(self.way))
+        self.with(self.value.reciprocal_root_by(self.variant))
     }
 
     #[inline(always)]
@@ -119,8 +119,8 @@ impl<R: VariantReal> Real for VariantNumber<R> {
 
 impl<R: VariantReal> VariantReal for VariantNumber<R> {
     #[inline(always)]
-    fn reciprocal_root_by(self, way: Normalising) -> Self {
-        self.with(self.value.reciprocal_root_by(way))
+    fn reciprocal_root_by(self, variant: Normalising) -> Self {
+        self.with(self.value.reciprocal_root_by(variant))
     }
 
     #[inline(always)]

@@ -1,11 +1,11 @@
-//! Textures that are seen from afar: a mean of the texels that a pixel covers, from pictures of them at
-//! half, a quarter, an eighth of the size.
+//! Textures that are seen from afar: a mean of the texels that a pixel covers, from pictures of
+//! them at half, a quarter, an eighth of the size.
 //!
-//! How many texels a pixel covers is the longer of the ways that its neighbours to the right and below
-//! lie off on the texture; its logarithm says between which two pictures to mix.
+//! How many texels a pixel covers is the longer of the ways that its neighbours to the right and
+//! below lie off on the texture; its logarithm says between which two pictures to mix.
 //!
-//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer way as in the specification of OpenGL
-//! 4.6, 8.14.1.
+//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer way as in the specification of
+//! OpenGL 4.6, 8.14.1.
 
 use crate::accuracy::Filter;
 use crate::base::Shared;
