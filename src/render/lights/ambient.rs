@@ -1,4 +1,4 @@
-//! Light from everywhere.
+//! Ambient light.
 
 use super::batch::{Reflected, Sample, set};
 use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, max_channel};
@@ -6,7 +6,7 @@ use super::region::Region;
 use super::shader::LightShader;
 use crate::render::simd::Lanes;
 
-/// The same light at every place, whichever way it faces: Ia Ka.
+/// The same light at every position and for every normal: Ia Ka.
 pub(crate) struct Ambient;
 
 impl LightShader for Ambient {

@@ -1,4 +1,4 @@
-//! Light from a point, in all directions.
+//! Point lights.
 
 use super::batch::{Reflected, Sample, set};
 use super::phong::{
@@ -9,7 +9,7 @@ use super::shader::LightShader;
 use super::turning::Turning;
 use crate::render::simd::{Lanes, Real as _, Vec3};
 
-/// A point that shines alike in all directions and fades with distance.
+/// A point that shines equally in all directions and fades with distance.
 pub(crate) struct Bulb;
 
 impl LightShader for Bulb {
@@ -38,9 +38,9 @@ impl LightShader for Bulb {
     }
 }
 
-/// The direction to a lamp, and the part of its light that is left at the distance d:
+/// The direction to a light, and its attenuation at the distance d:
 ///
-///   att(d) = 1 / (a0 + a1 d + a2 d^2);   0 at d = 0, where a lamp adds nothing
+///   att(d) = 1 / (a0 + a1 d + a2 d^2);   0 at d = 0, where a light adds nothing
 #[inline(always)]
 pub(crate) fn arriving<M: Lanes>(
     lanes: M,

@@ -1,4 +1,4 @@
-//! Light from a point, in a cone.
+//! Spot lights.
 
 use super::batch::{Reflected, Sample, set};
 use super::bulb::arriving;
@@ -10,7 +10,7 @@ use super::shader::LightShader;
 use super::turning::Turning;
 use crate::render::simd::{Lanes, Real};
 
-/// A point that shines along an axis.
+/// A point that shines in a cone around an axis.
 pub(crate) struct Spot;
 
 impl LightShader for Spot {
@@ -43,9 +43,9 @@ impl LightShader for Spot {
         max_attenuation(light, region) * libm::pow(cosine.max(0.0), light.exponent)
     }
 
-    /// With c = min(1, F.(-L)), F the axis: c^n of the light arrives where c is more than the
-    /// cosine of the half-aperture, and none outside. Warn, "Lighting Controls for Synthetic
-    /// Images", SIGGRAPH 1983.
+    /// With c = min(1, F.(-L)), F the axis: c^n of the light arrives if c is more than the cosine
+    /// of the half-aperture, and none otherwise. Warn, "Lighting Controls for Synthetic Images",
+    /// SIGGRAPH 1983.
     #[inline(always)]
     fn shade<M: Lanes, H: Highlight>(
         lanes: M,

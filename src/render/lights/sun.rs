@@ -1,4 +1,4 @@
-//! Light from infinitely far away.
+//! Directional lights.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use super::shader::LightShader;
 use super::turning::Turning;
 use crate::render::simd::Lanes;
 
-/// The same direction at every place, and no fading.
+/// The same direction at every position, and no attenuation.
 pub(crate) struct Sun;
 
 impl LightShader for Sun {

@@ -1,4 +1,5 @@
-//! What both arithmetics share they cannot check in each other: numbers from outside.
+//! Tests of light shaders against numbers from outside: the two arithmetics cannot check each
+//! other's equations.
 
 #![expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
 #![expect(clippy::needless_range_loop, reason = "three rows go side by side")]
@@ -61,7 +62,7 @@ fn ambient_light_is_its_colour_times_ka() {
 
 #[test]
 fn the_sun_at_sixty_degrees_gives_half_and_mirrors_by_the_angle_of_reflection() {
-    // N leans by 60 degrees from both L and V, which are one: R.V = 2 cos^2 60 - 1 = -1/2: none.
+    // N is 60 degrees from both L and V, which are equal: R.V = 2 cos^2 60 - 1 = -1/2: none.
     let (s, c) = (0.75_f64.sqrt(), 0.5);
     let got = run(&SUN, &mut one([0.0; 3], [s, 0.0, c]), &light());
     near(got, [[0.25, 0.125, 0.0], [0.0; 3]]);
@@ -78,7 +79,7 @@ fn a_surface_turned_away_gets_nothing() {
 
 #[test]
 fn a_lamp_in_the_plane_of_a_face_gives_it_no_highlight_whichever_way_rounding_goes() {
-    // N.L is a rounding error above 0 or below; looked at along the mirrored ray.
+    // N.L is a rounding error above or below 0, seen along the mirrored ray.
     for error in [-1e-7, 1e-7] {
         let mut batch = one([0.0; 3], [error, 1.0, 0.0]);
         batch.to_eye = batch.to_eye.map(|mut row| {
@@ -105,7 +106,7 @@ fn a_bulb_fades_by_its_coefficients_and_adds_nothing_at_its_own_place() {
 
 #[test]
 fn a_spot_gives_the_fifth_power_of_the_cosine_inside_its_cone_and_nothing_outside() {
-    // Axis along -Z from (0, 0, 1); the place is as far aside that the cosine is 0.8 or 0.95.
+    // Axis along -Z from (0, 0, 1); the position is so far aside that the cosine is 0.8 or 0.95.
     for (cosine, border, part) in [(0.8_f64, 0.9, 0.0), (0.8, 0.79, 0.8_f64.powi(5))] {
         let aside = (1.0 / (cosine * cosine) - 1.0).sqrt();
         let spot = ViewLight { position: [aside, 0.0, 1.0], cos_half_aperture: border, ..light() };
@@ -155,7 +156,7 @@ fn levels() -> Vec<Level> {
     levels
 }
 
-/// Positions and normals all over, none of them at the border of a cone.
+/// Scattered positions and normals, none of them at the border of a cone.
 fn scattered() -> Batch<f64> {
     let mut batch = Batch { len: BATCH, ..Batch::default() };
     for i in 0..BATCH {

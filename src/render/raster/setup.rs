@@ -1,8 +1,9 @@
-//! From vertices on the screen to triangles in bins.
+//! Triangle setup: from vertices on the screen to triangles in bins.
 //!
-//! Sixteen triangles at a time: those that face away, that reach no pixel's centre (or sample) or
-//! that miss the picture are dropped before anything of theirs is copied. What has a corner beyond
-//! the planes is cut, and what is so large that its area needs 64 bits is looked at one by one.
+//! Sixteen triangles at a time: those that face away, cover no pixel's centre (or sample) or lie
+//! outside the picture are culled before anything of theirs is copied. Triangles with a corner
+//! beyond the clipping planes are clipped, and those whose area needs 64 bits are set up one by
+//! one.
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16};
 
@@ -19,10 +20,10 @@ use crate::render::screen::coverage::{PixelBox, SUBPIXELS, doubled_area};
 use crate::render::screen::sample_positions::FOUR;
 use crate::scene::{DrawOrder, DrawTriangle};
 
-/// The largest box, in parts of a pixel, whose doubled area fits 31 bits.
+/// The largest bounding box, in subpixels, whose doubled area fits 31 bits.
 pub(crate) const NARROW: i32 = 1 << 14;
 
-/// What setting up the triangles of one draw reads.
+/// The inputs of setting up the triangles of one draw.
 #[derive(Debug)]
 pub(crate) struct Setup<'a> {
     pub(crate) draw: &'a Draw,
@@ -31,7 +32,7 @@ pub(crate) struct Setup<'a> {
     pub(crate) screen: Screen,
     /// The number of the draw's first triangle in the frame.
     pub(crate) base: u32,
-    /// Whether some triangles are not drawn or have holes: then each is asked.
+    /// Whether some triangles are not drawn or need the alpha test, so that each has to be checked.
     pub(crate) choosy: bool,
 }
 
@@ -59,13 +60,12 @@ impl<'a> Setup<'a> {
         Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
     }
 
-    /// The same for vertices as they are seen from a place that is shifted by so many parts of a
-    /// pixel.
+    /// The same for vertices relative to a sample with this offset in subpixels.
     pub(crate) fn seen_from(self, shift: [i32; 2]) -> Self {
         Self { screen: self.screen.seen_from(shift), ..self }
     }
 
-    /// Puts some of the draw's triangles into bins.
+    /// Sets up some of the draw's triangles into bins.
     pub(crate) fn run(
         &self,
         level: Level,
@@ -99,7 +99,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Sets up sixteen triangles, of which the first `count` are meant.
+    /// Sets up the first `count` of sixteen triangles.
     #[inline(always)]
     fn sixteen<S: Simd, const N: usize>(
         &self,
@@ -158,7 +158,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// x, y, depth and one by w of one corner of sixteen triangles.
+    /// x, y, depth and 1/w of one corner of sixteen triangles.
     #[inline(always)]
     fn corners<S: Simd>(
         &self,
@@ -174,8 +174,8 @@ impl<'a> Setup<'a> {
         )
     }
 
-    /// Sorts triangles that are seen by the larger sides of their boxes: into the queues of small
-    /// ones, or to the large ones.
+    /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
+    /// small ones, or to the large ones.
     #[inline(always)]
     fn sort<S: Simd, const N: usize>(
         &self,
@@ -218,7 +218,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Which of some triangles are drawn plainly, and of which a texture decides where.
+    /// The masks of the triangles that are drawn without and with the alpha test.
     fn kinds(
         &self,
         triangles: &[DrawTriangle; PACK],
@@ -239,7 +239,7 @@ impl<'a> Setup<'a> {
         kinds
     }
 
-    /// Adds a triangle that has to be cut, or whose area needs 64 bits.
+    /// Adds a triangle that has to be clipped, or whose area needs 64 bits.
     fn add_odd<const N: usize>(
         &self,
         triangle: &DrawTriangle,

@@ -1,5 +1,5 @@
-//! Triangles for pictures that are drawn one by one: kept with their corners as they were before
-//! they were snapped, for some ways of covering pixels want those.
+//! Triangle setup for variants that draw triangles one by one. Corners are kept from before they
+//! were snapped, since some variants of coverage use them.
 
 use crate::base::image::Size;
 use crate::render::frame::draw::{Back, Pipeline};
@@ -37,7 +37,7 @@ pub(crate) fn set_up(
     }
 }
 
-/// A triangle's corners, or those of the polygon that is left of it.
+/// A triangle's corners, or those of the triangles that are left of it after clipping.
 fn pieces(
     variants: Variants,
     setup: &Setup<'_>,
@@ -82,7 +82,8 @@ fn add_triangle(
     bins.add_plain(plain, around(&plain.pixels));
 }
 
-/// The pixels that a triangle may cover by any way: a pixel more than it needs to each side.
+/// The pixels that a triangle may cover by any variant: its bounding box and a pixel more to each
+/// side.
 #[expect(clippy::cast_possible_truncation, reason = "the guard band holds them")]
 fn around(pixels: &[[f64; 2]; 3]) -> PixelBox {
     let low = |i: usize| pixels.iter().map(|at| at[i]).fold(f64::INFINITY, f64::min);

@@ -1,21 +1,21 @@
-//! What is seen at each pixel of a tile.
+//! Visibility of a tile: rasterizes its primitives with a depth test.
 //!
-//! Each pixel has a word ([`words`](crate::render::raster::visibility_buffer)), and the larger word
-//! wins: what is nearer, and among what is equally near the primitive with the lower number, that
-//! is of the older object, the earlier face. The order in which primitives are drawn cannot show,
-//! so it is nobody's concern.
+//! Each sample has an entry in the [visibility buffer](crate::render::raster::visibility_buffer),
+//! and the depth test keeps the larger entry: the nearer primitive and, at equal depth, the one
+//! with the lower number, which belongs to the older object or is the earlier face. So the order in
+//! which primitives are drawn does not show.
 //!
-//! Which pixels a triangle covers, and how near it is there, is computed in one of two ways, chosen
-//! by the triangle's own size alone: in f32 for boxes up to 8 x 8, where whole numbers below 2^24
-//! are exact, sixteen triangles at once (`small`); and in 64 bits for all others, a block of 8 x 8
-//! pixels at once (`large`). So neither tiles nor threads nor instructions show in the picture.
+//! Coverage and depth are computed in one of two ways, chosen by the triangle's size alone: in f32,
+//! in which integers below 2^24 are exact, for bounding boxes up to 8 x 8 pixels, sixteen triangles
+//! at once (`small`); and in 64 bits for all others, a block of 8 x 8 pixels at once (`large`). So
+//! neither tiles nor threads nor instruction sets show in the picture.
 //!
-//! A block that nothing reaches is never touched, and one that a single large triangle covers is
-//! not asked for its depths: that it is covered is all that is noted, until something else comes
-//! near.
+//! A block that nothing reaches is never touched. For a block that a single large triangle covers
+//! no depths are computed: only the triangle is noted, until another primitive comes near.
 //!
-//! Where pixels are looked at in four places, a block has four planes of words, one for each place:
-//! what covers a pixel in a place is what covers its middle as seen from there.
+//! With four samples per pixel, a block has four planes of entries, one for each sample. A
+//! primitive covers a sample if it covers the centre of the pixel once it is moved by the sample's
+//! offset.
 
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -32,23 +32,24 @@ use crate::render::screen::coverage::{Covered, PixelBox, Triangle};
 use crate::render::screen::sample_positions::{FOUR, SamplePositions};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
 
-/// The words of one tile, block by block, in each block sample by sample, and these row by row.
+/// The visibility buffer of one tile: block by block, each block sample by sample, each sample row
+/// by row.
 #[derive(Debug)]
 pub(crate) struct Visibility {
     buffer: Box<[u64; FOUR * PIXELS]>,
-    /// Where pixels are looked at.
+    /// The samples of the pass.
     sample_positions: SamplePositions,
-    /// The blocks whose words are written, a bit for each.
+    /// The blocks whose entries are valid, a bit for each.
     written: u64,
-    /// The blocks that are known to show one triangle, and have no words yet.
+    /// The blocks that one triangle covers fully, and that have no entries yet.
     whole: u64,
-    /// What they show, as places in `large`.
+    /// The triangles of those blocks, as indices into `large`.
     shown: [u32; BLOCK_PIXELS],
-    /// Triangles that cover a block as a whole.
+    /// Triangles that cover a block fully.
     large: Vec<Large>,
-    /// For each block a depth that all of its pixels are at least as near as.
+    /// For each block a lower bound of its depths: all pixels are at least as near.
     farthest: [f32; BLOCK_PIXELS],
-    /// For each block that shows one triangle a depth that no pixel is nearer than.
+    /// For each fully covered block an upper bound of its depths: no pixel is nearer.
     nearest: [f32; BLOCK_PIXELS],
     bounds: PixelBox,
 }
@@ -70,7 +71,7 @@ impl Default for Visibility {
 }
 
 impl Visibility {
-    /// Looks at everything that reaches into a tile: the bins of every thread at this place.
+    /// Draws everything that reaches into a tile, from the bins of every thread.
     pub(crate) fn draw(
         &mut self,
         level: Level,
@@ -89,7 +90,7 @@ impl Visibility {
         }
     }
 
-    /// Draws in `N` samples a pixel.
+    /// Draws with `N` samples per pixel.
     fn draw_in<const N: usize>(
         &mut self,
         level: Level,
@@ -112,7 +113,7 @@ impl Visibility {
         }
     }
 
-    /// Draws everything by a rare way, pixel by pixel.
+    /// Draws everything pixel by pixel, by the chosen variants.
     fn draw_one_by_one(
         &mut self,
         plan: &FramePlan,
@@ -157,35 +158,35 @@ impl Visibility {
         self.written | self.whole == 0
     }
 
-    /// The triangle that a block shows, where one is known to cover it as a whole; its words are of
-    /// no meaning then.
+    /// The triangle that covers a block fully, if there is one; the block's entries are meaningless
+    /// then.
     pub(crate) fn whole(&self, block: usize) -> Option<u32> {
         (self.whole >> block & 1 != 0).then(|| self.large[self.shown[block] as usize].number)
     }
 
-    /// The blocks that one triangle is known to cover as a whole, a bit for each.
+    /// The blocks that one triangle covers fully, a bit for each.
     pub(crate) const fn full_blocks(&self) -> u64 {
         self.whole
     }
 
-    /// The words of a block that shows something, row by row, where pixels have one sample.
+    /// The entries of a block that shows something, row by row, with one sample per pixel.
     pub(crate) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
         &self.buffer.as_chunks().0[block]
     }
 
-    /// The words of a block that shows something, where pixels have four samples.
+    /// The entries of a block that shows something, with four samples per pixel.
     pub(crate) fn planes(&self, block: usize) -> &Planes {
         &self.buffer.as_chunks().0.as_chunks().0[block]
     }
 
-    /// All words of a block that shows something.
+    /// All entries of a block that shows something.
     fn block_samples(&self, block: usize) -> &[u64] {
         let count = BLOCK_PIXELS * self.sample_positions.count();
         &self.buffer[block * count..][..count]
     }
 
-    /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
-    /// nearer than; `None` where no triangle is seen.
+    /// Bounds of the depths of all visible triangles: the farthest and the nearest; `None` if no
+    /// triangle is visible.
     pub(crate) fn depths(&self, level: Level) -> Option<[f32; 2]> {
         // Depths are not negative, so that their bits are in the order of the numbers.
         let (mut low, mut high) = (u32::MAX, 0);
@@ -206,8 +207,8 @@ impl Visibility {
         [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
     }
 
-    /// The word of a pixel of the tile: of its samples the one that shows what most of them show,
-    /// the first of equals.
+    /// The entry of a pixel of the tile: that of the sample whose primitive most samples show, the
+    /// first of equals.
     pub(crate) fn word(&mut self, level: Level, x: i32, y: i32) -> u64 {
         let (samples, count) = self.samples(level, x, y);
         let alike =
@@ -221,7 +222,7 @@ impl Visibility {
         most
     }
 
-    /// The words of the samples of a pixel of the tile, and how many they are.
+    /// The entries of the samples of a pixel of the tile, and their number.
     pub(crate) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; FOUR], usize) {
         let count = self.sample_positions.count();
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
@@ -239,7 +240,7 @@ impl Visibility {
         (samples, count)
     }
 
-    /// Sees to it that a block has words for `N` samples a pixel.
+    /// Ensures that a block has valid entries for `N` samples per pixel.
     #[inline(always)]
     fn write<S: Simd, const N: usize>(&mut self, simd: S, block: usize) {
         let bit = 1 << block;
@@ -256,13 +257,13 @@ impl Visibility {
         }
     }
 
-    /// The words of a block for one of `N` samples.
+    /// The entries of a block for one of `N` samples.
     #[inline(always)]
     fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
         &mut self.buffer.as_chunks_mut().0[block * N + sample]
     }
 
-    /// Draws a triangle into a block, of which it covers all or part.
+    /// Draws a triangle into a block that it covers fully or in part.
     #[inline(always)]
     fn draw_planes<S: Simd, const N: usize>(
         &mut self,
@@ -278,7 +279,7 @@ impl Visibility {
         }
     }
 
-    /// Whether what is in a place already hides a triangle there.
+    /// The depth test of one sample: whether the entry there already hides a triangle.
     #[inline(always)]
     fn hides<const N: usize>(
         &mut self,
@@ -330,7 +331,7 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle whose texture decides in each sample whether it is there.
+    /// Draws a triangle with the alpha test in each sample.
     fn draw_cutout<const N: usize>(
         &mut self,
         level: Level,
@@ -377,7 +378,7 @@ impl Visibility {
         );
     }
 
-    /// Draws the large triangles of a tile whose textures have no part in where they are.
+    /// Draws the large triangles of a tile that need no alpha test.
     #[inline(always)]
     fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
         for &number in &bins.tiles[tile].large {
@@ -425,8 +426,8 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle into a block that it covers; `place` is where it stands among those that
-    /// do.
+    /// Draws a triangle into a block that it covers fully; `place` is its index in `large`, once it
+    /// has one.
     #[inline(always)]
     fn draw_full_block<S: Simd, const N: usize>(
         &mut self,

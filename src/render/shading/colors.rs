@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn the_mean_of_equal_colours_is_the_byte_that_each_of_them_is() {
-        let pixels: [u8; BATCH] = std::array::from_fn(|i| i.to_le_bytes()[0]);
+        let indices: [u8; BATCH] = std::array::from_fn(|i| i.to_le_bytes()[0]);
         for round in 0..2000_u16 {
             // Around the borders between two bytes, below 0, above 1, and NaN.
             let numbers: [f32; BATCH] = std::array::from_fn(|i| match (round, i) {
@@ -196,8 +196,8 @@ mod tests {
             let [pixels, colors] = both(&numbers);
             for (samples, log2) in [(4, 2), (64, 6)] {
                 let mut sums = Sums::default();
-                sums.add_all(&colors, &pixels, &[samples / 4; BATCH]);
-                sums.add_all(&colors, &pixels, &[samples / 4 * 3; BATCH]);
+                sums.add_all(&colors, &indices, &[samples / 4; BATCH]);
+                sums.add_all(&colors, &indices, &[samples / 4 * 3; BATCH]);
                 assert_eq!(sums.means(log2), pixels.pixels, "{numbers:?}");
             }
             let mut exact = Colors { form: Form::Parts, ..Colors::default() };

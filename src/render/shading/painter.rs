@@ -1,9 +1,9 @@
-//! Paints tiles: what is seen in a tile, its colours, and the copy into the picture.
+//! Paints tiles: visibility, shading, and the copy into the picture.
 //!
-//! A painter stays with its thread from frame to frame, so that a frame allocates and clears
-//! nothing for its tiles. A tile that showed nothing but the background and still does is not
-//! touched. Tiles are painted straight into the picture, or, where another thread is at work in the
-//! same rows or the picture ends inside of the tile, beside it and copied.
+//! Each thread keeps its painter from frame to frame, so a frame allocates and clears nothing for
+//! its tiles. A tile that showed only background and still does is not touched. Tiles are painted
+//! straight into the picture. If another thread works in the same rows, or the picture ends inside
+//! of the tile, they are painted into a buffer and copied.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -32,15 +32,15 @@ pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
     PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
 }
 
-/// The rows of the picture that a row of tiles lies in.
+/// The rows of pixels of a row of tiles.
 #[derive(Debug)]
 pub(crate) struct Band<'a> {
     pub(crate) pixels: &'a mut [[u8; 4]],
-    /// For each of its tiles the colour that fills it as a whole, where one is known to.
+    /// For each of its tiles the colour that fills all of it, if one is known to.
     pub(crate) filled: &'a mut [Option<Color>],
 }
 
-/// A band that nobody else has.
+/// Locks a band for this thread.
 fn locked<'a, 'b>(band: &'a Mutex<Band<'b>>) -> MutexGuard<'a, Band<'b>> {
     band.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -50,22 +50,22 @@ const ROW: usize = BLOCK as usize;
 /// Blocks in a row of a tile.
 const BLOCKS: usize = TILE_SIDE / ROW;
 
-/// The colours of a tile over several passes, block by block; nothing before the first.
+/// The sums of a tile's colours over several passes, block by block; empty before the first.
 pub(crate) type TileSums = Mutex<Vec<Sums>>;
 
-/// Where a block of a tile begins.
+/// The first pixel of a block, by column and row of the tile.
 const fn corner_in_tile(block: usize) -> [usize; 2] {
     [block % BLOCKS * ROW, block / BLOCKS * ROW]
 }
 
-/// Draws one tile after another. No line of the cache has parts of two of these.
+/// Draws one tile after another. It is aligned, so that no two painters share a cache line.
 #[derive(Debug)]
 #[repr(align(128))]
 pub(crate) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
     samples: Samples,
-    /// A tile beside the picture.
+    /// A buffer for a tile that is not painted straight into the picture.
     pixels: Vec<[u8; 4]>,
 }
 
@@ -81,12 +81,12 @@ impl<T: ShadingNumber> Default for Painter<T> {
 }
 
 impl<T: ShadingNumber> Painter<T> {
-    /// Gets ready for another frame.
+    /// Begins a frame.
     pub(crate) const fn begin(&mut self) {
         self.shader.begin();
     }
 
-    /// Paints a tile of the picture, whose band is given.
+    /// Paints a tile of the picture into its band.
     pub(crate) fn paint(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -106,7 +106,7 @@ impl<T: ShadingNumber> Painter<T> {
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
         let (column, columns) = Self::columns(tile, size);
         if let (true, Ok(mut band)) = (whole, band.try_lock()) {
-            // Straight into the picture, where nobody else is at work in these rows.
+            // Straight into the picture, since no other thread works in these rows.
             let Band { pixels, filled } = &mut *band;
             let mut canvas = Canvas { pixels: &mut pixels[columns.start..], stride: size.width };
             let shows = self.blocks(context, bounds, &mut canvas);
@@ -125,7 +125,7 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
-    /// Colours the blocks of a tile; says whether it shows anything but the background.
+    /// Colours the blocks of a tile. Returns whether it shows anything but the background.
     fn blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -182,8 +182,7 @@ impl<T: ShadingNumber> Painter<T> {
         shows
     }
 
-    /// Adds the colours of a tile of a picture that one sample of its pixels sees to those of
-    /// others.
+    /// Adds the colours of a tile, drawn for one sample of each pixel, to the sums.
     fn add_picture(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &mut [Sums]) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let bounds = bounds_of(tile, plan.size);
@@ -206,8 +205,7 @@ impl<T: ShadingNumber> Painter<T> {
         self.pixels = pixels;
     }
 
-    /// Adds the colours of four samples of a tile, or of the one that is looked at, to those of
-    /// others.
+    /// Adds the colours of a tile, of four samples or of one, to the sums.
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
@@ -238,7 +236,7 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
-    /// Puts the means of all samples of a tile into its band of the picture.
+    /// Stores the means of all samples of a tile in its band of the picture.
     pub(crate) fn put_means(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -256,7 +254,7 @@ impl<T: ShadingNumber> Painter<T> {
         self.copy(tile, size, &mut locked(band));
     }
 
-    /// Copies the tile beside the picture into its band.
+    /// Copies the buffer of a tile into its band.
     fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
         let (column, columns) = Self::columns(tile, size);
         band.filled[column] = None;
@@ -265,7 +263,7 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
-    /// Fills a tile with a colour, where it is not filled with it.
+    /// Fills a tile with a colour, unless it is filled with it already.
     fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
         let (column, columns) = Self::columns(tile, size);
         if band.filled[column] != Some(color) {
@@ -276,7 +274,7 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
-    /// Which tile of its band it is, and its columns of the picture.
+    /// The index of a tile in its band, and its columns of the picture.
     fn columns(tile: usize, size: Size) -> (usize, std::ops::Range<usize>) {
         let column = tile % size.width.div_ceil(TILE_SIDE);
         let left = column * TILE_SIDE;

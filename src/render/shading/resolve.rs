@@ -1,9 +1,9 @@
-//! From four samples of a block's pixels to the mean of their colours.
+//! Resolves samples: from four samples of a block's pixels to the mean of their colours.
 //!
-//! Most blocks of a picture show the same in all samples of each pixel, and cost no more than with
-//! one sample. Elsewhere a pixel is lit once for each triangle that any of its samples shows: first
-//! what the first samples show, all pixels together; then, in lists of sixty-four, what others show
-//! besides.
+//! Most blocks show the same triangle in all samples of each pixel, and cost no more than with one
+//! sample. In other blocks a pixel is lit once for each triangle that any of its samples shows:
+//! first the triangles of the first samples, all pixels together; then all others, in lists of
+//! sixty-four fragments.
 
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
 
@@ -15,18 +15,17 @@ use crate::render::raster::visibility_buffer::{Planes, Visible, seen_number};
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::BLOCK_PIXELS;
 
-/// The number that the word of the background has.
+/// The number of the background in the visibility buffer.
 const BACKGROUND: u32 = u32::MAX;
 
 /// What the samples of a block's pixels show.
 #[derive(Debug)]
 pub(crate) struct Samples {
-    /// The numbers of what they show, as words hold them.
+    /// The numbers of the primitives that they show.
     numbers: [[u32; BLOCK_PIXELS]; FOUR],
-    /// For each sample, how many from it on show what it shows; of no meaning where it is not among
-    /// the `new`.
+    /// For each sample, how many from it on show the same primitive; only valid for those in `new`.
     shares: [[i32; BLOCK_PIXELS]; FOUR],
-    /// The pixels where a sample shows what none before it does.
+    /// The pixels in which a sample shows a primitive that no earlier sample shows.
     new: [u64; FOUR],
 }
 
@@ -38,7 +37,7 @@ impl Default for Samples {
 }
 
 impl Samples {
-    /// Compares the samples of each pixel. Says whether all pixels show one thing each.
+    /// Compares the samples of each pixel. Returns whether each pixel shows a single primitive.
     pub(crate) fn compare(&mut self, level: Level, planes: &Planes) -> bool {
         dispatch!(level, simd => self.compare_in(simd, planes));
         self.new[1..] == [0; FOUR - 1]
@@ -80,8 +79,8 @@ impl Samples {
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Adds up the colours of a block, the corner of which is its upper left pixel, whose samples
-    /// were compared. Says whether any of them shows more than the background.
+    /// Adds the colours of a block, whose upper left pixel is `corner` and whose samples were
+    /// compared. Returns whether any of them shows more than the background.
     pub(crate) fn add_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -129,7 +128,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Adds what is no triangle: a line, or the background.
+/// Adds the colour of a line or of the background.
 fn add_other<T>(
     context: &ShadingContext<'_, T>,
     number: u32,

@@ -1,9 +1,9 @@
-//! From what is seen to colours.
+//! Shades blocks: from visibility to colours.
 //!
-//! A block's pixels are listed by the triangles that they show ([`Fragments`]). What is known of
-//! these is fetched once for each triangle ([`TriangleAttributes`]), taken from there by the pixels
-//! ([`Barycentrics`]), lit ([`Batch`]), and made bytes. Light that is evaluated at faces is
-//! evaluated at the faces of the block; no pixel asks where it lies.
+//! A block's pixels are listed with the triangles that they show ([`Fragments`]). Attributes are
+//! fetched once per triangle ([`TriangleAttributes`]), interpolated ([`Barycentrics`]), lit
+//! ([`Batch`]), and converted to bytes. With flat shading, light is evaluated once for each face of
+//! the block, and no barycentric coordinates are computed.
 
 use super::barycentric_variants::locate_by_variant;
 use super::colors::{Colors, Form, Sums};
@@ -29,7 +29,7 @@ use crate::render::shading::triangle_attributes::TriangleAttributes;
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
 
-/// Colours pixels. Each thread has its own.
+/// Shades blocks. Each thread has its own.
 #[derive(Debug)]
 pub(crate) struct Shader<T> {
     /// The lights of the tile that is coloured.
@@ -42,16 +42,16 @@ pub(crate) struct Shader<T> {
     colors: Colors,
 }
 
-/// Where colours of a block go.
+/// The destination of a block's colours.
 #[derive(Debug)]
 pub(crate) enum Out<'a, 'b> {
-    /// Into a tile, from a place on.
+    /// A tile, from an index on.
     Tile(&'a mut Canvas<'b>, usize),
-    /// To what other samples show.
+    /// The sums over several samples.
     Sums(&'a mut Sums),
 }
 
-/// What mixing the light of vertices gave.
+/// The result of interpolating the light of vertices.
 #[derive(Clone, Copy, Debug)]
 enum Mixture {
     /// The bytes of the pixels.
@@ -77,13 +77,14 @@ impl<T: ShadingNumber> Default for Shader<T> {
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Gets ready for another frame.
+    /// Begins a frame.
     pub(crate) const fn begin(&mut self) {
         self.attributes.forget();
     }
 
-    /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on.
-    /// What shows the background is left as it is; says whether anything else is shown.
+    /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on. Pixels
+    /// that show the background are left as they are. Returns whether any pixel shows something
+    /// else.
     pub(crate) fn block(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -107,7 +108,7 @@ impl<T: ShadingNumber> Shader<T> {
         (shown.triangles | shown.lines) != 0
     }
 
-    /// Colours the pixels of the list.
+    /// Colours the fragments of the list.
     pub(crate) fn color_fragments(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -121,7 +122,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Colours the pixels of a block that one triangle covers as a whole.
+    /// Colours a block that one triangle covers fully.
     pub(crate) fn full_block(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -134,7 +135,7 @@ impl<T: ShadingNumber> Shader<T> {
         self.color_group(context, &group_of(context, number), out);
     }
 
-    /// Colours pixels that are coloured together.
+    /// Colours the fragments of a group.
     pub(crate) fn color_group(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -155,8 +156,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
-    /// ways.
+    /// Colours a block that shows several draws or pipelines, group by group.
     fn color_groups(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -208,7 +208,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Backs that are red are red.
+    /// Colours back faces red.
     fn redden(&mut self) {
         for (i, slot) in self.fragments.slots[..self.fragments.len].iter().enumerate() {
             if self.attributes.back >> slot & 1 == 1 {
@@ -275,8 +275,8 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Takes the triangles of the list, and where they are if the pixels have `places`. Says
-    /// whether they are others than before.
+    /// Fetches the triangles of the list, with their screen positions if they are to be `located`.
+    /// Returns whether they differ from those before.
     pub(crate) fn take(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -298,7 +298,7 @@ impl<T: ShadingNumber> Shader<T> {
         new
     }
 
-    /// Light at every pixel.
+    /// Phong shading: lights every pixel.
     fn light_pixels(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -316,14 +316,14 @@ impl<T: ShadingNumber> Shader<T> {
             }
             surface_samples(level, (plan, group.draw), fragments, attributes, barycentrics, batch);
         } else {
-            // What they carry is not taken, so it is not there.
+            // The attributes were not fetched, so the next block must not reuse them.
             attributes.forget();
         }
         batch.darken();
         light.light_batch(terms.of(group.pipeline), level, batch);
     }
 
-    /// Light of the vertices, mixed at every pixel.
+    /// Gouraud shading: interpolates the light of vertices at every pixel.
     fn mix_light(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -359,7 +359,7 @@ impl<T: ShadingNumber> Shader<T> {
         Mixture::Light
     }
 
-    /// Lets the faces carry the diffuse light of their corners, or their colours.
+    /// Sets the attributes of corners to their diffuse light, or to their final colours.
     pub(crate) fn carry_diffuse(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -378,7 +378,7 @@ impl<T: ShadingNumber> Shader<T> {
         );
     }
 
-    /// Light of the faces: at every pixel where they have `places`, else face by face.
+    /// Flat shading: lights each face, and spreads the light to its pixels if they are `located`.
     fn light_faces(
         &mut self,
         context: &ShadingContext<'_, T>,

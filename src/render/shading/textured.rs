@@ -1,4 +1,4 @@
-//! The colour of a surface itself, pixel by pixel: its texture, its vertex colours, its tint.
+//! The colour of a surface, pixel by pixel: texture, vertex colours and tint.
 
 use fearless_simd::dispatch;
 
@@ -33,7 +33,7 @@ impl<T: ShadingNumber> Shader<T> {
                 *corners = uvs(draw, *number);
             }
         }
-        // Where a processor rounds down by an instruction, it is that.
+        // Dispatched so that rounding down uses the processor's instruction, if it has one.
         dispatch!(context.level, _ => for i in 0..fragments.len {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
             let number = attributes.numbers[slot];

@@ -1,8 +1,8 @@
-//! What is known of the triangles that a block shows.
+//! Attributes of the triangles that a block shows, and their edge functions.
 //!
-//! Each triangle has a slot. Its corners on the screen and what it carries at them (normals, or
-//! light that is there already) are fetched once, row after row, so that the fetches overlap; then
-//! sixteen triangles at a time are made ready for the pixels that take from them.
+//! Each triangle has a slot. Its corners on the screen and its attributes at them (normals, or
+//! light of vertices) are fetched once, row after row, so that the fetches overlap. Then sixteen
+//! triangles at a time are prepared for the pixels that gather from them.
 
 use fearless_simd::{
     Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16,
@@ -20,43 +20,43 @@ use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
 use crate::scene::{DrawOrder, Normals};
 
-/// The largest doubled area, in square parts of a pixel, whose edge functions fit 31 bits wherever
-/// a pixel of the triangle is, and the longest side that leaves room for their products.
+/// The largest doubled area, in square subpixels, whose edge functions fit 31 bits at every pixel
+/// of the triangle, and the longest side whose products fit.
 const NARROW_AREA: f32 = (1 << 30) as f32;
 const NARROW_SIDE: i32 = 1 << 20;
 
-/// What is known of some triangles of one draw. See the [module](self).
+/// The attributes of some triangles of one draw. See the [module](self).
 #[derive(Debug)]
 pub(crate) struct TriangleAttributes<T> {
     pub(crate) count: usize,
     /// Their numbers in the mesh.
     pub(crate) numbers: [u32; SLOTS],
-    /// Whether their corners are known.
+    /// Whether their corners were fetched.
     has_corners: bool,
     /// Their vertices in the mesh's draw order.
     ids: [[u32; 3]; SLOTS],
-    /// x and y of each corner on the screen, in parts of a pixel.
+    /// x and y of each corner on the screen, in subpixels.
     pub(crate) corners: [[[i32; SLOTS]; 2]; 3],
-    /// What each corner carries.
+    /// The attributes of each corner.
     pub(crate) carried: [[[T; 4]; SLOTS]; 3],
-    /// a, b and c of the edge functions that belong to the second and the third corner, for whole
-    /// pixels: e = a x + b y + c, but for multiples of 2^32.
+    /// a, b and c of the edge functions of the second and the third corner, at pixels: e = a x + b
+    /// y + c, modulo 2^32.
     pub(crate) edges: [[[i32; SLOTS]; 3]; 2],
-    /// One by the doubled area.
+    /// 1 / the doubled area.
     pub(crate) per_area: [f32; SLOTS],
-    /// One by w of each corner.
+    /// 1/w of each corner.
     pub(crate) by_w: [[T; SLOTS]; 3],
-    /// What the first corner carries, and what the second and third have more than it.
+    /// The attributes of the first corner, and the differences of the second and third from it.
     pub(crate) values: [[[T; SLOTS]; 3]; 3],
-    /// z in view space of each corner; in parallel projection only.
+    /// z of each corner in view space; in orthographic projection only.
     pub(crate) z: [[T; SLOTS]; 3],
-    /// Bit i: the triangle reaches beyond the planes that triangles are cut by.
+    /// Bit i: the triangle is clipped.
     pub(crate) cut: u64,
-    /// Bit i: its edge functions do not fit 31 bits inside.
+    /// Bit i: its edge functions do not fit 31 bits.
     pub(crate) wide: u64,
-    /// Bit i: the observer sees its back.
+    /// Bit i: it is a back face.
     pub(crate) back: u64,
-    /// The place of their draw in the plan.
+    /// The index of their draw in the plan.
     draw: Option<u32>,
 }
 
@@ -83,24 +83,22 @@ impl<T: Number> Default for TriangleAttributes<T> {
     }
 }
 
-/// Numbers that faces are known in.
+/// Numbers in which attributes are stored.
 pub(crate) trait AttributeNumber: Number {
-    /// Whether barycentric coordinates come from whole numbers and f64, one by one.
+    /// Whether barycentric coordinates are computed from integers in f64, one by one.
     const EXACT: bool;
-    /// Fetches the corners, and makes the edge functions and one by w ready, where they are not
-    /// yet.
+    /// Fetches the corners, and computes edge functions and 1/w.
     fn prepare(level: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]);
 }
 
 impl<T: AttributeNumber> TriangleAttributes<T> {
-    /// Forgets what the last block showed.
+    /// Forgets the triangles of the last block.
     pub(crate) const fn forget(&mut self) {
         self.draw = None;
     }
 
-    /// Takes the triangles of a list, all of one draw whose numbers begin at `base`, and their
-    /// corners where an order is given. Says whether they are others than those that are there
-    /// already.
+    /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`, with
+    /// their corners if an order is given. Returns whether they differ from those before.
     pub(crate) fn take(
         &mut self,
         fragments: &Fragments,
@@ -129,7 +127,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         true
     }
 
-    /// Which sides are seen, where that matters.
+    /// Finds which triangles are back faces, if that matters.
     pub(crate) fn find_sides(&mut self, draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) {
         self.back = 0;
         if draw.back == Back::Culled {
@@ -148,7 +146,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         }
     }
 
-    /// Fetches the corners and makes them ready.
+    /// Fetches the corners and prepares them for interpolation.
     pub(crate) fn locate(
         &mut self,
         level: Level,
@@ -176,7 +174,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         }
     }
 
-    /// Lets the corners carry their normals, turned where the back is seen and lit.
+    /// Sets the attributes of corners to their normals, reversed on back faces that are lit.
     pub(crate) fn carry_normals(&mut self, draw: &Draw) {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
@@ -200,8 +198,8 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         }
     }
 
-    /// Lets the corners carry the light of their vertices; `light` is asked for it by place, and by
-    /// whether it is that of the back.
+    /// Sets the attributes of corners to the light of their vertices: `light` gives it by vertex,
+    /// for the front or the back.
     #[inline(always)]
     pub(crate) fn carry_light(&mut self, draw: &Draw, mut light: impl FnMut(u32, bool) -> [T; 4]) {
         let mesh = &draw.model.mesh;
@@ -219,12 +217,12 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         }
     }
 
-    /// Makes what the corners carry ready.
+    /// Prepares the attributes of corners for interpolation.
     pub(crate) fn spread(&mut self, level: Level) {
         T::run(level, Spread(self));
     }
 
-    /// The corners of a triangle, of those of its draw.
+    /// The corners of a triangle among the vertices of its draw.
     pub(crate) fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
         self.ids[slot].map(|id| all[id as usize])
     }
@@ -235,7 +233,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
     }
 }
 
-/// From what corners carry to the first and the differences of the others.
+/// Computes the first corner's attributes and the differences of the others.
 struct Spread<'a, T>(&'a mut TriangleAttributes<T>);
 
 impl<T: Number> Kernel<T> for Spread<'_, T> {
@@ -255,14 +253,14 @@ impl<T: Number> Kernel<T> for Spread<'_, T> {
     }
 }
 
-/// What one corner of some triangles carries.
+/// The attributes of one corner of some triangles.
 #[inline(always)]
 fn carried<M: Lanes>(lanes: M, rows: &[[M::Number; 4]; SLOTS], at: usize) -> Vec3<M::R> {
     let [x, y, z, _] = lanes.load_four(rows, at);
     Vec3([x, y, z])
 }
 
-/// Three numbers of the triangles that some pixels show.
+/// Gathers three numbers of the triangles that some pixels show.
 #[inline(always)]
 pub(crate) fn picked<M: Lanes, const PAGES: usize>(
     lanes: M,
@@ -332,7 +330,7 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
         let area = ux * vy - uy * vx;
         let per_area = f32x16::splat(simd, 1.0) / area.to_float::<f32x16<S>>();
         per_area.store_slice(&mut attributes.per_area[at..at + 16]);
-        // a (x - p.x) + b (y - p.y) with x and y in the middle of a pixel.
+        // a (x - p.x) + b (y - p.y) with x and y at the centre of a pixel.
         let (half, log2) = (SUBPIXELS / 2, SUBPIXELS.trailing_zeros());
         let second = (vy, x0 - x2, half - x2, half - y2);
         let third = (y0 - y1, ux, half - x0, half - y0);
@@ -344,8 +342,8 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
     }
 }
 
-/// x, y, depth and one by w of the corners of sixteen triangles. Slots that nobody has taken name
-/// vertices of other draws: what is fetched for them is of no meaning.
+/// x, y, depth and 1/w of the corners of sixteen triangles. Unused slots name vertices of other
+/// draws, so what is fetched for them is meaningless.
 #[inline(always)]
 fn corners<S: Simd>(
     simd: S,

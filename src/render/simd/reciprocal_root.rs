@@ -156,8 +156,8 @@ mod tests {
                     worst = worst.max(apart(f64::from(roots(level, x, variant)[5])));
                     worst_of_64 = worst_of_64.max(apart(one(f64::from(x[0]), variant)));
                 }
-                assert!((least..most).contains(&worst), "{way:?} {level:?}: {worst:e}");
-                assert!((least..most).contains(&worst_of_64), "{way:?}: {worst_of_64:e}");
+                assert!((least..most).contains(&worst), "{variant:?} {level:?}: {worst:e}");
+                assert!((least..most).contains(&worst_of_64), "{variant:?}: {worst_of_64:e}");
             }
         }
     }
@@ -167,10 +167,14 @@ mod tests {
         for variant in [Normalising::Rsqrt, Normalising::Newton, Normalising::Root] {
             for x in [0.0, -0.0, -1.0, 1e-40, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
                 for level in levels() {
-                    assert_eq!(roots(level, [x; 16], variant), [0.0; 16], "{x} {way:?} {level:?}");
+                    assert_eq!(
+                        roots(level, [x; 16], variant),
+                        [0.0; 16],
+                        "{x} {variant:?} {level:?}"
+                    );
                 }
                 let in_64 = if x == 1e-40 { 0.0 } else { one(f64::from(x), variant) };
-                assert_eq!(in_64, 0.0, "{x} {way:?}");
+                assert_eq!(in_64, 0.0, "{x} {variant:?}");
             }
         }
     }

@@ -15,12 +15,12 @@ const SIZE: Size = Size { width: 150, height: 140 };
 const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };
 const TILE_BOX: PixelBox = PixelBox { left: 0, top: 0, right: TILE, bottom: TILE };
 
-/// The middle, and what lies farthest from it to all sides.
+/// The centre, and the samples farthest from it to all sides.
 fn middle_and_others() -> [SamplePositions; 3] {
     [passes(Samples::One)[0], passes(Samples::Four)[0], passes(Samples::Sixteen)[3]]
 }
 
-/// Where sample `i` lies.
+/// The offset of sample `i`.
 fn shift(sample_positions: &SamplePositions, i: usize) -> [i32; 2] {
     if sample_positions.are_many() { sample_positions.shift::<FOUR>(i) } else { [0; 2] }
 }
@@ -39,7 +39,7 @@ fn bins(sample_positions: SamplePositions) -> Bins {
     bins
 }
 
-/// The box of pixels that a triangle may cover in some of their samples.
+/// The pixels that a triangle may cover in some of their samples.
 fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBox {
     match sample_positions.are_many() {
         true => PixelBox::reached(corners, sample_positions.reach::<FOUR>()),
@@ -100,7 +100,7 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
     found
 }
 
-/// A sample is covered where the middle of its pixel is, when all is moved the other way.
+/// A sample is covered if the centre of its pixel is, once the corners are moved the other way.
 fn covered(corners: [Snapped; 3], sample_positions: &SamplePositions) -> Vec<(i32, i32, usize)> {
     let mut samples = Vec::new();
     for sample in 0..sample_positions.count() {
@@ -134,7 +134,7 @@ fn every_way_covers_the_samples_that_the_rule_says() {
     }
 }
 
-/// Holds all ways of drawing a triangle to the rule.
+/// Compares all rasterizers with the rule of coverage.
 fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     let want = covered(corners, &sample_positions);
     let bounds = reached(corners, &sample_positions);
@@ -142,7 +142,7 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     if side <= SMALL[3] && !bounds.is_empty() {
         let got = seen_in(&small(&[corners], sample_positions));
         assert_eq!(got, want, "{corners:?} alone");
-        // Others far away are drawn pixel by pixel, whatever the tile.
+        // With others far away it is drawn pixel by pixel, whatever the tile.
         let far = [(2, 2), (140, 3), (4, 130), (141, 135)].map(|(x, y)| {
             [(0, 0), (200, 0), (0, 200)]
                 .map(|(dx, dy)| Snapped { x: x * 256 + dx, y: y * 256 + dy })
@@ -158,7 +158,7 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     assert_eq!(seen_in(&bins), want, "{corners:?} alone in 64 bits");
 }
 
-/// Squares that cover blocks as a whole, in few depths, some of them tilted.
+/// Squares that cover whole blocks, in few depths, some of them tilted.
 #[test]
 fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
     let mut random = numbers(5);
@@ -204,7 +204,7 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
     }
 }
 
-/// The words of each pixel's samples, found triangle by triangle and sample by sample.
+/// The visibility of each pixel's samples, found triangle by triangle and sample by sample.
 #[expect(clippy::needless_range_loop, reason = "a sample is one of each pixel's")]
 fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -> Vec<[u64; FOUR]> {
     let mut words = vec![[0; FOUR]; PIXELS];
