@@ -1,15 +1,15 @@
-//! Numbers taken from a short table, sixteen at once, each from a place of its own.
+//! Gathers numbers from a short table, sixteen at once.
 //!
-//! What a block shows are few triangles and many pixels: what is known of the triangles stands in
-//! rows, a number for each, and the pixels take from them. Processors have an instruction for that,
-//! which moves the lanes of a register; where they have none, numbers are taken one by one.
+//! A block shows few triangles on many pixels: attributes of the triangles are stored in rows, a
+//! number for each, and pixels gather from them. Processors have an instruction that permutes the
+//! lanes of a register; without it, numbers are gathered one by one.
 
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, i32x16};
 
-/// Positions in a table.
+/// The length of a table.
 pub(crate) const SLOTS: usize = 64;
 
-/// The numbers of a row at `slots`, all of which are among the first `PAGES` times sixteen.
+/// Gathers the numbers of a row at `slots`, all below `PAGES` times sixteen.
 #[inline(always)]
 pub(crate) fn pick<S: Simd, const PAGES: usize>(
     simd: S,
@@ -53,7 +53,7 @@ fn page<S: Simd>(simd: S, row: &[i32; SLOTS], page: usize) -> i32x16<S> {
     i32x16::from_slice(simd, &row[16 * page..16 * page + 16])
 }
 
-/// Does something for as many pages of slots as `count` triangles take.
+/// Evaluates an expression with the number of pages that `count` slots take as a constant.
 macro_rules! paged {
     ($count:expr, $pages:ident => $what:expr) => {
         match $count {
@@ -74,7 +74,7 @@ macro_rules! paged {
 }
 pub(crate) use paged;
 
-/// The instructions that move lanes by the places in another register.
+/// The instructions that permute lanes by the indices in another register.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod x86 {
     #[cfg(target_arch = "x86")]
@@ -121,7 +121,7 @@ mod x86 {
         }
     );
 
-    /// From sixteen places, by halves of eight.
+    /// Gathers from sixteen numbers, by halves of eight.
     #[inline(always)]
     pub(crate) fn of_halves(token: Avx2, page: i32x16<Avx2>, slots: i32x16<Avx2>) -> i32x16<Avx2> {
         let (low, high) = page.split();

@@ -12,13 +12,13 @@ use crate::accuracy::{Normalising, SpecularPower};
 pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {
     /// The nearest such number.
     fn from_f64(number: f64) -> Self;
-    /// The byte nearest to 255 times the number: clamped once, rounded, NaN gives 0.
+    /// The byte nearest to 255 times the number, clamped and rounded; NaN gives 0.
     fn byte(self) -> u8;
-    /// How such numbers take powers by themselves.
+    /// The default variant of powers for such numbers.
     const POWER: SpecularPower;
-    /// Does the work with the lanes for such numbers, and with instructions of this level.
+    /// Runs a kernel with the lanes for such numbers and the instructions of this level.
     fn run(level: Level, kernel: impl Kernel<Self>);
-    /// The same by a rare way, where there is one.
+    /// The same by a variant of roots, if there is one.
     fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>);
 }
 

@@ -6,12 +6,12 @@ use super::variant_real::VariantNumber;
 use super::vec3::Vec3;
 use crate::accuracy::Normalising;
 
-/// What another lanes does, by a rare way.
+/// Lanes that compute roots and powers by a variant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VariantLanes<M> {
-    /// The other.
+    /// The lanes that load and store.
     pub(crate) lanes: M,
-    /// How roots are taken.
+    /// The variant of roots.
     pub(crate) variant: Normalising,
 }
 

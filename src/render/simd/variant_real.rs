@@ -1,7 +1,7 @@
-//! Numbers whose reciprocal roots and powers are computed by a variant that settings name.
+//! Numbers whose reciprocal roots and powers are computed by a variant that the settings choose.
 //!
-//! Such a number carries its [`Normalising`]; a [`Power`] knows its own variant. The compiler sees
-//! the same variant in all numbers of a batch, so it is asked for once a root.
+//! Such a number carries its [`Normalising`]; a [`Power`] knows its own variant. All numbers of a
+//! batch have the same variant, so it is matched once per root.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -13,12 +13,12 @@ use super::real::Real;
 use super::reciprocal_root;
 use crate::accuracy::Normalising;
 
-/// Numbers that can be asked for a rare way.
+/// Numbers that can compute roots and powers by a variant.
 pub trait VariantReal: Real {
-    /// As [`Real::reciprocal_root`], by a way that is named.
+    /// Like [`Real::reciprocal_root`], by a variant.
     #[must_use]
     fn reciprocal_root_by(self, variant: Normalising) -> Self;
-    /// As [`Real::power`], by the way that the power names.
+    /// Like [`Real::power`], by the power's variant.
     #[must_use]
     fn power_by(self, power: &Power) -> Self;
 }
@@ -52,7 +52,7 @@ impl<S: Simd> VariantReal for f32x16<S> {
     }
 }
 
-/// Numbers, and how their roots are taken.
+/// Numbers, with the variant of their roots.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VariantNumber<R> {
     pub(super) value: R,
