@@ -12,8 +12,7 @@ use rayon::prelude::*;
 
 use crate::accuracy::LightAt;
 use crate::render::frame::FramePlan;
-use crate::render::frame::draw::Form;
-use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
 use crate::render::plan::tile::TilePlan;
 use crate::render::plan::uses::{Effect, EffectUse};
 use crate::render::raster::geometry::ScreenGeometry;

@@ -8,8 +8,7 @@ use glam::{DMat3, DMat4};
 use super::FramePlan;
 use crate::accuracy::LightAt;
 use crate::base::{Shared, color::Color};
-use crate::render::lights;
-use crate::render::lights::{LightRow, PhongMaterial};
+use crate::render::lights::{self, LightRow, PhongMaterial};
 use crate::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
 
 /// One mesh of a frame.

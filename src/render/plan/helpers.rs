@@ -4,9 +4,9 @@ use std::sync::OnceLock;
 
 use glam::{DMat3, DMat4, DVec3};
 
+use super::observer::ObserverSpace;
 use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color, math};
-use crate::render::plan::observer::ObserverSpace;
 use crate::scene::{Camera, LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner};
 
 /// The colour of a bulb's diamond.

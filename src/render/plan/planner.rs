@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use glam::{DMat3, DMat4, DVec3};
 
 use super::features::presence;
+use super::helpers;
+use super::observer::ObserverSpace;
 use super::planning::{Planner, Planning};
 use super::rules::Thing;
 use super::surfaces::Ground;
@@ -15,8 +17,6 @@ use crate::base::{Shared, color::Color, math};
 use crate::render::frame::draw::{Back, Draw, Lines, Pipeline};
 use crate::render::frame::variants::Variants;
 use crate::render::lights::region::Region;
-use crate::render::plan::helpers;
-use crate::render::plan::observer::ObserverSpace;
 use crate::scene::{
     Fill, ItemId, LightId, LightKind, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
 };

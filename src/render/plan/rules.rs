@@ -34,7 +34,7 @@ pub(crate) struct LitSurface<'a> {
     pub light: &'a ViewLight,
     /// The surface.
     pub material: &'a PhongMaterial,
-    /// Where the surface is, if that is known.
+    /// The region of the surface, if it is known.
     pub region: Option<&'a Region>,
     /// The normals of its faces, if they are known.
     pub turning: Option<&'a Turning>,

@@ -11,8 +11,7 @@ use crate::accuracy::{Arithmetic, LeaveOut, LightAt, SpecularForm};
 use crate::base::image::{Picture, Size};
 use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color};
-use crate::render::frame::draw::Form;
-use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
 use crate::render::lights::PhongMaterial;
 use crate::render::lights::region::Region;
 use crate::render::lights::turning::Turning;
@@ -23,7 +22,7 @@ use crate::scene::{ItemId, Object, PartLook, Surface, Texture, Wrap};
 pub(super) struct Ground<'a> {
     pub(super) item: ItemId,
     pub(super) object: &'a Object,
-    /// Where they are lit, if that is known.
+    /// The region in which they are lit, if it is known.
     pub(super) region: Option<Region>,
     /// Their normals, if they are known.
     pub(super) turning: Option<Turning>,

@@ -6,12 +6,12 @@
 
 use glam::DVec3;
 
+use super::bounded;
 use super::rules::{LitSurface, Reading};
 use crate::accuracy::{LeaveOut, Samples};
 use crate::render::frame::draw::{Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::region::Region;
-use crate::render::plan::bounded;
 use crate::render::screen::coverage::PixelBox;
 
 /// The error of interpolating a depth or 1/w in f32, relative to the largest value.

@@ -45,7 +45,7 @@ impl Effect {
             Self::Highlights => "Highlights",
             Self::Normals => "Normals at pixels",
             Self::Texture => "Textures",
-            Self::AlphaTest => "AlphaTest of textures",
+            Self::AlphaTest => "Holes of textures",
             Self::VertexColors => "Vertex colours",
             Self::BackFaces => "Back faces",
             Self::Edges => "Edges",

@@ -2,13 +2,12 @@
 
 use glam::DVec3;
 
+use super::observer::ObserverSpace;
 use super::planning::{Planning, Shining};
 use super::rules::LightFacts;
 use super::uses::{Effect, EffectState, EffectUse};
 use crate::base::math;
-use crate::render::lights;
-use crate::render::lights::{LightRow, ViewLight};
-use crate::render::plan::observer::ObserverSpace;
+use crate::render::lights::{self, LightRow, ViewLight};
 use crate::scene::{Aim, Attenuation, LightKind, Scene, View};
 
 /// Transforms the lights that a frame evaluates to view space.

@@ -1,10 +1,9 @@
 //! Removes one effect from a plan, so that its cost can be measured.
 
 use super::rules::Reading;
+use super::uses::Effect;
 use crate::render::frame::FramePlan;
-use crate::render::frame::draw::Form;
-use crate::render::frame::draw::{Back, Pipeline, Shaded};
-use crate::render::plan::uses::Effect;
+use crate::render::frame::draw::{Back, Form, Pipeline, Shaded};
 use crate::scene::ItemId;
 
 impl FramePlan {

@@ -6,8 +6,8 @@
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
+use super::unsnapped::UnsnappedTriangle;
 use crate::base::image::Size;
-use crate::render::raster::unsnapped::UnsnappedTriangle;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::SamplePositions;

@@ -7,8 +7,8 @@
 //!   each row runs from the left edge to the right edge, rounded and inclusive. So neighbours cover
 //!   the pixels that they share twice, and pixels are covered whose centres lie outside.
 
+use super::unsnapped::UnsnappedTriangle;
 use crate::base::math::each;
-use crate::render::raster::unsnapped::UnsnappedTriangle;
 use crate::render::screen::coverage::{PixelBox, Snapped, doubled_area};
 
 /// A pixel, by column and row, and its depth.

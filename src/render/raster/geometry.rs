@@ -8,13 +8,11 @@ use glam::DMat4;
 use rayon::prelude::*;
 
 use super::bins::Bins;
-use super::edges;
 use super::lines::LineNumber;
 use super::parts::{Parts, share_out};
 use super::starts::{Start, number};
-use super::vertex_variants;
-use super::vertices;
 use super::work::{What, WorkList, piece_of};
+use super::{edges, vertex_variants, vertices};
 use crate::base::Shared;
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;

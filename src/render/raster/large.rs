@@ -10,8 +10,8 @@ use fearless_simd::{
     SimdNarrow as _, SimdWiden as _, f32x16, f64x8, i64x8, u32x16, u64x8,
 };
 
+use super::bins::LargeTriangle;
 use crate::base::math::each;
-use crate::render::raster::bins::LargeTriangle;
 use crate::render::screen::coverage::{PixelBox, Triangle};
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};

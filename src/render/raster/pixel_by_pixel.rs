@@ -1,15 +1,14 @@
 //! Draws a tile pixel by pixel, by the chosen variants of coverage and depth. The visibility buffer
 //! has the usual form, so shading is the same as with the defaults.
 
+use super::alpha_test::AlphaTest;
+use super::bins::Bins;
+use super::depth_format::key;
+use super::geometry::ScreenGeometry;
+use super::{coverage_variants, lines};
 use crate::accuracy::{Coverage, DepthFormat};
 use crate::render::frame::FramePlan;
 use crate::render::frame::variants::Variants;
-use crate::render::raster::alpha_test::AlphaTest;
-use crate::render::raster::bins::Bins;
-use crate::render::raster::coverage_variants;
-use crate::render::raster::depth_format::key;
-use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::raster::lines;
 use crate::render::reference::points;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::interpolation::subpixels;

@@ -1,13 +1,13 @@
 //! Triangle setup for variants that draw triangles one by one. Corners are kept from before they
 //! were snapped, since some variants of coverage use them.
 
+use super::bins::Bins;
+use super::setup::{Kind, Setup};
+use super::unsnapped::UnsnappedTriangle;
+use super::vertex_variants::{FINE_GUARD, Projected, coarse, project};
 use crate::base::image::Size;
 use crate::render::frame::draw::{Back, Pipeline};
 use crate::render::frame::variants::Variants;
-use crate::render::raster::bins::Bins;
-use crate::render::raster::setup::{Kind, Setup};
-use crate::render::raster::unsnapped::UnsnappedTriangle;
-use crate::render::raster::vertex_variants::{FINE_GUARD, Projected, coarse, project};
 use crate::render::screen::clip::{Clip, Screen};
 use crate::render::screen::coverage::{PixelBox, doubled_area};
 use crate::render::screen::interpolation::subpixels;

@@ -19,15 +19,14 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
+use super::alpha_test::AlphaTest;
+use super::bins::{Bins, LargeTriangle};
+use super::geometry::ScreenGeometry;
 use super::large::Large;
-use super::pixel_by_pixel;
+use super::visibility_buffer::{Planes, depths_of, seen, word};
+use super::{lines, pixel_by_pixel};
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
-use crate::render::raster::alpha_test::AlphaTest;
-use crate::render::raster::bins::{Bins, LargeTriangle};
-use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::raster::lines;
-use crate::render::raster::visibility_buffer::{Planes, depths_of, seen, word};
 use crate::render::screen::coverage::{Covered, PixelBox, Triangle};
 use crate::render::screen::sample_positions::{FOUR, SamplePositions};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};

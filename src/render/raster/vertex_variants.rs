@@ -6,9 +6,9 @@
 
 use fearless_simd::Level;
 
+use super::vertices;
 use crate::accuracy::{Subpixels, VertexArithmetic};
 use crate::render::frame::variants::Variants;
-use crate::render::raster::vertices;
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::scene::DrawOrder;

@@ -5,7 +5,7 @@
 
 use fearless_simd::Simd;
 
-use crate::render::raster::lines::LineNumber;
+use super::lines::LineNumber;
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::BLOCK_PIXELS;
 

@@ -7,9 +7,9 @@
 //! perspective at their ends and linear interpolation between. Abrash, "Graphics Programming Black
 //! Book", 1997, chapter 70.
 
+use super::coverage::{SUBPIXELS, Snapped, doubled_area};
 use crate::accuracy::{Coverage, Interpolation};
 use crate::render::frame::variants::Variants;
-use crate::render::screen::coverage::{SUBPIXELS, Snapped, doubled_area};
 
 /// Pixels of a span.
 const PIECE: i64 = 16;

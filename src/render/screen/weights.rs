@@ -3,12 +3,12 @@
 
 use glam::DVec3;
 
+use super::clip::{Screen, ScreenVertex, homogeneous_weights};
+use super::coverage::{SUBPIXELS, Snapped, Triangle};
 use super::interpolation::parts_at;
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
-use crate::render::screen::clip::{Screen, ScreenVertex, homogeneous_weights};
-use crate::render::screen::coverage::{SUBPIXELS, Snapped, Triangle};
 
 /// The perspective-correct weights of a triangle's corners at pixels, in f64, `shift` subpixels
 /// from their centres.

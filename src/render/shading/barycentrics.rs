@@ -7,10 +7,9 @@
 
 use glam::DVec3;
 
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::triangle_attributes::{TriangleAttributes, picked};
-use crate::render::simd::BATCH;
-use crate::render::simd::{Kernel, Lanes, Number, Vec3};
+use super::fragments::Fragments;
+use super::triangle_attributes::{TriangleAttributes, picked};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Vec3};
 
 /// The barycentric coordinates of a list of fragments.
 #[derive(Debug)]

@@ -4,13 +4,13 @@
 //! fragments; everything else is coloured like other blocks.
 
 use super::context::ShadingContext;
+use super::full_blocks::{BlockLight, Blocks, Canvas};
 use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::surface::{Out, Shader};
 use crate::accuracy::{LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
-use crate::render::shading::full_blocks::{BlockLight, Blocks, Canvas};
 
 impl<T: ShadingNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers fully.

@@ -9,15 +9,14 @@
 
 use fearless_simd::Level;
 
+use super::barycentrics::Barycentrics;
+use super::fragments::Fragments;
+use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::render::screen::coverage::SUBPIXELS;
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::BLOCK;
-use crate::render::shading::barycentrics::Barycentrics;
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::triangle_attributes::{AttributeNumber, TriangleAttributes};
-use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Kernel, Lanes, Number, Real};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real};
 
 impl<T: AttributeNumber> Barycentrics<T> {
     /// Clamps linear coordinates outside of a triangle to its nearest point, and sets the positions

@@ -6,8 +6,7 @@
 //! mean of equal colours is the byte that each of them would be.
 
 use crate::render::screen::tiles::BLOCK_PIXELS;
-use crate::render::simd::BATCH;
-use crate::render::simd::{Lanes, Vec3};
+use crate::render::simd::{BATCH, Lanes, Vec3};
 
 /// The form of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -8,17 +8,16 @@ use fearless_simd::{
     Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,
 };
 
+use super::barycentrics::with_perspective;
 use super::interpolate::{Look, between, depth_between};
+use super::quantize::reflected;
+use super::triangle_attributes::TriangleAttributes;
 use crate::render::lights::{Batch, LightTerm, set};
 use crate::render::plan::tile::TileLight;
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::render::shading::barycentrics::with_perspective;
-use crate::render::shading::quantize::reflected;
-use crate::render::shading::triangle_attributes::TriangleAttributes;
-use crate::render::simd::Sixteen;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Lanes as _, Vec3};
+use crate::render::simd::{Lanes as _, Sixteen, Vec3};
 
 /// The pixels of a tile, in rows that begin `stride` pixels apart.
 #[derive(Debug)]

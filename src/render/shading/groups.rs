@@ -1,8 +1,8 @@
 //! Groups the fragments of a block that are coloured together: those of one draw and one pipeline.
 
 use super::context::ShadingContext;
+use super::fragments::Fragments;
 use crate::render::frame::draw::Draw;
-use crate::render::shading::fragments::Fragments;
 
 /// Fragments that are coloured together.
 #[derive(Clone, Copy, Debug)]

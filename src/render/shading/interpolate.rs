@@ -10,14 +10,14 @@
 use fearless_simd::Level;
 use glam::DMat3;
 
+use super::barycentrics::Barycentrics;
 use super::colors::Colors;
+use super::fragments::Fragments;
+use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::render::frame::draw::Draw;
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::{Batch, Rows, Sample, set, store};
 use crate::render::screen::coverage::SUBPIXELS;
-use crate::render::shading::barycentrics::Barycentrics;
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::triangle_attributes::{TriangleAttributes, picked};
 use crate::render::simd::gather::{SLOTS, paged};
 use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
 
@@ -58,7 +58,10 @@ pub(crate) fn mix<T: Number>(
     barycentrics: &Barycentrics<T>,
     to: Mixed<'_, T>,
 ) {
-    paged!(attributes.count, PAGES => T::run(level, Mix::<T, PAGES> { fragments, attributes, barycentrics, to }));
+    paged!(attributes.count, PAGES => T::run(
+        level,
+        Mix::<T, PAGES> { fragments, attributes, barycentrics, to },
+    ));
 }
 
 struct Mix<'a, T, const PAGES: usize> {

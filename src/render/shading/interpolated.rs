@@ -66,7 +66,10 @@ impl<T: Interpolated> Barycentrics<T> {
                 self.clamp_to_triangle(level, fragments, attributes);
             }
             let count = attributes.count;
-            paged!(count, PAGES => T::run(level, Perspective::<T, PAGES> { fragments, attributes, to: self }));
+            paged!(count, PAGES => T::run(
+                level,
+                Perspective::<T, PAGES> { fragments, attributes, to: self },
+            ));
             if attributes.cut != 0 {
                 self.find_cut(fragments, attributes, plan, draw);
             }

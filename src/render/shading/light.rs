@@ -11,15 +11,14 @@ use fearless_simd::Level;
 use glam::{DMat3, DVec3};
 
 use super::interpolated::ShadingNumber;
+use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Normalising};
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::{Batch, LightTerm, load, set, store};
 use crate::render::plan::tile::TileLight;
-use crate::render::shading::triangle_attributes::TriangleAttributes;
-use crate::render::simd::BATCH;
-use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 use crate::scene::{Facet, Normals, dvec3};
 
 /// Light at the vertices of a frame, and the transforms that lighting faces needs.

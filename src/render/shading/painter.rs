@@ -9,6 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::colors::Sums;
 use super::context::ShadingContext;
+use super::full_blocks::{Blocks, Canvas};
 use super::interpolated::ShadingNumber;
 use super::resolve::Samples;
 use super::surface::{Out, Shader};
@@ -19,7 +20,6 @@ use crate::render::raster::tile::Visibility;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::{ALL, FOUR};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
-use crate::render::shading::full_blocks::{Blocks, Canvas};
 
 /// The pixels of a tile; tiles are counted along rows.
 pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {

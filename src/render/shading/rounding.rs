@@ -7,13 +7,12 @@
 //! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC
 //! 1973, of order 8.
 
+use super::colors::Colors;
+use super::fragments::Fragments;
+use super::quantize::SurfaceColor;
 use crate::accuracy::Rounding;
 use crate::render::lights::{Batch, load};
-use crate::render::shading::colors::Colors;
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::quantize::SurfaceColor;
-use crate::render::simd::BATCH;
-use crate::render::simd::{Kernel, Lanes, Number, Vec3};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Vec3};
 
 /// The threshold that is added to 255 c at a pixel before it is truncated.
 fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {

@@ -6,12 +6,18 @@
 //! the block, and no barycentric coordinates are computed.
 
 use super::barycentric_variants::locate_by_variant;
+use super::barycentrics::Barycentrics;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
+use super::fragments::Fragments;
+use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
 use super::interpolate::{Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
+use super::quantize::{Quantize, SurfaceColor};
+use super::rounding::{QuantizeWithThresholds, thresholds};
+use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
 use crate::render::frame::draw::{Back, Pipeline, Shaded, Stage};
@@ -20,12 +26,6 @@ use crate::render::plan::tile::TilePlan;
 use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::render::shading::barycentrics::Barycentrics;
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::full_blocks::Canvas;
-use crate::render::shading::quantize::{Quantize, SurfaceColor};
-use crate::render::shading::rounding::{QuantizeWithThresholds, thresholds};
-use crate::render::shading::triangle_attributes::TriangleAttributes;
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
 

@@ -9,13 +9,13 @@ use fearless_simd::{
 };
 use glam::DVec3;
 
+use super::fragments::Fragments;
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::raster::vertices::fetch_vertices;
 use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
 use crate::render::screen::coverage::{SUBPIXELS, Snapped, doubled_area};
-use crate::render::shading::fragments::Fragments;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
 use crate::scene::{DrawOrder, Normals};

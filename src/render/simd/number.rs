@@ -70,7 +70,9 @@ impl Number for f32 {
         match variant {
             None => Self::run(level, kernel),
             Some(variant) => {
-                dispatch!(level, simd => kernel.run(VariantLanes { lanes: Sixteen(simd), variant }));
+                dispatch!(level, simd => {
+                    kernel.run(VariantLanes { lanes: Sixteen(simd), variant });
+                });
             }
         }
     }

@@ -8,9 +8,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use fearless_simd::{Simd, SimdBase as _, f32x16};
 
 use super::power::Power;
-use super::power_variants;
 use super::real::Real;
-use super::reciprocal_root;
+use super::{power_variants, reciprocal_root};
 use crate::accuracy::Normalising;
 
 /// Numbers that can compute roots and powers by a variant.

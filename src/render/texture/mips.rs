@@ -7,11 +7,11 @@
 //! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer distance as in the specification of
 //! OpenGL 4.6, 8.14.1.
 
+use super::sample::sample;
 use crate::accuracy::Filter;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::render::simd::Number;
-use crate::render::texture::sample::sample;
 use crate::scene::Texture;
 
 /// A texture at its own size, at half of that, and so on down to one texel.
