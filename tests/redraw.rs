@@ -28,7 +28,7 @@ use marraztu::edit::{
     Gesture, GesturePhase, History, Refusal, items, motion, navigation, selection,
 };
 use marraztu::render::plan_frame;
-use marraztu::render::{Cause, Change, Changes, FramePlan, GivenUp, Hit, Renderer};
+use marraztu::render::{Cancelled, Change, Damage, DamageCause, FramePlan, Hit, Renderer};
 use marraztu::scene::{
     Command, Fill, Frame, ItemId, LightKind, MaterialChoice, MeshSource, Model, Normals, Object,
     ObjectId, Observer, Part, PolygonMode, PresetId, Projection, Scene, Sides, SourceCorner,
@@ -323,7 +323,7 @@ fn impatient(
     renderer: &mut Renderer,
     plan: &FramePlan,
     patience: usize,
-) -> Result<Changes, GivenUp> {
+) -> Result<Damage, Cancelled> {
     let asked = AtomicUsize::new(0);
     renderer.redraw(plan, &|| asked.fetch_add(1, Ordering::Relaxed) < patience)
 }
@@ -366,7 +366,7 @@ fn after_any_commands_a_partial_redraw_gives_the_same_bytes_as_a_full_one() {
             frames += 1;
             partial += usize::from((1..changes.tiles_in_all()).contains(&changes.tiles()));
             match changes.cause() {
-                Cause::Items(items) => {
+                DamageCause::Items(items) => {
                     for (_, change) in items {
                         *kinds.entry(format!("{change:?}")).or_default() += 1;
                     }
@@ -464,7 +464,7 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
     // and 1, rows 0 and 1, and as many at the bottom.
     assert_eq!((changes.tiles(), changes.tiles_in_all()), (8, 100));
     let moved = vec![(ItemId::Object(ObjectId(10)), Change::Moved)];
-    assert_eq!(*changes.cause(), Cause::Items(moved));
+    assert_eq!(*changes.cause(), DamageCause::Items(moved));
 }
 
 #[test]
@@ -477,7 +477,7 @@ fn an_invisible_change_paints_no_tile() {
     renderer.render(&plan(&scene));
     edit(&mut scene, ObjectId(10), |object| object.name = "another name".to_owned());
     let changes = renderer.redraw(&plan(&scene), &|| true).unwrap();
-    assert!(changes.is_nothing() && *changes.cause() == Cause::Items(Vec::new()));
+    assert!(changes.is_nothing() && *changes.cause() == DamageCause::Items(Vec::new()));
 }
 
 #[test]

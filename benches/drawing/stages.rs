@@ -5,12 +5,12 @@ use std::time::Duration;
 use criterion::Criterion;
 use marraztu::accuracy::{LightAt, Settings};
 use marraztu::lab::timing::time;
-use marraztu::render::Stages;
+use marraztu::render::Timings;
 
 use super::shapes;
 use super::stage::{FULL, Stage};
 
-type Row = (&'static str, fn(&Stages) -> Duration);
+type Row = (&'static str, fn(&Timings) -> Duration);
 
 const STAGES: [Row; 4] = [
     ("vertices", |stages| stages.vertices),
@@ -37,12 +37,12 @@ pub(crate) fn measure(criterion: &mut Criterion) {
             let light = if at_vertices { LightAt::Vertex } else { LightAt::Pixel };
             stage.settings = Settings { light, ..Settings::default() };
             group.bench_function(name, |bencher| {
-                bencher.iter_custom(|frames| stage.drawn(frames, |r| part(&r.stages())));
+                bencher.iter_custom(|frames| stage.drawn(frames, |r| part(&r.timings())));
             });
         }
         stage.view.fill = marraztu::scene::Fill::Edges;
         group.bench_function("lines", |bencher| {
-            bencher.iter_custom(|frames| stage.drawn(frames, |r| r.stages().lines));
+            bencher.iter_custom(|frames| stage.drawn(frames, |r| r.timings().lines));
         });
     }
 }

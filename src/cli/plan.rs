@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use marraztu::lab::cost::{self, Costs, Explained, Group};
-use marraztu::render::{Class, EffectUse, State};
+use marraztu::render::{Class, EffectState, EffectUse};
 
 use super::arguments::PictureArguments;
 use super::bar::Bar;
@@ -131,7 +131,7 @@ fn columns(rows: &[[String; 6]]) -> String {
 /// The cells of one effect on one item, as CSV and JSON have them.
 fn cells(one: &EffectUse, costs: Option<&Costs>) -> [(&'static str, Cell); 9] {
     let bound = match one.state {
-        State::LeftOut { class: Class::Bounded(steps), .. } => steps,
+        EffectState::LeftOut { class: Class::Bounded(steps), .. } => steps,
         _ => 0.0,
     };
     let cost = costs.and_then(|costs| costs.of(one.effect));

@@ -2,7 +2,8 @@
 //!
 //! A pixel with several samples counts for what most of them show.
 //!
-//! Counted afterwards, by looking once more at what is seen: so drawing counts nothing and pays nothing.
+//! The count is made afterwards from the visibility of each pixel, so drawing itself pays nothing
+//! for it.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +12,7 @@ use rayon::prelude::*;
 
 use crate::accuracy::LightAt;
 use crate::render::frame::FramePlan;
-use crate::render::frame::draw::Form;
-use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
 use crate::render::plan::tile::TilePlan;
 use crate::render::plan::uses::{Effect, EffectUse};
 use crate::render::raster::geometry::ScreenGeometry;
@@ -25,7 +25,7 @@ use crate::render::screen::tiles::tiles_of;
 use crate::render::shading::painter::bounds_of;
 use crate::scene::ItemId;
 
-/// The triangle that a word shows.
+/// The triangle that a sample of the visibility buffer shows.
 fn triangle(word: u64) -> Option<u32> {
     match seen(word) {
         Visible::Triangle(number) => Some(number),
@@ -33,7 +33,7 @@ fn triangle(word: u64) -> Option<u32> {
     }
 }
 
-/// Pixels by effect and thing, and what the worst of them may be off by.
+/// The pixels of each effect on each item, and the largest error of any of them.
 #[derive(Debug, Default)]
 struct Counts {
     pixels: BTreeMap<(Effect, ItemId), u64>,
@@ -95,7 +95,8 @@ impl FramePlan {
         let mut last = None;
         let rows = bounds.top..bounds.bottom;
         for (y, x) in rows.flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x))) {
-            // A surface that takes part in pixels of others counts for what it may be off by.
+            // A surface that shows in some samples only counts towards the error, but not as a
+            // pixel.
             let (samples, count) = visibility.samples(level, x, y);
             for number in samples[1..count].iter().filter_map(|word| triangle(*word)) {
                 let (draw, start) = frame.draw_of(number);
@@ -147,7 +148,8 @@ impl FramePlan {
         front == own.mirrored
     }
 
-    /// Drawn normals of faces and of vertices are not told apart: each is given both.
+    /// Counts a pixel of a line. Normals of faces and of vertices are not distinguished: it counts
+    /// for both.
     fn count_line(&self, frame: &ScreenGeometry, line: LineNumber, counts: &mut Counts) {
         let Some((draw, _)) = frame.line_seen(self, line) else { return };
         let draw = &self.draws[draw as usize];
@@ -178,11 +180,11 @@ impl FramePlan {
         };
         let mirrors = stages.iter().any(|stage| stage.highlight != Form::Plain);
         for stage in stages {
-            counts.add(Effect::Light(self.lights[stage.lamp as usize]), item, pixels);
+            counts.add(Effect::Light(self.light_ids[stage.light as usize]), item, pixels);
         }
         let features = [
             (Effect::Highlights, mirrors),
-            (Effect::Normals, self.light_at == LightAt::Pixel && light.places),
+            (Effect::Normals, self.light_at == LightAt::Pixel && light.needs_positions),
             (Effect::Texture, shaded.texture.is_some()),
             (Effect::AlphaTest, shaded.cutout.is_some()),
             (Effect::VertexColors, shaded.vertex_colors),

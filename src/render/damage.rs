@@ -1,8 +1,9 @@
-//! What of a picture another plan changes, and so which tiles have to be painted again.
+//! Finds which tiles of a picture another plan damages, and so which have to be painted again.
 //!
-//! Plans alone are compared, no pixel is touched. A tile shows what it showed as long as everything
-//! that reaches into it is drawn as it was: so the tiles to paint are those in the old and in the new
-//! reach of every draw that changed. A reach is a box of pixels, at times too large, never too small.
+//! Only plans are compared; no pixel is touched. A tile stays valid as long as everything that
+//! reaches into it is drawn as before, so the damaged tiles are those in the old and in the new
+//! bounds of every draw that changed. Bounds are boxes of pixels: sometimes too large, never too
+//! small.
 //!
 //! Numbers are compared by their bits. 0 and -0 are equal, but one divided by them is not.
 
@@ -18,56 +19,56 @@ use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::{TILE, tiles_of};
 use crate::scene::ItemId;
 
-/// What is painted again, and why.
+/// The tiles that are painted again, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Changes {
+pub struct Damage {
     pub(crate) tiles: Tiles,
-    /// Whether the triangles and lines on the screen are others, or are numbered otherwise.
+    /// Whether the triangles and lines on the screen changed, or their numbers did.
     pub(crate) geometry: bool,
-    cause: Cause,
+    cause: DamageCause,
 }
 
 /// Why tiles are painted.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Cause {
-    /// There is no finished picture to begin with.
+pub enum DamageCause {
+    /// There is no finished picture yet.
     First,
     /// The picture has another size.
     Size,
-    /// Nothing is where it was on the screen: another camera, lens or projection.
+    /// Everything moved on the screen: another camera, lens or projection.
     Camera,
     /// The background has another colour.
     Background,
-    /// How exactly pictures are drawn.
+    /// The settings of accuracy changed.
     Settings,
-    /// What is drawn comes in another order, which decides between equal depths.
+    /// The order of draws changed, which decides between equal depths.
     Order,
-    /// These are drawn otherwise than before; none where the picture stays.
+    /// These items changed; the list is empty if the picture stays as it is.
     Items(Vec<(ItemId, Change)>),
 }
 
-/// How something is drawn otherwise than before.
+/// How the drawing of an item changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// It was not drawn before.
     Came,
     /// It is no longer drawn.
     Went,
-    /// It is elsewhere.
+    /// It moved.
     Moved,
-    /// More, less or other polygons and lines of it are drawn.
+    /// Other polygons or lines of it are drawn.
     Shape,
-    /// Its colours, its texture or the light on it are others.
+    /// Its colours, its texture or the light on it changed.
     Look,
 }
 
-impl Changes {
-    /// Everything.
-    pub(crate) fn all(cause: Cause, size: Size) -> Self {
+impl Damage {
+    /// Damages every tile.
+    pub(crate) fn all(cause: DamageCause, size: Size) -> Self {
         Self { tiles: Tiles::all(size), geometry: true, cause }
     }
 
-    /// What changes from one plan to another.
+    /// Compares two plans.
     pub(crate) fn between(before: &FramePlan, after: &FramePlan) -> Self {
         if let Some(cause) = whole(before, after) {
             return Self::all(cause, after.size);
@@ -89,7 +90,7 @@ impl Changes {
                 continue;
             };
             if at < next {
-                return Self::all(Cause::Order, after.size);
+                return Self::all(DamageCause::Order, after.size);
             }
             next = at + 1;
             let earlier = &before.draws[at];
@@ -104,7 +105,7 @@ impl Changes {
             tiles.add(reach(&before.draws[at], before));
             geometry = true;
         }
-        Self { tiles, geometry, cause: Cause::Items(items) }
+        Self { tiles, geometry, cause: DamageCause::Items(items) }
     }
 
     /// How many tiles of 64 x 64 pixels are painted.
@@ -125,16 +126,16 @@ impl Changes {
         self.tiles() == 0
     }
 
-    /// Why.
+    /// The reason.
     #[must_use]
-    pub const fn cause(&self) -> &Cause {
+    pub const fn cause(&self) -> &DamageCause {
         &self.cause
     }
 }
 
-/// Why everything has to be painted, where it has to.
-fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
-    // What is not here is compared draw by draw, or shows nowhere.
+/// The reason why everything has to be painted, if there is one.
+fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
+    // The other fields are compared draw by draw, or do not show in the picture.
     let FramePlan {
         size,
         background,
@@ -149,12 +150,12 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         view_from_world,
         clip_from_view,
         line_width,
-        lamps: _,
+        lights: _,
         draws: _,
         pipelines: _,
         leave_out,
         rules,
-        lights: _,
+        light_ids: _,
     } = after;
     let moved = *eye != before.eye
         || !same_bits(view_from_world, &before.view_from_world)
@@ -169,10 +170,10 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
         || *leave_out != before.leave_out
         || *rules != before.rules;
     match () {
-        () if *size != before.size => Some(Cause::Size),
-        () if moved => Some(Cause::Camera),
-        () if settings => Some(Cause::Settings),
-        () if *background != before.background => Some(Cause::Background),
+        () if *size != before.size => Some(DamageCause::Size),
+        () if moved => Some(DamageCause::Camera),
+        () if settings => Some(DamageCause::Settings),
+        () if *background != before.background => Some(DamageCause::Background),
         () => None,
     }
 }
@@ -181,7 +182,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<Cause> {
 struct Compared<'a> {
     before: &'a FramePlan,
     after: &'a FramePlan,
-    /// Which pairs of pipelines were found alike: parts share pipelines.
+    /// Results of comparing pairs of pipelines, which parts share.
     pipelines: BTreeMap<(u32, u32), bool>,
 }
 
@@ -225,7 +226,7 @@ impl Compared<'_> {
         }
     }
 
-    /// Whether other parts are drawn, or are drawn with holes.
+    /// Whether other parts are drawn, or the alpha test of a part changed.
     fn kinds(&self, after: &[Option<u32>], before: &[Option<u32>]) -> bool {
         let kinds = |plan: &FramePlan, parts: &[Option<u32>]| -> Vec<Option<bool>> {
             let cutout = |pipeline: u32| plan.pipelines[pipeline as usize].is_cutout();
@@ -261,9 +262,9 @@ impl Compared<'_> {
 
     fn alike_surfaces(&self, before: &Shaded, after: &Shaded) -> bool {
         let Shaded {
-            matter,
+            material,
             light,
-            places: _,
+            needs_positions: _,
             tiled,
             dropped,
             cut_off: _,
@@ -283,9 +284,9 @@ impl Compared<'_> {
                     && after.iter().zip(before).all(|(after, before)| {
                         after.effect.name == before.effect.name
                             && after.highlight == before.highlight
-                            && alike_lamps(
-                                &self.after.lamps[after.lamp as usize],
-                                &self.before.lamps[before.lamp as usize],
+                            && alike_lights(
+                                &self.after.lights[after.light as usize],
+                                &self.before.lights[before.light as usize],
                             )
                     })
             }
@@ -295,7 +296,7 @@ impl Compared<'_> {
         textures
             && stages
             && (*tiled, dropped.to_bits()) == (before.tiled, before.dropped.to_bits())
-            && alike_matter(matter, &before.matter)
+            && alike_material(material, &before.material)
             && *vertex_colors == before.vertex_colors
             && alike(tint, &before.tint)
             && alike(cutout.as_slice(), before.cutout.as_slice())
@@ -315,7 +316,7 @@ fn alike_lines(a: &Lines, b: &Lines) -> bool {
         && alike(vertex_normals.as_slice(), b.vertex_normals.as_slice())
 }
 
-fn alike_lamps(a: &ViewLight, b: &ViewLight) -> bool {
+fn alike_lights(a: &ViewLight, b: &ViewLight) -> bool {
     let ViewLight { color, position, direction, attenuation, cos_half_aperture, exponent } = a;
     alike(color, &b.color)
         && alike(position, &b.position)
@@ -324,7 +325,7 @@ fn alike_lamps(a: &ViewLight, b: &ViewLight) -> bool {
         && alike(&[*cos_half_aperture, *exponent], &[b.cos_half_aperture, b.exponent])
 }
 
-fn alike_matter(a: &PhongMaterial, b: &PhongMaterial) -> bool {
+fn alike_material(a: &PhongMaterial, b: &PhongMaterial) -> bool {
     let PhongMaterial { ambient, diffuse, specular, exponent, floor, least_cosine } = a;
     alike(ambient, &b.ambient)
         && alike(diffuse, &b.diffuse)
@@ -332,10 +333,10 @@ fn alike_matter(a: &PhongMaterial, b: &PhongMaterial) -> bool {
         && alike(&[*exponent, *floor, *least_cosine], &[b.exponent, b.floor, b.least_cosine])
 }
 
-/// The pixels that a draw may take.
+/// The pixels that a draw may cover.
 ///
-/// The projection of what lies before the near plane is within the projection of any box about it. Where
-/// the box reaches to the near plane, and where normals stand out of it, that is the whole picture.
+/// The projection of what lies before the near plane is within the projection of any box about it.
+/// If the box reaches the near plane, or normals stick out of it, the bounds are the whole picture.
 #[expect(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,
@@ -363,14 +364,14 @@ fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
             (low[axis], high[axis]) = (low[axis].min(at[axis]), high[axis].max(at[axis]));
         }
     }
-    // A pixel for rounding and snapping, and what a line is wider than the edge that it is drawn along.
+    // One pixel for rounding and snapping, plus the width of lines.
     let margin = f64::from(1 + plan.line_width);
     let [left, top] = low.map(|at| (at - margin).floor().clamp(-1e6, 1e6) as i32);
     let [right, bottom] = high.map(|at| (at + margin).ceil().clamp(-1e6, 1e6) as i32);
     PixelBox { left, top, right, bottom }.intersection(all)
 }
 
-/// Some of the tiles of a picture, along rows.
+/// A set of tiles of a picture, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tiles {
     columns: i32,
@@ -390,7 +391,7 @@ impl Tiles {
         tiles
     }
 
-    /// Adds the tiles that pixels of the picture lie in.
+    /// Adds the tiles that a box of pixels touches.
     fn add(&mut self, pixels: PixelBox) {
         if pixels.is_empty() {
             return;
@@ -407,7 +408,7 @@ impl Tiles {
         self.painted.iter().filter(|painted| **painted).count()
     }
 
-    /// Whether a tile is among them.
+    /// Whether a tile is in the set.
     pub(crate) fn contains(&self, tile: usize) -> bool {
         self.painted[tile]
     }

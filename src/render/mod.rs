@@ -13,10 +13,11 @@
 //! * [`screen`]: clipping, snapping, coverage, sample positions and tiles.
 //! * [`plan`]: decides what a frame draws before any pixel is touched, and says why.
 //! * `reference`: the fill algorithm of ancestor A, as a whole.
-//! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there to
-//!   the visibility buffer.
+//! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there
+//!   to the visibility buffer.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
-//! * `renderer`, `damage`, `count`, `unseen`: draw plans, and answer questions about what was drawn.
+//! * `renderer`, `damage`, `count`, `unseen`: draw plans, and answer questions about what was
+//!   drawn.
 
 mod count;
 mod damage;
@@ -33,9 +34,9 @@ mod texture;
 mod timings;
 mod unseen;
 
-pub use damage::{Cause, Change, Changes};
+pub use damage::{Change, Damage, DamageCause};
 pub use frame::FramePlan;
-pub use plan::{Class, Effect, EffectUse, State, explain_frame, plan_everything, plan_frame};
-pub use renderer::{GivenUp, Hit, Renderer};
-pub use timings::Stages;
+pub use plan::{Class, Effect, EffectState, EffectUse, explain_frame, plan_everything, plan_frame};
+pub use renderer::{Cancelled, Hit, Renderer};
+pub use timings::Timings;
 pub use unseen::{Unseen, unseen};

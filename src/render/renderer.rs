@@ -1,8 +1,8 @@
-//! Runs plans: does, and asks no setting.
+//! Draws plans into a picture.
 //!
-//! A picture is drawn as a whole, or what has changed of the last one is drawn again, to the same
-//! bytes. What is picked is asked of the last picture that was finished, also after a frame that was
-//! given up.
+//! A picture is drawn as a whole, or only the damaged tiles of the last one are drawn again, to the
+//! same bytes. Picking reads the last finished picture, even after a frame was cancelled. No
+//! setting is read here: the plan holds every decision.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -18,51 +18,50 @@ use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
 use crate::base::work_stealing::{own, together};
-use crate::render::damage::{Cause, Changes};
+use crate::render::damage::{Damage, DamageCause};
 use crate::render::frame::{FramePlan, Rules};
 use crate::render::plan::uses::EffectUse;
-use crate::render::raster::depth_format;
 use crate::render::raster::geometry::ScreenGeometry;
 use crate::render::raster::tile::Visibility;
-use crate::render::raster::visibility_buffer;
 use crate::render::raster::visibility_buffer::Visible;
+use crate::render::raster::{depth_format, visibility_buffer};
 use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::render::screen::tiles::{TILE, TILE_SIDE, tiles_of};
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
-use crate::render::timings::{Laps, Stages};
+use crate::render::timings::{Laps, Timings};
 use crate::scene::ItemId;
 
-/// Draws pictures, and keeps the memory that this takes from one to the next.
+/// Draws pictures, and keeps their memory from one frame to the next.
 #[derive(Debug)]
 pub struct Renderer {
     level: Level,
     picture: Picture,
     frame: ScreenGeometry,
-    /// For each tile of the picture the colour that fills it as a whole, where one is known to.
+    /// For each tile the colour that fills all of it, if one is known to.
     filled: Vec<Option<Color>>,
-    rooms: Rooms,
-    /// The plan of the last picture that was finished.
+    caches: ShadingCaches,
+    /// The plan of the last finished picture.
     plan: Option<FramePlan>,
-    /// Whether the picture is that one still: nothing has been painted over it.
+    /// Whether the picture is still that one: nothing has been painted over it.
     finished: bool,
-    /// Whether the frame holds what is on that picture.
+    /// Whether the screen geometry is that of the last finished picture.
     built: bool,
-    stages: Stages,
+    timings: Timings,
 }
 
-/// A frame was given up before it was finished: something else was wanted.
+/// The frame was cancelled by a newer request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GivenUp;
+pub struct Cancelled;
 
-/// What is seen at a pixel.
+/// The polygon that a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The object, the camera whose mark it is, or the bulb's light.
     pub item: ItemId,
     /// The polygon of its mesh.
     pub polygon: u32,
-    /// The depth in the picture: 1 at the near plane, 0 at the far one.
+    /// The depth: 1 at the near plane, 0 at the far one.
     pub depth: f32,
 }
 
@@ -73,7 +72,7 @@ impl Default for Renderer {
 }
 
 impl Renderer {
-    /// A renderer that uses instructions of this level. The pictures are the same on every level.
+    /// Makes a renderer for a SIMD level. Pictures are the same on every level.
     #[must_use]
     pub fn new(level: Level) -> Self {
         Self {
@@ -81,21 +80,22 @@ impl Renderer {
             picture: Picture::default(),
             frame: ScreenGeometry::default(),
             filled: Vec::new(),
-            rooms: Rooms::default(),
+            caches: ShadingCaches::default(),
             plan: None,
             finished: false,
             built: false,
-            stages: Stages::default(),
+            timings: Timings::default(),
         }
     }
 
-    /// Draws all that is planned, whatever was drawn before.
+    /// Draws a plan from scratch, whatever was drawn before.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
         self.render_watched(plan, &|_, _| {})
     }
 
-    /// Draws all that is planned, and tells between tiles how many of how many are painted: with
-    /// several samples a pixel each tile is painted in several passes, and counts in each.
+    /// Draws a plan from scratch and reports progress between tiles: the number of painted tiles,
+    /// and of all. With several samples per pixel, each tile is painted in several passes and
+    /// counts in each.
     pub fn render_watched(
         &mut self,
         plan: &FramePlan,
@@ -108,17 +108,17 @@ impl Renderer {
         &self.picture
     }
 
-    /// Draws again what another plan changes of the last picture, and says what that was. The picture
-    /// is the one that [`Self::render`] draws.
+    /// Draws again what another plan changes of the last picture, and returns the damage. The
+    /// picture is the one that [`Self::render`] draws.
     ///
     /// # Errors
-    /// Where `wanted`, which every thread asks between tiles, says no: then the picture is of no
-    /// meaning until the next one is finished.
+    /// [`Cancelled`] if `wanted`, which every thread calls between tiles, returns false. The
+    /// picture is then undefined until the next one is finished.
     pub fn redraw(
         &mut self,
         plan: &FramePlan,
         wanted: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Changes, GivenUp> {
+    ) -> Result<Damage, Cancelled> {
         self.redraw_by(plan, &Cancellation::new(wanted))
     }
 
@@ -126,28 +126,28 @@ impl Renderer {
         &mut self,
         plan: &FramePlan,
         watch: &Cancellation<'_>,
-    ) -> Result<Changes, GivenUp> {
-        let changes = self.changes(plan);
-        self.built &= !changes.geometry;
-        if plan.rules == Rules::Ignored || !changes.is_nothing() {
+    ) -> Result<Damage, Cancelled> {
+        let damage = self.damage(plan);
+        self.built &= !damage.geometry;
+        if plan.rules == Rules::Ignored || !damage.is_nothing() {
             self.resize(plan.size);
             self.finished = false;
-            // From one of the threads that draw, so that the caller sleeps and wakes once a frame.
+            // Runs on a drawing thread, so that the caller sleeps and wakes once per frame.
             rayon::scope(|_| {
                 plan.prepare();
-                self.draw_changes(plan, &changes, watch);
+                self.draw_damage(plan, &damage, watch);
             });
             if watch.is_given_up() {
-                return Err(GivenUp);
+                return Err(Cancelled);
             }
-            // What each sample sees was brought onto the screen by itself.
+            // If each sample was drawn by itself, the geometry is that of the last sample.
             (self.finished, self.built) = (true, !plan.lit_by_sample);
         }
         self.plan = Some(plan.clone());
-        Ok(changes)
+        Ok(damage)
     }
 
-    /// Makes the picture as large as it has to be.
+    /// Resizes the picture if its size changed.
     fn resize(&mut self, size: Size) {
         if self.picture.size() != size {
             self.picture.resize(size);
@@ -157,40 +157,39 @@ impl Renderer {
         }
     }
 
-    fn draw_changes(&mut self, plan: &FramePlan, changes: &Changes, watch: &Cancellation<'_>) {
-        self.stages = Stages::default();
+    fn draw_damage(&mut self, plan: &FramePlan, damage: &Damage, watch: &Cancellation<'_>) {
+        self.timings = Timings::default();
         let passes = passes(plan.samples);
         let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
-        watch.expect_tiles(pictures * changes.tiles());
+        watch.expect_tiles(pictures * damage.tiles());
         let mut sums = Vec::new();
         if passes.len() > 1 || plan.lit_by_sample {
-            // Whenever this is given up, the frame holds what is on none of the finished pictures.
+            // If this is cancelled, the geometry belongs to no finished picture.
             self.built = false;
             let [columns, rows] = tiles_of(plan.size);
             let tiles = usize::try_from(columns * rows).expect("not negative");
             sums.resize_with(tiles, TileSums::default);
         }
         if plan.lit_by_sample {
-            return self.draw_each_sample(plan, changes, &sums, watch);
+            return self.draw_each_sample(plan, damage, &sums, watch);
         }
-        // The first pass comes last, so that its frame is what is asked of what is seen.
-        for (i, places) in passes.iter().enumerate().rev() {
+        // The first pass comes last, so that picking reads its geometry.
+        for (i, sample_positions) in passes.iter().enumerate().rev() {
             if !self.built {
-                self.stages += self.frame.build(self.level, plan, *places, watch);
+                self.timings += self.frame.build(self.level, plan, *sample_positions, watch);
             }
             if watch.is_given_up() {
                 return;
             }
-            self.draw_pass(plan, changes, &Pass { sums: &sums, is_last: i == 0 }, watch);
+            self.draw_pass(plan, damage, &Pass { sums: &sums, is_last: i == 0 }, watch);
         }
     }
 
-    /// Draws a picture for each sample, as if it were the middle of its pixel, and gives the means of them
-    /// all.
+    /// Draws a picture for each sample, as if it were the centre of its pixel, and averages them.
     fn draw_each_sample(
         &mut self,
         plan: &FramePlan,
-        changes: &Changes,
+        damage: &Damage,
         sums: &[TileSums],
         watch: &Cancellation<'_>,
     ) {
@@ -198,42 +197,41 @@ impl Renderer {
         let last = shifts.len() - 1;
         for (i, shift) in shifts.enumerate() {
             let own = plan.seen_from(shift);
-            self.stages += self.frame.build(self.level, &own, SamplePositions::default(), watch);
+            self.timings += self.frame.build(self.level, &own, SamplePositions::default(), watch);
             if watch.is_given_up() {
                 return;
             }
-            self.draw_pass(&own, changes, &Pass { sums, is_last: i == last }, watch);
+            self.draw_pass(&own, damage, &Pass { sums, is_last: i == last }, watch);
         }
     }
 
     fn draw_pass(
         &mut self,
         plan: &FramePlan,
-        changes: &Changes,
+        damage: &Damage,
         pass: &Pass<'_>,
         watch: &Cancellation<'_>,
     ) {
         match plan.arithmetic {
-            Arithmetic::F32 => self.draw::<f32>(plan, changes, pass, watch),
-            Arithmetic::F64 => self.draw::<f64>(plan, changes, pass, watch),
+            Arithmetic::F32 => self.draw::<f32>(plan, damage, pass, watch),
+            Arithmetic::F64 => self.draw::<f64>(plan, damage, pass, watch),
         }
     }
 
-    /// What [`Self::redraw`] would draw again.
+    /// The damage that [`Self::redraw`] would repair.
     #[must_use]
-    pub fn changes(&self, plan: &FramePlan) -> Changes {
+    pub fn damage(&self, plan: &FramePlan) -> Damage {
         match &self.plan {
-            Some(before) if self.finished => Changes::between(before, plan),
-            _ => Changes::all(Cause::First, plan.size),
+            Some(before) if self.finished => Damage::between(before, plan),
+            _ => Damage::all(DamageCause::First, plan.size),
         }
     }
 
-    /// Brings what the last finished picture shows onto the screen again, where something else was
-    /// begun since.
+    /// Builds the geometry of the last finished picture again, if another frame was begun since.
     fn build_again(&mut self) {
         if let (false, Some(plan)) = (self.built, &self.plan) {
-            let places = passes(plan.samples)[0];
-            self.frame.build(self.level, plan, places, &Cancellation::new(&|| true));
+            let sample_positions = passes(plan.samples)[0];
+            self.frame.build(self.level, plan, sample_positions, &Cancellation::new(&|| true));
             self.built = true;
         }
     }
@@ -244,20 +242,20 @@ impl Renderer {
         &self.picture
     }
 
-    /// Where the time of the last picture went.
+    /// The time that each stage of the last picture took.
     #[must_use]
-    pub const fn stages(&self) -> Stages {
-        self.stages
+    pub const fn timings(&self) -> Timings {
+        self.timings
     }
 
-    /// How many triangles the last picture was made of.
+    /// The number of triangles of the last picture.
     #[must_use]
     pub fn triangles_drawn(&self) -> usize {
         self.frame.triangles()
     }
 
-    /// What the last picture shows in column `x` of row `y`; `None` for the background. Of a pixel with
-    /// several samples the four nearest to its middle are asked: it is what most of them show.
+    /// What the last picture shows in column `x` of row `y`; `None` for the background. If the
+    /// pixel has several samples, it is what most of the four nearest to its centre show.
     #[must_use]
     pub fn hit(&mut self, x: usize, y: usize) -> Option<Hit> {
         self.build_again();
@@ -277,7 +275,8 @@ impl Renderer {
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
-    /// Where the last picture shows an item: a flag for each pixel, row by row from the top.
+    /// Marks the pixels at which the last picture shows an item: a flag for each pixel, row by row
+    /// from the top.
     #[must_use]
     pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
         let mut pixels = vec![false; self.seen_size().area()];
@@ -290,8 +289,8 @@ impl Renderer {
         pixels
     }
 
-    /// The item that the last picture shows at each pixel, row by row from the top; nothing if all of
-    /// these items are seen.
+    /// The item that the last picture shows at each pixel, row by row from the top; nothing if all
+    /// of these items are seen.
     pub(super) fn items_unless_all_seen(
         &mut self,
         mut items: BTreeSet<ItemId>,
@@ -310,15 +309,16 @@ impl Renderer {
         (!items.is_empty()).then_some(pixels)
     }
 
-    /// Says of each effect of the last picture how many pixels it takes part in, and gives by how many
-    /// steps of a byte a channel of theirs may be off. Takes about as long as finding what is seen.
+    /// Counts the pixels that each effect of the last picture takes part in, and returns the
+    /// largest error of a channel in steps of a byte. Takes about as long as rasterizing the
+    /// picture.
     pub fn count(&mut self, uses: &mut [EffectUse]) -> f64 {
         self.build_again();
         self.plan.as_ref().map_or(0.0, |plan| plan.count(self.level, &self.frame, uses))
     }
 
-    /// Which primitive each pixel of the last picture shows, row by row from the top: 0 for the
-    /// background, else a number that is another for every triangle and line of one scene.
+    /// The primitive that each pixel of the last picture shows, row by row from the top: 0 for the
+    /// background, else a number that is unique to each triangle and line of the scene.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -333,13 +333,13 @@ impl Renderer {
         pixels
     }
 
-    /// The size of the last picture that was finished; 0 x 0 before the first.
+    /// The size of the last finished picture; 0 x 0 before the first.
     fn seen_size(&self) -> Size {
         self.plan.as_ref().map_or(Size::new(0, 0), |plan| plan.size)
     }
 
-    /// Calls `each` with the place and the word of each pixel of the last picture, tile by tile, until
-    /// it breaks off.
+    /// Calls `each` with the index and the visibility of each pixel of the last picture, tile by
+    /// tile, until it breaks.
     fn look(&mut self, mut each: impl FnMut(&Self, &FramePlan, usize, u64) -> ControlFlow<()>) {
         self.build_again();
         let Some(plan) = &self.plan else { return };
@@ -360,7 +360,7 @@ impl Renderer {
         }
     }
 
-    /// The draw and the polygon that a word of the visibility stands for.
+    /// The draw and the polygon that a sample of the visibility buffer names.
     fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
         match visibility_buffer::seen(word) {
             Visible::Background => None,
@@ -373,20 +373,20 @@ impl Renderer {
         }
     }
 
-    /// Draws tiles, each thread its own.
+    /// Draws tiles in parallel: each thread has its own painter.
     fn draw<T: Painted>(
         &mut self,
         plan: &FramePlan,
-        changes: &Changes,
+        damage: &Damage,
         pass: &Pass<'_>,
         watch: &Cancellation<'_>,
     ) {
         let mut laps = Laps::start();
-        let Room { shines, lit, painters } = T::room(&mut self.rooms);
-        shines.prepare(plan);
+        let ShadingCache { terms, lit, painters } = T::cache(&mut self.caches);
+        terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let context = ShadingContext { level, plan, frame, lit, shines };
+        let context = ShadingContext { level, plan, frame, lit, terms };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self
@@ -406,7 +406,7 @@ impl Renderer {
             loop {
                 let Some(tile) = shares.next().filter(|_| watch.goes_on()) else { return };
                 let row = tile / columns;
-                if changes.tiles.contains(tile) {
+                if damage.tiles.contains(tile) {
                     match pass.sums.get(tile) {
                         None => painter.paint(&context, tile, &bands[row]),
                         Some(sums) => painter.add(&context, tile, sums),
@@ -418,46 +418,46 @@ impl Renderer {
                 }
             }
         });
-        self.stages.tiles += laps.lap();
+        self.timings.tiles += laps.lap();
     }
 }
 
-/// One of the passes that a picture is made of.
+/// One of the passes over a picture.
 #[derive(Debug)]
 struct Pass<'a> {
-    /// For each tile the colours of earlier passes, block by block; none where there is one pass.
+    /// For each tile the colours of earlier passes, block by block; empty if there is one pass.
     sums: &'a [TileSums],
     is_last: bool,
 }
 
-/// What is kept from frame to frame for one kind of numbers.
+/// What shading keeps from frame to frame, for one arithmetic.
 #[derive(Debug, Default)]
-struct Room<T> {
-    shines: LightTerms<T>,
+struct ShadingCache<T> {
+    terms: LightTerms<T>,
     lit: Lit<T>,
     /// One for each thread.
     painters: Vec<Painter<T>>,
 }
 
 #[derive(Debug, Default)]
-struct Rooms {
-    fast: Room<f32>,
-    exact: Room<f64>,
+struct ShadingCaches {
+    fast: ShadingCache<f32>,
+    exact: ShadingCache<f64>,
 }
 
 /// Numbers that pictures are painted in.
 trait Painted: ShadingNumber {
-    fn room(rooms: &mut Rooms) -> &mut Room<Self>;
+    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self>;
 }
 
 impl Painted for f32 {
-    fn room(rooms: &mut Rooms) -> &mut Room<Self> {
-        &mut rooms.fast
+    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self> {
+        &mut caches.fast
     }
 }
 
 impl Painted for f64 {
-    fn room(rooms: &mut Rooms) -> &mut Room<Self> {
-        &mut rooms.exact
+    fn cache(caches: &mut ShadingCaches) -> &mut ShadingCache<Self> {
+        &mut caches.exact
     }
 }

@@ -1,21 +1,21 @@
-//! Where the time of a frame went.
+//! The time that each stage of a frame takes.
 
 use std::time::{Duration, Instant};
 
-/// How long each stage of a frame took, from beginning to end, on all threads together.
+/// How long each stage of a frame took on the wall clock, over all threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stages {
+pub struct Timings {
     /// Vertices to the screen.
     pub vertices: Duration,
-    /// Triangles to the tiles, the small ones to pixels.
+    /// Setup of triangles: binning, and rasterizing the small ones.
     pub set_up: Duration,
-    /// Lines to the tiles, the short ones to pixels.
+    /// Setup of lines: binning, and rasterizing the short ones.
     pub lines: Duration,
-    /// What is seen in each tile, its light and its colours in the picture.
+    /// Visibility, shading and storing of each tile.
     pub tiles: Duration,
 }
 
-impl std::ops::AddAssign for Stages {
+impl std::ops::AddAssign for Timings {
     fn add_assign(&mut self, other: Self) {
         let Self { vertices, set_up, lines, tiles } = other;
         self.vertices += vertices;
@@ -25,7 +25,7 @@ impl std::ops::AddAssign for Stages {
     }
 }
 
-/// Measures one stage after the other.
+/// Measures consecutive stages.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Laps(Instant);
 

@@ -1,15 +1,15 @@
-//! Why a picture shows nothing of an object.
+//! Finds why a picture shows nothing of an object.
 //!
-//! Found by elimination: the object is drawn alone, then alone from both sides, then alone and opaque.
-//! The first picture that shows it names what hid it before. The picture itself costs nothing more;
-//! only objects that are not seen are drawn again.
+//! The reason is found by elimination: the object is drawn alone, then alone from both sides, then
+//! alone and opaque. The first picture that shows it names what hid it before. Only objects that
+//! are not seen are drawn again; the picture itself costs nothing more.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use super::frame::draw::Draw;
-use super::plan::{Effect, State, explain_frame, plan_frame};
+use super::plan::{Effect, EffectState, explain_frame, plan_frame};
 use super::renderer::Renderer;
 use crate::accuracy::{LightAt, Settings, Shot};
 use crate::base::image::Size;
@@ -20,7 +20,7 @@ use crate::scene::{
 /// Why nothing of an object is seen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unseen {
-    /// It is not drawn, for a reason that the plan names.
+    /// It is not drawn, for the plan's reason.
     LeftOut(Cow<'static, str>),
     /// Its faces are turned away, and only their fronts are drawn.
     TurnedAway {
@@ -32,15 +32,16 @@ pub enum Unseen {
         /// The one that covers the most of it.
         by: ItemId,
     },
-    /// Its material or its texture has holes wherever it could be seen.
+    /// It fails the alpha test wherever it could be seen.
     Transparent,
-    /// No centre of a pixel lies on it: it is too small, or seen edge-on.
+    /// It covers no pixel's centre: it is too small, or seen edge-on.
     BetweenPixels,
-    /// It is in the view, but many other objects are not seen either, and its reason was not looked for.
+    /// It is in the view, but its reason was not examined, since many other objects are not seen
+    /// either.
     Unexamined,
 }
 
-/// Objects whose reasons are looked for in pictures of their own: each takes up to three.
+/// The number of objects that are examined; each takes up to three pictures.
 const EXAMINED: usize = 16;
 
 impl fmt::Display for Unseen {
@@ -57,8 +58,8 @@ impl fmt::Display for Unseen {
     }
 }
 
-/// The objects that should be seen in the picture that the renderer drew last, but are not. The picture
-/// is the one of these values.
+/// Lists the objects that should be seen in the last picture of the renderer, but are not. `shot`
+/// has to be that picture's.
 ///
 /// Objects that the user hid, as a whole or part by part, are left out of the list.
 #[must_use]
@@ -86,7 +87,7 @@ pub fn unseen(renderer: &mut Renderer, shot: &Shot) -> Vec<(ObjectId, Unseen)> {
     objects.enumerate().map(reason).collect()
 }
 
-/// Why the plan draws nothing of some things.
+/// The plan's reasons for the items that it does not draw.
 fn left_out(shot: &Shot) -> BTreeMap<ItemId, Cow<'static, str>> {
     let (plan, uses) = explain_frame(shot);
     let is_drawn = |draw: &&Draw| draw.part_pipelines.iter().any(Option::is_some);
@@ -94,7 +95,7 @@ fn left_out(shot: &Shot) -> BTreeMap<ItemId, Cow<'static, str>> {
         plan.draws.iter().filter(is_drawn).map(|draw| draw.item).collect();
     uses.into_iter()
         .filter_map(|one| match (one.effect, one.on, one.state) {
-            (Effect::Surfaces, Some(thing), State::LeftOut { reason, .. }) => {
+            (Effect::Surfaces, Some(thing), EffectState::LeftOut { reason, .. }) => {
                 Some((thing.item, reason))
             }
             _ => None,
@@ -180,7 +181,7 @@ impl Alone<'_> {
             next_id: self.scene.next_id,
         };
         let view = View { marks: false, fill: Fill::Filled, ..self.view.clone() };
-        // Where it is seen does not depend on light; this is the quickest.
+        // Visibility does not depend on light; this is the fastest.
         let settings = Settings { light: LightAt::Face, ..Settings::default() };
         let plan = plan_frame(&Shot::new(&scene, &view, &settings, self.size));
         self.renderer.render(&plan);

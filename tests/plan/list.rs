@@ -7,7 +7,7 @@ use marraztu::io;
 use marraztu::lab::cost;
 use marraztu::render::explain_frame;
 use marraztu::render::plan_frame;
-use marraztu::render::{Class, Effect, Renderer, State};
+use marraztu::render::{Class, Effect, EffectState, Renderer};
 use marraztu::scene::{Fill, ItemId, LightKind, Scene, View};
 
 use crate::random_scenes::random_scene;
@@ -92,7 +92,7 @@ fn light_that_is_left_out_as_too_faint_is_listed_with_its_bound() {
     let explained = cost::explain(&Shot::new(&scene, &view, &settings, SIZE));
     let bulbs = explained.uses.iter().filter(|one| one.name == "bulb");
     for one in bulbs {
-        let State::LeftOut { reason, class: Class::Bounded(steps) } = &one.state else {
+        let EffectState::LeftOut { reason, class: Class::Bounded(steps) } = &one.state else {
             panic!("{one:?}");
         };
         assert_eq!(reason, "too faint");

@@ -15,7 +15,7 @@ use crate::accuracy::Shot;
 use crate::base::image::{Picture, Size};
 use crate::lab::cost::{self, Explained};
 use crate::render::plan_frame;
-use crate::render::{Changes, FramePlan, GivenUp, Hit, Renderer};
+use crate::render::{Cancelled, Damage, FramePlan, Hit, Renderer};
 use crate::scene::{ItemId, Surface};
 
 /// A drawn picture.
@@ -28,7 +28,7 @@ pub(crate) struct Drawn {
     /// How its quality is reduced.
     pub(crate) reduction: Reduction,
     /// What was redrawn, and why.
-    pub(crate) changes: Changes,
+    pub(crate) changes: Damage,
 }
 
 /// What is wanted while a frame is drawn.
@@ -80,12 +80,12 @@ impl ViewportRenderer {
     ) -> Option<Drawn> {
         let begun = (self.clock)();
         let mut plan = planned(wanted, Reduction::NONE);
-        let mut changes = self.renderer.changes(&plan);
+        let mut changes = self.renderer.damage(&plan);
         let share = share(&changes);
         let reduction = self.quality.choose(wanted.moving, share, applicable(wanted));
         if reduction != Reduction::NONE && !changes.is_nothing() {
             plan = planned(wanted, reduction);
-            changes = self.renderer.changes(&plan);
+            changes = self.renderer.damage(&plan);
         }
         if changes.is_nothing() {
             return None;
@@ -99,7 +99,7 @@ impl ViewportRenderer {
             Asked::Nothing => false,
         };
         let drawn = self.renderer.redraw(&plan, &wanted);
-        self.gave_up = drawn == Err(GivenUp);
+        self.gave_up = drawn == Err(Cancelled);
         if self.gave_up {
             self.quality.record_given_up(share, clock().duration_since(begun));
             return None;
@@ -153,7 +153,7 @@ fn planned(wanted: &Snapshot, reduction: Reduction) -> FramePlan {
 
 /// The part of the picture that is redrawn, from 0 to 1.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 tiles")]
-fn share(changes: &Changes) -> f64 {
+fn share(changes: &Damage) -> f64 {
     changes.tiles() as f64 / changes.tiles_in_all() as f64
 }
 

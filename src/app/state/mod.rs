@@ -14,7 +14,7 @@ use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
 use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
 use crate::lab::cost::{Costs, Explained};
-use crate::render::Changes;
+use crate::render::Damage;
 use crate::scene::{
     Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Sides, View,
 };
@@ -134,7 +134,7 @@ pub struct Statistics {
     /// How its quality is reduced.
     pub reduction: Reduction,
     /// What was redrawn, and why.
-    pub changes: Option<Changes>,
+    pub changes: Option<Damage>,
 }
 
 impl Default for Statistics {

@@ -6,7 +6,7 @@ use crate::app::drawing::border::Border;
 use crate::app::state::State;
 use crate::app::widgets::plate::plate_ui;
 use crate::app::widgets::text::grouped;
-use crate::render::{Cause, Change, Changes};
+use crate::render::{Change, Damage, DamageCause};
 use crate::scene::ItemId;
 
 /// Shows how much is drawn, and how long it takes.
@@ -38,15 +38,15 @@ pub(crate) fn statistics_ui(ui: &Ui, state: &State, rect: Rect) {
 const NAMES: usize = 2;
 
 /// How much of the last picture was redrawn, and why: "14 of 169 tiles drawn: teapot moved".
-fn redrawn(state: &State, changes: &Changes) -> String {
+fn redrawn(state: &State, changes: &Damage) -> String {
     let why = match changes.cause() {
-        Cause::First => "a new picture".to_owned(),
-        Cause::Size => "another size".to_owned(),
-        Cause::Camera => "seen from elsewhere".to_owned(),
-        Cause::Background => "another background".to_owned(),
-        Cause::Settings => "drawn in another way".to_owned(),
-        Cause::Order => "another order".to_owned(),
-        Cause::Items(items) => reasons(items, |item| state.name(item)),
+        DamageCause::First => "a new picture".to_owned(),
+        DamageCause::Size => "another size".to_owned(),
+        DamageCause::Camera => "seen from elsewhere".to_owned(),
+        DamageCause::Background => "another background".to_owned(),
+        DamageCause::Settings => "drawn in another way".to_owned(),
+        DamageCause::Order => "another order".to_owned(),
+        DamageCause::Items(items) => reasons(items, |item| state.name(item)),
     };
     format!("{} of {} tiles drawn: {why}", changes.tiles(), changes.tiles_in_all())
 }

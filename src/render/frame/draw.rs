@@ -1,4 +1,4 @@
-//! What is drawn, and by which stages.
+//! Draws of a frame, and the pipelines that colour them.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -8,46 +8,45 @@ use glam::{DMat3, DMat4};
 use super::FramePlan;
 use crate::accuracy::LightAt;
 use crate::base::{Shared, color::Color};
-use crate::render::lights;
-use crate::render::lights::{LightRow, PhongMaterial};
+use crate::render::lights::{self, LightRow, PhongMaterial};
 use crate::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
 
 /// One mesh of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Draw {
-    /// Whose it is.
+    /// The item that it draws.
     pub(crate) item: ItemId,
     /// Its shape.
     pub(crate) model: Shared<Model>,
     pub(crate) clip_from_object: DMat4,
     pub(crate) view_from_object: DMat4,
-    /// What normals are multiplied by: sign(det) cof.
+    /// The normal transform: sign(det) cof.
     pub(crate) view_from_normal: DMat3,
-    /// Whether the placement mirrors: then fronts run clockwise.
+    /// Whether the placement mirrors, so that front faces run clockwise.
     pub(crate) mirrored: bool,
     pub(crate) back: Back,
     pub(crate) normals: Normals,
     pub(crate) normal_source: NormalSource,
     /// The pipeline of each part; `None` for parts that are not drawn.
     pub(crate) part_pipelines: Vec<Option<u32>>,
-    /// The pipeline of all parts, where they share one.
+    /// The pipeline of all parts, if they share one.
     pub(crate) uniform: Option<u32>,
-    /// The polygons that are drawn, where not all are.
+    /// The polygons that are drawn, if not all are.
     pub(crate) polygons: Option<BTreeSet<u32>>,
     pub(crate) filled: bool,
     pub(crate) lines: Lines,
 }
 
 impl Draw {
-    /// Whether a polygon is shown at all: its part is, and it is among those chosen.
+    /// Whether a polygon is shown: its part is, and it is among the polygons that are drawn.
     pub(crate) fn shows(&self, polygon: u32) -> bool {
         let part = self.model.mesh.polygon_parts()[polygon as usize];
         self.part_pipelines[part as usize].is_some()
             && self.polygons.as_ref().is_none_or(|some| some.contains(&polygon))
     }
 
-    /// Computes everything of the mesh that drawing reads, so that nothing is computed while threads
-    /// draw.
+    /// Computes every derived table of the mesh that drawing reads, so that threads compute none of
+    /// them while they draw.
     pub(crate) fn prepare(&self, plan: &FramePlan) {
         let pipelines = self.part_pipelines.iter().flatten();
         let shaded: Vec<&Shaded> = pipelines
@@ -89,14 +88,14 @@ impl Draw {
     }
 }
 
-/// What becomes of faces that are turned away.
+/// How back faces are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Back {
-    /// They are not drawn.
-    Left,
+    /// They are culled.
+    Culled,
     /// They are red, and not lit.
     Red,
-    /// They are lit with their normals turned.
+    /// They are lit with reversed normals.
     Lit,
 }
 
@@ -113,12 +112,12 @@ pub(crate) struct Lines {
     pub(crate) color: Color,
 }
 
-/// The stages of one way of drawing a surface, in order.
+/// The stages that colour a surface, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Pipeline {
     /// One colour, whatever the light.
     Flat(Color),
-    /// Texture, tint and vertex colours, and light where it is lit.
+    /// Texture, tint and vertex colours, and light if the surface is lit.
     Shaded(Shaded),
 }
 
@@ -129,7 +128,7 @@ impl Pipeline {
         let mut key = Vec::new();
         let light = shaded.light.as_deref();
         key.extend(light.is_none().then(|| "unlit".to_owned()));
-        key.extend(shaded.places.then(|| "places".to_owned()));
+        key.extend(shaded.needs_positions.then(|| "places".to_owned()));
         key.extend(light.unwrap_or_default().iter().map(|stage| match stage.highlight {
             Form::Plain => stage.effect.name.to_owned(),
             Form::Reflection => format!("{} R.V", stage.effect.name),
@@ -141,7 +140,7 @@ impl Pipeline {
         key.join(" + ")
     }
 
-    /// A number that equal pipelines share, and different ones hardly ever.
+    /// A hash: equal pipelines share it, different ones hardly ever do.
     pub(crate) fn fingerprint(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         match self {
@@ -151,7 +150,7 @@ impl Pipeline {
         hasher.finish()
     }
 
-    /// Whether a texture decides where it is drawn.
+    /// Whether it needs the alpha test.
     pub(crate) const fn is_cutout(&self) -> bool {
         matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
     }
@@ -160,18 +159,18 @@ impl Pipeline {
 /// See [`Pipeline::Shaded`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shaded {
-    /// What reflects.
-    pub(crate) matter: PhongMaterial,
-    /// The lights that are evaluated; `None` where the surface is not lit.
+    /// The Phong material.
+    pub(crate) material: PhongMaterial,
+    /// The lights that are evaluated; `None` if the surface is not lit.
     pub(crate) light: Option<Vec<Stage>>,
-    /// Whether any of them looks at places and normals.
-    pub(crate) places: bool,
-    /// Whether what a pixel shows lies where its depth says: nothing of it is cut by the planes of the
-    /// view. Then lights may be left out tile by tile.
+    /// Whether any of them reads positions and normals.
+    pub(crate) needs_positions: bool,
+    /// Whether lights may be culled tile by tile: nothing of the surface is clipped, so each
+    /// pixel's depth tells its position.
     pub(crate) tiled: bool,
-    /// Lights that were left out add less than this, in steps of a byte.
+    /// An upper bound of what the lights that were left out add, in steps of a byte.
     pub(crate) dropped: f64,
-    /// Highlights that are cut off add less than this, in steps of a byte.
+    /// An upper bound of what the tails of highlights that were cut off add, in steps of a byte.
     pub(crate) cut_off: f64,
     /// Whether vertex colours are multiplied in.
     pub(crate) vertex_colors: bool,
@@ -179,17 +178,18 @@ pub(crate) struct Shaded {
     pub(crate) tint: [f64; 3],
     /// The texture.
     pub(crate) texture: Option<Shared<Texture>>,
-    /// The material's opacity where the texture's alpha may bring it below one half.
+    /// For the alpha test: the material's opacity, if the texture's alpha may bring it below one
+    /// half.
     pub(crate) cutout: Option<f64>,
 }
 
 impl Shaded {
-    /// Hashes what equal surfaces have in common; of equal textures, where they came from.
+    /// Hashes what equal surfaces have in common; of a texture, only its source.
     fn hash_into(&self, hasher: &mut DefaultHasher) {
         let Self {
-            matter,
+            material,
             light,
-            places,
+            needs_positions,
             tiled,
             dropped,
             cut_off,
@@ -198,14 +198,14 @@ impl Shaded {
             texture,
             cutout,
         } = self;
-        let PhongMaterial { ambient, diffuse, specular, exponent, floor, least_cosine } = matter;
+        let PhongMaterial { ambient, diffuse, specular, exponent, floor, least_cosine } = material;
         for color in [ambient, diffuse, specular, tint] {
             color.map(bits).hash(hasher);
         }
         [*exponent, *floor, *least_cosine, *dropped, *cut_off].map(bits).hash(hasher);
-        (*places, *tiled, *vertex_colors, cutout.map(bits)).hash(hasher);
+        (*needs_positions, *tiled, *vertex_colors, cutout.map(bits)).hash(hasher);
         for stage in light.iter().flatten() {
-            (stage.effect.name, stage.lamp).hash(hasher);
+            (stage.effect.name, stage.light).hash(hasher);
         }
         texture.as_ref().map(|texture| &texture.source).hash(hasher);
     }
@@ -220,13 +220,13 @@ fn bits(x: f64) -> u64 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stage {
     pub(crate) effect: &'static LightRow,
-    /// The place of its light among the lamps of the plan.
-    pub(crate) lamp: u32,
+    /// The index of its light in the plan.
+    pub(crate) light: u32,
     pub(crate) highlight: Form,
 }
 
 impl Stage {
-    /// The effect compiled for the stage's highlight.
+    /// The light shader, compiled for the stage's highlight.
     pub(crate) const fn variant(&self) -> &'static lights::Variant {
         match self.highlight {
             Form::Plain => &self.effect.plain,
@@ -238,12 +238,12 @@ impl Stage {
 
 impl PartialEq for Stage {
     fn eq(&self, other: &Self) -> bool {
-        let key = |stage: &Self| (stage.effect.name, stage.lamp, stage.highlight);
+        let key = |stage: &Self| (stage.effect.name, stage.light, stage.highlight);
         key(self) == key(other)
     }
 }
 
-/// The highlight of a stage.
+/// The form of a stage's highlight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     /// None: Ks is 0.
@@ -260,9 +260,9 @@ mod tests {
 
     fn shaded(change: impl FnOnce(&mut Shaded)) -> u64 {
         let mut shaded = Shaded {
-            matter: PhongMaterial::default(),
+            material: PhongMaterial::default(),
             light: Some(Vec::new()),
-            places: false,
+            needs_positions: false,
             tiled: false,
             dropped: 0.0,
             cut_off: 0.0,
@@ -280,9 +280,9 @@ mod tests {
         let plain = shaded(|_| {});
         assert_eq!(shaded(|shaded| shaded.dropped = -0.0), plain, "0 and -0 are equal");
         let others = [
-            shaded(|shaded| shaded.matter.diffuse[1] = 0.5),
-            shaded(|shaded| shaded.matter.exponent = 9.0),
-            shaded(|shaded| shaded.matter.floor = -3.0),
+            shaded(|shaded| shaded.material.diffuse[1] = 0.5),
+            shaded(|shaded| shaded.material.exponent = 9.0),
+            shaded(|shaded| shaded.material.floor = -3.0),
             shaded(|shaded| shaded.tint[2] = 0.5),
             shaded(|shaded| shaded.cutout = Some(1.0)),
             shaded(|shaded| shaded.vertex_colors = true),

@@ -1,4 +1,4 @@
-//! What a frame draws, as plain data. Nothing here decides, and nothing here touches a pixel.
+//! What a frame draws, as plain data. Nothing here makes a decision or touches a pixel.
 
 pub(crate) mod draw;
 pub(crate) mod variants;
@@ -18,72 +18,72 @@ use crate::scene::LightId;
 pub struct FramePlan {
     /// Pixels.
     pub(crate) size: Size,
-    /// What is seen where nothing is.
+    /// The colour of pixels that show nothing.
     pub(crate) background: Color,
-    /// Where V goes.
+    /// The kind of projection, which the direction V to the observer depends on.
     pub(crate) eye: Eye,
     /// The numbers that light is computed in.
     pub(crate) arithmetic: Arithmetic,
-    /// Where light is evaluated.
+    /// Whether light is evaluated at faces, vertices, pixels or samples.
     pub(crate) light_at: LightAt,
-    /// In how many places of a pixel it is asked what is seen.
+    /// Samples per pixel.
     pub(crate) samples: Samples,
-    /// Whether each of them is lit, as if it were the middle of a pixel: then `light_at` says pixels.
+    /// Whether each sample is lit, as if it were the centre of a pixel; `light_at` is then `Pixel`.
     pub(crate) lit_by_sample: bool,
-    /// How far from the middles of pixels it is looked, in parts of a pixel: where there is a picture for
-    /// each sample, in the plan of one of those.
+    /// The offset of the sample from the centre of its pixel, in subpixels, if each sample is drawn
+    /// as a picture of its own.
     pub(crate) shift: [i32; 2],
-    /// What textures give between their texels.
+    /// The filter of textures.
     pub(crate) filter: Filter,
-    /// The variants of stages that the settings name.
+    /// The variants of stages that the settings choose.
     pub(crate) variants: Variants,
-    /// Where the observer is and which way they look.
+    /// The view transform.
     pub(crate) view_from_world: DMat4,
     /// `clip_from_view`.
     pub(crate) clip_from_view: DMat4,
     /// Width of lines in pixels: 1 or 2.
     pub(crate) line_width: i32,
-    /// The lights that shine, the oldest first.
-    pub(crate) lamps: Vec<ViewLight>,
-    /// Whose they are.
-    pub(crate) lights: Vec<LightId>,
+    /// The lights in view space, the oldest first.
+    pub(crate) lights: Vec<ViewLight>,
+    /// The ids of the lights, in the same order.
+    pub(crate) light_ids: Vec<LightId>,
     /// What is drawn, in the order that decides between equal depths.
     pub(crate) draws: Vec<Draw>,
-    /// The different ways in which surfaces are drawn.
+    /// The distinct pipelines of all draws.
     pub(crate) pipelines: Vec<Pipeline>,
-    /// What may be left out of a tile.
+    /// Which light may be left out as too faint.
     pub(crate) leave_out: LeaveOut,
     /// Whether rules leave out what no pixel shows.
     pub(crate) rules: Rules,
 }
 
-/// Where directions to the observer go.
+/// How directions to the observer are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Eye {
-    /// To the origin of view space: perspective.
+    /// Perspective: to the origin of view space.
     Point,
-    /// Along +Z: parallel projection.
+    /// Orthographic: along +Z.
     Parallel,
 }
 
-/// Whether a frame leaves out what changes no bit of its picture.
+/// Whether a frame leaves out work that changes no bit of its picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rules {
-    /// It does.
+    /// Such work is left out.
     Applied,
-    /// Everything that the scene names is computed: what the rules are tested against.
+    /// Everything that the scene names is computed; the rules are tested against this.
     Ignored,
 }
 
 impl FramePlan {
-    /// The plan of the picture that is seen where samples lie that are shifted by so many parts of a pixel
-    /// from the middles of their pixels.
+    /// The plan of the picture that one sample of each pixel sees, `shift` subpixels from the
+    /// centre.
     pub(super) fn seen_from(&self, shift: [i32; 2]) -> Self {
         Self { shift, ..self.clone() }
     }
 
-    /// Computes everything of the meshes that drawing reads. Threads that draw compute nothing of it
-    /// themselves: see [`together`](crate::base::work_stealing::together).
+    /// Computes every derived table of the meshes that drawing reads. Drawing threads compute none
+    /// of them themselves: see [`together`](crate::base::work_stealing::together).
     pub(crate) fn prepare(&self) {
         self.draws.iter().for_each(|draw| draw.prepare(self));
     }
@@ -94,8 +94,8 @@ impl FramePlan {
         self.size
     }
 
-    /// The names of the effects that each way of drawing a surface is made of, in order: two frames
-    /// with the same keys do the same work for each pixel.
+    /// The stages of each pipeline by name, in order: two frames with the same keys do the same
+    /// work for each pixel.
     #[must_use]
     pub fn keys(&self) -> Vec<String> {
         self.pipelines.iter().map(Pipeline::key).collect()

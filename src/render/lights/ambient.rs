@@ -1,4 +1,4 @@
-//! Light from everywhere.
+//! Ambient light.
 
 use super::batch::{Reflected, Sample, set};
 use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, max_channel};
@@ -6,17 +6,17 @@ use super::region::Region;
 use super::shader::LightShader;
 use crate::render::simd::Lanes;
 
-/// The same light at every place, whichever way it faces: Ia Ka.
+/// The same light at every position and for every normal: Ia Ka.
 pub(crate) struct Ambient;
 
 impl LightShader for Ambient {
     const NAME: &'static str = "Ambient light";
     const READS_POSITIONS: bool = false;
 
-    fn is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str> {
-        if lamp.color == [0.0; 3] {
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
+        if light.color == [0.0; 3] {
             Some("its colour is black")
-        } else if matter.ambient == [0.0; 3] {
+        } else if material.ambient == [0.0; 3] {
             Some("Ka of the material is 0")
         } else {
             None
@@ -24,20 +24,20 @@ impl LightShader for Ambient {
     }
 
     fn max_contribution(
-        lamp: &ViewLight,
-        matter: &PhongMaterial,
+        light: &ViewLight,
+        material: &PhongMaterial,
         _: bool,
         _: Option<&Region>,
     ) -> f64 {
-        max_channel(lamp.color, matter.ambient)
+        max_channel(light.color, material.ambient)
     }
 
     #[inline(always)]
     fn shade<M: Lanes, H: Highlight>(
         lanes: M,
         _: Sample<M::R>,
-        shine: &LightTerm<M::Number>,
+        term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        Some(Reflected { diffuse: set(lanes, shine.ambient), specular: None })
+        Some(Reflected { diffuse: set(lanes, term.ambient), specular: None })
     }
 }

@@ -1,21 +1,22 @@
-//! Positions on surfaces on their way through the shaders of lights: an array for each quantity.
+//! Batches of positions that light shaders read and write: an array for each quantity.
 
 use crate::render::simd::{BATCH, Lanes, Number, Vec3};
 
-/// Positions on surfaces on their way through the effects: an array for each quantity.
+/// A batch of positions on surfaces, with their normals and their light: an array for each
+/// quantity.
 #[derive(Clone, Debug)]
 pub struct Batch<T> {
-    /// How many places there are; what lies behind them is of no meaning.
+    /// The number of positions; entries beyond it are meaningless.
     pub len: usize,
-    /// Where they are, in view space.
+    /// The positions, in view space.
     pub position: [[T; BATCH]; 3],
     /// Their normals: of length 1, or zero where there is none.
     pub normal: [[T; BATCH]; 3],
     /// The directions to the observer, of length 1: V.
     pub to_eye: [[T; BATCH]; 3],
-    /// Light that takes the colour of the surface: ambient and diffuse.
+    /// Light that is multiplied with the colour of the surface: ambient and diffuse.
     pub diffuse: [[T; BATCH]; 3],
-    /// Light that keeps its own colour.
+    /// Light that keeps its own colour: specular.
     pub specular: [[T; BATCH]; 3],
 }
 
@@ -27,7 +28,7 @@ impl<T: Copy + Default> Default for Batch<T> {
 }
 
 impl<T: Copy + Default> Batch<T> {
-    /// Takes all light away.
+    /// Sets all light to 0.
     pub(crate) fn darken(&mut self) {
         for row in self.diffuse.iter_mut().chain(&mut self.specular) {
             row.fill(T::default());
@@ -36,7 +37,7 @@ impl<T: Copy + Default> Batch<T> {
 }
 
 impl<T: Number> Batch<T> {
-    /// Puts some places in, from `at` on.
+    /// Stores samples from `at` on.
     #[inline(always)]
     pub(crate) fn put<M: Lanes<Number = T>>(&mut self, lanes: M, sample: Sample<M::R>, at: usize) {
         store(lanes, sample.position, &mut self.position, at);
@@ -45,7 +46,7 @@ impl<T: Number> Batch<T> {
     }
 }
 
-/// A place on a surface, or several.
+/// A position on a surface, with its normal and direction to the observer; or several.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<R> {
     /// See [`Batch::position`].
@@ -56,12 +57,12 @@ pub struct Sample<R> {
     pub to_eye: Vec3<R>,
 }
 
-/// What the observer gets from a place by one effect.
+/// The light that one light shader reflects from a position to the observer.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflected<R> {
     /// See [`Batch::diffuse`].
     pub diffuse: Vec3<R>,
-    /// See [`Batch::specular`]; `None` where there is nothing of it.
+    /// See [`Batch::specular`]; `None` if there is none.
     pub specular: Option<Vec3<R>>,
 }
 
@@ -74,13 +75,13 @@ pub(crate) fn set<M: Lanes>(lanes: M, numbers: [M::Number; 3]) -> Vec3<M::R> {
 /// Three rows of numbers.
 pub(crate) type Rows<T> = [[T; BATCH]; 3];
 
-/// Takes from three rows.
+/// Loads three numbers from three rows.
 #[inline(always)]
 pub(crate) fn load<M: Lanes>(lanes: M, [x, y, z]: &Rows<M::Number>, at: usize) -> Vec3<M::R> {
     Vec3([lanes.load(x, at), lanes.load(y, at), lanes.load(z, at)])
 }
 
-/// Puts into three rows.
+/// Stores three numbers in three rows.
 #[inline(always)]
 pub(crate) fn store<M: Lanes>(
     lanes: M,

@@ -1,10 +1,11 @@
-//! The kinds of light, and the table of them.
+//! The kinds of light, and their table.
 //!
-//! A kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. It says when a scene
-//! calls for it and how it lights a surface, once, over [`Real`](super::simd::Real); the row holds its
-//! compiled variants. A frame pays for the lights that it has and for no other.
+//! A kind of light is one file in this folder and one row of [`LIGHT_SHADERS`]. It says when a
+//! scene needs it and how it lights a surface, once, over [`Real`](super::simd::Real); the row
+//! holds its compiled variants. A frame pays only for the lights that it has.
 //!
-//! Light is computed in view space, for a batch of positions at a time: pixels, vertices or faces alike.
+//! Light is computed in view space, for a batch of positions at a time: of pixels, vertices or
+//! faces.
 
 mod ambient;
 mod batch;

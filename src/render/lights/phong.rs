@@ -1,4 +1,4 @@
-//! The terms of Phong lighting: a light, a material, their products, and the forms of highlights.
+//! Phong lighting: lights, materials, their products, and the specular highlight.
 //!
 //! Phong, "Illumination for Computer Generated Pictures", CACM 1975.
 
@@ -8,24 +8,24 @@ use crate::accuracy::{Normalising, SpecularPower};
 use crate::render::simd::power::least_cosine;
 use crate::render::simd::{Lanes, Number, Power, Real, Vec3};
 
-/// A light that shines in this frame, in view space.
+/// A light of a frame, in view space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewLight {
     /// Its colour as factors.
     pub color: [f64; 3],
-    /// Where it is.
+    /// Its position.
     pub position: [f64; 3],
-    /// The way its light goes, of length 1.
+    /// The direction in which its light travels, of length 1.
     pub direction: [f64; 3],
-    /// The coefficients of 1, d and d^2 by which it fades.
+    /// The coefficients of 1, d and d^2 in its attenuation.
     pub attenuation: [f64; 3],
-    /// The cosine at the border of its cone.
+    /// The cosine of its cone's half-aperture.
     pub cos_half_aperture: f64,
-    /// How much its light is gathered along the axis.
+    /// The exponent by which its light is concentrated along the axis.
     pub exponent: f64,
 }
 
-/// What a surface does with light.
+/// The coefficients of the Phong model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhongMaterial {
     /// Ka.
@@ -43,22 +43,23 @@ pub struct PhongMaterial {
 }
 
 impl PhongMaterial {
-    /// Whether any of a lamp's light can come back as a highlight.
+    /// Whether a light can have a highlight on it.
     #[must_use]
-    pub fn mirrors(&self, lamp: &ViewLight) -> bool {
-        self.specular.iter().zip(lamp.color).any(|(ks, color)| ks * color != 0.0)
+    pub fn mirrors(&self, light: &ViewLight) -> bool {
+        self.specular.iter().zip(light.color).any(|(ks, color)| ks * color != 0.0)
     }
 
-    /// Sets from where on a power counts as 0, by the way that powers are taken.
+    /// Sets the floor below which powers count as 0, for a variant of powers.
     #[must_use]
-    pub fn with_floor(self, floor: f64, way: SpecularPower) -> Self {
-        // The cosine whose power is the floor; a little less, so that rounding leaves nothing out.
-        let least = least_cosine(way, self.exponent, floor);
+    pub fn with_floor(self, floor: f64, variant: SpecularPower) -> Self {
+        // The cosine whose power is the floor, or a little less, so that rounding leaves nothing
+        // out.
+        let least = least_cosine(variant, self.exponent, floor);
         Self { floor, least_cosine: least * (1.0 - 1e-5), ..self }
     }
 }
 
-/// A lamp on a surface, in the numbers that light is computed in.
+/// The products of a light and a material, in the shading arithmetic.
 #[derive(Clone, Debug)]
 pub struct LightTerm<T> {
     /// I Ka.
@@ -69,7 +70,7 @@ pub struct LightTerm<T> {
     pub specular: [T; 3],
     /// See [`ViewLight::position`].
     pub position: [T; 3],
-    /// Against the way its light goes.
+    /// The reverse of the direction in which its light travels.
     pub axis: [T; 3],
     /// See [`ViewLight::attenuation`].
     pub attenuation: [T; 3],
@@ -77,35 +78,35 @@ pub struct LightTerm<T> {
     pub fades: bool,
     /// See [`ViewLight::cos_half_aperture`].
     pub cos_half_aperture: T,
-    /// How much its light is gathered along the axis.
+    /// The exponent by which its light is concentrated along the axis.
     pub gathered: Power,
-    /// The power of the highlight.
+    /// The power of the highlight, with the exponent Ns.
     pub highlight: Power,
     /// See [`PhongMaterial::least_cosine`].
     pub least_cosine: T,
-    /// By which rare way, where it is one.
-    pub(super) way: Option<Normalising>,
+    /// The variant of roots, if it is not the default.
+    pub(super) variant: Option<Normalising>,
 }
 
 impl<T: Number> LightTerm<T> {
-    /// What a lamp does to a surface.
+    /// Multiplies a light and a material.
     #[must_use]
-    pub fn new(lamp: &ViewLight, matter: &PhongMaterial) -> Self {
+    pub fn new(light: &ViewLight, material: &PhongMaterial) -> Self {
         let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
-        let times = |k: [f64; 3]| all([0, 1, 2].map(|i| lamp.color[i] * k[i]));
+        let times = |k: [f64; 3]| all([0, 1, 2].map(|i| light.color[i] * k[i]));
         Self {
-            ambient: times(matter.ambient),
-            diffuse: times(matter.diffuse),
-            specular: times(matter.specular),
-            position: all(lamp.position),
-            axis: all(lamp.direction.map(|x| -x)),
-            attenuation: all(lamp.attenuation),
-            fades: lamp.attenuation != [1.0, 0.0, 0.0],
-            cos_half_aperture: T::from_f64(lamp.cos_half_aperture),
-            gathered: Power::new(lamp.exponent, GATHERED_FLOOR),
-            highlight: Power::new(matter.exponent, matter.floor),
-            least_cosine: T::from_f64(matter.least_cosine),
-            way: None,
+            ambient: times(material.ambient),
+            diffuse: times(material.diffuse),
+            specular: times(material.specular),
+            position: all(light.position),
+            axis: all(light.direction.map(|x| -x)),
+            attenuation: all(light.attenuation),
+            fades: light.attenuation != [1.0, 0.0, 0.0],
+            cos_half_aperture: T::from_f64(light.cos_half_aperture),
+            gathered: Power::new(light.exponent, GATHERED_FLOOR),
+            highlight: Power::new(material.exponent, material.floor),
+            least_cosine: T::from_f64(material.least_cosine),
+            variant: None,
         }
     }
 
@@ -113,23 +114,23 @@ impl<T: Number> LightTerm<T> {
     #[must_use]
     pub(crate) fn by(
         variant: Option<Normalising>,
-        lamp: &ViewLight,
-        matter: &PhongMaterial,
+        light: &ViewLight,
+        material: &PhongMaterial,
         highlight: &Power,
     ) -> Self {
         match variant {
-            None => Self::new(lamp, matter),
-            way => Self { highlight: highlight.clone(), way, ..Self::new(lamp, matter) },
+            None => Self::new(light, material),
+            variant => Self { highlight: highlight.clone(), variant, ..Self::new(light, material) },
         }
     }
 }
 
-/// A cosine's power below 2^-24 counts as 0, where a spot gathers its light by it.
+/// The floor of the powers by which spots concentrate their light: less than 2^-24 counts as 0.
 const GATHERED_FLOOR: f64 = -24.0;
 
-/// The form of a highlight.
+/// The form of a specular highlight.
 pub trait Highlight {
-    /// The cosine whose power is the highlight, where there is one; `n_l` is N.L, more than 0.
+    /// The cosine whose power is the highlight, if there is one; `n_l` is N.L, more than 0.
     fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R>;
 }
 
@@ -167,14 +168,14 @@ impl Highlight for HalfVector {
     }
 }
 
-/// Light that comes in along a surface, to this cosine of its angle to the normal, has no highlight.
+/// Light at a grazing angle has no highlight, up to this cosine of its angle to the normal.
 ///
-/// A highlight begins at once where N.L comes above 0. A lamp in the very plane of a face, which is
-/// nothing rare, leaves N.L to rounding; without this, rounding would decide whether all of the face
-/// has a highlight. It is a hundred times the rounding error, and 0.0006 degrees.
+/// A highlight starts abruptly as N.L rises above 0. If a light lies in the plane of a face, which
+/// is not rare, N.L is only a rounding error, which would decide whether all of the face has a
+/// highlight. The bound is a hundred times that error, and 0.0006 degrees.
 const GRAZING: f64 = 1e-5;
 
-/// What is left of a part of light.
+/// Multiplies light by a strength, if there is one.
 #[inline(always)]
 fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
     match strength {
@@ -183,56 +184,56 @@ fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
     }
 }
 
-/// Light that arrives from a direction, reflected:
+/// Phong reflection of the light that arrives from a direction, diffuse and specular:
 ///
 ///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
 ///
-/// with s the `strength` that is left of the lamp's light I (1 where it is `None`), L the direction `to_light`, and c the
-/// cosine of the [`Highlight`].
+/// with s the remaining `strength` of the light's intensity I (1 if it is `None`), L the direction
+/// `to_light`, and c the cosine of the [`Highlight`].
 #[inline(always)]
 pub(super) fn phong<M: Lanes, H: Highlight>(
     lanes: M,
     sample: Sample<M::R>,
     to_light: Vec3<M::R>,
     strength: Option<M::R>,
-    shine: &LightTerm<M::Number>,
+    term: &LightTerm<M::Number>,
 ) -> Option<Reflected<M::R>> {
     let zero = lanes.lift(0.0);
     let n_l = sample.normal.dot(to_light);
     if !lanes.any_more(n_l, zero) {
         return None;
     }
-    let diffuse = set(lanes, shine.diffuse).times(weakened(Real::max(n_l, zero), strength));
+    let diffuse = set(lanes, term.diffuse).times(weakened(Real::max(n_l, zero), strength));
     let mut specular = None;
     if let Some(cosine) = H::cosine(sample, to_light, n_l) {
         let lit = n_l.if_more(lanes.lift(GRAZING), cosine, zero);
-        if lanes.any_more(lit, lanes.set(shine.least_cosine)) {
+        if lanes.any_more(lit, lanes.set(term.least_cosine)) {
             // Rounding can bring a cosine above 1.
-            let power = Real::min(lit, lanes.lift(1.0)).power(&shine.highlight);
-            specular = Some(set(lanes, shine.specular).times(weakened(power, strength)));
+            let power = Real::min(lit, lanes.lift(1.0)).power(&term.highlight);
+            specular = Some(set(lanes, term.specular).times(weakened(power, strength)));
         }
     }
     Some(Reflected { diffuse, specular })
 }
 
-/// The largest of a surface's three channels under a light.
+/// The largest of a surface's three channels in a light.
 pub(super) fn max_channel(color: [f64; 3], sent_back: [f64; 3]) -> f64 {
     color.iter().zip(sent_back).map(|(color, part)| color * part).fold(0.0, f64::max)
 }
 
-/// The largest part of a lamp's light that is left at its distance from a region.
-pub(super) fn max_attenuation(lamp: &ViewLight, region: Option<&Region>) -> f64 {
-    let d = region.map_or(0.0, |region| region.least_distance(lamp.position.into()));
-    let [a0, a1, a2] = lamp.attenuation;
+/// The largest attenuation factor of a light over a region.
+pub(super) fn max_attenuation(light: &ViewLight, region: Option<&Region>) -> f64 {
+    let d = region.map_or(0.0, |region| region.least_distance(light.position.into()));
+    let [a0, a1, a2] = light.attenuation;
     1.0 / (a0 + (a1 + a2 * d) * d)
 }
 
-/// Why a lamp needs not be looked at for a surface.
-pub(super) fn lamp_is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str> {
+/// Why a light adds nothing to a material, if so.
+pub(super) fn light_is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
     let zero = |color: [f64; 3]| color == [0.0; 3];
-    if zero(lamp.color) {
+    if zero(light.color) {
         Some("its colour is black")
-    } else if zero(matter.diffuse) && zero(matter.specular) {
+    } else if zero(material.diffuse) && zero(material.specular) {
         Some("Kd and Ks of the material are 0")
     } else {
         None

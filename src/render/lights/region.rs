@@ -1,24 +1,23 @@
-//! Where in view space some places may be, so that it can be said of all of them at once what no
-//! light reaches.
+//! Regions: bounds of positions in view space, which tell what no light reaches in them.
 //!
-//! A region is the hull of eight points, and a distance by which a place that the renderer computes
-//! may lie outside of it. Whatever is said of a region holds of every place as it is computed, in 32
-//! bits or in 64: all bounds are rounded outwards.
+//! A region is the convex hull of eight points, and a distance by which a computed position may lie
+//! outside of it. Every statement about a region holds for every position as it is computed, in f32
+//! or in f64: all bounds are rounded outwards.
 
 use glam::{DMat4, DVec3};
 
-/// The part of a place's own size by which its computed coordinates may be wrong, with what
-/// subtracting a lamp's place adds: some 10 times the rounding of 32 bits.
+/// The relative error of a computed position, including the subtraction of a light's position: some
+/// 10 times the rounding of f32.
 const ROUNDING: f64 = 2e-6;
 
-/// What the computed cosine of an angle may be wrong by: some 10 times as much as was ever seen.
+/// The error of a computed cosine: some 10 times the largest that was measured.
 const COSINE_ROUNDING: f64 = 4e-6;
 
-/// The part of its distance by which a region's middle has to lie off a cone's axis: nearer to it, the
-/// way there from the axis is rounding.
+/// How far a region's centre has to lie off a cone's axis, relative to its distance: nearer to it,
+/// the direction away from the axis is a rounding error.
 const LEAST_ASIDE: f64 = 1e-6;
 
-/// The cosine up to which light along a face may be taken to come from either side of it.
+/// The cosine up to which light along a face may count as coming from either side.
 pub(crate) const EDGE_ON: f64 = 1e-4;
 
 /// See the [module](self).
@@ -31,7 +30,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// The hull of these points, where places may be wrong by `error`.
+    /// The hull of these points, with positions up to `error` outside.
     #[must_use]
     pub fn new(corners: [DVec3; 8], error: f64) -> Self {
         let reach = corners.iter().map(|corner| corner.length()).fold(0.0, f64::max);
@@ -48,57 +47,58 @@ impl Region {
         self.reach
     }
 
-    /// What the way from a lamp to a place may be wrong by.
-    fn error_from(&self, lamp: DVec3) -> f64 {
-        self.error + ROUNDING * (self.reach + lamp.length())
+    /// The error of the vector from a light to a position.
+    fn error_from(&self, light: DVec3) -> f64 {
+        self.error + ROUNDING * (self.reach + light.length())
     }
 
-    /// Whether a face with this normal (of length 1), at any place, is turned away from a lamp.
-    pub(crate) fn faces_away(&self, normal: DVec3, lamp: DVec3) -> bool {
-        let error = self.error_from(lamp);
+    /// Whether a face with this normal (of length 1), anywhere in the region, is turned away from a
+    /// light.
+    pub(crate) fn faces_away(&self, normal: DVec3, light: DVec3) -> bool {
+        let error = self.error_from(light);
         self.corners.iter().all(|corner| {
-            let way = lamp - *corner;
-            normal.dot(way) < -(error + EDGE_ON * way.length())
+            let offset = light - *corner;
+            normal.dot(offset) < -(error + EDGE_ON * offset.length())
         })
     }
 
-    /// At least so far is every place from a point; 0 where that is not known.
+    /// A lower bound of the distance from a point to every position; 0 if none is known.
     #[must_use]
     pub fn least_distance(&self, from: DVec3) -> f64 {
         let low = self.corners.iter().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
         let high = self.corners.iter().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
         let to_box = (from.clamp(low, high) - from).length();
         let least = to_box - self.error_from(from);
-        // What is no number says nothing.
+        // NaN gives no bound.
         if least > 0.0 { least } else { 0.0 }
     }
 
-    /// At most this is the cosine between `axis` (of length 1) and the way from `apex` to any place;
-    /// 1 where that is not known.
+    /// An upper bound of the cosine between `axis` (of length 1) and the direction from `apex` to
+    /// any position; 1 if none is known.
     ///
-    /// With a ball about the corners, of radius r and at the distance d: the angle to its middle, less
-    /// asin(r / d).
+    /// With a ball around the corners, of radius r and at the distance d: the angle to its centre,
+    /// less asin(r / d).
     #[must_use]
     pub fn most_cosine(&self, apex: DVec3, axis: DVec3) -> f64 {
         let middle = self.corners.iter().sum::<DVec3>() / 8.0;
         let radius = self.corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
-        let (radius, way) = (radius + self.error_from(apex), middle - apex);
-        let distance = way.length();
+        let (radius, offset) = (radius + self.error_from(apex), middle - apex);
+        let distance = offset.length();
         if distance > radius {
-            let angle = libm::acos((axis.dot(way) / distance).clamp(-1.0, 1.0));
+            let angle = libm::acos((axis.dot(offset) / distance).clamp(-1.0, 1.0));
             let least = (angle - libm::asin(radius / distance)).max(0.0);
             (libm::cos(least) + COSINE_ROUNDING).min(1.0)
         } else {
-            // Inside, or no number.
+            // The apex is inside, or NaN.
             1.0
         }
     }
 
-    /// Whether no place lies in the cone of half-angle acos `border` about `axis` (of length 1) from
-    /// `apex`, its border taken to be outside.
+    /// Whether no position lies in the cone with the half-angle acos `border` around `axis` (of
+    /// length 1) from `apex`; the border counts as outside.
     ///
-    /// Either the bound of the cosine says so, or a plane through the apex that the cone touches and
-    /// all corners lie beyond.
+    /// Either by the bound of the cosine, or by a plane through the apex that touches the cone and
+    /// has all corners on its other side.
     #[must_use]
     pub fn misses_cone(&self, apex: DVec3, axis: DVec3, border: f64) -> bool {
         if self.most_cosine(apex, axis) <= border {
@@ -127,7 +127,7 @@ impl Region {
 mod tests {
     use super::*;
 
-    /// A cube about `middle`, `half` to each side.
+    /// A cube around `middle`, `half` to each side.
     fn cube(middle: DVec3, half: f64) -> Region {
         let corner = |i: u32| {
             let side = |bit: u32| if i & bit == 0 { -half } else { half };
@@ -156,7 +156,7 @@ mod tests {
             let (axis, far) = (axis.normalize_or_zero(), 300.0);
             let region = cube(axis * far, 0.5);
             assert!(!region.misses_cone(DVec3::ZERO, axis, 0.9999), "{axis}");
-            // As much off the axis as rounding is, or more.
+            // As far off the axis as rounding errors, or more.
             for off in [1e-13, 1e-10, 1e-7, 1e-3] {
                 let turned = (axis + DVec3::new(off, -off, off)).normalize_or_zero();
                 assert!(!region.misses_cone(DVec3::ZERO, turned, 0.9999), "{axis} {off}");

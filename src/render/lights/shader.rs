@@ -12,61 +12,62 @@ use super::region::Region;
 use super::turning::Turning;
 use crate::render::simd::{Kernel, Lanes, Number};
 
-/// One way of lighting a surface.
+/// The shader of a kind of light.
 pub trait LightShader {
     /// Its name in the plan.
     const NAME: &'static str;
-    /// Whether it looks at where a place is, how it is turned, or from where it is seen.
+    /// Whether it reads positions, normals or directions to the observer.
     const READS_POSITIONS: bool = true;
-    /// Whether it shines on a part of space only, so that `is_culled` may say so.
+    /// Whether its reach is limited, so that `is_culled` may cull it.
     const HAS_REACH: bool = false;
-    /// Why the surface needs none of it, where it does not: leaving it out then changes no bit.
-    fn is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str>;
-    /// Why none of it arrives in a region, where that is so: leaving it out there then changes no bit.
+    /// Why it adds nothing to a material, if so: leaving it out then changes no bit.
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str>;
+    /// Why none of it arrives in a region, if so: leaving it out there then changes no bit.
     fn is_culled(_: &ViewLight, _: &Region) -> Option<&'static str> {
         None
     }
-    /// Whether it comes from behind all faces of a region, which are turned as `turning` says: leaving
-    /// it out there then changes no bit.
+    /// Whether it comes from behind all faces of a region, whose normals are `turning`: leaving it
+    /// out there then changes no bit.
     fn is_behind(_: &ViewLight, _: &Region, _: &Turning) -> bool {
         false
     }
-    /// The largest part of the lamp's light that arrives in a region, anywhere where none is said.
+    /// The largest fraction of its light that arrives in a region, or anywhere if there is none.
     fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
         1.0
     }
-    /// The most that it adds to a channel at any place of a region, with its highlight or without, as
-    /// a factor; a surface's texture takes away from that at most.
+    /// The most that it adds to a channel at any position of a region, with its highlight or
+    /// without, as a factor. A texture can only reduce that.
     fn max_contribution(
-        lamp: &ViewLight,
-        matter: &PhongMaterial,
+        light: &ViewLight,
+        material: &PhongMaterial,
         highlight: bool,
         region: Option<&Region>,
     ) -> f64 {
-        let mut sent_back = matter.diffuse;
+        let mut sent_back = material.diffuse;
         if highlight {
-            for (kd, ks) in sent_back.iter_mut().zip(matter.specular) {
+            for (kd, ks) in sent_back.iter_mut().zip(material.specular) {
                 *kd += ks;
             }
         }
-        max_channel(lamp.color, sent_back) * Self::max_falloff(lamp, region)
+        max_channel(light.color, sent_back) * Self::max_falloff(light, region)
     }
-    /// What the observer gets from some places; `None` where that is nothing at all of them.
+    /// Shades some positions; `None` if it adds nothing at any of them.
     fn shade<M: Lanes, H: Highlight>(
         lanes: M,
         sample: Sample<M::R>,
-        shine: &LightTerm<M::Number>,
+        term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>>;
 }
 
-/// An effect compiled for one form of highlight: for the reference, and for what the editor shows.
+/// A light shader compiled for one form of highlight: in f64 for the reference, and in f32 for the
+/// editor.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
     reference: fn(Level, &mut Batch<f64>, &LightTerm<f64>),
     fast: fn(Level, &mut Batch<f32>, &LightTerm<f32>),
 }
 
-/// A row of the table.
+/// A row of the table of light kinds.
 #[derive(Clone, Copy, Debug)]
 pub struct LightRow {
     /// See [`LightShader::NAME`].
@@ -94,7 +95,7 @@ pub struct LightRow {
 }
 
 impl LightRow {
-    /// The row of a shader.
+    /// Makes the row of a shader.
     pub(super) const fn of<E: LightShader>() -> Self {
         Self {
             name: E::NAME,
@@ -116,18 +117,18 @@ const fn variant<E: LightShader, H: Highlight>() -> Variant {
     Variant { reference: shade::<f64, E, H>, fast: shade::<f32, E, H> }
 }
 
-/// Adds what an effect reflects at every place of a batch.
+/// Adds the light of a shader at every position of a batch.
 fn shade<T: Number, E: LightShader, H: Highlight>(
     level: Level,
     batch: &mut Batch<T>,
-    shine: &LightTerm<T>,
+    term: &LightTerm<T>,
 ) {
-    T::run_by(level, shine.way, Shade::<T, E, H> { batch, shine, of: PhantomData });
+    T::run_variant(level, term.variant, Shade::<T, E, H> { batch, term, of: PhantomData });
 }
 
 struct Shade<'a, T, E, H> {
     batch: &'a mut Batch<T>,
-    shine: &'a LightTerm<T>,
+    term: &'a LightTerm<T>,
     of: PhantomData<(E, H)>,
 }
 
@@ -141,7 +142,7 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
                 normal: load(lanes, &batch.normal, at),
                 to_eye: load(lanes, &batch.to_eye, at),
             };
-            let Some(reflected) = E::shade::<M, H>(lanes, sample, self.shine) else {
+            let Some(reflected) = E::shade::<M, H>(lanes, sample, self.term) else {
                 continue;
             };
             add(lanes, reflected.diffuse, &mut batch.diffuse, at);
@@ -152,30 +153,20 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
     }
 }
 
-/// Numbers that effects are compiled for.
+/// Numbers that light shaders are compiled for.
 pub trait Light: Number {
-    /// Adds what an effect reflects at every place of the batch.
-    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, shine: &LightTerm<Self>);
+    /// Adds the light of a shader at every position of the batch.
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
 }
 
 impl Light for f64 {
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        shine: &LightTerm<Self>,
-    ) {
-        (variant.reference)(level, batch, shine);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+        (variant.reference)(level, batch, term);
     }
 }
 
 impl Light for f32 {
-    fn add_light(
-        variant: &Variant,
-        level: Level,
-        batch: &mut Batch<Self>,
-        shine: &LightTerm<Self>,
-    ) {
-        (variant.fast)(level, batch, shine);
+    fn add_light(variant: &Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
+        (variant.fast)(level, batch, term);
     }
 }

@@ -1,65 +1,65 @@
-//! Light from a point, in a cone.
+//! Spot lights.
 
 use super::batch::{Reflected, Sample, set};
 use super::bulb::arriving;
 use super::phong::{
-    Highlight, LightTerm, PhongMaterial, ViewLight, lamp_is_noop, max_attenuation, phong,
+    Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, max_attenuation, phong,
 };
 use super::region::Region;
 use super::shader::LightShader;
 use super::turning::Turning;
 use crate::render::simd::{Lanes, Real};
 
-/// A point that shines along an axis.
+/// A point that shines in a cone around an axis.
 pub(crate) struct Spot;
 
 impl LightShader for Spot {
     const NAME: &'static str = "Spot";
     const HAS_REACH: bool = true;
 
-    fn is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str> {
-        lamp_is_noop(lamp, matter)
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
+        light_is_noop(light, material)
     }
 
-    fn is_culled(lamp: &ViewLight, region: &Region) -> Option<&'static str> {
-        let (apex, axis) = (lamp.position.into(), lamp.direction.into());
-        if lamp.cos_half_aperture >= 1.0 {
+    fn is_culled(light: &ViewLight, region: &Region) -> Option<&'static str> {
+        let (apex, axis) = (light.position.into(), light.direction.into());
+        if light.cos_half_aperture >= 1.0 {
             // No cosine is more than 1.
             Some("its cone is closed")
-        } else if region.misses_cone(apex, axis, lamp.cos_half_aperture) {
+        } else if region.misses_cone(apex, axis, light.cos_half_aperture) {
             Some("nothing is within its cone")
         } else {
             None
         }
     }
 
-    fn is_behind(lamp: &ViewLight, region: &Region, turning: &Turning) -> bool {
-        turning.all(|normal| region.faces_away(normal, lamp.position.into()))
+    fn is_behind(light: &ViewLight, region: &Region, turning: &Turning) -> bool {
+        turning.all(|normal| region.faces_away(normal, light.position.into()))
     }
 
-    fn max_falloff(lamp: &ViewLight, region: Option<&Region>) -> f64 {
-        let (apex, axis) = (lamp.position.into(), lamp.direction.into());
+    fn max_falloff(light: &ViewLight, region: Option<&Region>) -> f64 {
+        let (apex, axis) = (light.position.into(), light.direction.into());
         let cosine = region.map_or(1.0, |region| region.most_cosine(apex, axis));
-        max_attenuation(lamp, region) * libm::pow(cosine.max(0.0), lamp.exponent)
+        max_attenuation(light, region) * libm::pow(cosine.max(0.0), light.exponent)
     }
 
-    /// With c = min(1, F.(-L)), F the axis: c^n of the light arrives where c is more than the cosine
-    /// of the half-aperture, and none outside. Warn, "Lighting Controls for Synthetic Images",
+    /// With c = min(1, F.(-L)), F the axis: c^n of the light arrives if c is more than the cosine
+    /// of the half-aperture, and none otherwise. Warn, "Lighting Controls for Synthetic Images",
     /// SIGGRAPH 1983.
     #[inline(always)]
     fn shade<M: Lanes, H: Highlight>(
         lanes: M,
         sample: Sample<M::R>,
-        shine: &LightTerm<M::Number>,
+        term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        let (to_light, strength) = arriving(lanes, sample.position, shine);
-        let c = Real::min(set(lanes, shine.axis).dot(to_light), lanes.lift(1.0));
-        let border = lanes.set(shine.cos_half_aperture);
+        let (to_light, strength) = arriving(lanes, sample.position, term);
+        let c = Real::min(set(lanes, term.axis).dot(to_light), lanes.lift(1.0));
+        let border = lanes.set(term.cos_half_aperture);
         if !lanes.any_more(c, border) {
             return None;
         }
-        let gathered = c.power(&shine.gathered);
+        let gathered = c.power(&term.gathered);
         let strength = c.if_more(border, strength * gathered, lanes.lift(0.0));
-        phong::<M, H>(lanes, sample, to_light, Some(strength), shine)
+        phong::<M, H>(lanes, sample, to_light, Some(strength), term)
     }
 }

@@ -1,35 +1,35 @@
-//! Light from infinitely far away.
+//! Directional lights.
 
 use glam::DVec3;
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, lamp_is_noop, phong};
+use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight, light_is_noop, phong};
 use super::region::{EDGE_ON, Region};
 use super::shader::LightShader;
 use super::turning::Turning;
 use crate::render::simd::Lanes;
 
-/// The same direction at every place, and no fading.
+/// The same direction at every position, and no attenuation.
 pub(crate) struct Sun;
 
 impl LightShader for Sun {
     const NAME: &'static str = "Sun";
 
-    fn is_noop(lamp: &ViewLight, matter: &PhongMaterial) -> Option<&'static str> {
-        lamp_is_noop(lamp, matter)
+    fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
+        light_is_noop(light, material)
     }
 
-    fn is_behind(lamp: &ViewLight, _: &Region, turning: &Turning) -> bool {
-        let way = DVec3::from_array(lamp.direction);
-        turning.all(|normal| normal.dot(way) > EDGE_ON)
+    fn is_behind(light: &ViewLight, _: &Region, turning: &Turning) -> bool {
+        let direction = DVec3::from_array(light.direction);
+        turning.all(|normal| normal.dot(direction) > EDGE_ON)
     }
 
     #[inline(always)]
     fn shade<M: Lanes, H: Highlight>(
         lanes: M,
         sample: Sample<M::R>,
-        shine: &LightTerm<M::Number>,
+        term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        phong::<M, H>(lanes, sample, set(lanes, shine.axis), None, shine)
+        phong::<M, H>(lanes, sample, set(lanes, term.axis), None, term)
     }
 }

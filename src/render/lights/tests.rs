@@ -1,4 +1,5 @@
-//! What both arithmetics share they cannot check in each other: numbers from outside.
+//! Tests of light shaders against numbers from outside: the two arithmetics cannot check each
+//! other's equations.
 
 #![expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
 #![expect(clippy::needless_range_loop, reason = "three rows go side by side")]
@@ -19,7 +20,7 @@ fn one(position: [f64; 3], normal: [f64; 3]) -> Batch<f64> {
     batch
 }
 
-fn matter() -> PhongMaterial {
+fn material() -> PhongMaterial {
     PhongMaterial {
         ambient: [0.1, 0.2, 0.3],
         diffuse: [0.5; 3],
@@ -30,7 +31,7 @@ fn matter() -> PhongMaterial {
     .with_floor(-24.0, SpecularPower::Library)
 }
 
-fn lamp() -> ViewLight {
+fn light() -> ViewLight {
     ViewLight {
         color: [1.0, 0.5, 0.0],
         direction: [0.0, 0.0, -1.0],
@@ -41,9 +42,9 @@ fn lamp() -> ViewLight {
     }
 }
 
-fn run(entry: &LightRow, batch: &mut Batch<f64>, lamp: &ViewLight) -> [[f64; 3]; 2] {
-    let shine = LightTerm::new(lamp, &matter());
-    f64::add_light(&entry.reflection, Level::new(), batch, &shine);
+fn run(entry: &LightRow, batch: &mut Batch<f64>, light: &ViewLight) -> [[f64; 3]; 2] {
+    let term = LightTerm::new(light, &material());
+    f64::add_light(&entry.reflection, Level::new(), batch, &term);
     [batch.diffuse.map(|row| row[0]), batch.specular.map(|row| row[0])]
 }
 
@@ -55,30 +56,30 @@ fn near(got: [[f64; 3]; 2], want: [[f64; 3]; 2]) {
 
 #[test]
 fn ambient_light_is_its_colour_times_ka() {
-    let got = run(&AMBIENT, &mut one([0.0; 3], [0.0; 3]), &lamp());
+    let got = run(&AMBIENT, &mut one([0.0; 3], [0.0; 3]), &light());
     near(got, [[0.1, 0.1, 0.0], [0.0; 3]]);
 }
 
 #[test]
 fn the_sun_at_sixty_degrees_gives_half_and_mirrors_by_the_angle_of_reflection() {
-    // N leans by 60 degrees from both L and V, which are one: R.V = 2 cos^2 60 - 1 = -1/2: none.
+    // N is 60 degrees from both L and V, which are equal: R.V = 2 cos^2 60 - 1 = -1/2: none.
     let (s, c) = (0.75_f64.sqrt(), 0.5);
-    let got = run(&SUN, &mut one([0.0; 3], [s, 0.0, c]), &lamp());
+    let got = run(&SUN, &mut one([0.0; 3], [s, 0.0, c]), &light());
     near(got, [[0.25, 0.125, 0.0], [0.0; 3]]);
     // At 30 degrees: N.L = cos 30, R.V = cos 60 = 1/2, squared 1/4.
-    let got = run(&SUN, &mut one([0.0; 3], [c, 0.0, s]), &lamp());
+    let got = run(&SUN, &mut one([0.0; 3], [c, 0.0, s]), &light());
     near(got, [[0.5 * s, 0.25 * s, 0.0], [0.0625, 0.03125, 0.0]]);
 }
 
 #[test]
 fn a_surface_turned_away_gets_nothing() {
-    let got = run(&SUN, &mut one([0.0; 3], [0.0, 0.0, -1.0]), &lamp());
+    let got = run(&SUN, &mut one([0.0; 3], [0.0, 0.0, -1.0]), &light());
     near(got, [[0.0; 3]; 2]);
 }
 
 #[test]
 fn a_lamp_in_the_plane_of_a_face_gives_it_no_highlight_whichever_way_rounding_goes() {
-    // N.L is a rounding error above 0 or below; looked at along the mirrored ray.
+    // N.L is a rounding error above or below 0, seen along the mirrored ray.
     for error in [-1e-7, 1e-7] {
         let mut batch = one([0.0; 3], [error, 1.0, 0.0]);
         batch.to_eye = batch.to_eye.map(|mut row| {
@@ -86,7 +87,7 @@ fn a_lamp_in_the_plane_of_a_face_gives_it_no_highlight_whichever_way_rounding_go
             row
         });
         batch.to_eye[0][0] = -1.0;
-        let along = ViewLight { position: [50.0, 0.0, 0.0], ..lamp() };
+        let along = ViewLight { position: [50.0, 0.0, 0.0], ..light() };
         let [diffuse, specular] = run(&BULB, &mut batch, &along);
         assert_eq!(specular, [0.0; 3]);
         assert!(diffuse[0] < 1e-6);
@@ -95,7 +96,7 @@ fn a_lamp_in_the_plane_of_a_face_gives_it_no_highlight_whichever_way_rounding_go
 
 #[test]
 fn a_bulb_fades_by_its_coefficients_and_adds_nothing_at_its_own_place() {
-    let bulb = ViewLight { position: [0.0, 0.0, 3.0], attenuation: [1.0, 2.0, 3.0], ..lamp() };
+    let bulb = ViewLight { position: [0.0, 0.0, 3.0], attenuation: [1.0, 2.0, 3.0], ..light() };
     // d = 3: 1 / (1 + 6 + 27).
     let got = run(&BULB, &mut one([0.0; 3], [0.0, 0.0, 1.0]), &bulb);
     near(got, [[0.5 / 34.0, 0.25 / 34.0, 0.0], [0.25 / 34.0, 0.125 / 34.0, 0.0]]);
@@ -105,10 +106,10 @@ fn a_bulb_fades_by_its_coefficients_and_adds_nothing_at_its_own_place() {
 
 #[test]
 fn a_spot_gives_the_fifth_power_of_the_cosine_inside_its_cone_and_nothing_outside() {
-    // Axis along -Z from (0, 0, 1); the place is as far aside that the cosine is 0.8 or 0.95.
+    // Axis along -Z from (0, 0, 1); the position is so far aside that the cosine is 0.8 or 0.95.
     for (cosine, border, part) in [(0.8_f64, 0.9, 0.0), (0.8, 0.79, 0.8_f64.powi(5))] {
         let aside = (1.0 / (cosine * cosine) - 1.0).sqrt();
-        let spot = ViewLight { position: [aside, 0.0, 1.0], cos_half_aperture: border, ..lamp() };
+        let spot = ViewLight { position: [aside, 0.0, 1.0], cos_half_aperture: border, ..light() };
         let got = run(&SPOT, &mut one([0.0; 3], [0.0, 0.0, 1.0]), &spot);
         assert!((got[0][0] - 0.5 * cosine * part).abs() < 1e-12, "{cosine}: {got:?}");
     }
@@ -119,12 +120,12 @@ fn fast_light_is_near_the_reference_and_the_same_on_every_level() {
     let levels = levels();
     for entry in LIGHT_SHADERS {
         for variant in [&entry.plain, &entry.reflection, &entry.half_vector] {
-            let (mut exact, lamp) =
-                (scattered(), ViewLight { position: [1.0, 2.0, 3.0], ..lamp() });
-            f64::add_light(variant, Level::new(), &mut exact, &LightTerm::new(&lamp, &matter()));
+            let (mut exact, light) =
+                (scattered(), ViewLight { position: [1.0, 2.0, 3.0], ..light() });
+            f64::add_light(variant, Level::new(), &mut exact, &LightTerm::new(&light, &material()));
             let pictures = levels.iter().map(|level| {
                 let mut fast = narrow(&scattered());
-                f32::add_light(variant, *level, &mut fast, &LightTerm::new(&lamp, &matter()));
+                f32::add_light(variant, *level, &mut fast, &LightTerm::new(&light, &material()));
                 [fast.diffuse, fast.specular]
             });
             let pictures: Vec<_> = pictures.collect();
@@ -155,7 +156,7 @@ fn levels() -> Vec<Level> {
     levels
 }
 
-/// Positions and normals all over, none of them at the border of a cone.
+/// Scattered positions and normals, none of them at the border of a cone.
 fn scattered() -> Batch<f64> {
     let mut batch = Batch { len: BATCH, ..Batch::default() };
     for i in 0..BATCH {

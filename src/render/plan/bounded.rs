@@ -1,40 +1,38 @@
-//! What may be left out although it would be seen: light that adds too little to matter.
+//! Leaves out light that adds less than half a step of a byte.
 //!
-//! Two budgets, together less than half a step of a byte: whatever is left out of a pixel, before
-//! rounding its channels are off by less than that, and its bytes by one step at most. One budget is
-//! for whole lights, smallest first, on an object or on what a tile shows of it; the other is for the
-//! foot of highlights, whose powers count as 0 below a common value.
+//! Two budgets add up to less than half a step of a byte, so the bytes of a pixel differ by one
+//! step at most. One budget is for whole lights, the faintest first, on an object or in a tile. The
+//! other is for the tails of highlights: powers below a common value count as 0.
 
-use crate::render::frame::draw::Form;
-use crate::render::frame::draw::Stage;
+use crate::render::frame::draw::{Form, Stage};
 use crate::render::lights::region::Region;
 use crate::render::lights::{PhongMaterial, ViewLight};
 
 /// Steps of a byte in a factor of 1.
 const STEPS: f64 = 255.0;
 
-/// What lights that are left out may add up to, in steps of a byte.
+/// The budget of lights that are left out, in steps of a byte.
 pub(super) const LIGHTS: f64 = 0.249;
 
-/// What cut off highlights may add up to, in steps of a byte.
+/// The budget of the tails of highlights, in steps of a byte.
 const HIGHLIGHTS: f64 = 0.249;
 
-/// Rounding can bring light above what its equation says; by much less than this.
+/// A bound of how far rounding can raise light above its equation.
 const ROUNDING: f64 = 1.0 + 1e-4;
 
-/// What a light adds to a channel at most, in steps of a byte.
+/// The most that a light adds to a channel, in steps of a byte.
 pub(super) fn most(
     stage: &Stage,
-    lamp: &ViewLight,
-    matter: &PhongMaterial,
+    light: &ViewLight,
+    material: &PhongMaterial,
     region: Option<&Region>,
 ) -> f64 {
     let highlight = stage.highlight != Form::Plain;
-    STEPS * ROUNDING * (stage.effect.max_contribution)(lamp, matter, highlight, region)
+    STEPS * ROUNDING * (stage.effect.max_contribution)(light, material, highlight, region)
 }
 
-/// Takes out of some lights what adds least, as long as all of it stays below `budget` steps of a byte.
-/// Gives what it adds together; each light that goes is told of with what it adds.
+/// Removes the faintest lights as long as their sum stays below `budget` steps of a byte. Returns
+/// the sum, and calls `tell` with each light that is removed and its bound.
 pub(super) fn thin<T>(
     lights: &mut Vec<T>,
     most: impl Fn(&T) -> f64,
@@ -54,24 +52,25 @@ pub(super) fn thin<T>(
     }
 }
 
-/// The value below which all powers of highlights may count as 0: with I Ks of each light and the part
-/// of it that arrives, p such that
+/// The value below which the powers of highlights may count as 0: p such that, with I Ks and the
+/// attenuation of each light,
 ///
 ///   255 p (sum of I Ks att spot) = the budget
 ///
-/// `None` where there is no highlight; 1 or more where all of them may go.
+/// `None` if there is no highlight; 1 or more if all of them may be left out.
 pub(super) fn least_power(
     stages: &[Stage],
-    (lamps, matter): (&[ViewLight], &PhongMaterial),
+    (lights, material): (&[ViewLight], &PhongMaterial),
     region: Option<&Region>,
 ) -> Option<f64> {
     let lit = stages.iter().filter(|stage| stage.highlight != Form::Plain);
-    let strengths = lit.map(|stage| strength(stage, &lamps[stage.lamp as usize], matter, region));
+    let strengths =
+        lit.map(|stage| strength(stage, &lights[stage.light as usize], material, region));
     let sum = strengths.reduce(|sum, strength| sum + strength)?;
     Some(HIGHLIGHTS / (STEPS * ROUNDING * sum))
 }
 
-/// What is cut off of the highlights where powers below `power` count as 0, in steps of a byte.
+/// A bound of what highlights lose if powers below `power` count as 0, in steps of a byte.
 pub(super) fn cut_off(
     stages: &[Stage],
     lit: (&[ViewLight], &PhongMaterial),
@@ -81,13 +80,13 @@ pub(super) fn cut_off(
     least_power(stages, lit, region).map_or(0.0, |whole| HIGHLIGHTS * power / whole)
 }
 
-/// The brightest that the middle of a highlight may be, as a factor.
+/// The largest brightness of a highlight's centre, as a factor.
 fn strength(
     stage: &Stage,
-    lamp: &ViewLight,
-    matter: &PhongMaterial,
+    light: &ViewLight,
+    material: &PhongMaterial,
     region: Option<&Region>,
 ) -> f64 {
-    let channels = lamp.color.iter().zip(matter.specular).map(|(color, ks)| color * ks);
-    channels.fold(0.0, f64::max) * (stage.effect.max_falloff)(lamp, region)
+    let channels = light.color.iter().zip(material.specular).map(|(color, ks)| color * ks);
+    channels.fold(0.0, f64::max) * (stage.effect.max_falloff)(light, region)
 }

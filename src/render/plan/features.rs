@@ -1,11 +1,12 @@
-//! What is said of an object's surface and lines: one row for each effect that is not a light.
+//! Explains the effects of an object's surface and lines: one row for each effect that is not a
+//! light.
 //!
-//! The rows read the finished draw, so what they say is on is on.
+//! The rows read the finished draw, so the explanation agrees with what is drawn.
 
 use std::borrow::Cow;
 
 use super::planning::{Planner, Planning};
-use super::uses::{Effect, EffectUse, State, Thing};
+use super::uses::{Effect, EffectState, EffectUse, Thing};
 use crate::accuracy::{Filter, LightAt, Settings};
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
 use crate::scene::{ItemId, Normals, Object, Sides, Surface};
@@ -15,14 +16,14 @@ struct Facts<'a> {
     settings: &'a Settings,
     object: &'a Object,
     draw: &'a Draw,
-    /// How its parts are coloured, where they are.
+    /// The pipelines of its lit or textured parts.
     shaded: Vec<&'a Shaded>,
 }
 
 /// A row of the table.
-struct Feature(Effect, fn(&Facts<'_>) -> State);
+struct Feature(Effect, fn(&Facts<'_>) -> EffectState);
 
-/// The table. An effect of surfaces or lines is a line here.
+/// The table: one row for each effect of surfaces or lines.
 const FEATURES: &[Feature] = &[
     Feature(Effect::Surfaces, surfaces),
     Feature(Effect::Normals, normals),
@@ -35,7 +36,7 @@ const FEATURES: &[Feature] = &[
     Feature(Effect::VertexNormals, |it| switched(it.draw.lines.vertex_normals.is_some())),
 ];
 
-/// What a thing's being seen is called.
+/// The effect that stands for an item being drawn at all.
 pub(crate) const fn presence(item: ItemId) -> Effect {
     match item {
         ItemId::Object(_) => Effect::Surfaces,
@@ -44,7 +45,7 @@ pub(crate) const fn presence(item: ItemId) -> Effect {
 }
 
 impl Planner<'_> {
-    /// Notes what a draw has of everything that is not a light.
+    /// Notes the effects of a draw that are not lights.
     pub(super) fn note_features(&self, into: &mut Planning, object: &Object, draw: &Draw) {
         let Planning { plan, notes, .. } = into;
         let facts = || {
@@ -56,7 +57,7 @@ impl Planner<'_> {
             });
             Facts { settings: &self.shot.settings, object, draw, shaded: shaded.collect() }
         };
-        let note = |effect: Effect, state: State| EffectUse {
+        let note = |effect: Effect, state: EffectState| EffectUse {
             effect,
             name: effect.label().to_owned(),
             on: Some(Thing { item: draw.item, name: object.name.clone() }),
@@ -65,7 +66,7 @@ impl Planner<'_> {
         };
         let presence = presence(draw.item);
         if presence == Effect::Marks {
-            return notes.add(|| note(presence, State::ON));
+            return notes.add(|| note(presence, EffectState::ON));
         }
         for Feature(effect, state) in FEATURES {
             notes.add(|| note(*effect, state(&facts())));
@@ -73,26 +74,30 @@ impl Planner<'_> {
     }
 }
 
-fn switched(on: bool) -> State {
-    if on { State::ON } else { State::exact("switched off") }
+fn switched(on: bool) -> EffectState {
+    if on { EffectState::ON } else { EffectState::exact("switched off") }
 }
 
-fn surfaces(it: &Facts<'_>) -> State {
+fn surfaces(it: &Facts<'_>) -> EffectState {
     if !it.draw.filled {
-        State::exact("edges only")
+        EffectState::exact("edges only")
     } else if it.draw.part_pipelines.iter().all(Option::is_none) {
-        State::exact("every part is hidden, or its opacity is below one half")
+        EffectState::exact("every part is hidden, or its opacity is below one half")
     } else {
-        State::ON
+        EffectState::ON
     }
 }
 
-/// On where any part of the object says so.
-fn any(it: &Facts<'_>, is: impl Fn(&Shaded) -> bool, word: Cow<'static, str>) -> Option<State> {
-    it.shaded.iter().any(|shaded| is(shaded)).then_some(State::On(word))
+/// On if `is` holds for any part of the object.
+fn any(
+    it: &Facts<'_>,
+    is: impl Fn(&Shaded) -> bool,
+    word: Cow<'static, str>,
+) -> Option<EffectState> {
+    it.shaded.iter().any(|shaded| is(shaded)).then_some(EffectState::On(word))
 }
 
-fn normals(it: &Facts<'_>) -> State {
+fn normals(it: &Facts<'_>) -> EffectState {
     let whose = match it.draw.normals {
         Normals::Vertex => "of vertices, interpolated",
         Normals::Face => "of faces",
@@ -104,10 +109,11 @@ fn normals(it: &Facts<'_>) -> State {
         LightAt::Pixel | LightAt::Sample => "no light reads them",
     };
     let per_pixel = it.settings.light == LightAt::Pixel;
-    any(it, |shaded| per_pixel && shaded.places, whose.into()).unwrap_or(State::exact(left_out))
+    any(it, |shaded| per_pixel && shaded.needs_positions, whose.into())
+        .unwrap_or(EffectState::exact(left_out))
 }
 
-fn texture(it: &Facts<'_>) -> State {
+fn texture(it: &Facts<'_>) -> EffectState {
     let filter = match it.settings.filter {
         Filter::Nearest => "nearest texel",
         Filter::Bilinear => "bilinear",
@@ -122,16 +128,17 @@ fn texture(it: &Facts<'_>) -> State {
     } else {
         "there is none"
     };
-    any(it, |shaded| shaded.texture.is_some(), filter.into()).unwrap_or(State::exact(left_out))
+    any(it, |shaded| shaded.texture.is_some(), filter.into())
+        .unwrap_or(EffectState::exact(left_out))
 }
 
-fn holes(it: &Facts<'_>) -> State {
+fn holes(it: &Facts<'_>) -> EffectState {
     let textured = it.shaded.iter().any(|shaded| shaded.texture.is_some());
     let left_out = if textured { "every texel is opaque" } else { "no texture" };
-    any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(State::exact(left_out))
+    any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(EffectState::exact(left_out))
 }
 
-fn vertex_colors(it: &Facts<'_>) -> State {
+fn vertex_colors(it: &Facts<'_>) -> EffectState {
     let left_out = if !it.draw.filled {
         "edges only"
     } else if it.object.surface == Surface::Material {
@@ -139,15 +146,19 @@ fn vertex_colors(it: &Facts<'_>) -> State {
     } else {
         "the file has none"
     };
-    any(it, |shaded| shaded.vertex_colors, "".into()).unwrap_or(State::exact(left_out))
+    any(it, |shaded| shaded.vertex_colors, "".into()).unwrap_or(EffectState::exact(left_out))
 }
 
-fn back_faces(it: &Facts<'_>) -> State {
+fn back_faces(it: &Facts<'_>) -> EffectState {
     match it.draw.back {
-        Back::Left if it.object.sides == Sides::Auto => State::exact("the surface is closed"),
-        Back::Left => State::exact("one side is drawn"),
-        Back::Red => State::On("red, not lit".into()),
-        Back::Lit if it.object.sides == Sides::Auto => State::On("lit: the surface is open".into()),
-        Back::Lit => State::On("lit from both sides".into()),
+        Back::Culled if it.object.sides == Sides::Auto => {
+            EffectState::exact("the surface is closed")
+        }
+        Back::Culled => EffectState::exact("one side is drawn"),
+        Back::Red => EffectState::On("red, not lit".into()),
+        Back::Lit if it.object.sides == Sides::Auto => {
+            EffectState::On("lit: the surface is open".into())
+        }
+        Back::Lit => EffectState::On("lit from both sides".into()),
     }
 }

@@ -1,18 +1,18 @@
-//! The marks of things that have no surface of their own: cameras and bulbs.
+//! Helpers: models that stand for cameras and bulbs, which have no surface of their own.
 
 use std::sync::OnceLock;
 
 use glam::{DMat3, DMat4, DVec3};
 
+use super::observer::ObserverSpace;
 use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color, math};
-use crate::render::plan::observer::ObserverSpace;
 use crate::scene::{Camera, LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner};
 
 /// The colour of a bulb's diamond.
 pub(super) const YELLOW: Color = Color([255, 255, 0]);
 
-/// How large a camera's mark is: its model's longest side in units of the world.
+/// The size of a camera model: its longest side, in units of the world.
 const CAMERA_MARK: f64 = 24.0;
 
 /// Half of a diamond's diagonal in units of the world.
@@ -21,22 +21,22 @@ const DIAMOND: f64 = 1.0;
 /// The least length of a diamond's diagonal in pixels.
 const DIAMOND_PIXELS: f64 = 9.0;
 
-/// Where a camera's mark stands: at its eye, in its frame, at the size of a mark.
+/// Places a camera model at the camera's eye, in its frame.
 pub(super) fn world_from_mark(camera: &Camera) -> DMat4 {
     let extent = camera.model.mesh.bounds().map_or(0.0, |bounds| bounds.extent().max_element());
     let scale = if extent > 0.0 { CAMERA_MARK / extent } else { 1.0 };
     camera.pose.now().world_from_camera() * DMat4::from_scale(DVec3::splat(scale))
 }
 
-/// Where the diamond of a bulb stands: it faces the observer, and is never smaller than nine pixels.
-/// `None` where the bulb is not in front of the observer.
+/// Places the diamond of a bulb: it faces the observer and is never smaller than nine pixels.
+/// `None` if the bulb is not in front of the observer.
 pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Option<DMat4> {
     let place = observer.view_from_world.transform_point3(bulb);
     let w = (observer.clip_from_view * place.extend(1.0)).w;
     if w <= 0.0 {
         return None;
     }
-    // A unit of the world across the view is this many pixels high at that distance.
+    // The size of a unit of the world at that distance, in pixels.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 rows")]
     let pixels =
         observer.clip_from_view.y_axis.y * observer.unit / w * observer.size.height as f64 / 2.0;

@@ -1,14 +1,12 @@
-//! What a frame needs, and why: decides, and touches no pixel.
+//! Decides what a frame draws, and says why. No pixel is touched here.
 //!
-//! A [`FramePlan`] holds a snapshot of everything that drawing reads, already in the observer's
-//! terms. What the scene does not call for is not in it; [`FramePlan::explained`] says what that is,
-//! and why. What only a part of the picture does without is decided when its depths are known, tile by
-//! tile (`TilePlan`).
+//! A [`FramePlan`] holds a snapshot of everything that drawing reads, transformed to view space.
+//! What the scene does not need is left out of it; [`explain_frame`] says what, and why. Light that
+//! only some tiles need is culled tile by tile, when their depths are known (`TilePlan`).
 
 mod bounded;
 pub(crate) mod features;
 mod helpers;
-mod lamps;
 mod observer;
 mod planner;
 mod planning;
@@ -18,15 +16,15 @@ mod surfaces;
 pub(crate) mod tile;
 mod turning;
 pub(crate) mod uses;
+mod view_lights;
 mod without;
 
-use self::lamps::lamps;
 use self::observer::ObserverSpace;
 use self::planning::{Planner, Planning};
 use self::uses::Notes;
-pub use self::uses::{Class, Effect, EffectUse, State, Thing};
-use crate::accuracy::Shot;
-use crate::accuracy::{Arithmetic, LightAt, Samples, Settings};
+pub use self::uses::{Class, Effect, EffectState, EffectUse, Thing};
+use self::view_lights::view_lights;
+use crate::accuracy::{Arithmetic, LightAt, Samples, Settings, Shot};
 use crate::render::frame::variants::Variants;
 use crate::render::frame::{Eye, FramePlan, Rules};
 use crate::scene::Projection;
@@ -37,14 +35,14 @@ pub fn plan_frame(shot: &Shot) -> FramePlan {
     planned(Rules::Applied, Notes::default, shot).plan
 }
 
-/// Plans the same picture with everything that the scene names, needed or not: slower, and what
-/// [`plan_frame`] is tested against.
+/// Plans the same picture with everything that the scene names, needed or not. It is slower;
+/// [`plan_frame`] is tested against it.
 #[must_use]
 pub fn plan_everything(shot: &Shot) -> FramePlan {
     planned(Rules::Ignored, Notes::default, shot).plan
 }
 
-/// The same plan as that of [`plan_frame`], with every effect that the scene names: whether the frame
+/// Plans a frame like [`plan_frame`], and explains for each effect of the scene whether the frame
 /// uses it, and why not.
 #[must_use]
 pub fn explain_frame(shot: &Shot) -> (FramePlan, Vec<EffectUse>) {
@@ -52,7 +50,7 @@ pub fn explain_frame(shot: &Shot) -> (FramePlan, Vec<EffectUse>) {
     (plan, notes.into_uses())
 }
 
-/// Plans in the precision that is asked for, or in 64 bits if 32 have no room.
+/// Plans in the chosen arithmetic, or in f64 if the frame's numbers do not fit f32.
 fn planned(rules: Rules, notes: fn() -> Notes, shot: &Shot) -> Planning {
     let as_asked = planned_in(rules, notes(), shot);
     if shot.settings.arithmetic == Arithmetic::F64 || as_asked.plan.has_room() {
@@ -85,15 +83,15 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         view_from_world: observer.view_from_world,
         clip_from_view: observer.clip_from_view,
         line_width: if view.wide_lines { 2 } else { 1 },
-        lamps: Vec::new(),
         lights: Vec::new(),
+        light_ids: Vec::new(),
         draws: Vec::new(),
         pipelines: Vec::new(),
         leave_out: settings.leave_out,
         rules,
     };
     let mut into = Planning::new(plan, notes);
-    let shining = lamps(&mut into, scene, view, &observer);
+    let shining = view_lights(&mut into, scene, view, &observer);
     let planner = Planner { shot, observer, shining };
     planner.add_objects(&mut into);
     if view.marks {
@@ -103,7 +101,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
             effect: Effect::Marks,
             name: Effect::Marks.label().to_owned(),
             on: None,
-            state: State::exact("switched off"),
+            state: EffectState::exact("switched off"),
             pixels: None,
         });
     }

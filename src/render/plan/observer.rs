@@ -1,4 +1,4 @@
-//! Who looks, and what is outside the view.
+//! The observer's spaces, and what is outside the view.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -9,10 +9,10 @@ use crate::render::lights::region::Region;
 use crate::render::screen::clip::Screen;
 use crate::scene::{Lens, Projection};
 
-/// How far is seen in the unit of view space: at least so far, and less than twice as far.
+/// The distance of the far plane in units of view space: at least this, and less than twice this.
 const FAR: f64 = 1024.0;
 
-/// The unit of view space that a lens calls for. Held to where its square has room in f64.
+/// The unit of view space for a lens, clamped so that its square fits f64.
 fn unit(lens: &Lens, projection: Projection) -> f64 {
     let far = match projection {
         Projection::Perspective => lens.far,
@@ -25,12 +25,12 @@ fn unit(lens: &Lens, projection: Projection) -> f64 {
 
 /// The observer's spaces.
 ///
-/// View space has a unit of its own, a power of two, in which the observer sees about a thousand
-/// units far: so light of 32 bits is the same for scenes of atoms and of stars, and for scenes of
-/// ordinary size the unit is the world's.
+/// View space has a unit of its own, a power of two, in which the far plane is about a thousand
+/// units away. So lighting in f32 works alike for scenes of atoms and of stars; for scenes of
+/// ordinary size the unit is that of the world.
 #[derive(Debug)]
 pub(crate) struct ObserverSpace {
-    /// How many units of view space a unit of the world is.
+    /// Units of view space per unit of the world.
     pub(crate) unit: f64,
     pub(crate) world_from_view: DMat4,
     pub(crate) view_from_world: DMat4,
@@ -43,7 +43,7 @@ impl ObserverSpace {
         let Shot { scene, view, size, .. } = shot;
         let size = *size;
         let world_from_view = scene.observer_frame(view);
-        // The axes are orthonormal, so the inverse turn is the transposed one.
+        // The axes are orthonormal, so the inverse rotation is the transposed one.
         let turn = DMat3::from_mat4(world_from_view).transpose();
         let eye = world_from_view.w_axis.truncate();
         let lens = scene.selected_camera(view).lens;
@@ -66,14 +66,14 @@ impl ObserverSpace {
         }
     }
 
-    /// Whether a box lies wholly outside one of the planes of the view, and so far beside it that no
-    /// line along its border reaches in.
+    /// Whether a box lies wholly outside one of the view's planes, so far that no line along its
+    /// border reaches in.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(super) fn misses(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
         let clip = corners.map(|corner| clip_from_object * corner.extend(1.0));
         let aside = |pixels: usize| 1.0 + 2.0 * LINE / pixels as f64;
         let (x, y) = (aside(self.size.width), aside(self.size.height));
-        // A little is left for rounding, so that nothing is missed that geometry would keep.
+        // Some margin for rounding, so that nothing is culled that geometry would keep.
         let beyond = |distance: &dyn Fn(DVec4) -> f64| {
             clip.iter().all(|p| distance(*p) < -1e-9 * (p.w.abs() + p.abs().max_element()))
         };
@@ -85,16 +85,18 @@ impl ObserverSpace {
             || beyond(&|p| p.w - p.z)
     }
 
-    /// Whether a box lies so far inside the planes that triangles are cut by that nothing in it is cut.
+    /// Whether a box lies so far inside the clipping planes that nothing in it is clipped.
     pub(super) fn holds(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
         let screen = Screen::new(clip_from_object, self.size);
         corners.iter().all(|corner| screen.holds(screen.clip(corner.to_array())))
     }
 
-    /// Where the places are at which what a box holds is lit at pixels, where nothing of it is cut.
+    /// The region of the positions at which a box's content is lit per pixel, provided that nothing
+    /// of it is clipped.
     ///
-    /// A pixel's place is its ray's at the depth of the snapped triangle: a part of a pixel beside the
-    /// true one, and in perspective as wrong in w as 1/w is at the triangle's nearest corner.
+    /// A pixel's position is the point of its ray at the depth of the snapped triangle: part of a
+    /// pixel beside the true one, and in perspective its w is as inexact as 1/w is at the
+    /// triangle's nearest corner.
     pub(super) fn seen_region(&self, view_from_object: DMat4, corners: [DVec3; 8]) -> Region {
         let placed = Region::placed(view_from_object, corners, 0.0);
         let w =
@@ -106,7 +108,7 @@ impl ObserverSpace {
         Region::placed(view_from_object, corners, beside + deeper)
     }
 
-    /// The side of a pixel in view space where w is 1.
+    /// The size of a pixel in view space at w = 1.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn pixel(&self) -> f64 {
         let Size { width, height } = self.size;
@@ -115,12 +117,12 @@ impl ObserverSpace {
     }
 }
 
-/// How many pixels beside where it is a line may be drawn: half the width of a wide one, and the
-/// half of a pixel that its place is rounded by.
+/// How many pixels beside its position a line may be drawn: half of its width, and half a pixel of
+/// rounding.
 const LINE: f64 = 2.0;
 
-/// By how many pixels snapping moves a place at most, and twice that.
+/// Twice the distance in pixels by which snapping may move a position.
 const SNAPPED: f64 = 0.006;
 
-/// What interpolation in 32 bits may be wrong by, as a part of the largest value.
+/// The error of interpolation in f32, relative to the largest value.
 const ROUNDING: f64 = 2e-6;

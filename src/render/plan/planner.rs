@@ -1,34 +1,34 @@
-//! From the things of a scene to draws.
+//! Turns the items of a scene into draws.
 
 use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4, DVec3};
 
 use super::features::presence;
+use super::helpers;
+use super::observer::ObserverSpace;
 use super::planning::{Planner, Planning};
 use super::rules::Thing;
 use super::surfaces::Ground;
 use super::turning::turning_of;
-use super::uses::{self, EffectUse, State};
+use super::uses::{self, EffectState, EffectUse};
 use crate::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
 use crate::base::{Shared, color::Color, math};
 use crate::render::frame::draw::{Back, Draw, Lines, Pipeline};
 use crate::render::frame::variants::Variants;
 use crate::render::lights::region::Region;
-use crate::render::plan::helpers;
-use crate::render::plan::observer::ObserverSpace;
 use crate::scene::{
     Fill, ItemId, LightId, LightKind, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
 };
 
-/// Where an object is, for the observer.
+/// The transforms of an object for the observer.
 struct Placement {
     view_from_object: DMat4,
     clip_from_object: DMat4,
 }
 
 impl Planner<'_> {
-    /// Objects, the oldest first.
+    /// Adds objects, the oldest first.
     pub(super) fn add_objects(&self, into: &mut Planning) {
         let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
         objects.sort_by_key(|(id, _)| *id);
@@ -40,7 +40,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Why the user does not want to see an object.
+    /// The reason why the view does not show an object, if there is one.
     fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
         let alone = self.shot.view.only_selected || self.shot.view.polygons.is_some();
         if !object.visible {
@@ -64,7 +64,7 @@ impl Planner<'_> {
         let back = match (object.is_two_sided(), self.shot.view.back_faces) {
             (true, _) => Back::Lit,
             (false, true) => Back::Red,
-            (false, false) => Back::Left,
+            (false, false) => Back::Culled,
         };
         let draw = Draw {
             back,
@@ -80,7 +80,7 @@ impl Planner<'_> {
         self.add(into, object, draw);
     }
 
-    /// A draw of a mesh at a place, with everything about its surface still to be said.
+    /// A draw of a placed mesh, whose surface is not decided yet.
     fn draw(&self, item: ItemId, model: &Shared<Model>, world_from_object: DMat4) -> Draw {
         let Placement { view_from_object, clip_from_object } = self.placement(world_from_object);
         let linear = DMat3::from_mat4(view_from_object);
@@ -94,7 +94,7 @@ impl Planner<'_> {
                 NormalMatrix::AsItIs => math::at_power_of_two(linear),
             },
             mirrored: linear.determinant() < 0.0,
-            back: Back::Left,
+            back: Back::Culled,
             normals: self.shot.view.normals,
             normal_source: NormalSource::File,
             part_pipelines: Vec::new(),
@@ -110,7 +110,7 @@ impl Planner<'_> {
         }
     }
 
-    /// The way of an object to the observer's spaces.
+    /// Composes an object's placement with the observer's transforms.
     fn placement(&self, world_from_object: DMat4) -> Placement {
         let ObserverSpace { view_from_world, clip_from_view, .. } = self.observer;
         if self.shot.settings.vertices == VertexArithmetic::F32 {
@@ -122,7 +122,7 @@ impl Planner<'_> {
         Placement { view_from_object, clip_from_object: clip_from_view * view_from_object }
     }
 
-    /// Puts the draw of an object, or of a mark made into one, into the plan, unless nothing of it can
+    /// Adds the draw of an object, or of a helper that was made into one, unless nothing of it can
     /// be seen.
     fn add(&self, into: &mut Planning, object: &Object, mut draw: Draw) {
         let item = draw.item;
@@ -136,8 +136,8 @@ impl Planner<'_> {
             Some("it has no faces")
         } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
             Some("its placement is flat: it has no inside and no outside")
-        } else if into.plan.variants.has_rare_geometry() {
-            // Where it is seen is not where it is.
+        } else if into.plan.variants.has_geometry_variant() {
+            // A variant may move it on the screen.
             None
         } else {
             rules.thing(&thing)
@@ -159,7 +159,7 @@ impl Planner<'_> {
         into.plan.draws.push(draw);
     }
 
-    /// The pipeline of each part; `None` for what is hidden or not opaque enough.
+    /// The pipeline of each part; `None` for parts that are hidden or not opaque enough.
     fn part_pipelines(&self, into: &mut Planning, ground: &Ground<'_>) -> Vec<Option<u32>> {
         let shown = |part: &u32| !ground.object.hidden_parts.contains(part);
         (0..ground.object.model.mesh.parts().len())
@@ -169,15 +169,15 @@ impl Planner<'_> {
             .collect()
     }
 
-    /// Where an object is lit, where that is known, and whether nothing of it is cut.
+    /// The region in which an object is lit, if it is known, and whether nothing of it is clipped.
     fn region(&self, draw: &Draw, corners: [DVec3; 8]) -> (Option<Region>, bool) {
         if self.shot.settings.light != LightAt::Pixel {
-            // At its own vertices and faces, wherever the planes of the view are.
+            // Lit at vertices or faces: clipping does not matter.
             let exact = Region::placed(draw.view_from_object, corners, 0.0);
             let error = 2e-6 * exact.reach();
             return (Some(Region::placed(draw.view_from_object, corners, error)), false);
         }
-        let sure = !Variants::of(&self.shot.settings).has_rare_geometry();
+        let sure = !Variants::of(&self.shot.settings).has_geometry_variant();
         if !sure || !self.observer.holds(draw.clip_from_object, corners) {
             return (None, false);
         }
@@ -199,7 +199,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Cameras that do not look, and bulbs that shine.
+    /// Adds helpers: the cameras other than the observer, and the bulbs that are on.
     pub(super) fn add_marks(&self, into: &mut Planning) {
         let object_looks = self.shot.view.observer == Observer::Object
             && self.shot.view.object.is_some_and(|id| self.shot.scene.objects.get(id).is_some());
@@ -220,7 +220,7 @@ impl Planner<'_> {
             };
             let placement = helpers::world_from_mark(camera);
             let draw = Draw {
-                back: if self.shot.view.back_faces { Back::Red } else { Back::Left },
+                back: if self.shot.view.back_faces { Back::Red } else { Back::Culled },
                 lines: self.lines(&mark.model, mark.edge_color),
                 ..self.draw(ItemId::Camera(id), &mark.model, placement)
             };
@@ -255,13 +255,13 @@ impl Planner<'_> {
     }
 }
 
-/// Notes that nothing of a thing is drawn.
+/// Notes that an item is not drawn.
 fn left_out(into: &mut Planning, item: ItemId, name: &str, reason: &'static str) {
     into.notes.add(|| EffectUse {
         effect: presence(item),
         name: presence(item).label().to_owned(),
         on: Some(uses::Thing { item, name: name.to_owned() }),
-        state: State::exact(reason),
+        state: EffectState::exact(reason),
         pixels: None,
     });
 }

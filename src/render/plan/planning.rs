@@ -1,4 +1,4 @@
-//! A plan while it is made, and what planning reads.
+//! The state of planning: the plan so far, and what planning reads.
 
 use std::collections::HashMap;
 
@@ -10,12 +10,12 @@ use crate::render::frame::draw::Pipeline;
 use crate::render::lights::LightRow;
 use crate::scene::LightId;
 
-/// A plan while it is made.
+/// The plan so far, with the notes that explain it.
 #[derive(Debug)]
 pub(super) struct Planning {
     pub(super) plan: FramePlan,
     pub(super) notes: Notes,
-    /// The places of the plan's pipelines by their fingerprints.
+    /// The indices of the plan's pipelines, by fingerprint.
     places: HashMap<u64, Vec<u32>>,
 }
 
@@ -24,7 +24,7 @@ impl Planning {
         Self { plan, notes, places: HashMap::new() }
     }
 
-    /// The place of a pipeline among those of the frame.
+    /// The index of a pipeline in the frame; adds it if it is new.
     pub(super) fn pipeline(&mut self, pipeline: Pipeline) -> u32 {
         let pipelines = &mut self.plan.pipelines;
         let alike = self.places.entry(pipeline.fingerprint()).or_default();
@@ -51,8 +51,8 @@ pub(super) struct Shining {
     pub(super) id: LightId,
     pub(super) name: String,
     pub(super) effect: &'static LightRow,
-    /// The place of its light among the lamps of the plan.
-    pub(super) lamp: u32,
-    /// Whether it is on, and somewhere.
+    /// The index of its light in the plan.
+    pub(super) light: u32,
+    /// Whether it is on and has a position.
     pub(super) shines: bool,
 }

@@ -1,20 +1,20 @@
-//! Whether 32 bits have room for the numbers of a frame.
+//! Decides whether the numbers of a frame fit f32.
 //!
-//! Light squares distances, and numbers of 32 bits have squares from 1e-19 to 1e19 only. View space
-//! has a unit in which the observer sees some thousand units far, so what is seen has room, unless a
-//! lens reaches beyond everything: then what is near is too small beside it. Such a frame is planned
-//! in 64 bits. So no pixel has to ask.
+//! Lighting squares distances, and squares fit f32 only for numbers from 1e-19 to 1e19. In the unit
+//! of view space the far plane is some thousand units away, so distances fit, unless a lens has an
+//! extreme range: then near distances are too small beside the far plane. Such a frame is planned
+//! in f64, so no pixel has to check.
 
 use glam::DVec3;
 
 use crate::render::frame::{Eye, FramePlan};
 
-/// The least and the largest length in view space whose square, with all that is done to it, has room
-/// in 32 bits.
+/// The least and the largest length in view space whose square, and all that is computed from it,
+/// fits f32.
 const ROOM: [f64; 2] = [1e-12, 1e15];
 
 impl FramePlan {
-    /// Whether everything that is seen, and how far, has room in 32 bits.
+    /// Whether all distances of the frame fit f32.
     pub(super) fn has_room(&self) -> bool {
         let m = &self.clip_from_view;
         let [low, high] = ROOM;
@@ -28,7 +28,7 @@ impl FramePlan {
             Eye::Parallel => {
                 let sides = [1.0 / m.x_axis.x, 1.0 / m.y_axis.y];
                 let depths = [(1.0 - m.w_axis.z) / m.z_axis.z, -m.w_axis.z / m.z_axis.z];
-                // How far off a pixel is, is mixed from the corners of what it shows.
+                // The distance of a pixel is interpolated from the corners of its triangle.
                 sides.iter().all(|side| *side >= low)
                     && sides.iter().chain(&depths).all(|length| length.abs() <= high)
                     && self.ways_off().all(|off| off.abs() <= high)
@@ -36,7 +36,7 @@ impl FramePlan {
         }
     }
 
-    /// How far from the observer things begin and end, along the way that they look.
+    /// The distances along the view axis at which items begin and end.
     fn ways_off(&self) -> impl Iterator<Item = f64> {
         self.draws.iter().flat_map(|draw| {
             let corners = draw.model.mesh.bounds().map(|bounds| bounds.corners());

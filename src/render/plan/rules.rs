@@ -1,8 +1,8 @@
-//! When something is left out of a frame because nothing of the picture changes by it.
+//! The rules that leave work out of a frame because it changes no bit of the picture.
 //!
-//! All rules are here, one function for each decision, and planning asks nothing else. Each gives the
-//! reason for which something is left out. [`Rules::Ignored`] leaves nothing out: the same picture,
-//! which is how the rules are tested.
+//! All rules are here, one function for each decision, and planning uses no others. Each gives the
+//! reason why something is left out. [`Rules::Ignored`] leaves nothing out and has to give the same
+//! picture, which is how the rules are tested.
 
 use super::observer::ObserverSpace;
 use super::turning::is_turned_away;
@@ -16,36 +16,36 @@ use crate::scene::{Bounds, Light, LightKind, SpotOwner, Texture};
 /// Why something is left out; `None` if it is not.
 type Verdict = Option<&'static str>;
 
-/// A light, and whether there is a place from which it shines.
+/// A light, and whether it has a position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightFacts<'a> {
     /// The light.
     pub light: &'a Light,
-    /// Whether what it is fixed to is there, if it is fixed to anything.
+    /// Whether the item that it is fixed to exists, if it is fixed to one.
     pub is_placed: bool,
 }
 
 /// A light and a surface.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Meeting<'a> {
-    /// How the light lights.
+pub(crate) struct LitSurface<'a> {
+    /// The row of the light's kind.
     pub effect: &'static LightRow,
     /// The light.
-    pub lamp: &'a ViewLight,
+    pub light: &'a ViewLight,
     /// The surface.
-    pub matter: &'a PhongMaterial,
-    /// Where the surface is, where that is known.
+    pub material: &'a PhongMaterial,
+    /// The region of the surface, if it is known.
     pub region: Option<&'a Region>,
-    /// How its faces are turned, where that is known.
+    /// The normals of its faces, if they are known.
     pub turning: Option<&'a Turning>,
 }
 
 /// The lights of a surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reading {
-    /// How many they are.
+    /// The number of lights.
     pub lights: usize,
-    /// How many of them look at where a place is, how it is turned, or from where it is seen.
+    /// How many of them read positions, normals or directions to the observer.
     pub of_positions: usize,
 }
 
@@ -58,7 +58,7 @@ impl Reading {
     }
 }
 
-/// A mesh at its place, seen by somebody.
+/// A placed mesh and its observer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Thing<'a> {
     pub(super) observer: &'a ObserverSpace,
@@ -67,14 +67,15 @@ pub(crate) struct Thing<'a> {
 }
 
 impl Thing<'_> {
-    /// Whether all of it lies outside the view: its box, and no normals reach out of that.
+    /// Whether all of it lies outside the view: its box does, and no drawn normals stick out of the
+    /// box.
     #[must_use]
     pub(crate) fn is_outside(&self) -> bool {
         let corners = self.bounds.corners();
         !self.draws_normals() && self.observer.misses(self.draw.clip_from_object, corners)
     }
 
-    /// Whether all of its faces are turned away, and so are not drawn; where it has few.
+    /// Whether all of its faces are culled as back faces; only answered for small meshes.
     #[must_use]
     pub(crate) fn is_turned_away(&self) -> bool {
         !self.draws_normals() && is_turned_away(self.draw, self.observer.size)
@@ -93,17 +94,17 @@ impl Thing<'_> {
 
 /// A texture on a surface.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Covering<'a> {
+pub(crate) struct TexturedSurface<'a> {
     /// The texture.
     pub texture: &'a Texture,
-    /// What its alpha is multiplied with; below one half together, nothing is drawn.
+    /// What its alpha is multiplied with. If the product is below one half, the alpha test fails.
     pub opacity: f64,
 }
 
-impl Covering<'_> {
-    /// Whether something is drawn at each of its texels, and so anywhere between them.
+impl TexturedSurface<'_> {
+    /// Whether each of its texels passes the alpha test, and so anything interpolated between them.
     #[must_use]
-    pub(crate) fn has_no_holes(&self) -> bool {
+    pub(crate) fn passes_everywhere(&self) -> bool {
         f64::from(self.texture.picture.least_alpha()) / 255.0 * self.opacity >= 0.5
     }
 }
@@ -119,23 +120,23 @@ impl Rules {
     }
 
     /// Whether a light is left out on a surface, wherever that is.
-    pub(super) fn reflection(self, it: &Meeting<'_>) -> Verdict {
-        self.verdict(|| (it.effect.is_noop)(it.lamp, it.matter))
+    pub(super) fn reflection(self, it: &LitSurface<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_noop)(it.light, it.material))
     }
 
     /// Whether a light's highlight is left out on a surface.
-    pub(super) fn highlight(self, it: &Meeting<'_>) -> Verdict {
-        self.verdict(|| because(!it.matter.mirrors(it.lamp), "Ks is 0"))
+    pub(super) fn highlight(self, it: &LitSurface<'_>) -> Verdict {
+        self.verdict(|| because(!it.material.mirrors(it.light), "Ks is 0"))
     }
 
     /// Whether a light is left out on an object.
-    pub(super) fn object(self, it: &Meeting<'_>) -> Verdict {
-        self.verdict(|| (it.effect.is_culled)(it.lamp, it.region?).or_else(|| behind(it)))
+    pub(super) fn object(self, it: &LitSurface<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_culled)(it.light, it.region?).or_else(|| behind(it)))
     }
 
     /// Whether a light is left out on what a tile of the picture shows.
-    pub(super) fn tile(self, it: &Meeting<'_>) -> Verdict {
-        self.verdict(|| (it.effect.is_culled)(it.lamp, it.region?))
+    pub(super) fn tile(self, it: &LitSurface<'_>) -> Verdict {
+        self.verdict(|| (it.effect.is_culled)(it.light, it.region?))
     }
 
     /// Whether the positions and normals of fragments are left out.
@@ -162,8 +163,8 @@ impl Rules {
     }
 
     /// Whether the alpha test of a texture is left out.
-    pub(super) fn holes(self, it: &Covering<'_>) -> Verdict {
-        self.verdict(|| because(it.has_no_holes(), "it has no holes"))
+    pub(super) fn alpha_test(self, it: &TexturedSurface<'_>) -> Verdict {
+        self.verdict(|| because(it.passes_everywhere(), "it has no holes"))
     }
 
     /// The verdict of a rule, if rules apply.
@@ -179,8 +180,8 @@ fn because(left_out: bool, reason: &'static str) -> Verdict {
     left_out.then_some(reason)
 }
 
-fn behind(it: &Meeting<'_>) -> Verdict {
-    let is_behind = (it.effect.is_behind)(it.lamp, it.region?, it.turning?);
+fn behind(it: &LitSurface<'_>) -> Verdict {
+    let is_behind = (it.effect.is_behind)(it.light, it.region?, it.turning?);
     is_behind.then_some("it comes from behind every face")
 }
 

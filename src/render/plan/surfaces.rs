@@ -1,18 +1,17 @@
-//! How surfaces are coloured: from materials, textures and lights to pipelines.
+//! Turns materials, textures and lights into pipelines.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use super::bounded;
 use super::planning::{Planner, Planning, Shining};
-use super::rules::{Covering, Meeting, Reading};
-use super::uses::{self, Class, Effect, EffectUse, State};
+use super::rules::{LitSurface, Reading, TexturedSurface};
+use super::uses::{self, Class, Effect, EffectState, EffectUse};
 use crate::accuracy::{Arithmetic, LeaveOut, LightAt, SpecularForm};
 use crate::base::image::{Picture, Size};
 use crate::base::once::get_or_compute;
 use crate::base::{Shared, color::Color};
-use crate::render::frame::draw::Form;
-use crate::render::frame::draw::{Pipeline, Shaded, Stage};
+use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
 use crate::render::lights::PhongMaterial;
 use crate::render::lights::region::Region;
 use crate::render::lights::turning::Turning;
@@ -23,13 +22,13 @@ use crate::scene::{ItemId, Object, PartLook, Surface, Texture, Wrap};
 pub(super) struct Ground<'a> {
     pub(super) item: ItemId,
     pub(super) object: &'a Object,
-    /// Where they are lit, where that is known.
+    /// The region in which they are lit, if it is known.
     pub(super) region: Option<Region>,
-    /// How they are turned, where that is known.
+    /// Their normals, if they are known.
     pub(super) turning: Option<Turning>,
     /// See [`Shaded::tiled`].
     pub(super) tiled: bool,
-    /// Whether their colours are seen at all.
+    /// Whether their colours are visible at all.
     pub(super) seen: bool,
 }
 
@@ -39,7 +38,7 @@ impl Ground<'_> {
     }
 }
 
-/// What leaves a surface as it is.
+/// A white texture, which leaves a surface as it is.
 fn white() -> &'static Shared<Texture> {
     static WHITE: OnceLock<Shared<Texture>> = OnceLock::new();
     get_or_compute(&WHITE, || {
@@ -54,7 +53,7 @@ fn white() -> &'static Shared<Texture> {
 }
 
 impl Planner<'_> {
-    /// How one part of an object is drawn; `None` where its opacity leaves nothing.
+    /// The pipeline of one part of an object; `None` if it is too transparent to be drawn.
     pub(super) fn pipeline_of_part(
         &self,
         into: &mut Planning,
@@ -77,7 +76,7 @@ impl Planner<'_> {
             None => texture.or_else(|| Some(white()).filter(|_| !mesh.uvs().is_empty())),
         };
         let has_holes = |texture: &&Shared<Texture>| {
-            rules.holes(&Covering { texture, opacity: look.opacity }).is_none()
+            rules.alpha_test(&TexturedSurface { texture, opacity: look.opacity }).is_none()
         };
         let colored = object.surface != Surface::Material;
         let shaded = Shaded {
@@ -92,13 +91,13 @@ impl Planner<'_> {
 
     /// The light of a material.
     fn lit(&self, into: &mut Planning, ground: &Ground<'_>, look: &PartLook<'_>) -> Shaded {
-        let matter = coefficients(look);
-        let floor = self.floor(into, ground.region.as_ref(), &matter);
-        let mut matter = matter.with_floor(floor, self.shot.settings.power);
+        let material = coefficients(look);
+        let floor = self.floor(into, ground.region.as_ref(), &material);
+        let mut material = material.with_floor(floor, self.shot.settings.power);
         let mut shaded = Shaded {
-            matter,
+            material,
             light: None,
-            places: false,
+            needs_positions: false,
             tiled: false,
             dropped: 0.0,
             cut_off: 0.0,
@@ -110,14 +109,15 @@ impl Planner<'_> {
         if ground.object.surface == Surface::Texture {
             return shaded;
         }
-        let mut stages = self.stages(into, ground, &matter);
+        let mut stages = self.stages(into, ground, &material);
         if self.shot.settings.leave_out == LeaveOut::HalfStep {
-            shaded.dropped = self.thin(into, ground, &matter, &mut stages);
-            (matter, shaded.cut_off) = self.cut(into, ground, matter, &mut stages);
+            shaded.dropped = self.thin(into, ground, &material, &mut stages);
+            (material, shaded.cut_off) = self.cut(into, ground, material, &mut stages);
         }
-        shaded.matter = matter;
-        shaded.places = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
-        // Tile by tile where some light shines on a part of space only, or is too faint in some.
+        shaded.material = material;
+        shaded.needs_positions = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
+        // Light is culled tile by tile if some light has a limited reach, or may be too faint in
+        // some tiles.
         shaded.tiled = ground.tiled
             && (self.shot.settings.leave_out == LeaveOut::HalfStep
                 || stages.iter().any(|stage| stage.effect.has_reach));
@@ -125,24 +125,24 @@ impl Planner<'_> {
         shaded
     }
 
-    /// The power of 2 below which powers of highlights count as 0.
-    fn floor(&self, into: &Planning, region: Option<&Region>, matter: &PhongMaterial) -> f64 {
-        // By what the scene says, and not by what is left of it after leaving out.
+    /// The floor of highlights: powers below 2^floor count as 0.
+    fn floor(&self, into: &Planning, region: Option<&Region>, material: &PhongMaterial) -> f64 {
+        // Computed from the scene, before anything is left out.
         let with_highlight = |shining: &&Shining| {
-            let lamp = &into.plan.lamps[shining.lamp as usize];
+            let light = &into.plan.lights[shining.light as usize];
             shining.shines
-                && matter.mirrors(lamp)
-                && (shining.effect.is_noop)(lamp, matter).is_none()
+                && material.mirrors(light)
+                && (shining.effect.is_noop)(light, material).is_none()
         };
         let lit = || self.shining.iter().filter(with_highlight);
-        // A highlight that is stronger than its light reaches further down, and so does one of a light
-        // that is stronger where it arrives than where it begins.
-        let strongest = matter.specular.iter().fold(1.0_f64, |most, ks| most.max(ks.abs()));
-        // Not at vertices: one that a lamp stands on has light beyond measure, and so little of it as is cut
-        // off here would be all that its polygons show.
+        // A highlight that is stronger than its light needs a lower floor, and so does a light that
+        // is stronger where it arrives than at its source.
+        let strongest = material.specular.iter().fold(1.0_f64, |most, ks| most.max(ks.abs()));
+        // Not at vertices: a vertex very near to a light receives unbounded light, and the little
+        // that is cut off here would be all that its polygons show.
         let arriving = |shining: &Shining| {
-            let lamp = &into.plan.lamps[shining.lamp as usize];
-            (shining.effect.max_falloff)(lamp, region)
+            let light = &into.plan.lights[shining.light as usize];
+            (shining.effect.max_falloff)(light, region)
         };
         let arriving = match self.shot.settings.light {
             LightAt::Face | LightAt::Vertex => 1.0,
@@ -154,8 +154,8 @@ impl Planner<'_> {
         }
         let count = lit().count().max(1);
         let count = u32::try_from(count).unwrap_or(u32::MAX);
-        // 2^-10 shared out among the highlights, so that all that is left out stays below a quarter of
-        // a byte step.
+        // 2^-10 divided among the highlights, so that all that is left out stays below a quarter of
+        // a step of a byte.
         deeper(-10.0 - libm::log2(f64::from(count)))
     }
 
@@ -164,21 +164,21 @@ impl Planner<'_> {
         &self,
         into: &mut Planning,
         ground: &Ground<'_>,
-        matter: &PhongMaterial,
+        material: &PhongMaterial,
     ) -> Vec<Stage> {
         let mut stages = Vec::new();
         let mut no_highlight = Some("no light is on it");
-        for Shining { id, name, effect, lamp, .. } in &self.shining {
-            let source = into.plan.lamps[*lamp as usize];
+        for Shining { id, name, effect, light, .. } in &self.shining {
+            let source = into.plan.lights[*light as usize];
             let (region, turning) = (ground.region.as_ref(), ground.turning.as_ref());
-            let meeting = Meeting { effect, lamp: &source, matter, region, turning };
+            let meeting = LitSurface { effect, light: &source, material, region, turning };
             let rules = &into.plan.rules;
             let reason = rules.reflection(&meeting).or_else(|| rules.object(&meeting));
             into.notes.add(|| EffectUse {
                 effect: Effect::Light(*id),
                 name: name.clone(),
                 on: ground.thing(),
-                state: reason.map_or(State::ON, State::exact),
+                state: reason.map_or(EffectState::ON, EffectState::exact),
                 pixels: None,
             });
             if reason.is_some() {
@@ -193,13 +193,13 @@ impl Planner<'_> {
                 SpecularForm::Reflection => Form::Reflection,
                 SpecularForm::HalfVector => Form::HalfVector,
             };
-            stages.push(Stage { effect, lamp: *lamp, highlight });
+            stages.push(Stage { effect, light: *light, highlight });
         }
-        into.notes.add(|| self.note_highlights(ground, no_highlight.map(State::exact)));
+        into.notes.add(|| self.note_highlights(ground, no_highlight.map(EffectState::exact)));
         stages
     }
 
-    fn note_highlights(&self, ground: &Ground<'_>, left_out: Option<State>) -> EffectUse {
+    fn note_highlights(&self, ground: &Ground<'_>, left_out: Option<EffectState>) -> EffectUse {
         let form = match self.shot.settings.specular {
             SpecularForm::Reflection => "(R.V)^Ns",
             SpecularForm::HalfVector => "(N.H)^Ns",
@@ -208,83 +208,87 @@ impl Planner<'_> {
             effect: Effect::Highlights,
             name: Effect::Highlights.label().to_owned(),
             on: ground.thing(),
-            state: left_out.unwrap_or(State::On(form.into())),
+            state: left_out.unwrap_or(EffectState::On(form.into())),
             pixels: None,
         }
     }
 
-    /// Takes out lights that add too little. Gives what they add, in steps of a byte.
+    /// Removes lights that are too faint. Returns what they add, in steps of a byte.
     fn thin(
         &self,
         into: &mut Planning,
         ground: &Ground<'_>,
-        matter: &PhongMaterial,
+        material: &PhongMaterial,
         stages: &mut Vec<Stage>,
     ) -> f64 {
         let Planning { plan, notes, .. } = into;
         let tell = |stage: &Stage, bound: f64| {
-            let shining = self.shining.iter().find(|shining| shining.lamp == stage.lamp);
+            let shining = self.shining.iter().find(|shining| shining.light == stage.light);
             let Some(Shining { id, name, .. }) = shining else { return };
             notes.replace(|| EffectUse {
                 effect: Effect::Light(*id),
                 name: name.clone(),
                 on: ground.thing(),
-                state: State::LeftOut { reason: "too faint".into(), class: Class::Bounded(bound) },
+                state: EffectState::LeftOut {
+                    reason: "too faint".into(),
+                    class: Class::Bounded(bound),
+                },
                 pixels: None,
             });
         };
         let region = ground.region.as_ref();
-        let most =
-            |stage: &Stage| bounded::most(stage, &plan.lamps[stage.lamp as usize], matter, region);
+        let most = |stage: &Stage| {
+            bounded::most(stage, &plan.lights[stage.light as usize], material, region)
+        };
         bounded::thin(stages, most, bounded::LIGHTS, tell)
     }
 
-    /// Cuts off the foot of highlights. Gives what that takes away, in steps of a byte.
+    /// Raises the floor of highlights to cut off their tails. Returns what they lose, in steps of a
+    /// byte.
     fn cut(
         &self,
         into: &mut Planning,
         ground: &Ground<'_>,
-        matter: PhongMaterial,
+        material: PhongMaterial,
         stages: &mut [Stage],
     ) -> (PhongMaterial, f64) {
-        let lit = (&into.plan.lamps[..], &matter);
+        let lit = (&into.plan.lights[..], &material);
         let region = ground.region.as_ref();
-        let Some(power) = bounded::least_power(stages, lit, region) else { return (matter, 0.0) };
+        let Some(power) = bounded::least_power(stages, lit, region) else { return (material, 0.0) };
         let floor = libm::log2(power);
-        if floor <= matter.floor {
-            return (matter, 0.0);
+        if floor <= material.floor {
+            return (material, 0.0);
         }
         let cut_off = bounded::cut_off(stages, lit, region, power.min(1.0));
         if power < 1.0 {
-            return (matter.with_floor(floor, self.shot.settings.power), cut_off);
+            return (material.with_floor(floor, self.shot.settings.power), cut_off);
         }
         for stage in stages {
             stage.highlight = Form::Plain;
         }
         let class = Class::Bounded(cut_off);
-        let faint = State::LeftOut { reason: "too faint".into(), class };
+        let faint = EffectState::LeftOut { reason: "too faint".into(), class };
         into.notes.replace(|| self.note_highlights(ground, Some(faint)));
-        (matter, cut_off)
+        (material, cut_off)
     }
 }
 
 /// The lowest floor that powers are computed down to.
 const LOWEST: f64 = -60.0;
 
-/// The largest coefficient and exponent: beside anything else that light is, it is beyond measure,
-/// and it has room in 32 bits.
+/// The largest coefficient and exponent: far beyond any other light, and it fits f32.
 const LARGEST: f64 = 1e30;
 
-/// What a part reflects. A file may say anything: what is no number reflects nothing, and an exponent
-/// below 0 would make a highlight of what is not one.
+/// The Phong material of a part. A file may hold any number: NaN counts as 0, and exponents below 0
+/// are raised to 0.
 fn coefficients(look: &PartLook<'_>) -> PhongMaterial {
     let material = look.material;
     let number = |k: f64| if k.is_nan() { 0.0 } else { k };
-    let held = |color: [f64; 3]| color.map(|k| number(k).clamp(-LARGEST, LARGEST));
+    let clamped = |color: [f64; 3]| color.map(|k| number(k).clamp(-LARGEST, LARGEST));
     PhongMaterial {
-        ambient: held(material.ambient),
-        diffuse: held(material.diffuse),
-        specular: held(material.specular),
+        ambient: clamped(material.ambient),
+        diffuse: clamped(material.diffuse),
+        specular: clamped(material.specular),
         exponent: number(material.exponent).clamp(0.0, LARGEST),
         ..PhongMaterial::default()
     }

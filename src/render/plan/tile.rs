@@ -1,61 +1,62 @@
-//! What a tile of the picture does without, once its depths are known and before it is coloured.
+//! Culls the lights of a tile, once its depths are known and before it is coloured.
 //!
-//! The pixels of a tile and the nearest and farthest of its depths are a piece of the view's pyramid,
-//! and all that the tile shows lies in it. A light that misses the piece is taken out of the lists of
-//! stages that the tile is coloured by; so no pixel asks.
+//! The pixels of a tile and its nearest and farthest depth bound a piece of the view frustum, which
+//! holds all that the tile shows. A light that does not reach the piece is removed from the stages
+//! of the tile, so no pixel has to check.
 
 use glam::DVec3;
 
-use super::rules::{Meeting, Reading};
+use super::bounded;
+use super::rules::{LitSurface, Reading};
 use crate::accuracy::{LeaveOut, Samples};
 use crate::render::frame::draw::{Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::region::Region;
-use crate::render::plan::bounded;
 use crate::render::screen::coverage::PixelBox;
 
-/// What interpolating a depth, or one by w, in 32 bits may be wrong by, as a part of the largest.
+/// The error of interpolating a depth or 1/w in f32, relative to the largest value.
 const ROUNDING: f64 = 2e-6;
 
-/// The stages of a tile. Each thread has its own, and keeps its memory.
+/// The stages of a tile. Each thread keeps its own from tile to tile.
 #[derive(Debug, Default)]
 pub(crate) struct TilePlan {
-    /// Where everything is that the tile shows, where it matters.
+    /// The region that holds all that the tile shows, if any pipeline needs it.
     region: Option<Region>,
-    /// By pipeline: what was decided, if it was in this tile.
+    /// For each pipeline, the decision for this tile, if it was made already.
     decided: Vec<Option<Decided>>,
-    /// The pipelines about which something was decided in this tile.
+    /// The pipelines with a decision for this tile.
     seen: Vec<usize>,
-    /// The places of the stages that are kept, list behind list.
+    /// The indices of the stages that are kept, one list after another.
     kept: Vec<u32>,
-    /// Those of the list that is being made.
+    /// The list that is being made.
     own: Vec<u32>,
 }
 
-/// What was decided about a pipeline in a tile.
+/// The decision about a pipeline in a tile: a range of `kept`.
 #[derive(Clone, Copy, Debug)]
 struct Decided {
     from: usize,
     to: usize,
-    places: bool,
+    needs_positions: bool,
     dropped: f64,
 }
 
 /// The lights that a tile is coloured by, with one pipeline.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TileLight<'a> {
-    /// All of the pipeline's, in the order of the scene.
+    /// All stages of the pipeline, in the order of the scene.
     pub(crate) stages: &'a [Stage],
-    /// The places of those that are evaluated, where not all are.
+    /// The indices of the stages that are evaluated, if not all are.
     pub(crate) kept: Option<&'a [u32]>,
-    /// Whether any of them looks at places and normals.
-    pub(crate) places: bool,
-    /// What the lights that were left out add at most, in steps of a byte.
+    /// Whether any of them reads positions and normals.
+    pub(crate) needs_positions: bool,
+    /// The most that the lights that were left out add, in steps of a byte.
     pub(crate) dropped: f64,
 }
 
 impl TilePlan {
-    /// Turns to a tile. `depths` gives the least and the largest depth of its triangles, if it has any.
+    /// Begins a tile. `depths` gives the least and the largest depth of its triangles, if it has
+    /// any.
     pub(crate) fn begin(
         &mut self,
         plan: &FramePlan,
@@ -83,8 +84,8 @@ impl TilePlan {
         shaded: &'a Shaded,
     ) -> TileLight<'a> {
         let stages = shaded.light.as_deref().unwrap_or_default();
-        let Shaded { places, dropped, .. } = *shaded;
-        let whole = TileLight { stages, kept: None, places, dropped };
+        let Shaded { needs_positions, dropped, .. } = *shaded;
+        let whole = TileLight { stages, kept: None, needs_positions, dropped };
         let Some(region) = self.region.filter(|_| shaded.tiled) else { return whole };
         let at = pipeline as usize;
         let decided = match self.decided[at] {
@@ -94,8 +95,8 @@ impl TilePlan {
         if self.decided[at].replace(decided).is_none() {
             self.seen.push(at);
         }
-        let Decided { from, to, places, dropped } = decided;
-        TileLight { stages, kept: Some(&self.kept[from..to]), places, dropped }
+        let Decided { from, to, needs_positions, dropped } = decided;
+        TileLight { stages, kept: Some(&self.kept[from..to]), needs_positions, dropped }
     }
 
     fn decide(
@@ -105,12 +106,12 @@ impl TilePlan {
         stages: &[Stage],
         region: &Region,
     ) -> Decided {
-        let matter = &shaded.matter;
-        let lamp = |place: u32| &plan.lamps[stages[place as usize].lamp as usize];
+        let material = &shaded.material;
+        let light = |place: u32| &plan.lights[stages[place as usize].light as usize];
         let reaches = |place: &u32| {
             let effect = stages[*place as usize].effect;
-            let (lamp, region, turning) = (lamp(*place), Some(region), None);
-            plan.rules.tile(&Meeting { effect, lamp, matter, region, turning }).is_none()
+            let (light, region, turning) = (light(*place), Some(region), None);
+            plan.rules.tile(&LitSurface { effect, light, material, region, turning }).is_none()
         };
         self.own.clear();
         let count = u32::try_from(stages.len()).expect("fewer than 2^32 lights");
@@ -119,19 +120,19 @@ impl TilePlan {
         if plan.leave_out == LeaveOut::HalfStep {
             let budget = bounded::LIGHTS - dropped;
             let most = |place: &u32| {
-                bounded::most(&stages[*place as usize], lamp(*place), matter, Some(region))
+                bounded::most(&stages[*place as usize], light(*place), material, Some(region))
             };
             dropped += bounded::thin(&mut self.own, most, budget, |_, _| {});
         }
         let kept = self.own.iter().map(|place| &stages[*place as usize]);
-        let places = plan.rules.positions(&Reading::of(kept)).is_none();
+        let needs_positions = plan.rules.positions(&Reading::of(kept)).is_none();
         let from = self.kept.len();
         self.kept.extend_from_slice(&self.own);
-        Decided { from, to: self.kept.len(), places, dropped }
+        Decided { from, to: self.kept.len(), needs_positions, dropped }
     }
 }
 
-/// The piece of view space whose pixels and depths these are.
+/// The region of view space that projects to these pixels and depths.
 fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
     let m = &plan.clip_from_view;
     let (zz, zw) = (m.z_axis.z, m.w_axis.z);

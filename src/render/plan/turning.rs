@@ -1,5 +1,5 @@
-//! Which way the faces of a small mesh are turned: a wall, a floor, a leaf, of which all may be turned
-//! away from the observer or from a lamp. A closed shape never is, so larger meshes are not asked.
+//! Finds small meshes whose faces are all turned away from the observer or from a light: a wall, a
+//! floor, a leaf. A closed shape never is, so larger meshes are not examined.
 
 use glam::DVec3;
 
@@ -12,11 +12,11 @@ use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::doubled_area;
 use crate::scene::{Normals, dvec3};
 
-/// As many triangles or normals at most.
+/// The most triangles or normals of a mesh that is examined.
 const FEW: usize = 64;
 
-/// The normals of a draw; `None` where they are many, where backs are lit, or where placing stretches some
-/// so much more than others that their mixtures are not sure.
+/// The normals of a draw. `None` if there are many, if back faces are lit, or if the placement
+/// stretches some so much more than others that interpolated normals are uncertain.
 pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Turning> {
     let mesh = &draw.model.mesh;
     let normals = match (light_at, draw.normals) {
@@ -36,18 +36,18 @@ pub(super) fn turning_of(draw: &Draw, light_at: LightAt) -> Option<Turning> {
     placed.into_iter().map(math::unit).collect::<Option<_>>().map(Turning)
 }
 
-/// Whether no triangle of a small mesh is drawn because all are turned away, as their corners are
-/// snapped.
+/// Whether all triangles of a small mesh are culled as back faces, with corners snapped as in the
+/// rasterizer.
 pub(super) fn is_turned_away(draw: &Draw, size: Size) -> bool {
     let order = draw.model.mesh.draw_order();
-    if draw.back != Back::Left || order.triangles.len() > FEW {
+    if draw.back != Back::Culled || order.triangles.len() > FEW {
         return false;
     }
     let screen = Screen::new(draw.clip_from_object, size);
     order.triangles.iter().all(|triangle| {
         let place = |vertex: u32| screen.vertex(screen.clip(order.position(vertex)));
         let corners = triangle.vertices.map(place);
-        // What is cut is not sure.
+        // Clipped triangles are undecided.
         corners.iter().all(ScreenVertex::is_inside) && {
             let area = doubled_area(corners.map(|corner| corner.at()));
             if draw.mirrored { area <= 0 } else { area >= 0 }

@@ -1,4 +1,4 @@
-//! What a frame uses and what it does without, and why: for people to read.
+//! Explains which effects a frame uses and which it leaves out, and why.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::fmt;
 
 use crate::scene::{ItemId, LightId};
 
-/// Something that the renderer can do in a frame.
+/// An effect that the renderer can use in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Effect {
     /// Filled polygons.
@@ -19,11 +19,11 @@ pub enum Effect {
     Normals,
     /// Textures.
     Texture,
-    /// Looking for the holes of textures.
+    /// The alpha test of textures.
     AlphaTest,
     /// The colours of vertices.
     VertexColors,
-    /// Polygons that are turned away.
+    /// Back faces.
     BackFaces,
     /// The edges of polygons.
     Edges,
@@ -31,12 +31,12 @@ pub enum Effect {
     FaceNormals,
     /// The normals of vertices, as lines.
     VertexNormals,
-    /// The marks of cameras and bulbs.
+    /// Helpers: the models of cameras and bulbs.
     Marks,
 }
 
 impl Effect {
-    /// What it is called; a light has a name of its own.
+    /// Its label; a light has a name of its own.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -45,7 +45,7 @@ impl Effect {
             Self::Highlights => "Highlights",
             Self::Normals => "Normals at pixels",
             Self::Texture => "Textures",
-            Self::AlphaTest => "AlphaTest of textures",
+            Self::AlphaTest => "Holes of textures",
             Self::VertexColors => "Vertex colours",
             Self::BackFaces => "Back faces",
             Self::Edges => "Edges",
@@ -56,58 +56,58 @@ impl Effect {
     }
 }
 
-/// An effect on a thing, or on the frame as a whole.
+/// An effect on an item, or on the frame as a whole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectUse {
-    /// What it is.
+    /// The effect.
     pub effect: Effect,
-    /// What it is called: a light by its name.
+    /// Its label, or the name of a light.
     pub name: String,
-    /// The object or camera that it is on; `None` where it is the whole frame's.
+    /// The object or camera that it is on; `None` if it belongs to the frame as a whole.
     pub on: Option<Thing>,
-    /// Whether it is there.
-    pub state: State,
-    /// How many pixels it takes part in, where that was counted.
+    /// Whether it is used.
+    pub state: EffectState,
+    /// How many pixels it takes part in, if they were counted.
     pub pixels: Option<u64>,
 }
 
-/// An object, or a camera by its mark.
+/// An object, or a camera that is drawn as a helper.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Thing {
-    /// Which one.
+    /// Its id.
     pub item: ItemId,
-    /// As the outline calls it.
+    /// Its name in the outline.
     pub name: String,
 }
 
-/// Whether an effect is there.
+/// Whether an effect is used.
 #[derive(Clone, Debug, PartialEq)]
-pub enum State {
-    /// It is computed. With a word about it, where there is one.
+pub enum EffectState {
+    /// It is computed; with a remark, or an empty text.
     On(Cow<'static, str>),
     /// It is left out, for this reason.
     LeftOut {
-        /// In plain words.
+        /// The reason, in plain words.
         reason: Cow<'static, str>,
-        /// What of the picture changes by it.
+        /// How the picture changes by it.
         class: Class,
     },
 }
 
-/// What of the picture changes by leaving something out.
+/// How the picture changes if something is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Class {
-    /// Not a bit.
+    /// No bit changes.
     Exact,
-    /// Each channel by so many steps of a byte at most, before rounding.
+    /// Each channel changes by this many steps of a byte at most, before rounding.
     Bounded(f64),
 }
 
-impl State {
-    /// It is computed, and there is no more to say.
+impl EffectState {
+    /// It is computed, without a remark.
     pub const ON: Self = Self::On(Cow::Borrowed(""));
 
-    /// Left out without any change of the picture.
+    /// It is left out without any change of the picture.
     pub(super) fn exact(reason: impl Into<Cow<'static, str>>) -> Self {
         Self::LeftOut { reason: reason.into(), class: Class::Exact }
     }
@@ -118,7 +118,7 @@ impl State {
         matches!(self, Self::On(_))
     }
 
-    /// The reason, or the word about what is on.
+    /// The reason, or the remark.
     #[must_use]
     pub fn why(&self) -> &str {
         match self {
@@ -128,8 +128,8 @@ impl State {
     }
 }
 
-/// The reason, with its bound where there is one, or the word about what is on.
-impl fmt::Display for State {
+/// The reason, with its bound if there is one, or the remark.
+impl fmt::Display for EffectState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.why())?;
         match self {
@@ -141,11 +141,11 @@ impl fmt::Display for State {
     }
 }
 
-/// What planning notes down while it decides; nothing where nobody asked for it.
+/// The explanations that planning collects while it decides; empty if they were not requested.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     wanted: bool,
-    /// By effect, and by thing in the order of the plan.
+    /// By effect, then by item.
     uses: BTreeMap<(Effect, Option<ItemId>), EffectUse>,
 }
 
@@ -176,7 +176,7 @@ impl Notes {
         }
     }
 
-    /// All of them: what is the whole frame's first, then thing by thing.
+    /// All of them: first those of the whole frame, then item by item.
     pub(super) fn into_uses(self) -> Vec<EffectUse> {
         self.uses.into_values().collect()
     }

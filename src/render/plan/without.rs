@@ -1,22 +1,21 @@
-//! A plan with one effect taken out, so that it can be measured what the effect costs.
+//! Removes one effect from a plan, so that its cost can be measured.
 
 use super::rules::Reading;
+use super::uses::Effect;
 use crate::render::frame::FramePlan;
-use crate::render::frame::draw::Form;
-use crate::render::frame::draw::{Back, Pipeline, Shaded};
-use crate::render::plan::uses::Effect;
+use crate::render::frame::draw::{Back, Form, Pipeline, Shaded};
 use crate::scene::ItemId;
 
 impl FramePlan {
-    /// The plan without an effect: another picture, and less work. `None` where it has nothing of it,
-    /// or where nothing can be drawn without it.
+    /// The plan without an effect: another picture, and less work. `None` if it does not use the
+    /// effect, or cannot do without it.
     #[must_use]
     pub fn without(&self, effect: Effect) -> Option<Self> {
         let mut plan = self.clone();
         match effect {
             Effect::Light(id) => {
-                let lamp = self.lights.iter().position(|light| *light == id)?;
-                plan.for_each_light(|stages| stages.retain(|stage| stage.lamp as usize != lamp));
+                let index = self.light_ids.iter().position(|light| *light == id)?;
+                plan.for_each_light(|stages| stages.retain(|stage| stage.light as usize != index));
             }
             Effect::Highlights => plan.for_each_light(|stages| {
                 stages.iter_mut().for_each(|stage| stage.highlight = Form::Plain);
@@ -27,7 +26,7 @@ impl FramePlan {
             }),
             Effect::AlphaTest => plan.for_each_shaded(|shaded| shaded.cutout = None),
             Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
-            Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Left),
+            Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Culled),
             Effect::Edges => plan.draws.iter_mut().for_each(|draw| draw.lines.edges = false),
             Effect::FaceNormals => {
                 plan.draws.iter_mut().for_each(|draw| draw.lines.face_normals = None);
@@ -55,7 +54,7 @@ impl FramePlan {
         self.for_each_shaded(|shaded| {
             if let Some(stages) = &mut shaded.light {
                 change(stages);
-                shaded.places = rules.positions(&Reading::of(stages.iter())).is_none();
+                shaded.needs_positions = rules.positions(&Reading::of(stages.iter())).is_none();
             }
         });
     }

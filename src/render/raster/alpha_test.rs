@@ -9,7 +9,7 @@ use crate::render::texture::sample::sample;
 use crate::render::texture::uv::{Uvs, uv, uvs};
 use crate::scene::Texture;
 
-/// A triangle with a texture that leaves some of it out.
+/// A triangle that needs the alpha test.
 #[derive(Debug)]
 pub(crate) struct AlphaTest<'a> {
     weights: Weights<'a>,
@@ -20,8 +20,7 @@ pub(crate) struct AlphaTest<'a> {
 }
 
 impl<'a> AlphaTest<'a> {
-    /// Those of a triangle, in places of pixels that are shifted by so many parts of a pixel from their
-    /// middles; `None` where it has none.
+    /// The alpha test of a triangle at samples with this offset; `None` if its pipeline has none.
     pub(crate) fn of(
         plan: &'a FramePlan,
         frame: &ScreenGeometry,
@@ -46,7 +45,7 @@ impl<'a> AlphaTest<'a> {
         })
     }
 
-    /// Whether it is drawn in a pixel.
+    /// Whether it passes the test at a pixel.
     #[inline(always)]
     pub(crate) fn is_opaque(&self, pixel: [i32; 2]) -> bool {
         let uv = uv(self.uvs, self.weights.at(pixel));

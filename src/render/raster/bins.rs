@@ -1,60 +1,61 @@
-//! What may be seen in which tile.
+//! Bins: the primitives that may be visible in each tile.
 //!
-//! Every thread that sets up triangles and lines has bins of its own, so that none waits for another.
-//! What is seen does not depend on the order in which a tile looks at them.
+//! Every thread that sets up triangles and lines has bins of its own, so no thread waits for
+//! another. Visibility does not depend on the order in which a tile reads them.
 
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
+use super::unsnapped::UnsnappedTriangle;
 use crate::base::image::Size;
-use crate::render::raster::unsnapped::UnsnappedTriangle;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::screen::tiles::{TILE, tiles_of};
 
-/// A triangle that is not small, or not simple.
+/// A triangle that is not small, or needs the alpha test.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LargeTriangle {
     pub(crate) corners: [ScreenVertex; 3],
     pub(crate) number: u32,
-    /// Whether its texture decides where it is drawn.
+    /// Whether it needs the alpha test.
     pub(crate) cutout: bool,
 }
 
-/// What one tile has to look at besides its hits.
+/// The primitives of one tile, besides its hits.
 #[derive(Debug, Default)]
 pub(crate) struct Bin {
-    /// Triangles, as places in [`Bins::large`], or among those that are drawn one by one.
+    /// Triangles, as indices into [`Bins::large`], or of those that are drawn one by one.
     pub(crate) large: Vec<u32>,
-    /// Lines, as places in [`Bins::lines`].
+    /// Lines, as indices into [`Bins::lines`].
     pub(crate) lines: Vec<u32>,
 }
 
-/// The bins of one thread, in lines of the cache that no other thread's are in.
+/// The bins of one thread, aligned so that no other thread's share a cache line.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 pub(crate) struct Bins {
     columns: i32,
     rows: i32,
-    /// Where pixels are looked at.
-    pub(crate) places: SamplePositions,
+    /// The samples of the pass.
+    pub(crate) sample_positions: SamplePositions,
     pub(crate) tiles: Vec<Bin>,
     pub(crate) hits: Hits,
     pub(crate) large: Vec<LargeTriangle>,
-    /// Triangles that are drawn one by one, with their boxes: then there are no others.
+    /// Triangles that are drawn one by one, with their bounding boxes; if there are any, no others
+    /// are drawn.
     plain: Vec<(UnsnappedTriangle, PixelBox)>,
     pub(crate) lines: Vec<ScreenLine>,
     /// Small triangles that wait to be drawn together, by the size of their boxes.
     pub(crate) queues: Box<[Queue; SMALL.len()]>,
-    /// How many triangles, or pieces of such, are in the bins.
+    /// The number of triangles, or of pieces of clipped ones, in the bins.
     pub(crate) drawn: usize,
 }
 
 impl Bins {
-    /// Empties the bins, for a picture of this size that is looked at in these places.
-    pub(crate) fn clear(&mut self, size: Size, places: SamplePositions) {
-        self.places = places;
+    /// Empties the bins, for a picture of this size and a pass with these samples.
+    pub(crate) fn clear(&mut self, size: Size, sample_positions: SamplePositions) {
+        self.sample_positions = sample_positions;
         [self.columns, self.rows] = tiles_of(size);
         let count = usize::try_from(self.columns * self.rows).expect("not negative");
         self.tiles.resize_with(count, Bin::default);
@@ -68,7 +69,7 @@ impl Bins {
         self.large.clear();
         self.plain.clear();
         self.lines.clear();
-        // A frame that was given up leaves some behind.
+        // A cancelled frame leaves some behind.
         for queue in self.queues.iter_mut() {
             queue.clear();
         }
@@ -81,7 +82,7 @@ impl Bins {
         self.hits.is_empty(tile) && bin.large.is_empty() && bin.lines.is_empty()
     }
 
-    /// Adds a triangle of any size, whose box of pixels is this.
+    /// Adds a triangle of any size with its bounding box.
     pub(crate) fn add_large(&mut self, triangle: LargeTriangle, bounds: PixelBox) {
         let number = u32::try_from(self.large.len()).expect("fewer than 2^32 triangles");
         self.drawn += 1;
@@ -89,7 +90,7 @@ impl Bins {
         self.each(bounds, |bin| bin.large.push(number));
     }
 
-    /// Adds a triangle that is drawn pixel by pixel, somewhere in a box.
+    /// Adds a triangle that is drawn pixel by pixel, with its bounding box.
     pub(crate) fn add_plain(&mut self, triangle: UnsnappedTriangle, bounds: PixelBox) {
         let number = u32::try_from(self.plain.len()).expect("fewer than 2^32 triangles");
         self.drawn += 1;
@@ -97,20 +98,20 @@ impl Bins {
         self.each(bounds, |bin| bin.large.push(number));
     }
 
-    /// A triangle that is drawn pixel by pixel, and its box.
+    /// A triangle that is drawn pixel by pixel, and its bounding box.
     pub(crate) fn plain(&self, number: u32) -> (&UnsnappedTriangle, PixelBox) {
         let (plain, bounds) = &self.plain[number as usize];
         (plain, *bounds)
     }
 
-    /// Adds a line of so many pixels' width to the tiles that it crosses.
+    /// Adds a line of a width in pixels to the tiles that it crosses.
     pub(crate) fn add_line(&mut self, line: ScreenLine, width: i32) {
         let number = u32::try_from(self.lines.len()).expect("fewer than 2^32 lines");
         self.lines.push(line);
         let picture =
             PixelBox { left: 0, top: 0, right: self.columns * TILE, bottom: self.rows * TILE };
-        // Seen from a place off the middle, it takes the next pixel at the most.
-        let width = if self.places.are_many() { width + 1 } else { width };
+        // At a sample off the centre, it may cover the next pixel.
+        let width = if self.sample_positions.are_many() { width + 1 } else { width };
         for bounds in lines::stretches(&line, width, picture) {
             self.each(bounds, |bin| bin.lines.push(number));
         }
@@ -128,7 +129,7 @@ impl Bins {
     }
 }
 
-/// The tiles of one direction that a range of pixels reaches into, of `count`.
+/// The tiles of one axis, out of `count`, that a range of pixels reaches into.
 #[inline(always)]
 fn tiles(low: i32, high: i32, count: i32) -> std::ops::Range<i32> {
     low.div_euclid(TILE).max(0)..((high - 1).div_euclid(TILE) + 1).min(count)

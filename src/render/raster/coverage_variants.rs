@@ -1,20 +1,20 @@
-//! Which pixels a triangle covers, by each way: one pixel after the other.
+//! The variants of coverage: which pixels a triangle covers, one pixel after the other.
 //!
-//! * By edge functions of whole numbers, as everywhere, but in the parts of a pixel that are chosen.
-//! * By edge functions of 32-bit numbers and corners that are not snapped. A centre on an edge is taken
-//!   by both sides, and rounding may give one next to it to both or to none.
-//! * By scan lines, as software did it before edge functions: corners are rounded to whole pixels, and
-//!   each row goes from the left edge to the right edge, rounded, both ends with it. So neighbours write
+//! * Integer edge functions, like the default, but with the chosen subpixels.
+//! * Edge functions in f32 of corners that are not snapped. A centre on an edge is covered by both
+//!   sides, and a centre near to it may by rounding be covered by both or by neither.
+//! * Scan lines, as in software before edge functions: corners are rounded to whole pixels, and
+//!   each row runs from the left edge to the right edge, rounded and inclusive. So neighbours cover
 //!   the pixels that they share twice, and pixels are covered whose centres lie outside.
 
+use super::unsnapped::UnsnappedTriangle;
 use crate::base::math::each;
-use crate::render::raster::unsnapped::UnsnappedTriangle;
 use crate::render::screen::coverage::{PixelBox, Snapped, doubled_area};
 
 /// A pixel, by column and row, and its depth.
 type Take<'a> = &'a mut dyn FnMut(i32, i32, f32);
 
-/// Covers pixels by whole numbers, in `parts` of a pixel.
+/// Covers pixels by integer edge functions, with `parts` subpixels per pixel.
 #[expect(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,
@@ -26,14 +26,14 @@ pub(crate) fn exactly(plain: &UnsnappedTriangle, parts: i32, clip: PixelBox, tak
     let edges = [Edge::new(q, r, area), Edge::new(r, p, area), Edge::new(p, q, area)];
     let [a, b, c] = plain.depths.map(f64::from);
     let per_area = 1.0 / area.abs() as f64;
-    let held = held(plain);
+    let clamped = clamped(plain);
     let middle = |i: i32| i64::from(i) * i64::from(parts) + i64::from(parts / 2);
     for y in clip.top..clip.bottom {
         for x in clip.left..clip.right {
             let values = each(edges, |edge| edge.at(middle(x), middle(y)));
             if edges.iter().zip(values).all(|(edge, value)| edge.covers(value)) {
                 let [_, second, third] = values.map(|value| value as f64 * per_area);
-                take(x, y, held((a + second * (b - a) + third * (c - a)) as f32));
+                take(x, y, clamped((a + second * (b - a) + third * (c - a)) as f32));
             }
         }
     }
@@ -56,14 +56,14 @@ impl Edge {
         a * x + b * y + c
     }
 
-    /// Top and left edges have the centres that lie on them.
+    /// The top-left rule: centres on top and left edges are covered.
     const fn covers(self, value: i64) -> bool {
         let Self([a, b, _]) = self;
         value > 0 || (value == 0 && (a > 0 || (a == 0 && b > 0)))
     }
 }
 
-/// Covers pixels by edge functions in 32 bits.
+/// Covers pixels by edge functions in f32.
 #[expect(clippy::cast_possible_truncation, reason = "32 bits are meant")]
 #[expect(clippy::cast_precision_loss, reason = "columns and rows are small")]
 pub(crate) fn in_32_bits(plain: &UnsnappedTriangle, clip: PixelBox, take: Take<'_>) {
@@ -73,14 +73,14 @@ pub(crate) fn in_32_bits(plain: &UnsnappedTriangle, clip: PixelBox, take: Take<'
         ((p[1] - q[1]) * x + (q[0] - p[0]) * y + (p[0] * q[1] - p[1] * q[0])) * area.signum()
     };
     let [a, b, c] = plain.depths;
-    let held = held(plain);
+    let clamped = clamped(plain);
     for y in clip.top..clip.bottom {
         for x in clip.left..clip.right {
             let (cx, cy) = (x as f32 + 0.5, y as f32 + 0.5);
             let values = [edge(q, r, cx, cy), edge(r, p, cx, cy), edge(p, q, cx, cy)];
             if values.iter().all(|value| *value >= 0.0) {
                 let [second, third] = [values[1], values[2]].map(|value| value / area.abs());
-                take(x, y, held(a + second * (b - a) + third * (c - a)));
+                take(x, y, clamped(a + second * (b - a) + third * (c - a)));
             }
         }
     }
@@ -116,17 +116,17 @@ pub(crate) fn by_scan_lines(plain: &UnsnappedTriangle, clip: PixelBox, take: Tak
         }
         let [[left, from], [right, to]] = ends;
         let per_pixel = if right > left { (to - from) / (right - left) } else { 0.0 };
-        let held = held(plain);
+        let clamped = clamped(plain);
         let columns =
             (left.round() as i32).max(clip.left)..(right.round() as i32 + 1).min(clip.right);
         for x in columns {
-            take(x, y, held(from + per_pixel * (x as f32 - left)));
+            take(x, y, clamped(from + per_pixel * (x as f32 - left)));
         }
     }
 }
 
-/// Holds a depth to those of the corners.
-fn held(plain: &UnsnappedTriangle) -> impl Fn(f32) -> f32 {
+/// Clamps a depth to those of the corners.
+fn clamped(plain: &UnsnappedTriangle) -> impl Fn(f32) -> f32 {
     let [a, b, c] = plain.depths;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     move |depth| {
@@ -151,7 +151,7 @@ mod tests {
         UnsnappedTriangle { corners, pixels, depths: [0.5; 3], number: 0, cutout: false }
     }
 
-    /// How often each pixel of a square is covered by two halves of it.
+    /// Counts how often each pixel of a square is covered by its two halves.
     fn counts(
         [x, y]: [f64; 2],
         cover: impl Fn(&UnsnappedTriangle, Take<'_>),
@@ -174,7 +174,7 @@ mod tests {
         let mut state = 1_u64;
         let mut random = move || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            // Every second on a centre or a border of a pixel.
+            // Half of them on a centre or a border of a pixel.
             let parts = (state >> 33) % (45 * 256);
             (if state >> 63 == 0 { parts } else { parts / 128 * 128 }) as f64 / 256.0 - 2.5
         };

@@ -1,8 +1,8 @@
-//! Triangles that are left out many at once: out of view, or turned away.
+//! Culls clusters of triangles that are out of view or turned away.
 //!
-//! What is left out of a draw here would be dropped one by one when it is set up; nothing else changes.
-//! So a cluster is left out only where that holds of each of its triangles as they are snapped to the
-//! grid of the screen, which turns some of the thinnest round.
+//! Every triangle that is culled here would also be culled by itself during setup; nothing else
+//! changes. So a cluster is culled only if that holds for each of its triangles after snapping to
+//! the subpixel grid, which reverses some of the thinnest.
 
 use glam::{DMat3, DVec3};
 
@@ -11,29 +11,30 @@ use crate::render::screen::clip::{Clip, Screen};
 use crate::render::screen::coverage::SUBPIXELS;
 use crate::scene::{CLUSTER, Cluster, DrawTriangle};
 
-/// How thin triangles may be on the screen, in pixels over their longest side, and how small, in doubled
-/// square pixels, so that snapping turns none of them round.
+/// How thin triangles may be on the screen, as height in pixels over their longest side, and how
+/// small, as doubled area in square pixels, so that snapping reverses none of them.
 ///
-/// It moves a corner by half a part of a pixel each way, so sides e and f change by at most sqrt 2 parts,
-/// and their product, twice the area, by 2 sqrt 2 parts times the longer side and 2 square parts. Half of
-/// the area has to cover each of the two; a fifth more is for rounding.
+/// Snapping moves a corner by half a subpixel on each axis, so sides e and f change by at most sqrt
+/// 2 subpixels, and their product, twice the area, by 2 sqrt 2 subpixels times the longer side and
+/// 2 square subpixels. Half of the area has to exceed each of the two; a fifth more is for
+/// rounding.
 const THINNEST: f64 = 1.2 * 2.0 * 2.0 * std::f64::consts::SQRT_2 / SUBPIXELS as f64;
 const SMALLEST: f64 = 1.2 * 2.0 * 2.0 / (SUBPIXELS as f64 * SUBPIXELS as f64);
 
-/// Pixels beyond the picture in which nothing counts as out of view.
+/// A margin around the picture, in pixels, in which nothing counts as out of view.
 const MARGIN: f64 = 2.0;
 
-/// How one draw is seen.
+/// The culling of one draw.
 #[derive(Debug)]
 pub(crate) struct Culling {
     screen: Screen,
-    /// The same with planes close to the picture.
+    /// The same with planes close to the picture's border.
     view: Screen,
     /// The lengths of the gradients of their distances, and of the rows of clip space.
     slopes: [[f64; 6]; 2],
     rows: [f64; 4],
-    /// g(p) = `at_origin` + `along` p: the product of g and of a face's normal is more than 0 where it is
-    /// turned away.
+    /// g(p) = `at_origin` + `along` p: a face is turned away if the dot product of g and its normal
+    /// is more than 0.
     at_origin: DVec3,
     along: f64,
     /// Whether faces that are turned away are left out.
@@ -42,7 +43,7 @@ pub(crate) struct Culling {
 
 impl Culling {
     pub(crate) fn new(draw: &Draw, screen: Screen) -> Self {
-        Self::with(screen, draw.mirrored, draw.back == Back::Left)
+        Self::with(screen, draw.mirrored, draw.back == Back::Culled)
     }
 
     fn with(screen: Screen, mirrored: bool, one_sided: bool) -> Self {
@@ -51,7 +52,8 @@ impl Culling {
         //
         //   -half_x half_y det[M p_i + t] / (w0 w1 w2),   det = (h p0 - e) . n,
         //
-        // n = (p1 - p0) x (p2 - p0), h = det M, and e = -adj(M) t, which is h times the observer's place.
+        // n = (p1 - p0) x (p2 - p0), h = det M, and e = -adj(M) t, which is h times the observer's
+        // place.
         let row = |i: usize| DVec3::from_slice(&screen.rows[i][..3]);
         let (x, y, w) = (row(0), row(1), row(3));
         let t = DVec3::new(screen.rows[0][3], screen.rows[1][3], screen.rows[3][3]);
@@ -69,8 +71,8 @@ impl Culling {
         }
     }
 
-    /// Calls `each` with what is left of triangles that begin with the first of some clusters. Clusters that
-    /// are left lie mostly side by side, and are set up together.
+    /// Calls `each` with the ranges of triangles that are not culled. Adjacent clusters are mostly
+    /// kept together, and set up together.
     pub(crate) fn each_left(
         &self,
         clusters: &[Cluster],
@@ -91,7 +93,7 @@ impl Culling {
         }
     }
 
-    /// Whether nothing of a cluster is drawn.
+    /// Whether a cluster is culled.
     pub(crate) fn leaves_out(&self, cluster: &Cluster) -> bool {
         let centre = cluster.centre.map(f64::from);
         let radius = f64::from(cluster.radius);
@@ -106,8 +108,8 @@ impl Culling {
         self.one_sided && uncut && self.is_turned_away(cluster, (centre.into(), radius), clip)
     }
 
-    /// Whether all triangles of a cluster, none of which is cut, are turned away and stay so when they
-    /// are snapped.
+    /// Whether all triangles of a cluster are turned away, and still are once they are snapped.
+    /// None of them may be clipped.
     fn is_turned_away(
         &self,
         cluster: &Cluster,
@@ -118,19 +120,19 @@ impl Culling {
         let axis = DVec3::from(cluster.axis.map(f64::from)).normalize_or_zero();
         let (reach, cosine) = (g.length(), f64::from(cluster.cosine));
         let off_axis = axis.dot(g) / reach;
-        // cos(a + b), where both angles are less than 90 degrees.
+        // cos(a + b), with both angles less than 90 degrees.
         let sines = ((1.0 - off_axis * off_axis) * (1.0 - cosine * cosine)).max(0.0).sqrt();
         let least = reach * (off_axis * cosine - sines) - self.along.abs() * radius;
         let [rx, ry, _, rw] = self.rows.map(|row| row * radius);
         let (nearest, farthest) = (w - rw, w + rw);
         let most = [(x.abs() + rx) / nearest, (y.abs() + ry) / nearest];
-        // The most pixels that a way of one unit in object space is long.
+        // The largest length on the screen, in pixels, of one unit of object space.
         let [half_x, half_y] = self.screen.half;
         let longest = (half_x * (self.rows[0] + most[0] * self.rows[3]))
             .hypot(half_y * (self.rows[1] + most[1] * self.rows[3]))
             / nearest;
         let per_area = least / (farthest * farthest * farthest);
-        // What is no number leaves nothing out.
+        // With NaN nothing is culled.
         off_axis > 0.0
             && cosine > 0.0
             && nearest > 0.0
@@ -150,10 +152,10 @@ mod tests {
     use crate::render::screen::coverage::doubled_area;
     use crate::scene::{Lens, Mesh, MeshSource, NONE, Part, Projection, SourceCorner};
 
-    /// Numbers by chance from -1 to 1.
-    struct Dice(u64);
+    /// Random numbers from -1 to 1.
+    struct Rng(u64);
 
-    impl Dice {
+    impl Rng {
         fn real(&mut self) -> f64 {
             self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (self.0 >> 33) as f64 / (1_u64 << 30) as f64 - 1.0
@@ -164,8 +166,8 @@ mod tests {
         }
     }
 
-    /// A ball whose corners lie off it by so much, so that some triangles are slivers.
-    fn ball(rows: u32, off: f64, dice: &mut Dice) -> Mesh {
+    /// A ball whose corners are displaced by `off` at most, so that some triangles are slivers.
+    fn ball(rows: u32, off: f64, rng: &mut Rng) -> Mesh {
         let columns = 2 * rows;
         let mut positions = Vec::new();
         for (row, column) in (0..=rows).flat_map(|row| (0..columns).map(move |c| (row, c))) {
@@ -173,7 +175,7 @@ mod tests {
             let round = std::f64::consts::TAU * f64::from(column) / f64::from(columns);
             let (sine, cosine) = (libm::sin(up), libm::cos(up));
             let place = DVec3::new(sine * libm::sin(round), cosine, sine * libm::cos(round));
-            positions.push((place + dice.place() * off).as_vec3().to_array());
+            positions.push((place + rng.place() * off).as_vec3().to_array());
         }
         let mut corners = Vec::new();
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |c| (row, c))) {
@@ -194,22 +196,22 @@ mod tests {
 
     #[test]
     fn what_is_left_out_faces_away_or_is_out_of_view_triangle_by_triangle() {
-        let mut dice = Dice(1);
+        let mut rng = Rng(1);
         let size = Size::new(640, 400);
         let (mut looked_at, mut left_out, mut turned_away) = (0, 0, 0);
         for round in 0..300 {
             let rough = [0.0, 0.001, 0.01, 0.05][round % 4];
-            let mesh = ball([12, 24, 60][round % 3], rough, &mut dice);
+            let mesh = ball([12, 24, 60][round % 3], rough, &mut rng);
             let order = mesh.draw_order();
-            // From afar, where triangles are smaller than the screen's grid, to within.
-            let far = libm::exp(4.0 + 5.0 * dice.real());
-            let stretch = DVec3::ONE + dice.place() * 0.9;
+            // From afar, where triangles are smaller than a subpixel, to inside of the ball.
+            let far = libm::exp(4.0 + 5.0 * rng.real());
+            let stretch = DVec3::ONE + rng.place() * 0.9;
             let mirror = if round % 5 == 0 { -1.0 } else { 1.0 };
-            let turn = DQuat::from_scaled_axis(dice.place() * 3.0);
+            let turn = DQuat::from_scaled_axis(rng.place() * 3.0);
             let object = DMat4::from_scale_rotation_translation(
                 stretch * DVec3::new(mirror, 1.0, 1.0),
                 turn,
-                DVec3::new(dice.real() * 0.5 * far, dice.real() * 0.5 * far, -far),
+                DVec3::new(rng.real() * 0.5 * far, rng.real() * 0.5 * far, -far),
             );
             let lens = Lens {
                 near: 0.01,

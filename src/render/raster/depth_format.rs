@@ -1,23 +1,24 @@
-//! How depths are kept: as what the word of a pixel has above the number of its primitive.
+//! Depth formats: the upper half of a pixel's entry in the visibility buffer.
 //!
-//! Everywhere the larger is the nearer. So formats in which 0 is near are kept as what is left to their
-//! largest number; what two depths have in common after rounding, they have in common here.
+//! In every format the larger key is the nearer. Formats in which 0 is near are stored as the
+//! difference from their largest number, which keeps exactly those depths equal that are equal
+//! after rounding.
 //!
-//! One step of depth at z 1000, between near 1 and far 2000, is 15.3 units in 16 bits, 0.06 in 24, and
-//! in 32-bit numbers 0.06 too, for their finest steps are next to 0, where nothing is far; turned round,
-//! with 0 far, they are 5.8e-5. Reed, "Depth Precision Visualized", 2015.
+//! One step of depth at z 1000, between near 1 and far 2000, is 15.3 units in 16 bits, 0.06 in 24,
+//! and 0.06 in f32 too, whose finest steps are near 0 and wasted on the near plane; with reversed
+//! depth, 0 at the far plane, it is 5.8e-5. Reed, "Depth Precision Visualized", 2015.
 
 use crate::accuracy::DepthFormat;
 
 /// The bits of 1.
 const ONE: u32 = 1.0_f32.to_bits();
 
-/// The largest number of some bits.
+/// The largest integer of some bits.
 const fn largest(bits: u32) -> u32 {
     (1 << bits) - 1
 }
 
-/// What a word has above for a depth that is 1 near and 0 far.
+/// The key of a depth that is 1 at the near plane and 0 at the far one.
 pub(crate) fn key(format: DepthFormat, depth: f32) -> u32 {
     match format {
         DepthFormat::F32Reversed => depth.to_bits(),
@@ -27,7 +28,7 @@ pub(crate) fn key(format: DepthFormat, depth: f32) -> u32 {
     }
 }
 
-/// The depth that is kept so, 1 near and 0 far.
+/// The depth of a key, 1 at the near plane and 0 at the far one.
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
 pub(crate) fn depth(format: DepthFormat, key: u32) -> f32 {
     let part = |bits: u32| (f64::from(key) / f64::from(largest(bits))) as f32;
@@ -39,7 +40,7 @@ pub(crate) fn depth(format: DepthFormat, key: u32) -> f32 {
     }
 }
 
-/// How much is left to the largest number when 1 - depth is rounded.
+/// The largest integer less the rounded 1 - depth.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 2^24")]
 fn whole(depth: f32, bits: u32) -> u32 {
     let largest = largest(bits);
@@ -51,7 +52,7 @@ fn whole(depth: f32, bits: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// How far apart two planes about z = 1000 have to be to be told apart surely.
+    /// The distance at which two planes about z = 1000 are always told apart.
     fn step(format: DepthFormat) -> f64 {
         let (near, far) = (1.0, 2000.0);
         let depth = |z: f64| (near * far / z - near) / (far - near);

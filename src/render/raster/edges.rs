@@ -1,7 +1,7 @@
-//! From edges of polygons and normals to lines in bins.
+//! Line setup: from edges of polygons and drawn normals to lines in bins.
 //!
 //! Sixteen edges at a time: short ones become hits at once, the others go to the tiles that they
-//! cross. What has an end beyond the planes is cut.
+//! cross. Edges with an end beyond the clipping planes are clipped.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -20,10 +20,10 @@ use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::sample_positions::FOUR;
 use crate::scene::{Corner, DrawEdge, NONE, NormalSource, dvec3};
 
-/// How many steps of depth lines are nearer than the surfaces that they lie on.
+/// The depth bias: how many steps of depth lines are nearer than the surfaces that they lie on.
 const NEARER: u32 = 2;
 
-/// What setting up the lines of one draw reads.
+/// The inputs of setting up the lines of one draw.
 #[derive(Debug)]
 pub(crate) struct EdgeSetup<'a> {
     pub(crate) draw: &'a Draw,
@@ -33,14 +33,14 @@ pub(crate) struct EdgeSetup<'a> {
     pub(crate) outlines: &'a [AtomicU8],
     /// The number of the draw's first line in the frame.
     pub(crate) first: u32,
-    /// In pixels.
+    /// The width of lines, in pixels.
     pub(crate) width: i32,
 }
 
 impl EdgeSetup<'_> {
-    /// Puts some of the draw's edges into bins.
+    /// Sets up some of the draw's edges into bins.
     pub(crate) fn run(&self, level: Level, edges: &[DrawEdge], bins: &mut Bins) {
-        if bins.places.are_many() {
+        if bins.sample_positions.are_many() {
             dispatch!(level, simd => self.all::<_, FOUR>(simd, edges, bins));
         } else {
             dispatch!(level, simd => self.all::<_, 1>(simd, edges, bins));
@@ -60,7 +60,7 @@ impl EdgeSetup<'_> {
         }
     }
 
-    /// Sets up sixteen edges, of which the first `count` are meant.
+    /// Sets up the first `count` of sixteen edges.
     #[inline(always)]
     fn sixteen<S: Simd, const N: usize>(
         &self,
@@ -89,7 +89,7 @@ impl EdgeSetup<'_> {
         let some = short & mask32x16::from_bitmask(simd, shown);
         let number = i32x16::from_slice(simd, &numbers).bitcast();
         for sample in 0..N {
-            let [x, y] = bins.places.shift::<N>(sample);
+            let [x, y] = bins.sample_positions.shift::<N>(sample);
             let seen = |[ex, ey, depth]: Ends<S>| [ex - x, ey - y, depth];
             let (width, nearer) = (self.width, self.nearer());
             let short = Short { some, number, width, nearer, sample };
@@ -125,7 +125,7 @@ impl EdgeSetup<'_> {
         LineNumber::new(self.first + edge.number, outline == Outline::Back)
     }
 
-    /// How many steps of depth edges are nearer than they are.
+    /// The depth bias of edges, in steps of depth.
     const fn nearer(&self) -> u32 {
         if self.draw.filled { NEARER } else { 0 }
     }
@@ -135,7 +135,7 @@ impl EdgeSetup<'_> {
         bins.add_line(ScreenLine { ends, number, nearer }, self.width);
     }
 
-    /// Adds an edge that may have to be cut.
+    /// Adds an edge that may have to be clipped.
     fn add_odd(&self, edge: &DrawEdge, number: u32, bins: &mut Bins) {
         let mesh = &self.draw.model.mesh;
         let ends = mesh.edges()[edge.number as usize].ends;
@@ -150,8 +150,8 @@ impl EdgeSetup<'_> {
         }
     }
 
-    /// Puts the draw's normals into bins, and their polygons into a list; the number of the first
-    /// normal is `first`.
+    /// Sets up the draw's normals into bins, and their polygons into a list; the number of the
+    /// first normal is `first`.
     pub(crate) fn add_normals(&self, first: u32, bins: &mut Bins, polygons: &mut Vec<u32>) {
         let begin = polygons.len();
         normals(self.draw, |ends, polygon| {
@@ -163,7 +163,7 @@ impl EdgeSetup<'_> {
     }
 }
 
-/// The outline of an edge: the best that its polygons have.
+/// The outline of an edge: the largest of its polygons'.
 #[inline(always)]
 fn outline_of(draw: &Draw, edge: &DrawEdge, outlines: &[AtomicU8]) -> Outline {
     let outline = |polygon: u32| outlines[polygon as usize].load(Ordering::Relaxed);
@@ -176,7 +176,7 @@ fn outline_of(draw: &Draw, edge: &DrawEdge, outlines: &[AtomicU8]) -> Outline {
     Outline::of(all.iter().map(|polygon| outline(*polygon)).max().unwrap_or(0))
 }
 
-/// The polygon that an edge is drawn for: the first of those whose outline decides.
+/// The polygon that an edge is drawn for: the first of those with the largest outline.
 pub(crate) fn polygon_of(draw: &Draw, edge: u32, outlines: &[AtomicU8]) -> Option<u32> {
     let mesh = &draw.model.mesh;
     let all = mesh.edge_polygons(&mesh.edges()[edge as usize]).iter().copied();
@@ -223,8 +223,8 @@ fn point_of(draw: &Draw, corner: &Corner) -> u32 {
     }
 }
 
-/// A drawn normal in object space: it stands on the placed surface, and is as long as `length` units
-/// of object space along the unplaced normal.
+/// A drawn normal in object space: perpendicular to the placed surface, and as long as `length`
+/// units of object space along the normal before placement.
 fn normal_in_object(draw: &Draw, normal: DVec3, length: f64) -> DVec3 {
     let linear = DMat3::from_mat4(draw.view_from_object);
     let across = linear.inverse() * (draw.view_from_normal * normal);

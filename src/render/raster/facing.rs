@@ -1,7 +1,8 @@
-//! In which colour the outlines of polygons are drawn.
+//! Finds the colour of the outlines of polygons.
 //!
-//! By the side that the observer sees, which the area on the screen tells. Where all polygons are
-//! triangles, sixteen are asked at once in the order in which they are drawn; others one by one.
+//! It depends on the side that the observer sees, which the sign of the area on the screen gives.
+//! If all polygons are triangles, they are computed sixteen at a time in draw order; others one by
+//! one.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -16,19 +17,19 @@ use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::doubled_area;
 use crate::scene::{DrawTriangle, Mesh};
 
-/// The colour of an outline. Of the polygons of an edge the one with the largest decides.
+/// The colour of an outline. An edge has the largest of its polygons'.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Outline {
     /// It is not drawn.
     Not,
-    /// That of back faces.
+    /// The colour of back faces.
     Back,
-    /// The draw's own.
+    /// The draw's own colour.
     Own,
 }
 
 impl Outline {
-    /// The outline that a number stands for.
+    /// The outline with a number.
     #[inline(always)]
     pub(crate) const fn of(number: u8) -> Self {
         match number {
@@ -39,14 +40,14 @@ impl Outline {
     }
 }
 
-/// What finding the outlines of one draw reads.
+/// The inputs of finding the outlines of one draw.
 #[derive(Debug)]
 pub(crate) struct Facing<'a> {
     draw: &'a Draw,
     mesh: &'a Mesh,
     vertices: &'a [ScreenVertex],
     screen: Screen,
-    /// What polygons have whose area is negative, and whose area is positive.
+    /// The outlines of polygons with a negative and with a positive area.
     outlines: [Outline; 2],
 }
 
@@ -55,15 +56,14 @@ impl<'a> Facing<'a> {
         let back = match draw.back {
             Back::Lit => Outline::Own,
             Back::Red => Outline::Back,
-            Back::Left => Outline::Not,
+            Back::Culled => Outline::Not,
         };
         let outlines = if draw.mirrored { [back, Outline::Own] } else { [Outline::Own, back] };
         let screen = Screen::new(draw.clip_from_object, size);
         Self { draw, mesh: &draw.model.mesh, vertices, screen, outlines }
     }
 
-    /// Finds the outlines of the polygons of some triangles that are drawn, each of which is the only
-    /// one of its polygon.
+    /// Finds the outlines of polygons that are single triangles.
     pub(crate) fn of_triangles(&self, level: Level, triangles: &[DrawTriangle], all: &[AtomicU8]) {
         dispatch!(level, simd => self.all(simd, triangles, all));
     }
@@ -140,7 +140,7 @@ impl<'a> Facing<'a> {
         }
     }
 
-    /// Twice the area of what is seen of a triangle, in square parts of a pixel.
+    /// Twice the area of a triangle on the screen after clipping, in square subpixels.
     fn area_on_screen(&self, triangle: u32) -> i64 {
         let order = self.mesh.draw_order();
         let corners = order.vertices_of(triangle);

@@ -1,4 +1,4 @@
-//! A frame on the screen: its vertices, and its triangles and lines in bins.
+//! The geometry of a frame on the screen: vertices, and triangles and lines in bins.
 
 use std::sync::atomic::AtomicU8;
 use std::sync::{Mutex, PoisonError};
@@ -8,13 +8,11 @@ use glam::DMat4;
 use rayon::prelude::*;
 
 use super::bins::Bins;
-use super::edges;
 use super::lines::LineNumber;
 use super::parts::{Parts, share_out};
 use super::starts::{Start, number};
-use super::vertex_variants;
-use super::vertices;
 use super::work::{What, WorkList, piece_of};
+use super::{edges, vertex_variants, vertices};
 use crate::base::Shared;
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
@@ -28,33 +26,32 @@ use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::SUBPIXELS;
 use crate::render::screen::interpolation;
 use crate::render::screen::sample_positions::SamplePositions;
-use crate::render::timings::{Laps, Stages};
+use crate::render::timings::{Laps, Timings};
 use crate::scene::Model;
 
-/// Everything of a frame that is on the screen.
+/// The geometry of a frame on the screen.
 #[derive(Debug, Default)]
 pub(crate) struct ScreenGeometry {
-    /// The vertices of all draws, in the order in which their meshes are drawn.
+    /// The vertices of all draws, in the draw order of their meshes.
     vertices: Vec<ScreenVertex>,
-    /// The same in finer parts of a pixel, where triangles have them.
+    /// The same on a finer subpixel grid, if the settings choose one.
     fine: Vec<ScreenVertex>,
-    /// What the vertices of each draw are of; nothing where they have yet to be brought there.
+    /// What the vertices of each draw were made of; `None` if they have to be transformed.
     held: Vec<Option<Held>>,
     starts: Vec<Start>,
-    /// For each polygon of the draws whose edges are drawn the number of an
-    /// [`Outline`](super::facing::Outline).
+    /// For each polygon of draws with edges, the number of an [`Outline`](super::facing::Outline).
     outlines: Vec<AtomicU8>,
     /// The polygons of the normals that are drawn.
     normals: Vec<u32>,
-    /// The vertices that are brought onto the screen.
+    /// The vertices to transform.
     placing: WorkList<()>,
-    /// The triangles that are put into bins, and the polygons whose outlines are.
+    /// The triangles to set up, and the polygons whose outlines are needed.
     set_up: WorkList<What>,
-    /// The edges that are.
+    /// The edges to set up.
     lines: WorkList<What>,
     bins: Vec<Bins>,
-    /// Where its pixels are looked at.
-    places: SamplePositions,
+    /// The samples of the pass.
+    sample_positions: SamplePositions,
 }
 
 /// What the screen vertices of a draw were made of.
@@ -84,22 +81,22 @@ impl Held {
 }
 
 impl ScreenGeometry {
-    /// Forgets what it holds.
+    /// Forgets all vertices.
     pub(crate) fn forget(&mut self) {
         self.held.clear();
     }
 
-    /// Brings everything that the plan draws onto the screen, to be looked at in some places of each
-    /// pixel, as long as that is wanted. Vertices that are there already stay. Says how long it took.
+    /// Transforms and bins everything that the plan draws, for a pass with these samples, unless it
+    /// is cancelled. Vertices that are still valid are kept. Returns how long it took.
     pub(crate) fn build(
         &mut self,
         level: Level,
         plan: &FramePlan,
-        places: SamplePositions,
+        sample_positions: SamplePositions,
         watch: &Cancellation<'_>,
-    ) -> Stages {
+    ) -> Timings {
         let mut laps = Laps::start();
-        self.places = places;
+        self.sample_positions = sample_positions;
         self.number(plan);
         self.place(level, plan, watch);
         let vertices = laps.lap();
@@ -108,10 +105,10 @@ impl ScreenGeometry {
         if !watch.is_given_up() {
             self.add_lines(level, plan, watch);
         }
-        Stages { vertices, set_up, lines: laps.lap(), ..Stages::default() }
+        Timings { vertices, set_up, lines: laps.lap(), ..Timings::default() }
     }
 
-    /// Where the numbers of each draw begin.
+    /// Finds where the numbers of each draw begin.
     fn number(&mut self, plan: &FramePlan) {
         self.starts.clear();
         let mut start = Start::default();
@@ -126,7 +123,7 @@ impl ScreenGeometry {
             outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
             self.starts.push(start);
         }
-        // What is not kept is overwritten from here on, whoever it belonged to.
+        // Vertices that are not kept are overwritten from here on.
         self.held.resize_with(plan.draws.len(), || None);
         for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
             *held = held.take().filter(|held| held.is_of(draw, plan, start.vertex));
@@ -135,7 +132,7 @@ impl ScreenGeometry {
         self.outlines.resize_with(outline, AtomicU8::default);
     }
 
-    /// Vertices to the screen, all draws' together.
+    /// Transforms the vertices of all draws together.
     fn place(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
         self.placing.clear();
         for (i, draw) in plan.draws.iter().enumerate().filter(|(i, _)| self.held[*i].is_none()) {
@@ -143,7 +140,7 @@ impl ScreenGeometry {
             let position = |i| order.position(number(i));
             self.placing.add((i, draw), ((), order.x.len()), plan.size, position);
         }
-        // The pieces' parts of all vertices, as they were added.
+        // The slices of all pieces, in the order in which they were added.
         let (mut rest, mut pieces) = (&mut self.vertices[..], Vec::new());
         pieces.reserve_exact(self.placing.len());
         for (start, held) in self.starts.iter().zip(&self.held) {
@@ -162,7 +159,7 @@ impl ScreenGeometry {
                 let screen = Screen::new(draw.clip_from_object, plan.size);
                 let order = draw.model.mesh.draw_order();
                 let out = &mut *pieces[work.place].lock().unwrap_or_else(PoisonError::into_inner);
-                if plan.variants.has_plain_vertices() {
+                if plan.variants.has_default_vertices() {
                     vertices::transform(level, &screen, order, work.from, out);
                 } else {
                     vertex_variants::transform(
@@ -187,7 +184,7 @@ impl ScreenGeometry {
         }
     }
 
-    /// Corners in finer parts of a pixel, where that is chosen.
+    /// Transforms corners to a finer subpixel grid, if the settings choose one.
     fn place_finely(&mut self, plan: &FramePlan) {
         self.fine.clear();
         if !plan.variants.has_fine_corners() {
@@ -210,8 +207,8 @@ impl ScreenGeometry {
         }
     }
 
-    /// Triangles into bins: one set of bins for each thread that takes part. And which polygons face
-    /// the observer, for their outlines.
+    /// Sets up triangles into bins, one set for each thread, and finds which polygons face the
+    /// observer, for their outlines.
     fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
         self.set_up.clear();
         for (i, draw) in plan.draws.iter().enumerate() {
@@ -232,13 +229,13 @@ impl ScreenGeometry {
         }
         self.bins.resize_with(self.set_up.threads(), Bins::default);
         for bins in &mut self.bins {
-            bins.clear(plan.size, self.places);
+            bins.clear(plan.size, self.sample_positions);
         }
         let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
         share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
     }
 
-    /// Lines into bins.
+    /// Sets up lines into bins.
     fn add_lines(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
         self.lines.clear();
         self.normals.clear();
@@ -266,7 +263,7 @@ impl ScreenGeometry {
         }
     }
 
-    /// The tiles of the picture, shared out so that each thread draws mostly what it has set up.
+    /// Distributes the tiles of the picture, so that each thread mostly draws what it has set up.
     pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
         self.set_up.shares_of_tiles(tiles)
     }
@@ -276,9 +273,9 @@ impl ScreenGeometry {
         &self.bins
     }
 
-    /// Where its pixels are looked at.
-    pub(crate) const fn places(&self) -> SamplePositions {
-        self.places
+    /// The samples of the pass.
+    pub(crate) const fn sample_positions(&self) -> SamplePositions {
+        self.sample_positions
     }
 
     /// Whether nothing reaches into a tile.
@@ -293,14 +290,14 @@ impl ScreenGeometry {
         (number(draw), self.starts[draw])
     }
 
-    /// The vertices of a draw, in the order in which its mesh is drawn.
+    /// The vertices of a draw, in the draw order of its mesh.
     #[inline(always)]
     pub(crate) fn vertices_of(&self, plan: &FramePlan, draw: u32) -> &[ScreenVertex] {
         let count = plan.draws[draw as usize].model.mesh.draw_order().x.len();
         &self.vertices[self.starts[draw as usize].vertex..][..count]
     }
 
-    /// The corners that the triangles of a draw have.
+    /// The corners of a draw's triangles: on the finer grid, if there is one.
     pub(crate) fn corners_of(&self, plan: &FramePlan, draw: u32) -> &[ScreenVertex] {
         if self.fine.is_empty() {
             return self.vertices_of(plan, draw);
@@ -344,13 +341,13 @@ impl ScreenGeometry {
         self.starts.partition_point(|start| start.line_end <= line.line())
     }
 
-    /// How many triangles of the frame face the observer and may cover a pixel.
+    /// The number of triangles that face the observer and may cover a pixel.
     pub(crate) fn triangles(&self) -> usize {
         self.bins.iter().map(|bins| bins.drawn).sum()
     }
 }
 
-/// Moves vertices to where they are seen from a place that is shifted by so many parts of a pixel.
+/// Moves vertices to where a sample with this offset in subpixels sees them.
 fn see_from(vertices: &mut [ScreenVertex], shift: [i32; 2]) {
     if shift != [0; 2] {
         for vertex in vertices.iter_mut().filter(|vertex| vertex.is_inside()) {

@@ -1,30 +1,30 @@
-//! Pixels that primitives cover, tile by tile.
+//! Hits: pixels that small primitives cover, tile by tile.
 //!
-//! Small triangles and short lines are rasterised sixteen at a time before tiles are looked at, one
-//! in each lane. What they cover are hits. They are kept in pages, which are handed out to tiles as
-//! they are needed and used again in the next frame.
+//! Small triangles and short lines are rasterized sixteen at a time, one in each lane, before tiles
+//! are drawn. The pixels that they cover are hits. They are stored in pages, which are allocated to
+//! tiles as needed and reused in the next frame.
 
 use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
 
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::{TILE, lanes_place};
 
-/// Primitives that are rasterised at once.
+/// Primitives that are rasterized at once.
 pub(crate) const PACK: usize = 16;
 
 /// Hits of a page.
 const PAGE: usize = 512;
 
-/// The page that is never written: it looks full, and ends every chain.
+/// The page that is never written: it counts as full, and ends every chain.
 const FULL: u32 = 0;
 
-/// Tiles that sixteen primitives may reach into to be drawn tile by tile.
+/// The most tiles that sixteen primitives may reach into to be added tile by tile.
 const FEW_TILES: i32 = 6;
 
 /// Some hits of one tile.
 #[derive(Clone, Debug)]
 struct Page {
-    /// Where the word of the pixel stands in its tile.
+    /// The index of the sample in the tile's visibility buffer.
     place: [u32; PAGE],
     /// The bits of the depth.
     depth: [u32; PAGE],
@@ -40,7 +40,7 @@ impl Page {
         Self { place: [0; PAGE], depth: [0; PAGE], number: [0; PAGE], count, previous: FULL }
     }
 
-    /// Adds some of sixteen hits.
+    /// Adds those of sixteen hits that are in a mask.
     #[inline(always)]
     fn add<S: Simd>(&mut self, place: u32x16<S>, pixels: &Pixels<S>, some: mask32x16<S>) {
         let to = self.count..self.count + PACK;
@@ -65,11 +65,11 @@ pub(crate) struct Pixels<S: Simd> {
 /// Which tiles sixteen primitives may reach into.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Reach {
-    /// One, and nothing of them lies beyond the picture.
+    /// One tile, and nothing of them lies outside the picture.
     One(usize),
     /// A few of them.
     Few(PixelBox),
-    /// Many.
+    /// Many of them.
     Many,
 }
 
@@ -95,7 +95,7 @@ impl Default for Hits {
 }
 
 impl Hits {
-    /// Forgets all, for a picture of this many columns and rows of pixels and of tiles.
+    /// Removes all hits, for a picture of this many columns and rows of pixels and of tiles.
     pub(crate) fn clear(&mut self, extent: [i32; 2], tiles: [i32; 2]) {
         (self.extent, self.tiles) = (extent, tiles);
         self.last.clear();
@@ -109,7 +109,7 @@ impl Hits {
         self.extent
     }
 
-    /// Whether there are none in a tile.
+    /// Whether a tile has no hits.
     #[inline(always)]
     pub(crate) fn is_empty(&self, tile: usize) -> bool {
         self.last[tile] == FULL
@@ -137,7 +137,8 @@ impl Hits {
         }
     }
 
-    /// Adds those of sixteen pixels that are covered in one of their `N` samples and in the picture.
+    /// Adds those of sixteen pixels that are covered in one of their `N` samples and in the
+    /// picture.
     #[inline(always)]
     pub(crate) fn add<S: Simd, const N: usize>(
         &mut self,
@@ -181,7 +182,7 @@ impl Hits {
         }
     }
 
-    /// A page of a tile that has room for sixteen hits.
+    /// The last page of a tile, which has room for sixteen hits.
     #[inline(always)]
     fn page(&mut self, tile: usize) -> &mut Page {
         let page = self.last[tile] as usize;
@@ -206,7 +207,7 @@ impl Hits {
         page
     }
 
-    /// Calls `take` with place, bits of the depth and number of each hit in a tile.
+    /// Calls `take` with the index, the bits of the depth and the number of each hit in a tile.
     #[inline(always)]
     pub(crate) fn each(&self, tile: usize, mut take: impl FnMut(u32, u32, u32)) {
         let mut page = self.last[tile];

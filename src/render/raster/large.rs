@@ -1,34 +1,34 @@
-//! A large triangle in one tile.
+//! Rasterizes a large triangle in one tile.
 //!
-//! Its edge functions are whole numbers of 64 bits. First all blocks of the tile are asked at once
-//! which of them it may touch and which it covers as a whole; then only blocks that it touches are
-//! looked at, a row of eight pixels at a time. So what is large costs by its blocks, not its pixels,
-//! until its depths are asked for.
+//! Its edge functions are 64-bit integers. First all blocks of the tile are tested at once for
+//! which of them it may touch and which it covers fully; then only the blocks that it touches are
+//! rasterized, a row of eight pixels at a time. So a large triangle costs by its blocks, not its
+//! pixels, until its depths are needed.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
     SimdNarrow as _, SimdWiden as _, f32x16, f64x8, i64x8, u32x16, u64x8,
 };
 
+use super::bins::LargeTriangle;
 use crate::base::math::each;
-use crate::render::raster::bins::LargeTriangle;
 use crate::render::screen::coverage::{PixelBox, Triangle};
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 
-/// How much the depths of a block may lie beyond those at its corners, by rounding: a few steps of
-/// 2^-53, for all terms are at most 1 inside the triangle.
+/// The rounding error by which depths in a block may lie beyond those at its corners: a few steps
+/// of 2^-53, since all terms are at most 1 inside the triangle.
 const ROUNDING: f64 = 1e-14;
 
-/// A triangle as it is seen from a tile.
+/// A triangle relative to a tile.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Large {
     /// The edge functions at the first pixel of the tile.
     edges: [i64; 3],
-    /// What they gain by a pixel to the right, and by one down.
+    /// Their steps by a pixel to the right, and by one down.
     right: [i64; 3],
     down: [i64; 3],
-    /// Their least values at centres that are covered.
+    /// Their least values at covered centres.
     least: [i64; 3],
     depth: f64,
     to_second: f64,
@@ -43,14 +43,14 @@ pub(crate) struct Large {
 /// Blocks of a tile, a bit for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Touched {
-    /// In which some pixels may be covered.
+    /// Those in which some pixels may be covered.
     pub(crate) some: u64,
-    /// In which all pixels are.
+    /// Those that are fully covered.
     pub(crate) whole: u64,
 }
 
 impl Large {
-    /// The triangle as it is seen from the tile whose first pixel is this.
+    /// Sets up the triangle for the tile with this first pixel.
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn new(large: &LargeTriangle, triangle: &Triangle, [x, y]: [i32; 2]) -> Self {
         let [a, b, c] = each(large.corners, |corner| corner.depth);
@@ -70,7 +70,8 @@ impl Large {
         }
     }
 
-    /// What the edge functions gain by a shift by some parts of a pixel, all of them sixteenths.
+    /// The change of the edge functions by an offset in subpixels, which is a multiple of 1/16
+    /// pixel.
     #[inline(always)]
     pub(crate) fn gain(&self, [x, y]: [i32; 2]) -> [i64; 3] {
         let [x, y] = [x, y].map(|by| i64::from(by / 16));
@@ -78,25 +79,26 @@ impl Large {
         [gain(0), gain(1), gain(2)]
     }
 
-    /// Which blocks of the tile the triangle touches in any of the `N` samples of their pixels, of
-    /// those that `area` reaches into (not empty; in pixels from the tile's first).
+    /// Finds the blocks of the tile that the triangle touches in any of the `N` samples of their
+    /// pixels, out of those that `area` reaches into. `area` must not be empty, and is in pixels
+    /// from the tile's first.
     #[inline(always)]
     pub(crate) fn blocks<S: Simd, const N: usize>(
         &self,
         simd: S,
         area: PixelBox,
-        places: &SamplePositions,
+        sample_positions: &SamplePositions,
     ) -> Touched {
         let mut touched = Touched::default();
         let columns = eight_bits(area.left / BLOCK, (area.right - 1) / BLOCK);
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
         let side = i64::from(BLOCK);
-        // What the edge functions gain at the most and at the least from the middle to a sample.
+        // The largest and the least change of the edge functions from the centre to a sample.
         let (mut most, mut least) = ([0; 3], [0; 3]);
         if N > 1 {
             (most, least) = ([i64::MIN; 3], [i64::MAX; 3]);
             for sample in 0..N {
-                let gain = self.gain(places.shift::<N>(sample));
+                let gain = self.gain(sample_positions.shift::<N>(sample));
                 most = [0, 1, 2].map(|i: usize| most[i].max(gain[i]));
                 least = [0, 1, 2].map(|i: usize| least[i].min(gain[i]));
             }
@@ -124,8 +126,8 @@ impl Large {
         [at(0), at(1), at(2)]
     }
 
-    /// The least and the largest depth that it may have in the `N` samples of a block that it covers as
-    /// a whole.
+    /// The least and the largest depth that it may have in the `N` samples of a fully covered
+    /// block.
     #[inline(always)]
     #[expect(
         clippy::cast_precision_loss,
@@ -141,7 +143,7 @@ impl Large {
         let (mut x, mut y) = (gain(&self.right), gain(&self.down));
         let mut first = first;
         if N > 1 {
-            // From half a pixel before the first middle to half a pixel behind the last.
+            // From half a pixel before the first centre to half a pixel behind the last.
             first -= (x + y) / 14.0;
             (x, y) = (x * (8.0 / 7.0), y * (8.0 / 7.0));
         }
@@ -150,23 +152,23 @@ impl Large {
         [low.max(self.low), high.min(self.high)]
     }
 
-    /// Draws the triangle into the words that a block has for the samples with this shift; it covers all
-    /// of them or some.
+    /// Draws the triangle into a block of the visibility buffer, for the sample with this offset;
+    /// the triangle covers the block fully or in part.
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
-        words: &mut [u64; BLOCK_PIXELS],
+        visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
         let (first, gain) = (self.edges_at(block), self.gain(shift));
         let first = [first[0] + gain[0], first[1] + gain[1], first[2] + gain[2]];
         let [a, b, c] = self.right;
         let mut edges = [across * a + first[0], across * b + first[1], across * c + first[2]];
-        let (two, _) = words.as_chunks_mut::<16>();
-        for words in two {
+        let (two, _) = visibility.as_chunks_mut::<16>();
+        for visibility in two {
             let upper = edges;
             let lower = self.below(upper);
             edges = self.below(lower);
@@ -180,18 +182,18 @@ impl Large {
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
             let (upper, lower) = depth.bitcast::<u32x16<S>>().widen();
-            let (up, down) = words.split_at_mut(8);
+            let (up, down) = visibility.split_at_mut(8);
             self.put(simd, upper, covered[0], up);
             self.put(simd, lower, covered[1], down);
         }
     }
 
     #[inline(always)]
-    fn put<S: Simd>(&self, simd: S, depth: u64x8<S>, covered: u64, words: &mut [u64]) {
+    fn put<S: Simd>(&self, simd: S, depth: u64x8<S>, covered: u64, visibility: &mut [u64]) {
         let new = (depth << 32) | u64::from(!self.number);
         let covered = fearless_simd::mask64x8::from_bitmask(simd, covered & 0xff);
         let new = covered.select(new, u64x8::splat(simd, 0));
-        new.max(u64x8::from_slice(simd, words)).store_slice(words);
+        new.max(u64x8::from_slice(simd, visibility)).store_slice(visibility);
     }
 
     #[inline(always)]
@@ -205,14 +207,14 @@ impl Large {
         (a.simd_ge(x) & b.simd_ge(y) & c.simd_ge(z)).to_bitmask()
     }
 
-    /// The depths where the edge functions have these values, before they are held to the corners'.
+    /// The depths at points with these edge functions, before they are clamped to the corners'.
     #[inline(always)]
     fn depth_at<S: Simd>(&self, [_, second, third]: [i64x8<S>; 3]) -> f64x8<S> {
         let (second, third) = (second.to_float::<f64x8<S>>(), third.to_float::<f64x8<S>>());
         second * self.to_second + self.depth + third * self.to_third
     }
 
-    /// The depth where the edge functions have these values.
+    /// The depth at a point with these edge functions.
     #[expect(
         clippy::cast_precision_loss,
         clippy::cast_possible_truncation,

@@ -1,13 +1,13 @@
-//! Which pixels a line takes.
+//! Rasterizes lines: which pixels a line covers.
 //!
-//! A line takes, in each column that it crosses (or each row, where it is steep), the pixel that holds
-//! it in the column's middle; at its ends the rule of diamonds decides: a pixel is taken when the line
-//! leaves the diamond |x| + |y| < 1/2 around its centre. So a line of length 0 takes none, and two that
-//! follow one another take no pixel twice. The ends are snapped and everything is computed in whole
-//! numbers.
+//! A line covers, in each column that it crosses (or in each row, if it is steep), the pixel that
+//! contains it at the column's centre. At its ends the diamond-exit rule of Vulkan and Direct3D
+//! decides: a pixel is covered if the line leaves the diamond |x| + |y| < 1/2 around its centre. So
+//! a line of length 0 covers none, and two consecutive lines cover no pixel twice. The ends are
+//! snapped and everything is computed in integers.
 //!
-//! Short lines are drawn sixteen at a time, one in each lane, and become hits; the others are stepped
-//! through in each tile. Both ways take the same pixels at the same depths.
+//! Short lines are drawn sixteen at a time, one in each lane, and become hits; the others are
+//! stepped through in each tile. Both cover the same pixels at the same depths.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
@@ -22,15 +22,15 @@ use crate::render::screen::tiles::TILE;
 /// Half of a pixel.
 const HALF: i32 = SUBPIXELS / 2;
 
-/// The longest line, in parts of a pixel along its axis, that counts as short: whatever is divided
-/// stays below 2^23, so that f32 gives the whole part of the quotient exactly.
+/// The longest line, in subpixels along its major axis, that counts as short: dividends stay below
+/// 2^23, so that f32 gives the integer part of quotients exactly.
 pub(crate) const SHORT: i32 = 8 * SUBPIXELS;
 
 /// Numbers of lines have this bit.
 const LINE: u32 = 1 << 31;
 
-/// The number of a line in the frame, and whether it has the colour of back faces: in the form in
-/// which words hold it. Of two lines the one with the lower number is the older.
+/// The number of a line in the frame, and whether it has the colour of back faces, as stored in the
+/// visibility buffer. Of two lines the one with the lower number is the older.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LineNumber(u32);
 
@@ -41,7 +41,7 @@ impl LineNumber {
         Self(LINE | line << 1 | u32::from(back))
     }
 
-    /// The line that a number of a primitive stands for, if it is one of a line.
+    /// The line with this primitive number, if it is a line's.
     pub(crate) const fn of(number: u32) -> Option<Self> {
         if number & LINE == 0 { None } else { Some(Self(number)) }
     }
@@ -56,7 +56,7 @@ impl LineNumber {
         self.0 & 1 != 0
     }
 
-    /// As a number of a primitive.
+    /// Its primitive number.
     pub(crate) const fn bits(self) -> u32 {
         self.0
     }
@@ -68,19 +68,19 @@ pub(crate) struct ScreenLine {
     pub(crate) ends: [ScreenVertex; 2],
     /// Its number, as [`LineNumber::bits`].
     pub(crate) number: u32,
-    /// How many steps of depth it is nearer than it is.
+    /// The depth bias: by how many steps of depth it is drawn nearer.
     pub(crate) nearer: u32,
 }
 
 impl ScreenLine {
-    /// The line as it is seen from a place that is shifted by so many parts of a pixel.
+    /// The line relative to a sample with this offset in subpixels.
     #[inline(always)]
     pub(crate) fn seen_from(&self, shift: [i32; 2]) -> Self {
         Self { ends: self.ends.map(|end| end.seen_from(shift)), ..*self }
     }
 }
 
-/// The pixels that a line may take.
+/// The bounding box of the pixels that a line may cover.
 pub(crate) fn bounds([a, b]: [Snapped; 2], width: i32) -> PixelBox {
     let low = |p: i32, q: i32| p.min(q).div_euclid(SUBPIXELS) - width;
     let high = |p: i32, q: i32| p.max(q).div_euclid(SUBPIXELS) + 1 + width;
@@ -92,8 +92,8 @@ pub(crate) fn bounds([a, b]: [Snapped; 2], width: i32) -> PixelBox {
     }
 }
 
-/// Boxes that hold the pixels of a line that lie in `clip`: one for each column of tiles, or each row
-/// where it is steep.
+/// Bounding boxes of a line's pixels in `clip`: one for each column of tiles, or for each row if it
+/// is steep.
 pub(crate) fn stretches(
     line: &ScreenLine,
     width: i32,
@@ -105,7 +105,7 @@ pub(crate) fn stretches(
     let (ua, va, ub, vb) = if steep { (a.y, a.x, b.y, b.x) } else { (a.x, a.y, b.x, b.y) };
     let (du, dv) = (i64::from(ub) - i64::from(ua), i64::from(vb) - i64::from(va));
     let (first, last) = if steep { (all.top, all.bottom) } else { (all.left, all.right) };
-    // The place across where the line is so far along, rounded down to pixels.
+    // The line's minor coordinate at a major one, rounded down to pixels.
     let across = move |pixel: i32| {
         let along = i64::from(pixel) * i64::from(SUBPIXELS) - i64::from(ua);
         let v = i64::from(va) + along * dv / if du == 0 { 1 } else { du };
@@ -141,8 +141,8 @@ pub(crate) fn pixels(
 ) {
     let [a, b] = line.ends;
     let steep = (b.at().y - a.at().y).abs() > (b.at().x - a.at().x).abs();
-    // Along the major axis u, and across it v. A wide line has its middle on the segment: the
-    // segment is moved back by half of what it gains, and each of its pixels is repeated.
+    // Along the major axis u, and across it v. A wide line is centred on the segment: the segment
+    // is moved back by half of the added width, and each of its pixels is repeated.
     let shift = (width - 1) * SUBPIXELS / 2;
     let turn = |p: ScreenVertex| {
         let Snapped { x, y } = p.at();
@@ -159,7 +159,7 @@ pub(crate) fn pixels(
     for u in begin..end {
         let centre = i64::from(u) * i64::from(SUBPIXELS) + i64::from(HALF);
         let along = centre - i64::from(ua);
-        // v where the line crosses the middle of the column: (va du + dv along) / du, rounded down.
+        // v where the line crosses the centre of the column: (va du + dv along) / du, rounded down.
         let (above, below) = (i64::from(va) * du + dv * along, du * i64::from(SUBPIXELS));
         let v = (above * below.signum()).div_euclid(below.abs());
         let Ok(v) = i32::try_from(v) else { continue };
@@ -180,7 +180,7 @@ pub(crate) fn pixels(
     }
 }
 
-/// Whether a line leaves the diamond of the pixel in whose column it is.
+/// Whether a line leaves the diamond of the pixel in this column.
 fn leaves(u: i32, v: i32, along: i64, du: i64, from: (i32, i32), to: (i32, i32)) -> bool {
     let within = |(pu, pv): (i32, i32)| {
         let (cu, cv) = (u * SUBPIXELS + HALF, v * SUBPIXELS + HALF);
@@ -201,18 +201,18 @@ fn nearer(depth: f32, steps: u32) -> f32 {
 /// One end of sixteen lines: x, y and depth.
 pub(crate) type Ends<S> = [i32x16<S>; 3];
 
-/// What sixteen short lines have in common, and which of them are meant.
+/// What sixteen short lines have in common, and the mask of those that are drawn.
 pub(crate) struct Short<S: Simd> {
     pub(crate) some: mask32x16<S>,
     pub(crate) number: u32x16<S>,
     pub(crate) width: i32,
-    /// How many steps of depth they are nearer than they are.
+    /// The depth bias, in steps of depth.
     pub(crate) nearer: u32,
-    /// The sample that looks at them.
+    /// The sample that they are drawn for.
     pub(crate) sample: usize,
 }
 
-/// Draws sixteen lines that are at most [`SHORT`] as one of `N` samples a pixel sees them.
+/// Draws sixteen lines that are at most [`SHORT`], for one of `N` samples per pixel.
 ///
 /// In the turned axes of [`pixels`]: v = floor((va du + dv along) / (256 du)).
 #[inline(always)]
@@ -266,7 +266,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
 /// The bits of the largest depth.
 const ONE: u32 = 1.0_f32.to_bits();
 
-/// The depths along sixteen lines: a + t (b - a), t = along / du, held to 0..1, in f64.
+/// The depths along sixteen lines: a + t (b - a), t = along / du, clamped to 0..1, in f64.
 struct Depths<S: Simd> {
     from: [f64x8<S>; 2],
     gain: [f64x8<S>; 2],
@@ -305,7 +305,7 @@ fn wide<S: Simd>(x: i32x16<S>) -> [f64x8<S>; 2] {
     [low.to_float(), high.to_float()]
 }
 
-/// The box of the pixels that some of sixteen lines may take.
+/// The bounding box of the pixels that some of sixteen lines may cover.
 #[inline(always)]
 fn bounds_of<S: Simd>(
     [xa, ya]: [i32x16<S>; 2],
@@ -313,7 +313,7 @@ fn bounds_of<S: Simd>(
     some: mask32x16<S>,
     width: i32,
 ) -> PixelBox {
-    // Where none is meant the box is inside out, as far as leaves room to reckon with.
+    // If the mask is empty, the box is inverted, but far from overflow.
     let far = i32x16::splat(xa.simd, 1 << 29);
     let first = Snapped {
         x: some.select(xa.min(xb), far).reduce_min(),
@@ -353,7 +353,7 @@ mod tests {
         pixels
     }
 
-    /// The same in a lane.
+    /// The same, drawn in a lane.
     fn drawn_short(ends: [(f64, f64); 2], width: i32) -> Vec<(i32, i32)> {
         let mut hits = Hits::default();
         hits.clear([99, 99], [2, 2]);
@@ -401,8 +401,8 @@ mod tests {
         }
     }
 
-    /// The rule itself, tried at many places of the line: the last place inside a diamond is not the
-    /// end of the line.
+    /// The rule itself, tested at many points of the line: it leaves a diamond if its last point
+    /// inside is not its end.
     fn by_the_rule([from, to]: [(f64, f64); 2]) -> Vec<(i32, i32)> {
         let n = 200_000;
         let mut entered = Vec::new();

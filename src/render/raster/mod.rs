@@ -1,12 +1,13 @@
-//! From the meshes of a plan to what is visible at each pixel.
+//! Rasterization: from the meshes of a plan to the visibility of each pixel.
 //!
-//! `geometry` brings the `vertices` of a frame to the screen; threads then set up its `parts`, piece of
-//! `work` by piece: `setup` and `edges` put what may be visible into `bins`, what is `small` as `hits`,
-//! pixel by pixel, at once. A `tile` then tests the hits, the `large` triangles and the `lines` that
-//! reach into it against each other by depth; the nearest stays in the `visibility_buffer`.
+//! `geometry` transforms the `vertices` of a frame; threads then set up its `parts`, one piece of
+//! `work` after another: `setup` and `edges` put primitives that may be visible into `bins`, and
+//! `small` rasterizes small triangles at once, to `hits`. A `tile` then draws its hits, `large`
+//! triangles and `lines` with a depth test; the nearest primitive stays in the `visibility_buffer`.
 //!
-//! Beside the defaults stand the variants that settings can choose: `vertex_variants`,
-//! `setup_variants`, `coverage_variants`, `depth_format`, and `pixel_by_pixel`, which draws by them.
+//! Beside the defaults stand the variants that the settings can choose: `vertex_variants`,
+//! `setup_variants`, `coverage_variants`, `depth_format`, and `pixel_by_pixel`, which draws by
+//! them.
 
 pub(crate) mod alpha_test;
 pub(crate) mod bins;

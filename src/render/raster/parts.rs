@@ -1,4 +1,4 @@
-//! What all threads do while a frame is set up: triangles and lines into bins, each thread into its own.
+//! Parallel setup of a frame: all threads put triangles and lines into bins, each into its own.
 
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU8;
@@ -20,7 +20,7 @@ use crate::render::frame::draw::Draw;
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::scene::CLUSTER;
 
-/// Has all threads do the work, each into its own bins, as long as that is wanted.
+/// Runs the work on all threads, each with its own bins, unless it is cancelled.
 pub(crate) fn share_out(
     level: Level,
     work: &[Work<What>],
@@ -42,7 +42,7 @@ pub(crate) fn share_out(
     });
 }
 
-/// What all threads read while they fill their bins.
+/// The inputs of all threads that fill bins.
 #[derive(Debug)]
 pub(crate) struct Parts<'a> {
     plan: &'a FramePlan,
@@ -121,7 +121,7 @@ impl<'a> Parts<'a> {
         &self.vertices[self.starts[draw].vertex..][..count]
     }
 
-    /// The outlines of a draw whose edges are drawn; none elsewhere.
+    /// The outlines of a draw; empty if its edges are not drawn.
     pub(crate) fn outlines_of(&self, draw: usize) -> &'a [AtomicU8] {
         let Draw { model, lines, .. } = &self.plan.draws[draw];
         let count = if lines.edges { model.mesh.polygon_count() } else { 0 };

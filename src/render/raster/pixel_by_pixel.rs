@@ -1,28 +1,28 @@
-//! What is seen in a tile, pixel by pixel, by the way of covering and the format of depth that are
-//! chosen. Words come out as they do elsewhere, so all that follows goes on as it does.
+//! Draws a tile pixel by pixel, by the chosen variants of coverage and depth. The visibility buffer
+//! has the usual form, so shading is the same as with the defaults.
 
+use super::alpha_test::AlphaTest;
+use super::bins::Bins;
+use super::depth_format::key;
+use super::geometry::ScreenGeometry;
+use super::{coverage_variants, lines};
 use crate::accuracy::{Coverage, DepthFormat};
 use crate::render::frame::FramePlan;
 use crate::render::frame::variants::Variants;
-use crate::render::raster::alpha_test::AlphaTest;
-use crate::render::raster::bins::Bins;
-use crate::render::raster::coverage_variants;
-use crate::render::raster::depth_format::key;
-use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::raster::lines;
 use crate::render::reference::points;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::interpolation::subpixels;
 use crate::render::screen::tiles::pixel_at;
 
-/// How many steps of a format of its own lines are nearer than the surfaces that they lie on.
+/// The depth bias of lines, in steps of a format other than the default.
 const LINES_NEARER: u32 = 2;
 
-/// Where a primitive is seen: column and row from the tile's first, what its word has above, its number.
+/// Takes a fragment: column and row in the tile, the key of its depth, and the number of its
+/// primitive.
 pub(crate) type Put<'a> = &'a mut dyn FnMut([i32; 2], u32, u32);
 
-/// Draws everything that reaches into a tile, as a sample of its pixels sees it: the sample's number,
-/// and how many parts of a pixel it lies from the middle.
+/// Draws everything that reaches into a tile, for one sample of its pixels, given by number and
+/// offset in subpixels.
 pub(crate) fn paint(
     variants: Variants,
     plan: &FramePlan,
@@ -80,7 +80,7 @@ fn paint_lines(
 ) {
     let nearer = if variants.depth == DepthFormat::F32Reversed { 0 } else { LINES_NEARER };
     let key = |depth: f32| key(variants.depth, depth) + nearer;
-    let samples = bins.places.count();
+    let samples = bins.sample_positions.count();
     bins.hits.each(tile, |place, depth, number| {
         let (at, own) = pixel_at(place as usize, samples);
         if own == sample {

@@ -4,10 +4,10 @@ use fearless_simd::{Simd, SimdBase as _, i32x16, mask32x16};
 
 use super::hits::PACK;
 
-/// Pixels to a side of the boxes of the queues.
+/// The sizes of bounding boxes, in pixels to a side, that the queues hold.
 pub(crate) const SMALL: [i32; 4] = [1, 2, 4, 8];
 
-/// Numbers kept of a triangle: x and y of its corners, their depths, its own number.
+/// Numbers stored per triangle: x and y of its corners, their depths, its own number.
 pub(crate) const ROWS: usize = 10;
 
 /// Sixteen triangles, row by row.
@@ -20,7 +20,7 @@ pub(crate) struct Queue {
     pub(super) count: usize,
 }
 
-/// How many triangles wait at the most: so many that what is read has long been written.
+/// The most triangles that wait: enough that those which are read were written long before.
 pub(super) const WAITING: usize = 128;
 
 impl Default for Queue {
@@ -30,7 +30,7 @@ impl Default for Queue {
 }
 
 impl Queue {
-    /// Adds some of sixteen triangles; says whether the queue is full.
+    /// Adds some of sixteen triangles. Returns whether the queue is full.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &mut self,
@@ -46,7 +46,7 @@ impl Queue {
         self.count >= WAITING
     }
 
-    /// Forgets all.
+    /// Empties the queue.
     pub(crate) const fn clear(&mut self) {
         self.count = 0;
     }
@@ -61,7 +61,7 @@ impl Queue {
         pack
     }
 
-    /// Forgets the first [`WAITING`]; the others move up.
+    /// Removes the first [`WAITING`]; the others move up.
     #[inline(always)]
     pub(super) fn forget(&mut self) {
         for row in &mut self.rows {

@@ -1,8 +1,9 @@
-//! From vertices on the screen to triangles in bins.
+//! Triangle setup: from vertices on the screen to triangles in bins.
 //!
-//! Sixteen triangles at a time: those that face away, that reach no pixel's centre (or sample) or that miss
-//! the picture are dropped before anything of theirs is copied. What has a corner beyond the planes is
-//! cut, and what is so large that its area needs 64 bits is looked at one by one.
+//! Sixteen triangles at a time: those that face away, cover no pixel's centre (or sample) or lie
+//! outside the picture are culled before anything of theirs is copied. Triangles with a corner
+//! beyond the clipping planes are clipped, and those whose area needs 64 bits are set up one by
+//! one.
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16};
 
@@ -19,10 +20,10 @@ use crate::render::screen::coverage::{PixelBox, SUBPIXELS, doubled_area};
 use crate::render::screen::sample_positions::FOUR;
 use crate::scene::{DrawOrder, DrawTriangle};
 
-/// The largest box, in parts of a pixel, whose doubled area fits 31 bits.
+/// The largest bounding box, in subpixels, whose doubled area fits 31 bits.
 pub(crate) const NARROW: i32 = 1 << 14;
 
-/// What setting up the triangles of one draw reads.
+/// The inputs of setting up the triangles of one draw.
 #[derive(Debug)]
 pub(crate) struct Setup<'a> {
     pub(crate) draw: &'a Draw,
@@ -31,7 +32,7 @@ pub(crate) struct Setup<'a> {
     pub(crate) screen: Screen,
     /// The number of the draw's first triangle in the frame.
     pub(crate) base: u32,
-    /// Whether some triangles are not drawn or have holes: then each is asked.
+    /// Whether some triangles are not drawn or need the alpha test, so that each has to be checked.
     pub(crate) choosy: bool,
 }
 
@@ -59,12 +60,12 @@ impl<'a> Setup<'a> {
         Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
     }
 
-    /// The same for vertices as they are seen from a place that is shifted by so many parts of a pixel.
+    /// The same for vertices relative to a sample with this offset in subpixels.
     pub(crate) fn seen_from(self, shift: [i32; 2]) -> Self {
         Self { screen: self.screen.seen_from(shift), ..self }
     }
 
-    /// Puts some of the draw's triangles into bins.
+    /// Sets up some of the draw's triangles into bins.
     pub(crate) fn run(
         &self,
         level: Level,
@@ -72,7 +73,7 @@ impl<'a> Setup<'a> {
         pipelines: &[Pipeline],
         bins: &mut Bins,
     ) {
-        if bins.places.are_many() {
+        if bins.sample_positions.are_many() {
             dispatch!(level, simd => self.all::<_, FOUR>(simd, triangles, pipelines, bins));
         } else {
             dispatch!(level, simd => self.all::<_, 1>(simd, triangles, pipelines, bins));
@@ -98,7 +99,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// Sets up sixteen triangles, of which the first `count` are meant.
+    /// Sets up the first `count` of sixteen triangles.
     #[inline(always)]
     fn sixteen<S: Simd, const N: usize>(
         &self,
@@ -115,7 +116,7 @@ impl<'a> Setup<'a> {
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
 
         let half = SUBPIXELS / 2;
-        let [least, most] = bins.places.reach::<N>();
+        let [least, most] = bins.sample_positions.reach::<N>();
         let left = (low_x + (half - 1 - most[0])) >> 8;
         let right = ((high_x - (half + least[0])) >> 8) + 1;
         let top = (low_y + (half - 1 - most[1])) >> 8;
@@ -131,8 +132,8 @@ impl<'a> Setup<'a> {
         let wide = (high_x - low_x).simd_gt(NARROW) | (high_y - low_y).simd_gt(NARROW);
         let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
         let faces = match (self.draw.back, self.draw.mirrored) {
-            (Back::Left, false) => area.simd_lt(0),
-            (Back::Left, true) => area.simd_gt(0),
+            (Back::Culled, false) => area.simd_lt(0),
+            (Back::Culled, true) => area.simd_gt(0),
             _ => !area.simd_eq(0),
         };
         let there = mask32x16::from_bitmask(simd, (1 << count) - 1);
@@ -157,7 +158,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// x, y, depth and one by w of one corner of sixteen triangles.
+    /// x, y, depth and 1/w of one corner of sixteen triangles.
     #[inline(always)]
     fn corners<S: Simd>(
         &self,
@@ -173,8 +174,8 @@ impl<'a> Setup<'a> {
         )
     }
 
-    /// Sorts triangles that are seen by the larger sides of their boxes: into the queues of small
-    /// ones, or to the large ones.
+    /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
+    /// small ones, or to the large ones.
     #[inline(always)]
     fn sort<S: Simd, const N: usize>(
         &self,
@@ -211,13 +212,13 @@ impl<'a> Setup<'a> {
             let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
             let number = self.base + triangles[lane].number;
             let at = each(corners, |corner| corner.at());
-            let bounds = PixelBox::reached(at, bins.places.reach::<N>());
+            let bounds = PixelBox::reached(at, bins.sample_positions.reach::<N>());
             let cutout = cutout >> lane & 1 != 0;
             bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
         }
     }
 
-    /// Which of some triangles are drawn plainly, and of which a texture decides where.
+    /// The masks of the triangles that are drawn without and with the alpha test.
     fn kinds(
         &self,
         triangles: &[DrawTriangle; PACK],
@@ -238,7 +239,7 @@ impl<'a> Setup<'a> {
         kinds
     }
 
-    /// Adds a triangle that has to be cut, or whose area needs 64 bits.
+    /// Adds a triangle that has to be clipped, or whose area needs 64 bits.
     fn add_odd<const N: usize>(
         &self,
         triangle: &DrawTriangle,
@@ -259,13 +260,13 @@ impl<'a> Setup<'a> {
             let corners = [pieces[0], pieces[i - 1], pieces[i]];
             let area = doubled_area(corners.map(|corner| corner.at()));
             let front = (area < 0) != self.draw.mirrored;
-            if area == 0 || (!front && self.draw.back == Back::Left) {
+            if area == 0 || (!front && self.draw.back == Back::Culled) {
                 continue;
             }
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
             let at = corners.map(|corner| corner.at());
-            let bounds = PixelBox::reached(at, bins.places.reach::<N>());
+            let bounds = PixelBox::reached(at, bins.sample_positions.reach::<N>());
             bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
         }
     }
@@ -291,7 +292,7 @@ impl<'a> Setup<'a> {
 
 /// Draws the small triangles that are still waiting.
 pub(crate) fn finish(level: Level, bins: &mut Bins) {
-    let many = bins.places.are_many();
+    let many = bins.sample_positions.are_many();
     dispatch!(level, simd => {
         for queue in 0..SMALL.len() {
             match many {

@@ -1,13 +1,13 @@
-//! Triangles for pictures that are drawn one by one: kept with their corners as they were before they
-//! were snapped, for some ways of covering pixels want those.
+//! Triangle setup for variants that draw triangles one by one. Corners are kept from before they
+//! were snapped, since some variants of coverage use them.
 
+use super::bins::Bins;
+use super::setup::{Kind, Setup};
+use super::unsnapped::UnsnappedTriangle;
+use super::vertex_variants::{FINE_GUARD, Projected, coarse, project};
 use crate::base::image::Size;
 use crate::render::frame::draw::{Back, Pipeline};
 use crate::render::frame::variants::Variants;
-use crate::render::raster::bins::Bins;
-use crate::render::raster::setup::{Kind, Setup};
-use crate::render::raster::unsnapped::UnsnappedTriangle;
-use crate::render::raster::vertex_variants::{FINE_GUARD, Projected, coarse, project};
 use crate::render::screen::clip::{Clip, Screen};
 use crate::render::screen::coverage::{PixelBox, doubled_area};
 use crate::render::screen::interpolation::subpixels;
@@ -37,7 +37,7 @@ pub(crate) fn set_up(
     }
 }
 
-/// A triangle's corners, or those of the polygon that is left of it.
+/// A triangle's corners, or those of the triangles that are left of it after clipping.
 fn pieces(
     variants: Variants,
     setup: &Setup<'_>,
@@ -72,7 +72,7 @@ fn add_triangle(
     let snapped = corners.map(|corner| coarse(variants, corner.snapped(parts)).at());
     let area = doubled_area(snapped);
     let front = (area < 0) != setup.draw.mirrored;
-    if area == 0 || (!front && setup.draw.back == Back::Left) {
+    if area == 0 || (!front && setup.draw.back == Back::Culled) {
         return;
     }
     let pixels = corners.map(|corner| corner.at);
@@ -82,7 +82,8 @@ fn add_triangle(
     bins.add_plain(plain, around(&plain.pixels));
 }
 
-/// The pixels that a triangle may cover by any way: a pixel more than it needs to each side.
+/// The pixels that a triangle may cover by any variant: its bounding box and a pixel more to each
+/// side.
 #[expect(clippy::cast_possible_truncation, reason = "the guard band holds them")]
 fn around(pixels: &[[f64; 2]; 3]) -> PixelBox {
     let low = |i: usize| pixels.iter().map(|at| at[i]).fold(f64::INFINITY, f64::min);

@@ -1,9 +1,9 @@
-//! Small triangles, sixteen at a time: one in each lane.
+//! Rasterizes small triangles, sixteen at a time, one in each lane.
 //!
-//! Triangles whose box of pixels has at most 8 x 8 wait in queues by the size of their boxes. When
-//! there are sixteen, their edge functions are stepped together over the pixels of the boxes, and the
-//! pixels that they cover become hits in the bins. The arithmetic is in f32, in which whole numbers
-//! below 2^24 are exact: no edge function of such a box is larger.
+//! Triangles whose bounding box has at most 8 x 8 pixels wait in queues by the size of their boxes.
+//! When there are sixteen, their edge functions are stepped together over the pixels of the boxes,
+//! and the pixels that they cover become hits in the bins. The arithmetic is f32, in which integers
+//! below 2^24 are exact: no edge function in such a box is larger.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
@@ -18,7 +18,7 @@ use crate::render::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::simd::Real;
 
-/// Draws the triangles of a queue that is full, but for some of the last, in `N` samples a pixel.
+/// Draws the triangles of a full queue, in packs of sixteen, with `N` samples per pixel.
 #[inline(always)]
 pub(crate) fn draw_full<S: Simd, const N: usize>(simd: S, queue: usize, bins: &mut Bins) {
     for at in (0..WAITING).step_by(PACK) {
@@ -35,7 +35,7 @@ pub(crate) fn draw_rest<S: Simd, const N: usize>(simd: S, queue: usize, bins: &m
     for at in (0..count).step_by(PACK) {
         let mut pack = bins.queues[queue].pack(simd, at);
         let there = mask32x16::from_bitmask(simd, (1 << (count - at).min(PACK)) - 1);
-        // Without a box there are no pixels.
+        // An empty box holds no pixels.
         let nothing = i32x16::splat(simd, 0);
         for row in &mut pack {
             *row = there.select(*row, nothing);
@@ -47,11 +47,11 @@ pub(crate) fn draw_rest<S: Simd, const N: usize>(simd: S, queue: usize, bins: &m
 /// Draws sixteen triangles whose boxes have at most 8 x 8 pixels.
 #[inline(always)]
 pub(crate) fn draw<S: Simd, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
-    let places = bins.places;
-    let lanes = Lanes::new(simd, pack, places.reach::<N>());
+    let sample_positions = bins.sample_positions;
+    let lanes = Lanes::new(simd, pack, sample_positions.reach::<N>());
     let reach = bins.hits.reach(lanes.bounds());
     lanes.each_sample::<N>(
-        &places,
+        &sample_positions,
         #[inline(always)]
         |[x, y], sample, covered, depth| {
             let pixels = Pixels { x, y, depth: depth.bitcast(), number: lanes.number };
@@ -60,9 +60,9 @@ pub(crate) fn draw<S: Simd, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut 
     );
 }
 
-/// Sixteen small triangles, ready to be asked pixel by pixel.
+/// Sixteen small triangles, set up for rasterization.
 struct Lanes<S: Simd> {
-    /// The box of pixels.
+    /// The bounding boxes.
     left: i32x16<S>,
     top: i32x16<S>,
     right: i32x16<S>,
@@ -70,9 +70,10 @@ struct Lanes<S: Simd> {
     number: u32x16<S>,
     /// The edge functions at the first pixel of the box; positive inside, whatever the winding.
     first: [f32x16<S>; 3],
-    /// The least values that count as inside: 0, or 1 where centres on the edge are out.
+    /// The least values that count as covered: 0, or 1 if the top-left rule excludes centres on the
+    /// edge.
     least: [f32x16<S>; 3],
-    /// What an edge function gains by a pixel to the right, and by one down.
+    /// The steps of an edge function by a pixel to the right, and by one down.
     a: [f32x16<S>; 3],
     b: [f32x16<S>; 3],
     depth: f32x16<S>,
@@ -91,7 +92,7 @@ impl<S: Simd> Lanes<S> {
         let top = (y0.min(y1).min(y2) + (half - 1 - most[1])) >> 8;
         let right = ((x0.max(x1).max(x2) - (half + least[0])) >> 8) + 1;
         let bottom = ((y0.max(y1).max(y2) - (half + least[1])) >> 8) + 1;
-        // Coordinates from the middle of the first pixel.
+        // Coordinates relative to the centre of the first pixel.
         let (cx, cy) = ((left << 8) + half, (top << 8) + half);
         let [x0, x1, x2] = each([x0, x1, x2], |x| (x - cx).to_float::<f32x16<S>>());
         let [y0, y1, y2] = each([y0, y1, y2], |y| (y - cy).to_float::<f32x16<S>>());
@@ -103,7 +104,7 @@ impl<S: Simd> Lanes<S> {
         let e0 = edge([x1, y1], [x2, y2], sign);
         let e1 = edge([x2, y2], [x0, y0], sign);
         let e2 = edge([x0, y0], [x1, y1], sign);
-        // Triangles without area cover nothing; 1 keeps their quotients finite.
+        // Triangles without area cover nothing; 1 keeps quotients finite.
         let area = area * sign;
         let per_area = one / area.simd_gt(0.0).select(area, one);
         Self {
@@ -124,7 +125,7 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// The box of all boxes.
+    /// The bounding box of all boxes.
     #[inline(always)]
     fn bounds(&self) -> PixelBox {
         PixelBox {
@@ -135,15 +136,15 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Calls `take` with a pixel of each box and one of its `N` samples, where some triangle covers its
-    /// own, and with the depths there.
+    /// Calls `take` with the pixels of the boxes, step by step, and each of their `N` samples, if
+    /// any triangle covers its own; with the coverage and the depths.
     #[inline(always)]
     fn each_sample<const N: usize>(
         &self,
-        places: &SamplePositions,
+        sample_positions: &SamplePositions,
         mut take: impl FnMut([i32x16<S>; 2], usize, mask32x16<S>, f32x16<S>),
     ) {
-        let shifts = self.shifts::<N>(places);
+        let shifts = self.shifts::<N>(sample_positions);
         let columns = (self.right - self.left).reduce_max();
         let rows = (self.bottom - self.top).reduce_max();
         let mut row = self.first;
@@ -166,12 +167,12 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// What the edge functions gain from the middle of a pixel to its samples.
+    /// The offsets of the edge functions from the centre of a pixel to its samples.
     #[inline(always)]
-    fn shifts<const N: usize>(&self, places: &SamplePositions) -> [[f32x16<S>; 3]; N] {
+    fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [[f32x16<S>; 3]; N] {
         let mut shifts = [[f32x16::splat(self.depth.simd, 0.0); 3]; N];
         for (sample, shift) in shifts.iter_mut().enumerate() {
-            let [x, y] = places.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
+            let [x, y] = sample_positions.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
             *shift = [
                 self.a[0] * x + self.b[0] * y,
                 self.a[1] * x + self.b[1] * y,
@@ -181,7 +182,7 @@ impl<S: Simd> Lanes<S> {
         shifts
     }
 
-    /// The depths at a pixel, linear on the screen and within the depths of the corners.
+    /// The depths at a pixel, linear on the screen and clamped to the depths of the corners.
     #[inline(always)]
     fn depth_at(&self, edges: [f32x16<S>; 3]) -> f32x16<S> {
         let depth = self.depth + edges[1] * self.to_second + edges[2] * self.to_third;
@@ -203,8 +204,8 @@ struct LanesEdge<S: Simd> {
     b: f32x16<S>,
 }
 
-/// As in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0; turned
-/// by the sign of the area, and with what it gains by a whole pixel.
+/// As in `coverage`: a = p.y - q.y, b = q.x - p.x, e = a (x - p.x) + b (y - p.y) at x = y = 0;
+/// multiplied by the sign of the area, with its steps by whole pixels.
 #[inline(always)]
 fn edge<S: Simd>(
     [px, py]: [f32x16<S>; 2],

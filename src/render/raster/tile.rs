@@ -1,52 +1,54 @@
-//! What is seen at each pixel of a tile.
+//! Visibility of a tile: rasterizes its primitives with a depth test.
 //!
-//! Each pixel has a word ([`words`](crate::render::raster::visibility_buffer)), and the larger word wins: what is nearer, and among
-//! what is equally near the primitive with the lower number, that is of the older object, the earlier
-//! face. The order in which primitives are drawn cannot show, so it is nobody's concern.
+//! Each sample has an entry in the [visibility buffer](crate::render::raster::visibility_buffer),
+//! and the depth test keeps the larger entry: the nearer primitive and, at equal depth, the one
+//! with the lower number, which belongs to the older object or is the earlier face. So the order in
+//! which primitives are drawn does not show.
 //!
-//! Which pixels a triangle covers, and how near it is there, is computed in one of two ways, chosen
-//! by the triangle's own size alone: in f32 for boxes up to 8 x 8, where whole numbers below 2^24 are
-//! exact, sixteen triangles at once (`small`); and in 64 bits for all others, a block of 8 x 8 pixels
-//! at once (`large`). So neither tiles nor threads nor instructions show in the picture.
+//! Coverage and depth are computed in one of two ways, chosen by the triangle's size alone: in f32,
+//! in which integers below 2^24 are exact, for bounding boxes up to 8 x 8 pixels, sixteen triangles
+//! at once (`small`); and in 64 bits for all others, a block of 8 x 8 pixels at once (`large`). So
+//! neither tiles nor threads nor instruction sets show in the picture.
 //!
-//! A block that nothing reaches is never touched, and one that a single large triangle covers is not
-//! asked for its depths: that it is covered is all that is noted, until something else comes near.
+//! A block that nothing reaches is never touched. For a block that a single large triangle covers
+//! no depths are computed: only the triangle is noted, until another primitive comes near.
 //!
-//! Where pixels are looked at in four places, a block has four planes of words, one for each place: what
-//! covers a pixel in a place is what covers its middle as seen from there.
+//! With four samples per pixel, a block has four planes of entries, one for each sample. A
+//! primitive covers a sample if it covers the centre of the pixel once it is moved by the sample's
+//! offset.
 
 use fearless_simd::{Level, Simd, dispatch};
 
+use super::alpha_test::AlphaTest;
+use super::bins::{Bins, LargeTriangle};
+use super::geometry::ScreenGeometry;
 use super::large::Large;
-use super::pixel_by_pixel;
+use super::visibility_buffer::{Planes, depths_of, seen, word};
+use super::{lines, pixel_by_pixel};
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
-use crate::render::raster::alpha_test::AlphaTest;
-use crate::render::raster::bins::{Bins, LargeTriangle};
-use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::raster::lines;
-use crate::render::raster::visibility_buffer::{Planes, depths_of, seen, word};
 use crate::render::screen::coverage::{Covered, PixelBox, Triangle};
 use crate::render::screen::sample_positions::{FOUR, SamplePositions};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
 
-/// The words of one tile, block by block, in each block sample by sample, and these row by row.
+/// The visibility buffer of one tile: block by block, each block sample by sample, each sample row
+/// by row.
 #[derive(Debug)]
 pub(crate) struct Visibility {
-    words: Box<[u64; FOUR * PIXELS]>,
-    /// Where pixels are looked at.
-    places: SamplePositions,
-    /// The blocks whose words are written, a bit for each.
+    buffer: Box<[u64; FOUR * PIXELS]>,
+    /// The samples of the pass.
+    sample_positions: SamplePositions,
+    /// The blocks whose entries are valid, a bit for each.
     written: u64,
-    /// The blocks that are known to show one triangle, and have no words yet.
+    /// The blocks that one triangle covers fully, and that have no entries yet.
     whole: u64,
-    /// What they show, as places in `large`.
+    /// The triangles of those blocks, as indices into `large`.
     shown: [u32; BLOCK_PIXELS],
-    /// Triangles that cover a block as a whole.
+    /// Triangles that cover a block fully.
     large: Vec<Large>,
-    /// For each block a depth that all of its pixels are at least as near as.
+    /// For each block a lower bound of its depths: all pixels are at least as near.
     farthest: [f32; BLOCK_PIXELS],
-    /// For each block that shows one triangle a depth that no pixel is nearer than.
+    /// For each fully covered block an upper bound of its depths: no pixel is nearer.
     nearest: [f32; BLOCK_PIXELS],
     bounds: PixelBox,
 }
@@ -54,8 +56,8 @@ pub(crate) struct Visibility {
 impl Default for Visibility {
     fn default() -> Self {
         Self {
-            words: Box::new([0; FOUR * PIXELS]),
-            places: SamplePositions::default(),
+            buffer: Box::new([0; FOUR * PIXELS]),
+            sample_positions: SamplePositions::default(),
             written: 0,
             whole: 0,
             shown: [0; BLOCK_PIXELS],
@@ -68,7 +70,7 @@ impl Default for Visibility {
 }
 
 impl Visibility {
-    /// Looks at everything that reaches into a tile: the bins of every thread at this place.
+    /// Draws everything that reaches into a tile, from the bins of every thread.
     pub(crate) fn draw(
         &mut self,
         level: Level,
@@ -76,18 +78,18 @@ impl Visibility {
         frame: &ScreenGeometry,
         (tile, bounds): (usize, PixelBox),
     ) {
-        self.clear(bounds, frame.places());
+        self.clear(bounds, frame.sample_positions());
         if plan.variants.draws_one_by_one() {
             return self.draw_one_by_one(plan, frame, (tile, bounds));
         }
-        if self.places.are_many() {
+        if self.sample_positions.are_many() {
             self.draw_in::<FOUR>(level, plan, frame, tile);
         } else {
             self.draw_in::<1>(level, plan, frame, tile);
         }
     }
 
-    /// Draws in `N` samples a pixel.
+    /// Draws with `N` samples per pixel.
     fn draw_in<const N: usize>(
         &mut self,
         level: Level,
@@ -110,18 +112,18 @@ impl Visibility {
         }
     }
 
-    /// Draws everything by a rare way, pixel by pixel.
+    /// Draws everything pixel by pixel, by the chosen variants.
     fn draw_one_by_one(
         &mut self,
         plan: &FramePlan,
         frame: &ScreenGeometry,
         (tile, bounds): (usize, PixelBox),
     ) {
-        self.words.fill(0);
+        self.buffer.fill(0);
         self.written = u64::MAX;
-        let (places, count) = (self.places, self.places.count());
+        let (sample_positions, count) = (self.sample_positions, self.sample_positions.count());
         for sample in 0..count {
-            let shift = if count == 1 { [0; 2] } else { places.shift::<FOUR>(sample) };
+            let shift = if count == 1 { [0; 2] } else { sample_positions.shift::<FOUR>(sample) };
             pixel_by_pixel::paint(
                 plan.variants,
                 plan,
@@ -130,15 +132,15 @@ impl Visibility {
                 (sample, shift),
                 &mut |[x, y], key, number| {
                     let plane = (block_at(x, y) * count + sample) * BLOCK_PIXELS;
-                    let word = &mut self.words[plane + within(x, y)];
+                    let word = &mut self.buffer[plane + within(x, y)];
                     *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
                 },
             );
         }
     }
 
-    fn clear(&mut self, bounds: PixelBox, places: SamplePositions) {
-        self.places = places;
+    fn clear(&mut self, bounds: PixelBox, sample_positions: SamplePositions) {
+        self.sample_positions = sample_positions;
         (self.written, self.whole) = (0, 0);
         self.large.clear();
         self.farthest.fill(0.0);
@@ -155,35 +157,35 @@ impl Visibility {
         self.written | self.whole == 0
     }
 
-    /// The triangle that a block shows, where one is known to cover it as a whole; its words are of
-    /// no meaning then.
+    /// The triangle that covers a block fully, if there is one; the block's entries are meaningless
+    /// then.
     pub(crate) fn whole(&self, block: usize) -> Option<u32> {
         (self.whole >> block & 1 != 0).then(|| self.large[self.shown[block] as usize].number)
     }
 
-    /// The blocks that one triangle is known to cover as a whole, a bit for each.
-    pub(crate) const fn whole_blocks(&self) -> u64 {
+    /// The blocks that one triangle covers fully, a bit for each.
+    pub(crate) const fn full_blocks(&self) -> u64 {
         self.whole
     }
 
-    /// The words of a block that shows something, row by row, where pixels have one sample.
+    /// The entries of a block that shows something, row by row, with one sample per pixel.
     pub(crate) fn block(&self, block: usize) -> &[u64; BLOCK_PIXELS] {
-        &self.words.as_chunks().0[block]
+        &self.buffer.as_chunks().0[block]
     }
 
-    /// The words of a block that shows something, where pixels have four samples.
+    /// The entries of a block that shows something, with four samples per pixel.
     pub(crate) fn planes(&self, block: usize) -> &Planes {
-        &self.words.as_chunks().0.as_chunks().0[block]
+        &self.buffer.as_chunks().0.as_chunks().0[block]
     }
 
-    /// All words of a block that shows something.
-    fn words(&self, block: usize) -> &[u64] {
-        let count = BLOCK_PIXELS * self.places.count();
-        &self.words[block * count..][..count]
+    /// All entries of a block that shows something.
+    fn block_samples(&self, block: usize) -> &[u64] {
+        let count = BLOCK_PIXELS * self.sample_positions.count();
+        &self.buffer[block * count..][..count]
     }
 
-    /// A depth that nothing of any triangle of the tile is farther than, and one that nothing is
-    /// nearer than; `None` where no triangle is seen.
+    /// Bounds of the depths of all visible triangles: the farthest and the nearest; `None` if no
+    /// triangle is visible.
     pub(crate) fn depths(&self, level: Level) -> Option<[f32; 2]> {
         // Depths are not negative, so that their bits are in the order of the numbers.
         let (mut low, mut high) = (u32::MAX, 0);
@@ -191,7 +193,7 @@ impl Visibility {
             let [own_low, own_high] = if self.whole(block).is_some() {
                 [self.farthest[block].to_bits(), self.nearest[block].to_bits()]
             } else {
-                dispatch!(level, simd => depths_of(simd, self.words(block)))
+                dispatch!(level, simd => depths_of(simd, self.block_samples(block)))
             };
             (low, high) = (low.min(own_low), high.max(own_high));
         }
@@ -204,13 +206,14 @@ impl Visibility {
         [self.bounds.left + at % BLOCKS * BLOCK, self.bounds.top + at / BLOCKS * BLOCK]
     }
 
-    /// The word of a pixel of the tile: of its samples the one that shows what most of them show, the
+    /// The entry of a pixel of the tile: that of the sample whose primitive most samples show, the
     /// first of equals.
     pub(crate) fn word(&mut self, level: Level, x: i32, y: i32) -> u64 {
-        let (words, count) = self.samples(level, x, y);
-        let alike = |word: &u64| words.iter().filter(|other| seen(**other) == seen(*word)).count();
-        let mut most = words[0];
-        for word in &words[1..count] {
+        let (samples, count) = self.samples(level, x, y);
+        let alike =
+            |word: &u64| samples.iter().filter(|other| seen(**other) == seen(*word)).count();
+        let mut most = samples[0];
+        for word in &samples[1..count] {
             if alike(word) > alike(&most) {
                 most = *word;
             }
@@ -218,25 +221,25 @@ impl Visibility {
         most
     }
 
-    /// The words of the samples of a pixel of the tile, and how many they are.
+    /// The entries of the samples of a pixel of the tile, and their number.
     pub(crate) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; FOUR], usize) {
-        let count = self.places.count();
+        let count = self.sample_positions.count();
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
         let block = block_at(x, y);
-        let mut words = [0; FOUR];
+        let mut samples = [0; FOUR];
         if self.shows(block) {
             match count {
                 1 => dispatch!(level, simd => self.write::<_, 1>(simd, block)),
                 _ => dispatch!(level, simd => self.write::<_, FOUR>(simd, block)),
             }
-            for (sample, word) in words[..count].iter_mut().enumerate() {
-                *word = self.words(block)[sample * BLOCK_PIXELS + within(x, y)];
+            for (sample, word) in samples[..count].iter_mut().enumerate() {
+                *word = self.block_samples(block)[sample * BLOCK_PIXELS + within(x, y)];
             }
         }
-        (words, count)
+        (samples, count)
     }
 
-    /// Sees to it that a block has words for `N` samples a pixel.
+    /// Ensures that a block has valid entries for `N` samples per pixel.
     #[inline(always)]
     fn write<S: Simd, const N: usize>(&mut self, simd: S, block: usize) {
         let bit = 1 << block;
@@ -253,13 +256,13 @@ impl Visibility {
         }
     }
 
-    /// The words of a block for one of `N` samples.
+    /// The entries of a block for one of `N` samples.
     #[inline(always)]
     fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
-        &mut self.words.as_chunks_mut().0[block * N + sample]
+        &mut self.buffer.as_chunks_mut().0[block * N + sample]
     }
 
-    /// Draws a triangle into a block, of which it covers all or part.
+    /// Draws a triangle into a block that it covers fully or in part.
     #[inline(always)]
     fn draw_planes<S: Simd, const N: usize>(
         &mut self,
@@ -268,14 +271,14 @@ impl Visibility {
         block: usize,
         whole: bool,
     ) {
-        let places = self.places;
+        let sample_positions = self.sample_positions;
         for sample in 0..N {
-            let shift = places.shift::<N>(sample);
+            let shift = sample_positions.shift::<N>(sample);
             large.draw(simd, (block, shift), whole, self.plane::<N>(block, sample));
         }
     }
 
-    /// Whether what is in a place already hides a triangle there.
+    /// The depth test of one sample: whether the entry there already hides a triangle.
     #[inline(always)]
     fn hides<const N: usize>(
         &mut self,
@@ -314,7 +317,8 @@ impl Visibility {
     ) {
         for &place in &bins.tiles[tile].lines {
             for sample in 0..N {
-                let line = bins.lines[place as usize].seen_from(self.places.shift::<N>(sample));
+                let line =
+                    bins.lines[place as usize].seen_from(self.sample_positions.shift::<N>(sample));
                 lines::pixels(
                     &line,
                     width,
@@ -326,7 +330,7 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle whose texture decides in each sample whether it is there.
+    /// Draws a triangle with the alpha test in each sample.
     fn draw_cutout<const N: usize>(
         &mut self,
         level: Level,
@@ -335,7 +339,7 @@ impl Visibility {
         large: &LargeTriangle,
     ) {
         for sample in 0..N {
-            let shift = self.places.shift::<N>(sample);
+            let shift = self.sample_positions.shift::<N>(sample);
             let corners = each(large.corners, |corner| corner.at().seen_from(shift));
             let Some(triangle) = Triangle::new(corners) else { return };
             let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
@@ -368,12 +372,12 @@ impl Visibility {
                     self.write::<S, N>(simd, block);
                 }
                 let word = u64::from(depth) << 32 | u64::from(!number);
-                self.words[place] = self.words[place].max(word);
+                self.buffer[place] = self.buffer[place].max(word);
             },
         );
     }
 
-    /// Draws the large triangles of a tile whose textures have no part in where they are.
+    /// Draws the large triangles of a tile that need no alpha test.
     #[inline(always)]
     fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
         for &number in &bins.tiles[tile].large {
@@ -390,7 +394,7 @@ impl Visibility {
         let Some(triangle) = Triangle::new(corners) else {
             return;
         };
-        let reached = PixelBox::reached(corners, self.places.reach::<N>());
+        let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
         let area = reached.intersection(self.bounds);
         if area.is_empty() {
             return;
@@ -403,7 +407,7 @@ impl Visibility {
             right: area.right - left,
             bottom: area.bottom - top,
         };
-        let touched = large.blocks::<S, N>(simd, area, &self.places);
+        let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
         let mut some = touched.some;
         let mut place = None;
         while some != 0 {
@@ -413,7 +417,7 @@ impl Visibility {
                 continue;
             }
             if touched.whole >> block & 1 != 0 {
-                self.draw_whole::<S, N>(simd, &large, block, &mut place);
+                self.draw_full_block::<S, N>(simd, &large, block, &mut place);
             } else {
                 self.write::<S, N>(simd, block);
                 self.draw_planes::<S, N>(simd, &large, block, false);
@@ -421,9 +425,10 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle into a block that it covers; `place` is where it stands among those that do.
+    /// Draws a triangle into a block that it covers fully; `place` is its index in `large`, once it
+    /// has one.
     #[inline(always)]
-    fn draw_whole<S: Simd, const N: usize>(
+    fn draw_full_block<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         large: &Large,

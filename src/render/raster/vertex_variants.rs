@@ -1,14 +1,14 @@
-//! Vertices to the screen by rare ways: in 32 bits, or snapped to other parts of a pixel.
+//! Variants of transforming vertices: in f32, or snapped to another subpixel grid.
 //!
-//! Coarser parts are multiples of those that everything else counts in, so nothing but the place changes.
-//! Finer ones do not fit there: such corners are kept beside the others, in parts of 1/4096, and with a
-//! guard band of 2^17 pixels instead of 2^20, so that edge functions stay below 2^62.
+//! Coarser subpixels are multiples of the default's, so only positions change. Finer ones are not:
+//! such corners are stored separately, in units of 1/4096 pixel, and with a guard band of 2^17
+//! pixels instead of 2^20, so that edge functions stay below 2^62.
 
 use fearless_simd::Level;
 
+use super::vertices;
 use crate::accuracy::{Subpixels, VertexArithmetic};
 use crate::render::frame::variants::Variants;
-use crate::render::raster::vertices;
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::scene::DrawOrder;
@@ -23,12 +23,12 @@ pub(crate) struct Projected {
     pub(crate) at: [f64; 2],
     pub(crate) depth: f32,
     pub(crate) inverse_w: f32,
-    /// Whether it is inside the planes that triangles are cut by.
+    /// Whether it is inside the clipping planes.
     pub(crate) is_inside: bool,
 }
 
 impl Projected {
-    /// Snapped to `parts` of a pixel.
+    /// Snaps it to 1/`parts` pixel.
     #[expect(clippy::cast_possible_truncation, reason = "the guard band holds it")]
     pub(crate) fn snapped(&self, parts: f64) -> ScreenVertex {
         let [x, y] = self.at.map(|pixels| libm::rint(pixels * parts) as i32);
@@ -37,7 +37,7 @@ impl Projected {
     }
 }
 
-/// Brings vertices of a mesh onto the screen, from number `first` on.
+/// Transforms vertices of a mesh to the screen, from number `first` on.
 pub(crate) fn transform(
     variants: Variants,
     level: Level,
@@ -60,7 +60,7 @@ pub(crate) fn transform(
     }
 }
 
-/// Brings vertices onto the screen in parts of 1/4096 pixel.
+/// Transforms vertices to the screen, snapped to 1/4096 pixel.
 pub(crate) fn transform_finely(
     variants: Variants,
     screen: &Screen,
@@ -75,7 +75,7 @@ pub(crate) fn transform_finely(
     }
 }
 
-/// A place of object space on the screen.
+/// Projects a position of object space to the screen.
 pub(crate) fn project(variants: Variants, screen: &Screen, place: [f32; 3]) -> Projected {
     if variants.vertices == VertexArithmetic::F64 {
         let clip = screen.clip(place.map(f64::from));
@@ -87,7 +87,7 @@ pub(crate) fn project(variants: Variants, screen: &Screen, place: [f32; 3]) -> P
     }
 }
 
-/// Snapped to coarser parts of a pixel, where that is chosen.
+/// Snaps a vertex to coarser subpixels, if the settings choose them.
 pub(crate) fn coarse(variants: Variants, vertex: ScreenVertex) -> ScreenVertex {
     let parts = match variants.subpixels {
         Subpixels::Bits0 => SUBPIXELS,
@@ -103,7 +103,7 @@ pub(crate) fn coarse(variants: Variants, vertex: ScreenVertex) -> ScreenVertex {
     ScreenVertex::placed(at, vertex.depth, vertex.inverse_w)
 }
 
-/// From object space to the screen in 32 bits.
+/// The transform from object space to the screen, in f32.
 struct Screen32 {
     rows: [[f32; 4]; 4],
     half: [f32; 2],
@@ -137,8 +137,8 @@ mod tests {
     use crate::base::image::Size;
     use crate::base::math;
 
-    /// How far from where it belongs a vertex is seen that is 400 in front of a camera, itself `offset`
-    /// from the origin, in pixels; the worst of some.
+    /// The largest error on the screen, in pixels, of vertices 400 in front of a camera that is
+    /// `offset` from the origin.
     fn worst(vertices: VertexArithmetic, offset: f64) -> f64 {
         let size = Size::new(800, 800);
         let clip_from_view = math::perspective(22.5_f64.to_radians(), 1.0, 2000.0, size);

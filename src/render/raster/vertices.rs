@@ -1,6 +1,6 @@
-//! Vertices of a mesh to the screen, and back in sixteens.
+//! Transforms the vertices of a mesh to the screen, and fetches them sixteen at a time.
 //!
-//! The loop is plain arithmetic over rows of coordinates, compiled for each set of instructions: it
+//! The loop is plain arithmetic over rows of coordinates, compiled for each instruction set: it
 //! does to eight vertices at once what [`Screen::vertex`] does to one, with the same bits.
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, dispatch, i32x4, i32x16};
@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, dispatch, i32x
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::scene::DrawOrder;
 
-/// Brings vertices of a mesh onto the screen, from number `first` on.
+/// Transforms vertices of a mesh to the screen, from number `first` on.
 pub(crate) fn transform(
     level: Level,
     screen: &Screen,
@@ -28,8 +28,8 @@ fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [Scre
     }
 }
 
-/// x, y, depth and one by w of sixteen vertices, by their numbers. A number beyond the last means the
-/// last, which spares a check in each lane.
+/// Fetches x, y, depth and 1/w of sixteen vertices, by their numbers. A number beyond the last
+/// counts as the last, which saves a check in each lane.
 #[inline(always)]
 pub(crate) fn fetch_vertices<S: Simd>(
     simd: S,
@@ -47,7 +47,7 @@ pub(crate) fn fetch_vertices<S: Simd>(
     )
 }
 
-/// Four rows of sixteen numbers from sixteen rows of four.
+/// Transposes sixteen rows of four numbers to four rows of sixteen.
 #[inline(always)]
 pub(crate) fn fetch<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [i32x16<S>; 4] {
     let (even_low, odd_low) = four(simd, 0, &row).deinterleave(four(simd, 4, &row));
@@ -57,7 +57,7 @@ pub(crate) fn fetch<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [i32x1
     [a, b, c, d]
 }
 
-/// Four rows of four numbers, one after the other.
+/// Four rows of four numbers, one after another.
 #[inline(always)]
 fn four<S: Simd>(simd: S, at: usize, row: &impl Fn(usize) -> [i32; 4]) -> i32x16<S> {
     let a = i32x4::from_slice(simd, &row(at));

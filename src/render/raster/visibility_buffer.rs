@@ -1,18 +1,18 @@
-//! The words of pixels: how near something is, and what it is.
+//! The visibility buffer: the depth and the primitive of each sample.
 //!
-//! One word of 64 bits a pixel: the bits of the depth above, the inverted number of the primitive
-//! below. So the larger word is what is seen.
+//! A sample's entry is one 64-bit word: the bits of the depth above, the inverted number of the
+//! primitive below. So the depth test is a maximum: the larger entry is visible.
 
 use fearless_simd::Simd;
 
-use crate::render::raster::lines::LineNumber;
+use super::lines::LineNumber;
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::BLOCK_PIXELS;
 
-/// What is seen at a pixel.
+/// The primitive that is visible at a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Visible {
-    /// Nothing.
+    /// No primitive.
     Background,
     /// A triangle, by its number in the frame.
     Triangle(u32),
@@ -20,15 +20,15 @@ pub(crate) enum Visible {
     Line(LineNumber),
 }
 
-/// What a word says is seen.
+/// The primitive of an entry.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
 pub(crate) const fn seen(word: u64) -> Visible {
     seen_number(!(word as u32))
 }
 
-/// What the number of a primitive says is seen. The background has that of the word 0, which is none of
-/// a line.
+/// The primitive with a number. The background has the number of entry 0, which is not that of any
+/// line.
 #[inline(always)]
 pub(crate) const fn seen_number(number: u32) -> Visible {
     match LineNumber::of(number) {
@@ -38,7 +38,7 @@ pub(crate) const fn seen_number(number: u32) -> Visible {
     }
 }
 
-/// What a word says of the depth: its bits, where it is kept as mostly.
+/// The depth key of an entry: the bits of the depth in the default format.
 pub(crate) const fn key(word: u64) -> u32 {
     (word >> 32) as u32
 }
@@ -48,17 +48,17 @@ pub(crate) fn word(depth: f32, number: u32) -> u64 {
     u64::from(depth.to_bits()) << 32 | u64::from(!number)
 }
 
-/// The words of a block for each of four samples.
+/// The entries of a block for each of four samples.
 pub(crate) type Planes = [[u64; BLOCK_PIXELS]; FOUR];
 
-/// The bits of the least and of the largest depth of the triangles among some words.
+/// The bits of the least and of the largest depth of the triangles in some entries.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
-pub(crate) fn depths_of<S: Simd>(_: S, words: &[u64]) -> [u32; 2] {
+pub(crate) fn depths_of<S: Simd>(_: S, visibility: &[u64]) -> [u32; 2] {
     let (mut low, mut high) = (u32::MAX, 0);
-    for word in words {
+    for word in visibility {
         let depth = (*word >> 32) as u32;
-        // The numbers of lines are the upper half of all; the background has the lowest word.
+        // The numbers of lines are the upper half of all; the background has the lowest entry.
         let is_triangle = *word as u32 >> 31 == 1;
         low = low.min(if is_triangle { depth } else { u32::MAX });
         high = high.max(if is_triangle { depth } else { 0 });

@@ -1,8 +1,9 @@
-//! What threads do to bring a frame onto the screen, piece by piece.
+//! Divides the setup of a frame into pieces of work for threads.
 //!
-//! A piece is so many vertices, triangles or edges of one draw. They lie side by side, so a piece has a home
-//! on the screen: the tile that its middle is in. Pieces are handed out in the order of these homes, and
-//! tiles are in the same order, so that each thread draws mostly what it has set up itself.
+//! A piece is a range of vertices, triangles or edges of one draw. They are neighbours, so a piece
+//! has a home tile on the screen: the one that contains its middle element. Pieces are distributed
+//! in the order of their homes, and tiles in the same order, so that each thread mostly draws what
+//! it has set up itself.
 
 use crate::base::image::Size;
 use crate::base::work_stealing::WorkStealing;
@@ -11,45 +12,45 @@ use crate::render::screen::clip::Screen;
 use crate::render::screen::tiles::{TILE, tiles_of};
 use crate::scene::{CLUSTER, NONE};
 
-/// How many pieces are made of many vertices, triangles, polygons or edges: the smaller they are, the more
-/// of them are at home where they are drawn.
+/// The number of pieces that many vertices, triangles, polygons or edges are divided into: the
+/// smaller they are, the more of them are drawn near their home.
 const PIECES: usize = 256;
 
-/// The least and the most of a piece.
+/// The least and the largest size of a piece.
 const LEAST: usize = 4 * CLUSTER;
 const MOST: usize = 32 * CLUSTER;
 
-/// How many of so many are a piece; whole clusters.
+/// The size of a piece of `count` elements; a multiple of clusters.
 pub(crate) fn piece_of(count: usize) -> usize {
     (count / PIECES).next_multiple_of(CLUSTER).clamp(LEAST, MOST)
 }
 
-/// Fewer than this are set up by one thread: waking the others would take longer.
+/// Fewer elements than this are set up by one thread: waking the others would take longer.
 const FEW: usize = 4096;
 
-/// What a thread takes at a time.
+/// A piece of work.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Work<W> {
     pub(crate) draw: usize,
     pub(crate) what: W,
     pub(crate) from: usize,
     pub(crate) to: usize,
-    /// How many pieces were added before it.
+    /// The number of pieces that were added before it.
     pub(crate) place: usize,
-    /// The tile that its middle is in, or is nearest to.
+    /// The tile that contains its middle element, or is nearest to it.
     home: usize,
 }
 
-/// What is set up.
+/// The kind of a piece.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum What {
-    /// Triangles into bins.
+    /// Setup of triangles.
     Triangles,
-    /// The outlines of polygons that are one triangle each, in the order of drawing.
+    /// The outlines of polygons that are one triangle each, in draw order.
     Facing,
     /// The outlines of polygons.
     FacingOneByOne,
-    /// Edges into bins.
+    /// Setup of edges.
     Edges,
 }
 
@@ -57,7 +58,7 @@ pub(crate) enum What {
 #[derive(Debug)]
 pub(crate) struct WorkList<W> {
     pieces: Vec<Work<W>>,
-    /// Vertices, triangles, polygons and edges of all.
+    /// The number of elements in all pieces.
     count: usize,
 }
 
@@ -68,13 +69,13 @@ impl<W> Default for WorkList<W> {
 }
 
 impl<W: Copy> WorkList<W> {
-    /// Forgets all.
+    /// Removes all pieces.
     pub(crate) fn clear(&mut self) {
         self.pieces.clear();
         self.count = 0;
     }
 
-    /// Adds so many of a draw, each of which has a position in object space.
+    /// Adds `count` elements of a draw, whose positions in object space give their homes.
     pub(crate) fn add(
         &mut self,
         (i, draw): (usize, &Draw),
@@ -99,17 +100,17 @@ impl<W: Copy> WorkList<W> {
         &self.pieces
     }
 
-    /// How many pieces there are.
+    /// The number of pieces.
     pub(crate) fn len(&self) -> usize {
         self.pieces.len()
     }
 
-    /// How many threads it is worth waking.
+    /// The number of threads that are worth waking.
     pub(crate) fn threads(&self) -> usize {
         if self.count < FEW { 1 } else { rayon::current_num_threads() }
     }
 
-    /// WorkStealing of `tiles` tiles that begin where those of the pieces do.
+    /// Distributes `tiles` tiles, starting each thread where its pieces are at home.
     pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
         let threads = rayon::current_num_threads();
         if self.pieces.len() < 4 * threads {
@@ -123,7 +124,7 @@ impl<W: Copy> WorkList<W> {
 }
 
 impl What {
-    /// Where the `i`th is, in object space.
+    /// The position of element `i` in object space.
     pub(crate) fn position(self, draw: &Draw, i: usize) -> [f64; 3] {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
@@ -142,7 +143,7 @@ impl What {
     }
 }
 
-/// The tile of the picture that a place is in, or is nearest to.
+/// The tile of the picture that contains a position, or is nearest to it.
 #[expect(clippy::cast_possible_truncation, reason = "held to the picture")]
 fn home(screen: &Screen, size: Size, place: [f64; 3]) -> usize {
     let at = screen.pixels(screen.clip(place));

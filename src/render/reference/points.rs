@@ -1,11 +1,12 @@
-//! Ancestor A's way of filling: points every 0.1 unit of the observer's space, each drawn by itself.
+//! The fill algorithm of ancestor A: points every 0.1 unit of the observer's space, each drawn by
+//! itself.
 //!
-//! A row of points begins at every 0.1 unit of height, and on it a point every 0.1 unit to the right. At
-//! a distance of 400, with 800 pixels for 45 degrees, a pixel is written 17 times so, at 966 a hundred
-//! times, and nearer than 97 points are farther apart than pixels and leave holes.
+//! A row of points begins at every 0.1 unit of height, and on it a point every 0.1 unit to the
+//! right. At a distance of 400, with 800 pixels for 45 degrees, a pixel is written 17 times, at 966
+//! a hundred times; nearer than 97 the points are farther apart than pixels and leave holes.
 //!
-//! Farther off than where a pixel would get [`MOST`] points to a side the step grows with the distance:
-//! A went on, and took minutes.
+//! Beyond the distance at which a pixel gets [`MOST`] points to a side, the step grows with the
+//! distance; A kept the step and took minutes.
 
 use glam::{DVec3, DVec4};
 
@@ -16,11 +17,11 @@ use crate::render::screen::coverage::{PixelBox, SUBPIXELS};
 /// The step, in units of the world.
 const STEP: f64 = 0.1;
 
-/// Points to a side of a pixel at the most.
+/// The most points to a side of a pixel.
 const MOST: f64 = 16.0;
 
-/// Calls `take` with the pixel and the depth of every point that falls into `clip`, of a triangle of a
-/// draw; `clip` lies so many 256th parts of a pixel off.
+/// Calls `take` with the pixel and the depth of every point of a triangle that falls into `clip`,
+/// for a sample with an offset in 1/256 pixel.
 pub(crate) fn cover(
     plan: &FramePlan,
     draw: &Draw,
@@ -77,7 +78,7 @@ fn span(corners: &[DVec3; 3], y: f64) -> Option<[DVec3; 2]> {
     ends
 }
 
-/// Some pixels of the picture, and the part of the observer's space from which points may fall there.
+/// Some pixels of the picture, and the part of the observer's space whose points may fall there.
 struct Window<'a> {
     plan: &'a FramePlan,
     clip: PixelBox,

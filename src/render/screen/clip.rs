@@ -1,22 +1,22 @@
-//! From object space to the screen, and what becomes of what reaches beyond it.
+//! From object space to the screen: transform, clip, project and snap.
 //!
 //! Placement is composed and applied in f64; clipping is done in homogeneous space, before any
-//! division, against the near and the far plane and a guard band of 2^20 pixels to each side; what is
-//! left is snapped to 1/256 of a pixel.
+//! division, against the near and the far plane and a guard band of 2^20 pixels to each side; what
+//! is left is projected and snapped to 1/256 pixel.
 //!
 //! Clipping: Blinn and Newell, "Clipping Using Homogeneous Coordinates", SIGGRAPH 1978; Sutherland
-//! and Hodgman, "Reentrant Polygon Clipping", CACM 1974. A cut is computed from the inner end of its
-//! edge, so that two triangles which share the edge get the same bits.
+//! and Hodgman, "Reentrant Polygon Clipping", CACM 1974. A cut is computed from the inner end of
+//! its edge, so that two triangles that share the edge get the same bits.
 
 use glam::{DMat4, DVec3};
 
 use super::coverage::{SUBPIXELS, Snapped};
 use crate::base::image::Size;
 
-/// The guard band: how far from the picture's middle coordinates may be, in pixels.
+/// The guard band: the largest distance of coordinates from the picture's centre, in pixels.
 const GUARD: f64 = 1_048_576.0;
 
-/// Added to a number below 2^51, this leaves the nearest whole number in the lowest bits.
+/// Added to a number below 2^51, this leaves the nearest integer in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// A vertex on the screen.
@@ -27,7 +27,7 @@ pub(crate) struct ScreenVertex {
     y: i32,
     /// 1 at the near plane, 0 at the far one.
     pub(crate) depth: f32,
-    /// One by the w of clip space.
+    /// 1/w of clip space.
     pub(crate) inverse_w: f32,
 }
 
@@ -35,54 +35,53 @@ impl ScreenVertex {
     /// In place of x: the vertex is beyond the near plane, the far plane or the guard band.
     pub(crate) const BEYOND: i32 = i32::MIN;
 
-    /// Its numbers as they lie in memory: x, y, and the bits of the depth and of one by w.
+    /// Its numbers as stored in memory: x, y, and the bits of the depth and of 1/w.
     #[inline(always)]
     pub(crate) const fn row(&self) -> [i32; 4] {
         let (depth, inverse_w) = (self.depth.to_bits(), self.inverse_w.to_bits());
         [self.x, self.y, depth.cast_signed(), inverse_w.cast_signed()]
     }
 
-    /// Whether it is inside the planes that triangles are cut by; elsewhere its place is of no
-    /// meaning.
+    /// Whether it is inside the clipping planes; otherwise its position is meaningless.
     #[inline(always)]
     pub(crate) const fn is_inside(&self) -> bool {
         self.x != Self::BEYOND
     }
 
-    /// A vertex at a place.
+    /// A vertex at a position.
     pub(crate) const fn placed(at: Snapped, depth: f32, inverse_w: f32) -> Self {
         Self { x: at.x, y: at.y, depth, inverse_w }
     }
 
-    /// The same beyond the planes.
+    /// The same, marked as beyond the clipping planes.
     pub(crate) const fn beyond(self) -> Self {
         Self { x: Self::BEYOND, ..self }
     }
 
-    /// A vertex at a place, for tests.
+    /// A vertex at a position, for tests.
     #[cfg(test)]
     pub(crate) const fn new(at: Snapped, depth: f32) -> Self {
         Self { x: at.x, y: at.y, depth, inverse_w: 1.0 }
     }
 
-    /// The vertex as it is seen from a place that is shifted by so many parts of a pixel; it is
+    /// The vertex relative to a sample with this offset in subpixels; it must be
     /// [inside](Self::is_inside).
     #[inline(always)]
     pub(crate) const fn seen_from(self, [x, y]: [i32; 2]) -> Self {
         Self { x: self.x - x, y: self.y - y, ..self }
     }
 
-    /// Its place in the picture.
+    /// Its position in the picture.
     #[inline(always)]
     pub(crate) const fn at(&self) -> Snapped {
         Snapped { x: self.x, y: self.y }
     }
 }
 
-/// A place in clip space: x, y, z, w.
+/// A position in clip space: x, y, z, w.
 pub(crate) type Clip = [f64; 4];
 
-/// From object space to the screen.
+/// The transform from object space to the screen, with the clipping planes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Screen {
     /// The rows of `clip_from_object`.
@@ -90,7 +89,8 @@ pub(crate) struct Screen {
     /// Half of the picture's width and height.
     pub(crate) half: [f64; 2],
     guard: [f64; 2],
-    /// By how many parts of a pixel what is cut is moved the other way once it is snapped.
+    /// The sample's offset in subpixels, which is subtracted from clipped corners once they are
+    /// snapped.
     shift: [i32; 2],
 }
 
@@ -106,27 +106,27 @@ impl Screen {
         }
     }
 
-    /// The same, where what is cut is seen from a place that is shifted by so many parts of a pixel.
+    /// The same for a sample with this offset in subpixels.
     pub(crate) const fn seen_from(self, shift: [i32; 2]) -> Self {
         Self { shift, ..self }
     }
 
-    /// By how many parts of a pixel the place is shifted from which what is cut is seen.
+    /// The sample's offset, in subpixels.
     pub(crate) const fn shift(&self) -> [i32; 2] {
         self.shift
     }
 
-    /// The same with a guard band of so many pixels.
+    /// The same with a guard band of this many pixels.
     pub(crate) fn guarded(self, pixels: f64) -> Self {
         Self { guard: self.half.map(|half| pixels / half - 1.0), ..self }
     }
 
-    /// The same with a guard band that ends so many pixels beyond the picture.
+    /// The same with a guard band that ends this many pixels beyond the picture.
     pub(crate) fn close_to_picture(self, pixels: f64) -> Self {
         Self { guard: self.half.map(|half| 1.0 + pixels / half), ..self }
     }
 
-    /// A place of object space in clip space.
+    /// Transforms a position from object space to clip space.
     #[inline(always)]
     pub(crate) fn clip(&self, [x, y, z]: [f64; 3]) -> Clip {
         let row = |i: usize| {
@@ -144,20 +144,20 @@ impl Screen {
         [w - z, z, gx * w + x, gx * w - x, gy * w + y, gy * w - y]
     }
 
-    /// The most that each of these distances changes on a way of length 1 in object space.
+    /// The most that each of these distances changes over a length of 1 in object space.
     pub(crate) fn slopes(&self) -> [f64; 6] {
         let along = |axis: usize| self.distances(self.rows.map(|row| row[axis]));
         let [x, y, z] = [along(0), along(1), along(2)];
         std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]).length())
     }
 
-    /// Whether a place is inside the planes by more than rounding could make of it.
+    /// Whether a position is inside the clipping planes by more than rounding errors.
     pub(crate) fn holds(&self, clip: Clip) -> bool {
         let least = 1e-9 * clip.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         self.distances(clip).iter().all(|distance| *distance > least)
     }
 
-    /// The place on the screen, or [beyond](ScreenVertex::BEYOND) it.
+    /// Projects and snaps a position, or marks it as [beyond](ScreenVertex::BEYOND) the planes.
     #[inline(always)]
     pub(crate) fn vertex(&self, clip: Clip) -> ScreenVertex {
         let [a, b, c, d, e, f] = self.distances(clip);
@@ -166,7 +166,7 @@ impl Screen {
         ScreenVertex { x: if inside { vertex.x } else { ScreenVertex::BEYOND }, ..vertex }
     }
 
-    /// The place on the screen of what is inside, or would be but for rounding.
+    /// Projects and snaps a position that is inside, up to rounding.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lowest bits and the nearest f32")]
     fn project(&self, [x, y, z, w]: Clip) -> ScreenVertex {
@@ -184,19 +184,19 @@ impl Screen {
         }
     }
 
-    /// Where a place inside is in the picture, in pixels.
+    /// The position in the picture, in pixels, of a position that is inside.
     pub(crate) fn pixels(&self, [x, y, _, w]: Clip) -> [f64; 2] {
         let inverse_w = 1.0 / w;
         [(x * inverse_w + 1.0) * self.half[0], (1.0 - y * inverse_w) * self.half[1]]
     }
 
-    /// What is left of a triangle of clip space: the corners of a convex polygon.
+    /// Clips a triangle: the corners of the convex polygon that is left of it.
     pub(crate) fn cut(&self, corners: [Clip; 3]) -> Vec<ScreenVertex> {
         let corners = self.cut_in_clip(corners).into_iter();
         corners.map(|corner| self.project(corner).seen_from(self.shift)).collect()
     }
 
-    /// The same before it is brought to the screen.
+    /// The same, before projection.
     pub(crate) fn cut_in_clip(&self, corners: [Clip; 3]) -> Vec<Clip> {
         let mut polygon = corners.to_vec();
         if !polygon.as_flattened().iter().all(|x| x.is_finite()) {
@@ -220,7 +220,7 @@ impl Screen {
         polygon
     }
 
-    /// The part of a line between two places of clip space that is inside.
+    /// Clips a line between two positions of clip space.
     pub(crate) fn segment(&self, ends: [Clip; 2]) -> Option<[ScreenVertex; 2]> {
         let [mut a, mut b] = ends;
         if !ends.as_flattened().iter().all(|x| x.is_finite()) {
@@ -240,26 +240,26 @@ impl Screen {
     }
 }
 
-/// The place that lies at the part `t` of the way from the inner end of an edge to the outer one.
+/// Interpolates between the inner and the outer end of an edge.
 fn between(inner: &Clip, outer: &Clip, t: f64) -> Clip {
     std::array::from_fn(|i| inner[i] + (outer[i] - inner[i]) * t)
 }
 
-/// The parts that the corners of a triangle have in what is seen at a place of the picture, with
-/// perspective, from its corners in clip space: also where some of them lie behind the observer.
+/// The perspective-correct weights of a triangle's corners at a position of the picture, from its
+/// corners in clip space. It works even if some of them lie behind the observer.
 ///
-///   m ~ (q x r, r x p, p x q) . s   for corners p, q, r and the place s, each as (x, y, w)
+///   m ~ (q x r, r x p, p x q) . s   for corners p, q, r and the position s, each as (x, y, w)
 ///
-/// Olano and Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997. Held to the
-/// triangle, and their sum to 1.
+/// Olano and Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997. The weights
+/// are clamped to the triangle, and their sum is 1.
 pub(crate) fn homogeneous_weights(corners: [Clip; 3], [x, y]: [f64; 2]) -> DVec3 {
     let [p, q, r] = corners.map(|[x, y, _, w]| DVec3::new(x, y, w));
     let place = DVec3::new(x, y, 1.0);
     let weights = DVec3::new(q.cross(r).dot(place), r.cross(p).dot(place), p.cross(q).dot(place));
     let weights = if weights.element_sum() < 0.0 { -weights } else { weights };
-    let held = weights.max(DVec3::ZERO);
-    let sum = held.element_sum();
-    if sum > 0.0 { held / sum } else { DVec3::splat(1.0 / 3.0) }
+    let clamped = weights.max(DVec3::ZERO);
+    let sum = clamped.element_sum();
+    if sum > 0.0 { clamped / sum } else { DVec3::splat(1.0 / 3.0) }
 }
 
 /// Whether the corners of a triangle of clip space run counter-clockwise for the observer.

@@ -1,21 +1,21 @@
-//! Which pixels a triangle covers.
+//! Decides which pixels a triangle covers, by integer edge functions.
 //!
-//! Corners are snapped to 1/256 of a pixel and the rest is whole-number arithmetic, so a pixel is in
-//! or out by a rule, never by a rounding, and every arithmetic of light covers the same pixels.
-//! Triangles that share an edge leave no pixel of it out and take none twice.
+//! Corners are snapped to 1/256 pixel; everything after that is integer arithmetic, so coverage is
+//! exact, and the same for every arithmetic of light. Triangles that share an edge leave no gap and
+//! cover no pixel twice.
 //!
 //! The edge functions are those of Pineda, "A Parallel Algorithm for Polygon Rasterization",
-//! SIGGRAPH 1988; the rule for centres on an edge is that of Direct3D and Vulkan.
+//! SIGGRAPH 1988; the rule for centres on an edge is the top-left rule of Direct3D and Vulkan.
 //!
-//! Coordinates stay within 2^28 (the guard band of 2^20 pixels), so that an edge function stays below
-//! 2^59 and nothing overflows.
+//! Coordinates stay within 2^28 (the guard band of 2^20 pixels), so that an edge function stays
+//! below 2^59 and nothing overflows.
 
 use crate::base::math::each;
 
-/// Parts that a pixel is cut into, in each direction.
+/// Subpixels per pixel, in each direction.
 pub const SUBPIXELS: i32 = 256;
 
-/// A point of the picture in parts of a pixel, x to the right and y down.
+/// A snapped point of the picture in subpixels, x to the right and y down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Snapped {
     /// To the right of the left border.
@@ -25,7 +25,7 @@ pub struct Snapped {
 }
 
 impl Snapped {
-    /// The point as it is seen from a place that is shifted by this.
+    /// The point relative to a sample with this shift.
     #[inline(always)]
     #[must_use]
     pub const fn seen_from(self, [x, y]: [i32; 2]) -> Self {
@@ -47,20 +47,21 @@ pub struct PixelBox {
 }
 
 impl PixelBox {
-    /// The pixels whose centres lie in the box of three places.
+    /// The pixels whose centres lie in the bounding box of three points.
     #[inline(always)]
     #[must_use]
     pub fn of(corners: [Snapped; 3]) -> Self {
         Self::reached(corners, [[0; 2]; 2])
     }
 
-    /// The pixels of which places that lie from `least` to `most` off the centre may lie in the box of
-    /// three places.
+    /// The pixels with a sample that may lie in the bounding box of three points, if samples lie
+    /// from `least` to `most` off the centre.
     #[inline(always)]
     #[must_use]
     pub fn reached([a, b, c]: [Snapped; 3], [least, most]: [[i32; 2]; 2]) -> Self {
         let half = SUBPIXELS / 2;
-        // The first centre at or after the smallest coordinate; past the last one before the largest.
+        // The first centre at or after the smallest coordinate; past the last one before the
+        // largest.
         let first = |a: i32, b: i32, c: i32, most: i32| {
             (a.min(b).min(c) + half - 1 - most).div_euclid(SUBPIXELS)
         };
@@ -75,7 +76,7 @@ impl PixelBox {
         }
     }
 
-    /// What both have in common; empty boxes have `left >= right` or `top >= bottom`.
+    /// The intersection of both; empty boxes have `left >= right` or `top >= bottom`.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self {
@@ -86,26 +87,26 @@ impl PixelBox {
         }
     }
 
-    /// How many columns it has, where it is not empty.
+    /// The number of columns, if it is not empty.
     #[must_use]
     pub const fn width(self) -> i32 {
         self.right - self.left
     }
 
-    /// How many rows it has, where it is not empty.
+    /// The number of rows, if it is not empty.
     #[must_use]
     pub const fn height(self) -> i32 {
         self.bottom - self.top
     }
 
-    /// Whether there is no pixel in it.
+    /// Whether it holds no pixel.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.left >= self.right || self.top >= self.bottom
     }
 }
 
-/// The line from one corner to the next, as a function that is not negative inside.
+/// An edge function: the line from one corner to the next, not negative inside.
 ///
 ///   e(x, y) = a x + b y + c,   a = p.y - q.y,   b = q.x - p.x,   c = p.x q.y - p.y q.x
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,8 +124,9 @@ impl Edge {
         Self { a: py - qy, b: qx - px, c: px * qy - py * qx }
     }
 
-    /// 0 where a centre on the edge is covered: on a top edge (level, the triangle under it) and on a
-    /// left one (going up); -1 elsewhere, which moves no other centre across, for e is whole.
+    /// The top-left rule: 0 if a centre on the edge is covered, which holds for a top edge (level,
+    /// with the triangle below) and for a left one (going up); else -1, which moves no other centre
+    /// across, since e is an integer.
     #[inline(always)]
     fn bias(self) -> i64 {
         if self.a > 0 || (self.a == 0 && self.b > 0) { 0 } else { -1 }
@@ -136,7 +138,7 @@ impl Edge {
     }
 }
 
-/// A triangle with area, ready to say which pixels it covers.
+/// A triangle with area, set up to decide which pixels it covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Triangle {
     /// `edges[i]` is opposite to corner i, and its value is twice the area of the part of the
@@ -159,7 +161,7 @@ pub struct Covered {
 }
 
 impl Triangle {
-    /// The triangle, of either winding; `None` where it has no area.
+    /// Sets up a triangle of either winding; `None` if it has no area.
     #[must_use]
     #[inline(always)]
     pub fn new([p, q, r]: [Snapped; 3]) -> Option<Self> {
@@ -183,7 +185,7 @@ impl Triangle {
         self.doubled_area
     }
 
-    /// The pixels whose centres lie in the triangle's own box.
+    /// The pixels whose centres lie in the triangle's bounding box.
     #[must_use]
     pub const fn bounds(&self) -> PixelBox {
         self.bounds
@@ -197,7 +199,7 @@ impl Triangle {
         each(self.edges, |edge| edge.at(cx, cy))
     }
 
-    /// What the edge functions gain by a pixel to the right, and by one down.
+    /// The steps of the edge functions by a pixel to the right, and by one down.
     #[inline(always)]
     #[must_use]
     pub fn steps(&self) -> [[i64; 3]; 2] {
@@ -206,7 +208,7 @@ impl Triangle {
         [[p.a * step, q.a * step, r.a * step], [p.b * step, q.b * step, r.b * step]]
     }
 
-    /// The least values of the edge functions at centres that are covered.
+    /// The least values of the edge functions at covered centres.
     #[inline(always)]
     #[must_use]
     pub fn least(&self) -> [i64; 3] {
@@ -214,8 +216,8 @@ impl Triangle {
         [-p.bias(), -q.bias(), -r.bias()]
     }
 
-    /// Whether a block of 8 x 8 pixels, at whose first pixel the edge functions have these values, is
-    /// covered as a whole; `None` where one of the edges leaves all of it out.
+    /// Whether the triangle covers all of a block of 8 x 8 pixels, at whose first pixel the edge
+    /// functions have these values; `None` if the block lies outside one of the edges.
     #[inline(always)]
     #[must_use]
     pub fn touches_block(&self, edges: [i64; 3]) -> Option<bool> {
@@ -252,8 +254,8 @@ impl Triangle {
     }
 }
 
-/// Twice the area, positive where the corners run clockwise on the screen (counter-clockwise as the
-/// observer sees it with y up is negative).
+/// Twice the signed area: positive if the corners run clockwise on the screen, negative if they run
+/// counter-clockwise.
 #[must_use]
 #[inline(always)]
 pub fn doubled_area([p, q, r]: [Snapped; 3]) -> i64 {
@@ -263,7 +265,7 @@ pub fn doubled_area([p, q, r]: [Snapped; 3]) -> i64 {
     (qx - px) * (ry - py) - (qy - py) * (rx - px)
 }
 
-/// The middle of pixel `i`, in parts of a pixel.
+/// The centre of pixel `i`, in subpixels.
 #[inline(always)]
 fn centre(i: i32) -> i64 {
     i64::from(i) * i64::from(SUBPIXELS) + i64::from(SUBPIXELS / 2)
@@ -320,7 +322,7 @@ mod tests {
         for _ in 0..5000 {
             let centre = Snapped { x: place(), y: place() };
             let far = SIDE * SUBPIXELS;
-            // The corners of the square, and a place on each of its sides.
+            // The corners of the square, and a point on each of its sides.
             let (a, b, c, d) = (place(), place(), place(), place());
             let outline =
                 [(0, 0), (a, 0), (far, 0), (far, b), (far, far), (c, far), (0, far), (0, d)]

@@ -1,39 +1,40 @@
-//! Where a pixel lies in its triangle, where that is not found sixteen pixels at a time: by affine
-//! interpolation, by perspective at every sixteenth pixel, in fine parts of a pixel, or at pixels whose
-//! centres no triangle covers.
+//! Barycentric coordinates of single pixels, for the variants of interpolation, subpixels and
+//! coverage: affine, perspective-correct at every sixteenth pixel, on a finer grid, or at pixels
+//! whose centres no triangle covers.
 //!
-//! Every sixteenth pixel: a division a pixel was too slow for games of 1996; so a row of a triangle was
-//! cut into pieces of sixteen pixels from its left end, the last one shorter, with perspective at their
-//! ends and evenly between. Abrash, "Graphics Programming Black Book", 1997, chapter 70.
+//! Every sixteenth pixel: a division per pixel was too slow for games of 1996, so a row of a
+//! triangle was divided into spans of sixteen pixels from its left end, the last one shorter, with
+//! perspective at their ends and linear interpolation between. Abrash, "Graphics Programming Black
+//! Book", 1997, chapter 70.
 
+use super::coverage::{SUBPIXELS, Snapped, doubled_area};
 use crate::accuracy::{Coverage, Interpolation};
 use crate::render::frame::variants::Variants;
-use crate::render::screen::coverage::{SUBPIXELS, Snapped, doubled_area};
 
-/// Pixels of a piece of a row.
+/// Pixels of a span.
 const PIECE: i64 = 16;
 
-/// The parts of a triangle's second and third corner in a pixel.
+/// The weights of a triangle's second and third corner.
 type Parts = [f64; 2];
 
-/// Parts of a pixel that corners of triangles are counted in.
+/// The subpixels per pixel of triangle corners.
 pub(crate) fn subpixels(variants: Variants) -> i32 {
     if variants.has_fine_corners() { 4096 } else { SUBPIXELS }
 }
 
-/// The parts in a place of a pixel, so many 256th parts of it from its middle, by the way that is
-/// chosen, and the place's w. What may lie outside is held to the triangle.
+/// The weights at a pixel by the chosen variant, `shift` subpixels from its centre, and w there.
+/// Positions that may lie outside are clamped to the triangle.
 pub(crate) fn parts_at(
     variants: Variants,
     corners: [Snapped; 3],
     by_w: [f64; 3],
     ([x, y], shift): ([i32; 2], [i32; 2]),
-    held: bool,
+    clamped: bool,
 ) -> (Parts, f64) {
     let [dx, dy] = shift.map(|shift| shift * (subpixels(variants) / SUBPIXELS));
     let corners = corners.map(|at| Snapped { x: at.x - dx, y: at.y - dy });
-    let held = held || variants.coverage != Coverage::Exact;
-    let linear = |x: f64| linear(variants, corners, [x, f64::from(y)], held);
+    let clamped = clamped || variants.coverage != Coverage::Exact;
+    let linear = |x: f64| linear(variants, corners, [x, f64::from(y)], clamped);
     let own = linear(f64::from(x));
     let (exact, w) = perspective(own, by_w);
     let parts = match variants.interpolation {
@@ -51,27 +52,27 @@ pub(crate) fn parts_at(
     (parts, w)
 }
 
-/// The parts in a place, by column and row of pixels, linear on the screen.
+/// The weights at a position, in pixels, linear on the screen.
 #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
-fn linear(variants: Variants, corners: [Snapped; 3], at: [f64; 2], held: bool) -> Parts {
+fn linear(variants: Variants, corners: [Snapped; 3], at: [f64; 2], clamped: bool) -> Parts {
     let parts = f64::from(subpixels(variants));
     let [x, y] = at.map(|i| (i + 0.5) * parts);
     let [p, q, r] = corners.map(|Snapped { x, y }| [f64::from(x), f64::from(y)]);
-    // The differences are whole numbers, so that a corner's own part is 1 exactly.
+    // The differences are integers, so that a corner's own weight is exactly 1.
     let area = doubled_area(corners) as f64;
     let edge = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
     let [second, third] = [edge(r, p) / area, edge(p, q) / area];
-    if !held {
+    if !clamped {
         return [second, third];
     }
-    // The centre may lie outside: the nearest that does not extrapolate.
-    let held = [1.0 - second - third, second, third].map(|part| part.max(0.0));
-    let sum: f64 = held.iter().sum();
-    if sum > 0.0 { [held[1] / sum, held[2] / sum] } else { [1.0 / 3.0; 2] }
+    // The centre may lie outside: clamped, so that nothing is extrapolated.
+    let clamped = [1.0 - second - third, second, third].map(|part| part.max(0.0));
+    let sum: f64 = clamped.iter().sum();
+    if sum > 0.0 { [clamped[1] / sum, clamped[2] / sum] } else { [1.0 / 3.0; 2] }
 }
 
-/// The first and the last column of the piece of a row that a pixel is in; `None` where it is one
-/// pixel, or the pixel is not within the triangle.
+/// The first and the last column of the span of a pixel; `None` if it is a single pixel, or the
+/// pixel is not inside the triangle.
 #[expect(clippy::cast_precision_loss, reason = "columns are small numbers")]
 fn piece(variants: Variants, corners: [Snapped; 3], [x, y]: [i32; 2]) -> Option<[f64; 2]> {
     let parts = i64::from(subpixels(variants));
@@ -97,12 +98,12 @@ fn piece(variants: Variants, corners: [Snapped; 3], [x, y]: [i32; 2]) -> Option<
     }
     let from = first + (x - first) / PIECE * PIECE;
     let to = (from + PIECE).min(last);
-    // The last pixel of a row ends the piece before it.
+    // The last pixel of a row ends the span before it.
     let from = if from == to { from - PIECE.min(from - first) } else { from };
     Some([from as f64, to as f64])
 }
 
-/// The parts with perspective, and w.
+/// The perspective-correct weights, and w.
 fn perspective([second, third]: Parts, [w0, w1, w2]: [f64; 3]) -> (Parts, f64) {
     let w = 1.0 / (w0 + second * (w1 - w0) + third * (w2 - w0));
     ([second * w1 * w, third * w2 * w], w)
@@ -113,8 +114,7 @@ fn perspective([second, third]: Parts, [w0, w1, w2]: [f64; 3]) -> (Parts, f64) {
 mod tests {
     use super::*;
 
-    /// A wall from z 2.2 to 100, 800 pixels wide, with 1024 texels along it: how many texels off the worst
-    /// pixel of its row is.
+    /// The worst error in texels along a wall from z 2.2 to 100, 800 pixels wide, with 1024 texels.
     fn worst(interpolation: Interpolation) -> f64 {
         let ways = Variants { interpolation, ..Variants::default() };
         let at = |x: i32, y: i32| Snapped { x: x * 256, y: y * 256 };
@@ -128,8 +128,8 @@ mod tests {
         (0..799).map(apart).fold(0.0, f64::max)
     }
 
-    /// What even steps are off by between two ends whose distances have this ratio, as a part of the way
-    /// between them: (sqrt r - 1) / (sqrt r + 1), where they are off most.
+    /// The largest error of linear interpolation between two ends whose distances have the ratio r,
+    /// relative to the length between them: (sqrt r - 1) / (sqrt r + 1).
     fn most(ratio: f64) -> f64 {
         (ratio.sqrt() - 1.0) / (ratio.sqrt() + 1.0)
     }
@@ -138,7 +138,7 @@ mod tests {
     fn a_wall_is_as_wrong_as_the_equation_of_perspective_says() {
         let all = 1024.0 * most(100.0 / 2.2);
         assert!((worst(Interpolation::Affine) / all - 1.0).abs() < 0.005, "of {all}");
-        // w and the texel at a column's middle, and what pieces of sixteen leave.
+        // w and the texel at a column's centre, and the error of spans of sixteen.
         let w = |x: i32| {
             let t = (f64::from(x) + 0.5) / 800.0;
             1.0 / (1.0 / 2.2 + t * (1.0 / 100.0 - 1.0 / 2.2))

@@ -1,9 +1,9 @@
-//! From clip space to the pixels that a triangle covers.
+//! From clip space to the pixels that a triangle covers: clipping, snapping, coverage.
 //!
-//! `clip` divides by w and cuts what the fixed-point grid has no room for, [`coverage`] decides in whole
-//! numbers which pixels a triangle covers, `sample_positions` says at which positions of a pixel it is
-//! asked, and `tiles` divides the picture. `weights` and `interpolation` find where a pixel lies in a
-//! triangle, one pixel at a time.
+//! `clip` clips triangles to what the fixed-point grid can hold, divides by w and snaps;
+//! [`coverage`] decides with integer edge functions which pixels a triangle covers;
+//! `sample_positions` holds the positions of samples in a pixel; `tiles` divides the picture.
+//! `weights` and `interpolation` compute barycentric coordinates, one pixel at a time.
 
 pub(crate) mod clip;
 pub mod coverage;

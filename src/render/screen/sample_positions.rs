@@ -1,56 +1,56 @@
-//! Where in its pixels a picture is looked at.
+//! The positions of samples in a pixel.
 //!
-//! A sample is the middle of its pixel moved by whole parts of a pixel, so what it shows is what the
-//! middle would show if all corners were moved the other way: everything that is exact with one sample
-//! is exact with many. Samples are looked at four at a time, each four around the middle; sixteen and
-//! sixty-four are four and sixteen passes, whose colours are added up.
+//! A sample is the centre of its pixel moved by whole subpixels, so it shows what the centre would
+//! show if all corners were moved the other way: everything that is exact with one sample is exact
+//! with many. Samples are drawn four at a time, each four around the centre; sixteen and sixty-four
+//! samples take four and sixteen passes, whose colours are added.
 //!
-//! Four and sixteen lie where Vulkan has them ("Standard sample locations", in multiples of 1/16 of a
-//! pixel), sixty-four on a grid of 8 x 8.
+//! Four and sixteen samples are at Vulkan's "Standard sample locations", multiples of 1/16 pixel;
+//! sixty-four are on a grid of 8 x 8.
 
 use crate::accuracy::Samples;
 
-/// How many samples a pass looks at, where it does not look at the middle alone.
+/// The samples of a pass, if it has more than the centre.
 pub(crate) const FOUR: usize = 4;
 
-/// The share of what all samples of a pass show.
+/// The share of a fragment that all samples of a pass show.
 pub(crate) const ALL: i32 = 4;
 
-/// What one pass looks at in every pixel.
+/// The samples of one pass in every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct SamplePositions {
-    /// From the middle, in parts of a pixel; all 0 where that is what is looked at.
+    /// Offsets from the centre, in subpixels; all 0 if the centre is the only sample.
     shifts: [[i32; 2]; FOUR],
-    /// The least and the largest of them in either direction.
+    /// The least and the largest offset on each axis.
     least: [i32; 2],
     most: [i32; 2],
     many: bool,
 }
 
 impl SamplePositions {
-    /// The middle alone.
+    /// The centre alone.
     const MIDDLE: Self = Self { shifts: [[0; 2]; FOUR], least: [0; 2], most: [0; 2], many: false };
 
-    /// Four places, by sixteenths of a pixel from the upper left corner.
+    /// Four samples, in sixteenths of a pixel from the upper left corner.
     const fn new(sixteenths: [[i32; 2]; FOUR]) -> Self {
-        let mut places = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
+        let mut positions = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
         let mut i = 0;
         while i < 2 * FOUR {
             let (sample, axis) = (i / 2, i % 2);
             let shift = (sixteenths[sample][axis] - 8) * 16;
-            places.shifts[sample][axis] = shift;
-            if shift < places.least[axis] {
-                places.least[axis] = shift;
+            positions.shifts[sample][axis] = shift;
+            if shift < positions.least[axis] {
+                positions.least[axis] = shift;
             }
-            if shift > places.most[axis] {
-                places.most[axis] = shift;
+            if shift > positions.most[axis] {
+                positions.most[axis] = shift;
             }
             i += 1;
         }
-        places
+        positions
     }
 
-    /// How many there are: [`FOUR`], or one.
+    /// The number of samples: [`FOUR`], or one.
     pub(crate) const fn count(&self) -> usize {
         if self.many { FOUR } else { 1 }
     }
@@ -60,20 +60,20 @@ impl SamplePositions {
         self.many
     }
 
-    /// Where sample `i` of `N` lies, in parts of a pixel from the middle.
+    /// The offset of sample `i` of `N` from the centre, in subpixels.
     #[inline(always)]
     pub(crate) const fn shift<const N: usize>(&self, i: usize) -> [i32; 2] {
         if N == 1 { [0; 2] } else { self.shifts[i % FOUR] }
     }
 
-    /// The least and the largest shifts.
+    /// The least and the largest offsets.
     #[inline(always)]
     pub(crate) const fn reach<const N: usize>(&self) -> [[i32; 2]; 2] {
         if N == 1 { [[0; 2]; 2] } else { [self.least, self.most] }
     }
 }
 
-/// The passes that pictures with so many samples are made of.
+/// The passes that draw this number of samples per pixel.
 pub(crate) const fn passes(samples: Samples) -> &'static [SamplePositions] {
     match samples {
         Samples::One => &[SamplePositions::MIDDLE],
@@ -83,7 +83,7 @@ pub(crate) const fn passes(samples: Samples) -> &'static [SamplePositions] {
     }
 }
 
-/// How far each sample of a pixel with so many lies from its middle, in parts of a pixel.
+/// The offset of each sample from the centre of its pixel, in subpixels.
 pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]> {
     let passes = passes(samples);
     let count = passes[0].count();
@@ -92,7 +92,7 @@ pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]
 
 const QUARTERS: [SamplePositions; 1] = [SamplePositions::new([[6, 2], [14, 6], [2, 10], [10, 14]])];
 
-/// Vulkan's sixteen, in an order in which each four lie around the middle, the nearest first.
+/// Vulkan's sixteen, in an order in which each four lie around the centre, the nearest first.
 const SIXTEEN: [SamplePositions; 4] = [
     SamplePositions::new([[9, 9], [7, 5], [5, 10], [12, 7]]),
     SamplePositions::new([[3, 6], [10, 13], [2, 12], [11, 3]]),
@@ -100,7 +100,8 @@ const SIXTEEN: [SamplePositions; 4] = [
     SamplePositions::new([[0, 8], [15, 4], [14, 15], [1, 0]]),
 ];
 
-/// A place of the grid's upper left quarter, and where quarter turns take it; the nearest first.
+/// Each position in the grid's upper left quarter and its rotations by quarter turns; the nearest
+/// first.
 const SIXTY_FOUR: [SamplePositions; 16] = {
     let mut passes = [SamplePositions::MIDDLE; 16];
     let mut i = 0;
@@ -118,15 +119,15 @@ mod tests {
     use super::*;
 
     fn all(samples: Samples) -> Vec<[i32; 2]> {
-        passes(samples).iter().flat_map(|places| places.shifts).collect()
+        passes(samples).iter().flat_map(|positions| positions.shifts).collect()
     }
 
     #[test]
     fn each_four_lie_around_the_middle() {
         for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
             for SamplePositions { shifts, .. } in passes(samples) {
-                // In every direction, some lie on one side of a line through the middle, some on the
-                // other.
+                // In every direction, some lie on one side of a line through the centre, some on
+                // the other.
                 for line in shifts {
                     let sides = shifts.map(|at| line[0] * at[1] - line[1] * at[0]);
                     assert!(sides.iter().any(|side| *side > 0), "{shifts:?}");

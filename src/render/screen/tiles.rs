@@ -1,7 +1,7 @@
-//! How a picture is cut into tiles and these into blocks, and where the words of a pixel stand.
+//! The layout of tiles, blocks and the visibility buffer.
 //!
-//! A tile has 64 x 64 pixels, a block 8 x 8. Words stand block by block, in each block sample by sample,
-//! and these row by row.
+//! A tile has 64 x 64 pixels, a block 8 x 8. The visibility buffer of a tile is stored block by
+//! block, each block sample by sample, and each sample row by row.
 
 use fearless_simd::{Simd, i32x16};
 
@@ -9,7 +9,7 @@ use crate::base::image::Size;
 
 /// Pixels to a side of a tile.
 pub(crate) const TILE_SIDE: usize = 64;
-/// The same, as coordinates are kept.
+/// The same, in the type of coordinates.
 pub(crate) const TILE: i32 = 64;
 /// Pixels to a side of a block.
 pub(crate) const BLOCK: i32 = 8;
@@ -20,7 +20,7 @@ pub(crate) const BLOCKS: i32 = TILE / BLOCK;
 /// Pixels of a tile.
 pub(crate) const PIXELS: usize = TILE_SIDE * TILE_SIDE;
 
-/// How many tiles there are in a row, and how many rows of them.
+/// The number of columns and rows of tiles.
 pub(crate) fn tiles_of(size: Size) -> [i32; 2] {
     [size.width, size.height].map(|pixels| {
         i32::try_from(pixels.div_ceil(TILE_SIDE)).expect("pictures have 32-bit sizes")
@@ -33,8 +33,8 @@ pub(crate) const fn block_at(x: i32, y: i32) -> usize {
     (y / BLOCK * BLOCKS + x / BLOCK) as usize
 }
 
-/// The column and row of the tile, and the sample, whose word stands at a place where pixels have so many
-/// samples.
+/// The column and row in the tile, and the sample, at an index into a visibility buffer with this
+/// number of samples per pixel.
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 pub(crate) const fn pixel_at(place: usize, samples: usize) -> ([i32; 2], usize) {
     let (plane, pixel) = (place / BLOCK_PIXELS, (place % BLOCK_PIXELS) as i32);
@@ -43,13 +43,13 @@ pub(crate) const fn pixel_at(place: usize, samples: usize) -> ([i32; 2], usize) 
     (at, sample)
 }
 
-/// Where a pixel stands in its block.
+/// The index of a pixel in its block.
 #[inline(always)]
 pub(crate) const fn within(x: i32, y: i32) -> usize {
     (y % BLOCK * BLOCK + x % BLOCK) as usize
 }
 
-/// Where the words of sixteen pixels stand in the tile, for one of `N` samples.
+/// The indices of sixteen pixels in the visibility buffer of a tile, for one of `N` samples.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 pub(crate) fn lanes_place<S: Simd, const N: usize>(

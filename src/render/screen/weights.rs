@@ -1,34 +1,34 @@
-//! Where a pixel lies in one triangle, in f64: for what is looked at one by one, and for triangles that
-//! were cut.
+//! Perspective-correct weights of single pixels in one triangle, in f64: for the alpha test, and
+//! for clipped triangles.
 
 use glam::DVec3;
 
+use super::clip::{Screen, ScreenVertex, homogeneous_weights};
+use super::coverage::{SUBPIXELS, Snapped, Triangle};
 use super::interpolation::parts_at;
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
-use crate::render::screen::clip::{Screen, ScreenVertex, homogeneous_weights};
-use crate::render::screen::coverage::{SUBPIXELS, Snapped, Triangle};
 
-/// The parts that the corners of one triangle have in places of pixels that are shifted by so many parts of
-/// a pixel from their middles, with perspective, in f64.
+/// The perspective-correct weights of a triangle's corners at pixels, in f64, `shift` subpixels
+/// from their centres.
 #[derive(Debug)]
 pub(crate) struct Weights<'a> {
     plan: &'a FramePlan,
     draw: &'a Draw,
     number: u32,
     shift: [i32; 2],
-    way: Way,
+    method: Method,
 }
 
-/// How they are found.
+/// The method that computes the weights.
 #[derive(Debug)]
-enum Way {
-    /// The triangle is cut.
+enum Method {
+    /// The triangle is clipped.
     Cut,
-    /// By one of the rare ways, from its corners and one by w of each.
-    Rare([Snapped; 3], [f64; 3]),
-    /// From edge functions, where it has an area, and w of each corner.
+    /// By a variant, from its corners and 1/w of each.
+    Variant([Snapped; 3], [f64; 3]),
+    /// From edge functions, if it has an area, and w of each corner.
     Edges(Option<Triangle>, DVec3),
 }
 
@@ -45,28 +45,28 @@ impl<'a> Weights<'a> {
         let own = each(ids, |vertex| vertices[vertex as usize]);
         let screen = Screen::new(draw.clip_from_object, plan.size);
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
-        let way = if !own.iter().all(ScreenVertex::is_inside) {
-            Way::Cut
-        } else if plan.variants.has_rare_places() {
-            Way::Rare(own.map(|vertex| vertex.at()), w.map(|w| 1.0 / w))
+        let method = if !own.iter().all(ScreenVertex::is_inside) {
+            Method::Cut
+        } else if plan.variants.locates_one_by_one() {
+            Method::Variant(own.map(|vertex| vertex.at()), w.map(|w| 1.0 / w))
         } else {
             let triangle = Triangle::new(own.map(|vertex| vertex.at().seen_from(shift)));
-            Way::Edges(triangle, DVec3::from_array(w))
+            Method::Edges(triangle, DVec3::from_array(w))
         };
-        Self { plan, draw, number, shift, way }
+        Self { plan, draw, number, shift, method }
     }
 
-    /// Those in a pixel.
+    /// The weights at a pixel.
     #[inline(always)]
     pub(crate) fn at(&self, pixel: [i32; 2]) -> DVec3 {
-        match &self.way {
-            Way::Cut => cut_weights(self.plan, self.draw, self.number, (pixel, self.shift)),
-            Way::Rare(corners, by_w) => {
+        match &self.method {
+            Method::Cut => cut_weights(self.plan, self.draw, self.number, (pixel, self.shift)),
+            Method::Variant(corners, by_w) => {
                 let at = (pixel, self.shift);
                 let ([second, third], _) = parts_at(self.plan.variants, *corners, *by_w, at, false);
                 DVec3::new(1.0 - second - third, second, third)
             }
-            Way::Edges(triangle, w) => {
+            Method::Edges(triangle, w) => {
                 let parts = triangle.as_ref().map(|triangle| barycentric(triangle, pixel));
                 let [second, third] = parts.unwrap_or_default();
                 let by_w = DVec3::new(1.0 - second - third, second, third) / *w;
@@ -85,7 +85,7 @@ pub(crate) fn barycentric(triangle: &Triangle, [x, y]: [i32; 2]) -> [f64; 2] {
     [second as f64 * per_area, third as f64 * per_area]
 }
 
-/// The parts of a cut triangle's corners in a place of a pixel, as for [`Weights`].
+/// The weights of a clipped triangle's corners at a pixel, as for [`Weights`].
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn cut_weights(
     plan: &FramePlan,
@@ -105,7 +105,7 @@ pub(crate) fn cut_weights(
     homogeneous_weights(clip, [x, y])
 }
 
-/// The w of clip space that a cut triangle has in a pixel where its corners have these parts.
+/// The w of a clipped triangle at a pixel with these weights.
 pub(crate) fn cut_w(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> f64 {
     let screen = Screen::new(draw.clip_from_object, plan.size);
     let order = draw.model.mesh.draw_order();
@@ -113,8 +113,8 @@ pub(crate) fn cut_w(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) 
     weights.dot(DVec3::from_array(w))
 }
 
-/// Where the point of a cut triangle whose corners have these parts lies in the picture, in pixels. What
-/// lies in the observer's own plane is nowhere: then it is some place.
+/// The screen position, in pixels, of a clipped triangle's point with these weights. Points in the
+/// observer's own plane have none: then the position is arbitrary.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn cut_place(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> [f64; 2] {
     let screen = Screen::new(draw.clip_from_object, plan.size);

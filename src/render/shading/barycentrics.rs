@@ -1,66 +1,67 @@
-//! Where pixels lie in the triangles that they show.
+//! Barycentric coordinates of pixels in the triangles that they show.
 //!
-//! First linear on the screen, from whole numbers; then the same with perspective.
+//! First linear on the screen, from integer edge functions; then perspective-correct.
 //!
-//! Perspective: Heckbert and Moreton, "Interpolation for Polygon Texture Mapping and Shading", 1991.
+//! Perspective: Heckbert and Moreton, "Interpolation for Polygon Texture Mapping and Shading",
+//! 1991.
 
 use glam::DVec3;
 
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::triangle_attributes::{TriangleAttributes, picked};
-use crate::render::simd::BATCH;
-use crate::render::simd::{Kernel, Lanes, Number, Vec3};
+use super::fragments::Fragments;
+use super::triangle_attributes::{TriangleAttributes, picked};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Vec3};
 
-/// Where the pixels of a list lie in their triangles.
+/// The barycentric coordinates of a list of fragments.
 #[derive(Debug)]
 pub(crate) struct Barycentrics<T> {
     /// The second and third barycentric coordinate, linear on the screen.
     pub(crate) linear: [[T; BATCH]; 2],
-    /// The same with perspective.
+    /// The same, perspective-correct.
     pub(crate) weights: [[T; BATCH]; 2],
     /// The distance along the observer's axis.
     pub(crate) w: [T; BATCH],
-    /// Where they are looked at, in pixels; where they [share](Fragments::shared) their pixels only.
-    pub(crate) places: [[T; BATCH]; 2],
+    /// The positions at which they are lit, in pixels; only set if they [share](Fragments::shared)
+    /// their pixels.
+    pub(crate) positions: [[T; BATCH]; 2],
 }
 
 impl<T: Number> Default for Barycentrics<T> {
     fn default() -> Self {
         let row = [T::default(); BATCH];
-        Self { linear: [row; 2], weights: [row; 2], w: row, places: [row; 2] }
+        Self { linear: [row; 2], weights: [row; 2], w: row, positions: [row; 2] }
     }
 }
 
 impl<T: Number> Barycentrics<T> {
-    /// The parts that the corners have in pixel `i` of the list.
+    /// The weights of the three corners in fragment `i`.
     pub(crate) fn weights(&self, i: usize) -> DVec3 {
         let (b, c): (f64, f64) = (self.weights[0][i].into(), self.weights[1][i].into());
         DVec3::new(1.0 - b - c, b, c)
     }
 }
 
-/// Linear coordinates get perspective.
+/// Makes linear coordinates perspective-correct.
 pub(super) struct Perspective<'a, T, const PAGES: usize> {
-    pub(super) items: &'a Fragments,
-    pub(super) faces: &'a TriangleAttributes<T>,
+    pub(super) fragments: &'a Fragments,
+    pub(super) attributes: &'a TriangleAttributes<T>,
     pub(super) to: &'a mut Barycentrics<T>,
 }
 
 impl<T: Number, const PAGES: usize> Kernel<T> for Perspective<'_, T, PAGES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { items, faces, to } = self;
-        for at in (0..items.len).step_by(M::LANES) {
-            let slots = lanes.slots(&items.slots, at);
+        let Self { fragments, attributes, to } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
             let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
-            let by_w = picked::<M, PAGES>(lanes, &faces.by_w, slots);
+            let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
             to.put(lanes, at, linear, by_w);
         }
     }
 }
 
 impl<T: Number> Barycentrics<T> {
-    /// Linear coordinates get perspective.
+    /// Makes linear coordinates perspective-correct.
     #[inline(always)]
     pub(super) fn put<M: Lanes<Number = T>>(
         &mut self,
@@ -76,7 +77,7 @@ impl<T: Number> Barycentrics<T> {
     }
 }
 
-/// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and one by the sum, which is the
+/// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and 1 / the sum, which is the
 /// pixel's own w.
 #[inline(always)]
 pub(crate) fn with_perspective<M: Lanes>(

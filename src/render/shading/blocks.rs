@@ -1,20 +1,20 @@
-//! Blocks of a tile that one triangle covers as a whole, and in which way they are coloured.
+//! Chooses how blocks that one triangle covers fully are coloured.
 //!
-//! Where all that is to do is to mix colours, or to light what is there, that is one pass without a list;
-//! all else goes the way of other blocks.
+//! If only colours have to be interpolated, or only lit, that is one pass without a list of
+//! fragments; everything else is coloured like other blocks.
 
 use super::context::ShadingContext;
+use super::full_blocks::{BlockLight, Blocks, Canvas};
 use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::surface::{Out, Shader};
 use crate::accuracy::{LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
-use crate::render::shading::full_blocks::{BlockLight, Blocks, Canvas};
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Colours the pixels of blocks that one triangle covers as a whole.
-    pub(crate) fn whole_blocks(
+    /// Colours the pixels of blocks that one triangle covers fully.
+    pub(crate) fn full_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
         number: u32,
@@ -23,22 +23,22 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         let group = group_of(context, number);
         let [x, y] = blocks.corner;
-        self.items.list_whole(number, [x, y]);
+        self.fragments.list_full_block(number, [x, y]);
         if self.mix_blocks(context, &group, blocks, canvas)
             || self.light_blocks(context, &group, blocks, canvas)
         {
             return;
         }
         blocks.each(|[column, row]| {
-            self.items.list_whole(number, [x + column, y + row]);
+            self.fragments.list_full_block(number, [x + column, y + row]);
             let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
-            let at = canvas.place(place);
+            let at = canvas.offset(place);
             self.color_group(context, &group, &mut Out::Tile(canvas, at));
         });
     }
 
-    /// Colours the pixels of blocks that one triangle covers as a whole in one pass, where all that is
-    /// to do is to mix the colours of its corners. Says whether it is.
+    /// Colours fully covered blocks in one pass, if only the colours of the corners have to be
+    /// interpolated. Returns whether that was so.
     fn mix_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -60,13 +60,13 @@ impl<T: ShadingNumber> Shader<T> {
         }
         if self.take(context, group, true) {
             self.carry_diffuse(context, group, shaded, tables);
-            self.faces.spread(level);
+            self.attributes.spread(level);
         }
-        T::mix_blocks(level, &self.faces, blocks, canvas)
+        T::mix_blocks(level, &self.attributes, blocks, canvas)
     }
 
-    /// Colours the pixels of blocks that one triangle covers as a whole, a block at a time without a
-    /// list, where they are lit and nothing else is done to them. Says whether it is so.
+    /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
+    /// per pixel and nothing else is done to them. Returns whether that was so.
     fn light_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -74,33 +74,38 @@ impl<T: ShadingNumber> Shader<T> {
         blocks: Blocks,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let ShadingContext { level, plan, shines, .. } = *context;
+        let ShadingContext { level, plan, terms, .. } = *context;
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return false;
         };
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
         let textured = shaded.texture.is_some() || shaded.vertex_colors;
-        let rare = plan.variants.has_rare_places()
-            || plan.variants.rare_roots().is_some()
+        let has_variant = plan.variants.locates_one_by_one()
+            || plan.variants.root_variant().is_some()
             || plan.variants.rounding != Rounding::Nearest;
-        if shaded.light.is_none() || !pixels || textured || rare || group.draw.back == Back::Red {
+        if shaded.light.is_none()
+            || !pixels
+            || textured
+            || has_variant
+            || group.draw.back == Back::Red
+        {
             return false;
         }
         let new = self.take(context, group, true);
-        let Self { tile, faces, batch, .. } = self;
+        let Self { tile, attributes, batch, .. } = self;
         let lights = tile.light(plan, group.pipeline, shaded);
-        if !lights.places {
-            faces.forget();
+        if !lights.needs_positions {
+            attributes.forget();
         } else if new {
-            faces.carry_normals(group.draw);
-            faces.spread(level);
+            attributes.carry_normals(group.draw);
+            attributes.spread(level);
         }
         let light = BlockLight {
-            look: lights.places.then(|| Look::new(plan, group.draw)),
+            look: lights.needs_positions.then(|| Look::new(plan, group.draw)),
             tint: shaded.tint.map(T::from_f64),
             lights,
-            shines: shines.of(group.pipeline),
+            terms: terms.of(group.pipeline),
         };
-        T::light_blocks(level, faces, blocks, (light, batch), canvas)
+        T::light_blocks(level, attributes, blocks, (light, batch), canvas)
     }
 }

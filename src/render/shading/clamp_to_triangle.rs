@@ -1,37 +1,41 @@
-//! Where pixels are looked at whose middle may lie outside of what they show.
+//! Clamps the position at which a pixel is lit to the triangle that it shows.
 //!
-//! A pixel with several samples may show a triangle that does not cover its middle. What the corners
-//! carry would leave its range there: a colour below black, a place beyond the triangle. So such a pixel
-//! is looked at in the point of the triangle that is nearest to its middle, and lit there.
+//! A pixel with several samples may show a triangle that does not cover its centre. There
+//! attributes would be extrapolated: a colour below black, a position beyond the triangle. So such
+//! a pixel is lit at the point of the triangle that is nearest to its centre.
 //!
-//! That point lies on one of the edges whose functions are negative at the middle: of two such edges on
-//! the one, if any, on which the point nearest to the middle is not the corner between them.
+//! That point lies on an edge whose edge function is negative at the centre. Of two such edges it
+//! is the one, if any, whose nearest point is not the corner between them.
 
 use fearless_simd::Level;
 
+use super::barycentrics::Barycentrics;
+use super::fragments::Fragments;
+use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::render::screen::coverage::SUBPIXELS;
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::BLOCK;
-use crate::render::shading::barycentrics::Barycentrics;
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::triangle_attributes::{Faced, TriangleAttributes};
-use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Kernel, Lanes, Number, Real};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real};
 
-impl<T: Faced> Barycentrics<T> {
-    /// Moves to the nearest points of their triangles what the linear coordinates have outside, and
-    /// says where all are looked at.
-    pub(crate) fn hold(&mut self, level: Level, items: &Fragments, faces: &TriangleAttributes<T>) {
+impl<T: AttributeNumber> Barycentrics<T> {
+    /// Clamps linear coordinates outside of a triangle to its nearest point, and sets the positions
+    /// of all fragments.
+    pub(crate) fn clamp_to_triangle(
+        &mut self,
+        level: Level,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<T>,
+    ) {
         // The same for all pixels of a block, so that a pixel does not depend on its neighbours.
-        let origin = [items.x[0] & !(BLOCK - 1), items.y[0] & !(BLOCK - 1)];
-        T::run(level, Hold { items, faces, origin, to: self });
+        let origin = [fragments.x[0] & !(BLOCK - 1), fragments.y[0] & !(BLOCK - 1)];
+        T::run(level, Hold { fragments, attributes, origin, to: self });
     }
 }
 
 struct Hold<'a, T> {
-    items: &'a Fragments,
-    faces: &'a TriangleAttributes<T>,
+    fragments: &'a Fragments,
+    attributes: &'a TriangleAttributes<T>,
     origin: [i32; 2],
     to: &'a mut Barycentrics<T>,
 }
@@ -39,21 +43,22 @@ struct Hold<'a, T> {
 impl<T: Number> Kernel<T> for Hold<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { items, faces, origin, to } = self;
-        let corners = corners(lanes, faces, origin);
+        let Self { fragments, attributes, origin, to } = self;
+        let corners = corners(lanes, attributes, origin);
         let [left, top] = origin.map(|pixel| lanes.lift(f64::from(pixel)));
         let (zero, half) = (lanes.lift(0.0), lanes.lift(0.5));
-        for at in (0..items.len).step_by(M::LANES) {
-            let (x, y) = (lanes.whole(&items.x, at) + half, lanes.whole(&items.y, at) + half);
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let (x, y) =
+                (lanes.whole(&fragments.x, at) + half, lanes.whole(&fragments.y, at) + half);
             let [second, third] = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
             let first = lanes.lift(1.0) - second - third;
             let outside = Real::max(Real::max(-first, -second), -third);
-            // What all samples show covers the middle, whatever rounding says.
-            let shares = lanes.whole(&items.shares, at);
+            // A triangle that all samples show covers the centre, whatever rounding says.
+            let shares = lanes.whole(&fragments.shares, at);
             let outside = lanes.lift(f64::from(ALL)).if_more(shares, outside, zero);
             let mut place = [x, y];
             if lanes.any_more(outside, zero) {
-                let slots = lanes.slots(&items.slots, at);
+                let slots = lanes.slots(&fragments.slots, at);
                 let pick = |row: usize| lanes.pick::<4>(&corners[row], slots);
                 let (u, v) = ([pick(2), pick(3)], [pick(4), pick(5)]);
                 let per_pixel = lanes.lift(f64::from(SUBPIXELS));
@@ -68,26 +73,26 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
                 lanes.store(outside.if_more(zero, s, second), &mut to.linear[0], at);
                 lanes.store(outside.if_more(zero, t, third), &mut to.linear[1], at);
             }
-            lanes.store(place[0], &mut to.places[0], at);
-            lanes.store(place[1], &mut to.places[1], at);
+            lanes.store(place[0], &mut to.positions[0], at);
+            lanes.store(place[1], &mut to.positions[1], at);
         }
     }
 }
 
-/// The corners of triangles in parts of a pixel: of each the first, from a pixel's upper left corner, and
-/// the ways from there to the second and the third; x and y of each.
+/// The corners of triangles in subpixels: the first, relative to the upper left corner of a pixel,
+/// and the vectors from it to the second and the third; x and y of each.
 #[inline(always)]
 fn corners<T: Number, M: Lanes<Number = T>>(
     lanes: M,
-    faces: &TriangleAttributes<T>,
+    attributes: &TriangleAttributes<T>,
     origin: [i32; 2],
 ) -> [[T; SLOTS]; 6] {
-    let [first, second, third] = &faces.corners;
+    let [first, second, third] = &attributes.corners;
     let mut ways = [[0; SLOTS]; 6];
     for axis in 0..2 {
         let from = origin[axis] * SUBPIXELS;
         for slot in 0..SLOTS {
-            // What is cut has no place on the screen, and is not asked here.
+            // Corners of clipped triangles have no screen position; they are not read.
             ways[axis][slot] = first[axis][slot].wrapping_sub(from);
             ways[2 + axis][slot] = second[axis][slot].wrapping_sub(first[axis][slot]);
             ways[4 + axis][slot] = third[axis][slot].wrapping_sub(first[axis][slot]);
@@ -95,18 +100,18 @@ fn corners<T: Number, M: Lanes<Number = T>>(
     }
     let mut corners = [[T::default(); SLOTS]; 6];
     for (row, ways) in corners.iter_mut().zip(&ways) {
-        for at in (0..faces.count).step_by(M::LANES) {
+        for at in (0..attributes.count).step_by(M::LANES) {
             lanes.store(lanes.whole(ways, at), row, at);
         }
     }
     corners
 }
 
-/// The second and third coordinate of the point of a triangle (with the sides u and v from its first
-/// corner) that is nearest to a point outside, which lies at d from the first corner and has these
-/// coordinates.
+/// The second and third coordinate of the point of a triangle (with the sides u and v from its
+/// first corner) that is nearest to a point outside, which lies at d from the first corner and has
+/// these coordinates.
 ///
-/// On the side from a corner p along g: p + t g, t = (d - p).g / g.g, held to 0..1.
+/// On the side from a corner p along g: p + t g, t = (d - p).g / g.g, clamped to 0..1.
 #[inline(always)]
 fn nearest<R: Real>(d: [R; 2], u: [R; 2], v: [R; 2], [first, second, third]: [R; 3]) -> [R; 2] {
     let (zero, one) = (first.lift(0.0), first.lift(1.0));
@@ -115,27 +120,27 @@ fn nearest<R: Real>(d: [R; 2], u: [R; 2], v: [R; 2], [first, second, third]: [R;
     let on_u = along(d, u);
     let on_v = along(d, v);
     let on_g = along(from_second, g);
-    let held = |t: R| Real::min(Real::max(t, zero), one);
+    let clamped = |t: R| Real::min(Real::max(t, zero), one);
     let (beyond_u, beyond_v) = (-third, -second);
-    // A side is taken if the point lies beyond it; if it lies beyond one before it too, then only if its
-    // nearest point is another than the corner between the two.
+    // A side is taken if the point lies beyond it. If the point also lies beyond an earlier side,
+    // it is taken only if its nearest point is not the corner between the two.
     let take_v = beyond_u.if_more(zero, on_v, one);
     let take_v = beyond_v.if_more(zero, take_v, zero);
-    let end = held(on_v);
-    let (s, t) = (take_v.if_more(zero, zero, held(on_u)), take_v.if_more(zero, end, zero));
+    let end = clamped(on_v);
+    let (s, t) = (take_v.if_more(zero, zero, clamped(on_u)), take_v.if_more(zero, end, zero));
     let take_g = beyond_u.if_more(zero, on_g, beyond_v.if_more(zero, one - on_g, one));
     let take_g = (-first).if_more(zero, take_g, zero);
-    let end = held(on_g);
+    let end = clamped(on_g);
     [take_g.if_more(zero, one - end, s), take_g.if_more(zero, end, t)]
 }
 
-/// How far along a side of a triangle a point lies, 0 at its beginning and 1 at its end.
+/// The parameter along a triangle's side nearest to a point: 0 at its beginning and 1 at its end.
 #[inline(always)]
 fn along<R: Real>(point: [R; 2], side: [R; 2]) -> R {
     (point[0] * side[0] + point[1] * side[1]) / (side[0] * side[0] + side[1] * side[1])
 }
 
-/// As many as there are in a list.
+/// A list of fragments has as many entries as a batch.
 const _: () = assert!(BATCH == SLOTS);
 
 #[cfg(test)]

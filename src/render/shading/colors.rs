@@ -1,21 +1,20 @@
-//! Colours of some pixels, in the form in which they are wanted.
+//! Colours of a list of fragments: bytes to store, or fixed-point numbers to add up.
 //!
-//! A pixel that shows one thing is four bytes at once. One that shows several gets their mean: the colour
-//! of each is clamped and kept in parts of 2^-16 of a byte's step, before it is rounded down, and the
-//! parts are added up as whole numbers. So the sum does not depend on its order, and the mean of equal
-//! colours is the byte that each of them would be.
+//! A pixel that shows one triangle becomes four bytes at once. One that shows several gets the mean
+//! of their colours: each is clamped and kept in units of 2^-16 of a step of a byte, before it is
+//! rounded down, and these are added as integers. So the sum does not depend on its order, and the
+//! mean of equal colours is the byte that each of them would be.
 
 use crate::render::screen::tiles::BLOCK_PIXELS;
-use crate::render::simd::BATCH;
-use crate::render::simd::{Lanes, Vec3};
+use crate::render::simd::{BATCH, Lanes, Vec3};
 
-/// What colours are wanted for.
+/// The form of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Form {
-    /// To be shown.
+    /// Bytes, to be stored.
     #[default]
     Pixels,
-    /// To be added up.
+    /// Fixed point, to be added up.
     Parts,
 }
 
@@ -25,11 +24,11 @@ pub(crate) struct Colors {
     pub(crate) form: Form,
     /// Red, green, blue and 255 in the order of memory.
     pub(crate) pixels: [u32; BATCH],
-    /// Red, green and blue.
+    /// Red, green and blue, in fixed point.
     parts: [[u32; BATCH]; 3],
 }
 
-/// How many bits are behind the point of a part.
+/// The fractional bits of the fixed-point form.
 const BITS: u32 = 16;
 
 impl Default for Colors {
@@ -39,7 +38,7 @@ impl Default for Colors {
 }
 
 impl Colors {
-    /// Puts colours in, from `at` on.
+    /// Stores colours from `at` on.
     #[inline(always)]
     pub(crate) fn store<M: Lanes>(&mut self, lanes: M, color: Vec3<M::R>, at: usize) {
         match self.form {
@@ -48,7 +47,7 @@ impl Colors {
         }
     }
 
-    /// The same, with a threshold for each in the place of one half, from where on it is rounded up.
+    /// The same, with a rounding threshold for each instead of one half.
     #[inline(always)]
     pub(crate) fn store_by<M: Lanes>(
         &mut self,
@@ -63,7 +62,7 @@ impl Colors {
         }
     }
 
-    /// Gives all of them one colour.
+    /// Sets all of them to one colour.
     pub(crate) fn fill(&mut self, color: [u8; 4]) {
         match self.form {
             Form::Pixels => self.pixels.fill(u32::from_le_bytes(color)),
@@ -75,7 +74,7 @@ impl Colors {
         }
     }
 
-    /// Gives one of them a colour.
+    /// Sets one of them.
     pub(crate) fn set(&mut self, i: usize, color: [u8; 4]) {
         match self.form {
             Form::Pixels => self.pixels[i] = u32::from_le_bytes(color),
@@ -87,11 +86,12 @@ impl Colors {
         }
     }
 
-    /// Gives each the colour that stands at its place now.
-    pub(crate) fn hand_out(&mut self, places: &[i32; BATCH]) {
+    /// Replaces each colour by that of the slot with its number: from colours of triangles to
+    /// colours of their pixels.
+    pub(crate) fn hand_out(&mut self, pixels: &[i32; BATCH]) {
         let hand_out = |row: &mut [u32; BATCH]| {
             let before = *row;
-            for (color, place) in row.iter_mut().zip(places) {
+            for (color, place) in row.iter_mut().zip(pixels) {
                 *color = before[place.cast_unsigned() as usize % BATCH];
             }
         };
@@ -102,12 +102,13 @@ impl Colors {
     }
 }
 
-/// A byte in parts, in the middle between its borders.
+/// A byte in fixed point, in the middle of its step.
 const fn parts(byte: u8) -> u32 {
     ((byte as u32) << BITS) + (1 << (BITS - 1))
 }
 
-/// The colours of a block's pixels, added up over their samples: at most 2^6, each below 2^24.
+/// The colours of a block's pixels, added up over their samples: at most 2^6 samples, each below
+/// 2^24.
 #[derive(Clone, Debug)]
 pub(crate) struct Sums([[u32; 4]; BLOCK_PIXELS]);
 
@@ -118,7 +119,7 @@ impl Default for Sums {
 }
 
 impl Sums {
-    /// Adds a colour, as often as some samples show it, at a place of the block.
+    /// Adds a colour to a pixel of the block, weighted by the number of samples that show it.
     #[inline(always)]
     pub(crate) fn add(&mut self, place: usize, color: [u8; 4], samples: i32) {
         let sum = &mut self.0[place % BLOCK_PIXELS];
@@ -127,16 +128,16 @@ impl Sums {
         }
     }
 
-    /// Adds a colour everywhere.
+    /// Adds a colour to every pixel.
     pub(crate) fn add_everywhere(&mut self, color: [u8; 4], samples: i32) {
         (0..BLOCK_PIXELS).for_each(|place| self.add(place, color, samples));
     }
 
-    /// Adds the first of some colours, each at its place and as often as its samples show it.
+    /// Adds the first of some colours, each to its pixel and weighted by its samples.
     #[inline(always)]
-    pub(crate) fn add_all(&mut self, colors: &Colors, places: &[u8], samples: &[i32]) {
+    pub(crate) fn add_all(&mut self, colors: &Colors, pixels: &[u8], samples: &[i32]) {
         let [red, green, blue] = &colors.parts;
-        for (i, (place, samples)) in places.iter().zip(samples).enumerate() {
+        for (i, (place, samples)) in pixels.iter().zip(samples).enumerate() {
             let sum = &mut self.0[usize::from(*place) % BLOCK_PIXELS];
             let samples = samples.cast_unsigned();
             let i = i % BATCH;
@@ -183,9 +184,9 @@ mod tests {
 
     #[test]
     fn the_mean_of_equal_colours_is_the_byte_that_each_of_them_is() {
-        let places: [u8; BATCH] = std::array::from_fn(|i| i.to_le_bytes()[0]);
+        let indices: [u8; BATCH] = std::array::from_fn(|i| i.to_le_bytes()[0]);
         for round in 0..2000_u16 {
-            // Around the borders between two bytes, below 0, above 1, and no numbers at all.
+            // Around the borders between two bytes, below 0, above 1, and NaN.
             let numbers: [f32; BATCH] = std::array::from_fn(|i| match (round, i) {
                 (0, 0) => f32::NAN,
                 (0, _) => i as f32 - 30.0,
@@ -194,8 +195,8 @@ mod tests {
             let [pixels, colors] = both(&numbers);
             for (samples, log2) in [(4, 2), (64, 6)] {
                 let mut sums = Sums::default();
-                sums.add_all(&colors, &places, &[samples / 4; BATCH]);
-                sums.add_all(&colors, &places, &[samples / 4 * 3; BATCH]);
+                sums.add_all(&colors, &indices, &[samples / 4; BATCH]);
+                sums.add_all(&colors, &indices, &[samples / 4 * 3; BATCH]);
                 assert_eq!(sums.means(log2), pixels.pixels, "{numbers:?}");
             }
             let mut exact = Colors { form: Form::Parts, ..Colors::default() };

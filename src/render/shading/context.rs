@@ -1,4 +1,4 @@
-//! What shading reads of a frame.
+//! The inputs of shading.
 
 use fearless_simd::Level;
 
@@ -7,12 +7,12 @@ use super::light_terms::LightTerms;
 use crate::render::frame::FramePlan;
 use crate::render::raster::geometry::ScreenGeometry;
 
-/// What colouring pixels reads.
+/// Everything that shading reads of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadingContext<'a, T> {
     pub(crate) level: Level,
     pub(crate) plan: &'a FramePlan,
     pub(crate) frame: &'a ScreenGeometry,
     pub(crate) lit: &'a Lit<T>,
-    pub(crate) shines: &'a LightTerms<T>,
+    pub(crate) terms: &'a LightTerms<T>,
 }

@@ -1,10 +1,10 @@
-//! What a block shows, as a list: pixels, and which triangle each of them shows.
+//! The fragments of a block: its pixels that show triangles, and the triangle of each.
 //!
-//! A block shows few triangles on many pixels. Each triangle gets a slot, in which what is known of
-//! it stands once; a pixel takes it from there. A pixel shows mostly the triangle of its neighbour to
-//! the left; where a run of pixels begins, the slot is looked for in a table, by the end of the
-//! triangle's number. A triangle that another has pushed out of the table gets a second slot, and nothing
-//! else comes of it.
+//! A block shows few triangles on many pixels. Each triangle gets a slot, which holds its
+//! attributes once; fragments gather them from there. A pixel mostly shows the same triangle as its
+//! left neighbour. At the beginning of a run of pixels, the slot is looked up in a small hash table
+//! by the low bits of the triangle's number. If another triangle has replaced it in the table, it
+//! gets a second slot, which costs a little time and changes nothing else.
 
 use std::hint::select_unpredictable;
 
@@ -13,45 +13,45 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, u32x16}
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::simd::gather::SLOTS;
 
-/// Pixels of one block that show triangles. See the [module](self).
+/// The pixels of one block that show triangles. See the [module](self).
 #[derive(Debug)]
 pub(crate) struct Fragments {
-    /// How many pixels.
+    /// The number of fragments.
     pub(crate) len: usize,
-    /// Their places in the block, row by row.
-    pub(crate) places: [u8; BLOCK_PIXELS],
+    /// Their pixels in the block, counted row by row.
+    pub(crate) pixels: [u8; BLOCK_PIXELS],
     /// Their columns and rows in the picture.
     pub(crate) x: [i32; BLOCK_PIXELS],
     pub(crate) y: [i32; BLOCK_PIXELS],
-    /// The slots of the triangles that they show. What stands behind the last is a slot too.
+    /// The slots of the triangles that they show. Entries beyond the last are valid slots, too.
     pub(crate) slots: [i32; BLOCK_PIXELS],
-    /// Whether they share their pixels with others: then it stands in `shares` how many of the samples
-    /// of its pixel each of them has.
+    /// Whether several fragments may share a pixel: then `shares` says how many samples of its
+    /// pixel each of them has.
     pub(crate) shared: bool,
     pub(crate) shares: [i32; BLOCK_PIXELS],
-    /// How many slots are taken.
+    /// The number of slots in use.
     pub(crate) count: usize,
     /// The triangles of the slots, by their numbers in the frame.
     pub(crate) numbers: [u32; SLOTS],
-    /// In which slot of this list a triangle was last put, by the end of its number, or [`FREE`].
+    /// The slot in which a triangle was put last, by the low bits of its number, or [`FREE`].
     table: [u8; TABLE],
 }
 
-/// Which pixels of a block show what: bit i stands for pixel i.
+/// Masks of the pixels that show triangles or lines: bit i stands for pixel i.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shown {
     pub(crate) triangles: u64,
     pub(crate) lines: u64,
 }
 
-/// Positions of the table in which a triangle is looked for that is seen again. Of two that would have the
-/// same place, the later one does.
+/// Entries of the table that maps triangles to slots. Of two triangles with the same entry, the
+/// later one has it.
 const TABLE: usize = 128;
 
-/// What a place of the table holds that no slot has.
+/// The value of an empty entry.
 const FREE: u8 = u8::MAX;
 
-/// Pixels before the first and after the last, so that neighbours can be looked at.
+/// Padding before the first pixel, so that every pixel has a left neighbour.
 const MARGIN: usize = 16;
 const ROW: usize = BLOCK as usize;
 const FIRST_COLUMN: u64 = 0x0101_0101_0101_0101;
@@ -60,7 +60,7 @@ impl Default for Fragments {
     fn default() -> Self {
         Self {
             len: 0,
-            places: [0; BLOCK_PIXELS],
+            pixels: [0; BLOCK_PIXELS],
             x: [0; BLOCK_PIXELS],
             y: [0; BLOCK_PIXELS],
             slots: [0; BLOCK_PIXELS],
@@ -78,19 +78,24 @@ impl Fragments {
     pub(crate) fn list(
         &mut self,
         level: Level,
-        words: &[u64; BLOCK_PIXELS],
+        visibility: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
     ) -> Shown {
-        dispatch!(level, simd => self.find(simd, words, corner))
+        dispatch!(level, simd => self.find(simd, visibility, corner))
     }
 
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
-    fn find<S: Simd>(&mut self, simd: S, words: &[u64; BLOCK_PIXELS], corner: [i32; 2]) -> Shown {
+    fn find<S: Simd>(
+        &mut self,
+        simd: S,
+        visibility: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+    ) -> Shown {
         self.shared = false;
-        // The number of the background, as its word has it, is none of a triangle.
+        // The number of the background is not that of any triangle.
         let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
-        for (number, word) in numbers[MARGIN..].iter_mut().zip(words) {
+        for (number, word) in numbers[MARGIN..].iter_mut().zip(visibility) {
             *number = !(*word as u32);
         }
         let (mut triangles, mut background, mut left) = (0, 0, 0);
@@ -120,15 +125,15 @@ impl Fragments {
         Shown { triangles, lines: !triangles & !background }
     }
 
-    /// Lists all pixels of a block that one triangle covers as a whole.
-    pub(crate) fn list_whole(&mut self, number: u32, corner: [i32; 2]) {
+    /// Lists all pixels of a block that one triangle covers fully.
+    pub(crate) fn list_full_block(&mut self, number: u32, corner: [i32; 2]) {
         self.shared = false;
         self.count = 1;
         self.numbers[0] = number;
         self.put_all(corner, &[0; BLOCK_PIXELS]);
     }
 
-    /// Gives slots to the runs of pixels that begin at `starts`.
+    /// Assigns slots to the runs of pixels that begin at `starts`.
     #[inline(always)]
     fn share_out(
         &mut self,
@@ -136,7 +141,7 @@ impl Fragments {
         mut starts: u64,
     ) -> [i32; BLOCK_PIXELS] {
         (self.count, self.table) = (0, [FREE; TABLE]);
-        // As long as a run can reach behind the last.
+        // With room for a run that begins at the last pixel.
         let mut slots = [0; BLOCK_PIXELS + ROW];
         while starts != 0 {
             let at = starts.trailing_zeros() as usize % BLOCK_PIXELS;
@@ -149,7 +154,7 @@ impl Fragments {
         all
     }
 
-    /// The slot of a triangle, a new one where it has none.
+    /// The slot of a triangle; a new one if it has none.
     #[inline(always)]
     #[expect(
         clippy::cast_possible_truncation,
@@ -170,8 +175,8 @@ impl Fragments {
     #[inline(always)]
     fn put_all(&mut self, [left, top]: [i32; 2], slots: &[i32; BLOCK_PIXELS]) {
         self.len = BLOCK_PIXELS;
-        self.places = PLACES;
-        for ((x, y), place) in self.x.iter_mut().zip(&mut self.y).zip(PLACES) {
+        self.pixels = ALL_PIXELS;
+        for ((x, y), place) in self.x.iter_mut().zip(&mut self.y).zip(ALL_PIXELS) {
             *x = left + i32::from(place) % BLOCK;
             *y = top + i32::from(place) / BLOCK;
         }
@@ -184,14 +189,14 @@ impl Fragments {
         while pixels != 0 {
             let place = pixels.trailing_zeros() as usize % BLOCK_PIXELS;
             pixels &= pixels - 1;
-            self.put(corner, PLACES[place], slots[place]);
+            self.put(corner, ALL_PIXELS[place], slots[place]);
         }
     }
 
     #[inline(always)]
     fn put(&mut self, [left, top]: [i32; 2], place: u8, slot: i32) -> usize {
         let i = self.len % BLOCK_PIXELS;
-        self.places[i] = place;
+        self.pixels[i] = place;
         self.x[i] = left + i32::from(place) % BLOCK;
         self.y[i] = top + i32::from(place) / BLOCK;
         self.slots[i] = slot;
@@ -199,34 +204,34 @@ impl Fragments {
         i
     }
 
-    /// Says how many samples of their pixels those of the list have.
+    /// Sets how many samples of its pixel each fragment has.
     pub(crate) fn share(&mut self, of_positions: &[i32; BLOCK_PIXELS]) {
         self.shared = true;
-        for (share, place) in self.shares.iter_mut().zip(&self.places[..self.len]) {
+        for (share, place) in self.shares.iter_mut().zip(&self.pixels[..self.len]) {
             *share = of_positions[usize::from(*place) % BLOCK_PIXELS];
         }
     }
 
-    /// Empties the list, for triangles that share their pixels.
+    /// Empties the list, for fragments that share pixels.
     pub(crate) fn begin_shared(&mut self) {
         (self.len, self.count, self.shared) = (0, 0, true);
         self.table = [FREE; TABLE];
     }
 
-    /// Whether there is no room for another.
+    /// Whether the list is full.
     pub(crate) const fn is_full(&self) -> bool {
         self.len == BLOCK_PIXELS
     }
 
-    /// Adds a triangle that has some samples of a pixel, where there is room.
+    /// Adds a fragment that has `share` samples of its pixel. The list must not be full.
     #[inline(always)]
     pub(crate) fn add(&mut self, number: u32, corner: [i32; 2], place: usize, share: i32) {
         let slot = self.slot_of(number);
-        let i = self.put(corner, PLACES[place % BLOCK_PIXELS], slot);
+        let i = self.put(corner, ALL_PIXELS[place % BLOCK_PIXELS], slot);
         self.shares[i] = share;
     }
 
-    /// Takes over the items of another list whose slots have a true `keep`.
+    /// Copies the fragments of another list whose slots have a true `keep`.
     pub(crate) fn take_from(&mut self, other: &Self, keep: &[bool; SLOTS], corner: [i32; 2]) {
         let mut new = [0; SLOTS];
         self.count = 0;
@@ -236,7 +241,7 @@ impl Fragments {
             self.count += 1;
         }
         (self.len, self.shared) = (0, other.shared);
-        for (from, place) in other.places[..other.len].iter().enumerate() {
+        for (from, place) in other.pixels[..other.len].iter().enumerate() {
             let slot = other.slots[from].cast_unsigned() as usize;
             if keep[slot] {
                 let to = self.put(corner, *place, new[slot]);
@@ -245,7 +250,7 @@ impl Fragments {
         }
     }
 
-    /// Whether every pixel of the block is there, in order.
+    /// Whether the list is the whole block, pixel by pixel in order.
     pub(crate) const fn is_whole(&self) -> bool {
         self.len == BLOCK_PIXELS
     }
@@ -256,15 +261,15 @@ fn sixteen<S: Simd>(simd: S, numbers: &[u32; MARGIN + BLOCK_PIXELS], at: usize) 
     u32x16::from_slice(simd, &numbers[at..at + 16])
 }
 
-/// The places of a block, in order.
-const PLACES: [u8; BLOCK_PIXELS] = {
-    let mut places = [0; BLOCK_PIXELS];
+/// The pixels of a block, in order.
+const ALL_PIXELS: [u8; BLOCK_PIXELS] = {
+    let mut pixels = [0; BLOCK_PIXELS];
     let mut place = 0;
     while place < 64 {
-        places[place as usize] = place;
+        pixels[place as usize] = place;
         place += 1;
     }
-    places
+    pixels
 };
 
 #[cfg(test)]
@@ -272,7 +277,7 @@ const PLACES: [u8; BLOCK_PIXELS] = {
 mod tests {
     use super::*;
 
-    /// A word that shows a triangle.
+    /// A sample of the visibility buffer that shows a triangle.
     fn word(number: u32) -> u64 {
         1 << 62 | u64::from(!number)
     }
@@ -281,7 +286,7 @@ mod tests {
     fn every_pixel_finds_its_triangle_in_its_slot() {
         let mut state = 1_u64;
         for round in 0..2000 {
-            let words: [u64; BLOCK_PIXELS] = std::array::from_fn(|i| {
+            let visibility: [u64; BLOCK_PIXELS] = std::array::from_fn(|i| {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                 let random = (state >> 40) as u32;
                 match (round % 4, random % 8) {
@@ -292,26 +297,33 @@ mod tests {
                     _ => word(random % 2 + i as u32 % 8 / 3),
                 }
             });
-            let mut items = Fragments::default();
-            let shown = items.list(Level::new(), &words, [8, 16]);
-            let is_triangle = |i: &usize| words[*i] != 0 && !(words[*i] as u32) < 1 << 31;
+            let mut fragments = Fragments::default();
+            let shown = fragments.list(Level::new(), &visibility, [8, 16]);
+            let is_triangle = |i: &usize| visibility[*i] != 0 && !(visibility[*i] as u32) < 1 << 31;
             let want: Vec<usize> = (0..BLOCK_PIXELS).filter(is_triangle).collect();
             let bits = want.iter().fold(0, |bits, i| bits | 1_u64 << i);
-            let lines = (0..BLOCK_PIXELS).filter(|i| words[*i] != 0 && !is_triangle(i));
-            assert_eq!((shown.triangles, items.len), (bits, want.len()));
+            let lines = (0..BLOCK_PIXELS).filter(|i| visibility[*i] != 0 && !is_triangle(i));
+            assert_eq!((shown.triangles, fragments.len), (bits, want.len()));
             assert_eq!(shown.lines, lines.fold(0, |bits, i| bits | 1_u64 << i));
             for (k, i) in want.into_iter().enumerate() {
-                let slot = items.slots[k] as usize;
-                assert!(slot < items.count);
-                assert_eq!(word(items.numbers[slot]), words[i] & !(1 << 63));
+                let slot = fragments.slots[k] as usize;
+                assert!(slot < fragments.count);
+                assert_eq!(word(fragments.numbers[slot]), visibility[i] & !(1 << 63));
                 let (x, y) = (8 + i as i32 % 8, 16 + i as i32 / 8);
-                assert_eq!((usize::from(items.places[k]), items.x[k], items.y[k]), (i, x, y));
+                assert_eq!(
+                    (usize::from(fragments.pixels[k]), fragments.x[k], fragments.y[k]),
+                    (i, x, y)
+                );
             }
-            // Small numbers have places of their own in the table.
-            let mut different = items.numbers[..items.count].to_vec();
+            // Small numbers have table entries of their own.
+            let mut different = fragments.numbers[..fragments.count].to_vec();
             different.sort_unstable();
             different.dedup();
-            assert!(round % 4 == 1 || different.len() == items.count, "{:?}", items.numbers);
+            assert!(
+                round % 4 == 1 || different.len() == fragments.count,
+                "{:?}",
+                fragments.numbers
+            );
         }
     }
 }

@@ -1,27 +1,25 @@
-//! Blocks that one triangle covers as a whole.
+//! Blocks that one triangle covers fully.
 //!
-//! No pixel of them asks what it shows, so nothing is looked up and nothing is listed: where a pixel
-//! lies in the triangle, what that makes of the colours at the corners, and their bytes are one pass,
-//! two rows of a block at a time, from the corners to the tile. The bits are those of pixels that are
-//! listed: the same whole numbers, the same quotients, in the same order.
+//! No list of fragments is made: barycentric coordinates, interpolation and bytes are one pass over
+//! the tile, two rows of a block at a time. The bits are the same as for listed fragments: the same
+//! integers and the same quotients, in the same order.
 
 use fearless_simd::{
     Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,
 };
 
+use super::barycentrics::with_perspective;
 use super::interpolate::{Look, between, depth_between};
+use super::quantize::reflected;
+use super::triangle_attributes::TriangleAttributes;
 use crate::render::lights::{Batch, LightTerm, set};
 use crate::render::plan::tile::TileLight;
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::render::shading::barycentrics::with_perspective;
-use crate::render::shading::quantize::reflected;
-use crate::render::shading::triangle_attributes::TriangleAttributes;
-use crate::render::simd::Sixteen;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Lanes as _, Vec3};
+use crate::render::simd::{Lanes as _, Sixteen, Vec3};
 
-/// The pixels of a tile: rows that begin `stride` pixels apart.
+/// The pixels of a tile, in rows that begin `stride` pixels apart.
 #[derive(Debug)]
 pub(crate) struct Canvas<'a> {
     pub(crate) pixels: &'a mut [[u8; 4]],
@@ -29,7 +27,7 @@ pub(crate) struct Canvas<'a> {
 }
 
 impl Canvas<'_> {
-    /// Puts the pixels of a whole block, row by row; `at` is the place of the first.
+    /// Stores the pixels of a whole block, row by row; `at` is the index of the first.
     #[inline(always)]
     pub(crate) fn put(&mut self, at: usize, pixels: &[u32]) {
         for (row, from) in pixels.as_chunks::<ROW>().0.iter().enumerate() {
@@ -40,17 +38,17 @@ impl Canvas<'_> {
         }
     }
 
-    /// Where a pixel of the tile stands, by its column and row.
+    /// The index of a pixel of the tile, by its column and row.
     #[inline(always)]
-    pub(crate) const fn place(&self, [x, y]: [usize; 2]) -> usize {
+    pub(crate) const fn offset(&self, [x, y]: [usize; 2]) -> usize {
         y * self.stride + x
     }
 }
 
-/// Blocks of a tile that one triangle covers.
+/// Blocks of a tile that one triangle covers fully.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks {
-    /// Which, a bit for each.
+    /// A bit for each block.
     pub(crate) which: u64,
     /// The upper left pixel of the tile.
     pub(crate) corner: [i32; 2],
@@ -77,40 +75,40 @@ const COLUMNS: [f64; ROW] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
 
-/// Where pixels lie in one triangle: the second and the third barycentric coordinate, linear on the
+/// Computes the second and third barycentric coordinate of pixels in one triangle, linear on the
 /// screen.
 pub(crate) trait Linear<S: Simd>: Copy {
-    /// Those of a whole block, two rows after two rows; its first pixel is given.
+    /// The coordinates of a whole block, two rows at a time, from its first pixel.
     fn block(&self, simd: S, first: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS];
 }
 
-/// A triangle whose edge functions fit 31 bits inside.
+/// A triangle whose edge functions fit 31 bits at its pixels.
 #[derive(Clone, Copy, Debug)]
 struct Narrow<S: Simd> {
-    /// What the edge functions are at the first pixel of the picture, and what they gain by a pixel
-    /// to the right and by one down.
+    /// The edge functions at the first pixel of the picture, and their steps by a pixel to the
+    /// right and by one down.
     edges: [[i32; 3]; 2],
-    /// What they gain in two rows.
+    /// Their offsets within two rows.
     gains: [i32x16<S>; 2],
     per_area: f32,
 }
 
 impl<S: Simd> Narrow<S> {
     #[inline(always)]
-    fn new(simd: S, faces: &TriangleAttributes<f32>) -> Self {
-        let edges = faces.edges.each_ref().map(|[a, b, c]| [c[0], a[0], b[0]]);
+    fn new(simd: S, attributes: &TriangleAttributes<f32>) -> Self {
+        let edges = attributes.edges.each_ref().map(|[a, b, c]| [c[0], a[0], b[0]]);
         let across = i32x16::from_slice(simd, &ACROSS);
         let down = i32x16::from_slice(simd, &DOWN);
         let gains =
             [across * edges[0][1] + down * edges[0][2], across * edges[1][1] + down * edges[1][2]];
-        Self { edges, gains, per_area: faces.per_area[0] }
+        Self { edges, gains, per_area: attributes.per_area[0] }
     }
 }
 
 impl<S: Simd> Linear<S> for Narrow<S> {
     #[inline(always)]
     fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
-        // But for multiples of 2^32, which the sum of all has none of.
+        // Modulo 2^32: products may wrap around, but the sum fits.
         let at = |i: usize, pair: i32| {
             let [c, a, b] = self.edges[i];
             let first = a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y + 2 * pair));
@@ -121,14 +119,15 @@ impl<S: Simd> Linear<S> for Narrow<S> {
     }
 }
 
-/// A triangle whose edge functions need more bits. They are whole numbers that f64 holds, up to 2^53.
+/// A triangle whose edge functions need more bits. They are integers below 2^53, which f64 holds
+/// exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wide<'a, S: Simd> {
     triangle: &'a Triangle,
     per_area: f64,
-    /// What the edge functions gain in the first row of a block, and in the second.
+    /// The offsets of the edge functions in the first row of a block, and in the second.
     gains: [[f64x8<S>; 2]; 2],
-    /// What they gain by two pixels down.
+    /// Their steps by two pixels down.
     down: [f64x8<S>; 2],
 }
 
@@ -147,7 +146,7 @@ impl<'a, S: Simd> Wide<'a, S> {
         }
     }
 
-    /// Those of sixteen pixels anywhere.
+    /// The coordinates of sixteen arbitrary pixels.
     #[inline(always)]
     #[expect(
         clippy::cast_precision_loss,
@@ -186,20 +185,20 @@ impl<S: Simd> Linear<S> for Wide<'_, S> {
     }
 }
 
-/// Does something with where pixels lie in the first of some triangles. Says whether that is known: not
-/// where it reaches beyond the planes that triangles are cut by.
+/// Evaluates an expression with the [`Linear`] coordinates of the first triangle, and returns
+/// whether it has any: a clipped triangle has not.
 macro_rules! with_linear {
-    ($level:expr, $faces:expr, $simd:ident, $linear:ident => $what:expr) => {{
-        let faces: &TriangleAttributes<f32> = $faces;
-        if faces.cut & 1 != 0 {
+    ($level:expr, $attributes:expr, $simd:ident, $linear:ident => $what:expr) => {{
+        let attributes: &TriangleAttributes<f32> = $attributes;
+        if attributes.cut & 1 != 0 {
             false
-        } else if faces.wide & 1 == 0 {
+        } else if attributes.wide & 1 == 0 {
             dispatch!($level, $simd => {
-                let $linear = Narrow::new($simd, faces);
+                let $linear = Narrow::new($simd, attributes);
                 $what
             });
             true
-        } else if let Some(triangle) = &Triangle::new(faces.corners(0)) {
+        } else if let Some(triangle) = &Triangle::new(attributes.corners(0)) {
             dispatch!($level, $simd => {
                 let $linear = Wide::new($simd, triangle);
                 $what
@@ -211,57 +210,57 @@ macro_rules! with_linear {
     }};
 }
 
-/// Mixes the colours that the first of some triangles carries in blocks that it covers as a whole.
-/// Says whether that can be done so: not where it reaches beyond the planes that triangles are cut by.
+/// Interpolates the colours of the first triangle in blocks that it covers fully. Returns false,
+/// with nothing done, if the triangle is clipped.
 pub(crate) fn mix(
     level: Level,
-    faces: &TriangleAttributes<f32>,
+    attributes: &TriangleAttributes<f32>,
     blocks: Blocks,
     canvas: &mut Canvas<'_>,
 ) -> bool {
-    with_linear!(level, faces, simd, linear => mixed(simd, faces, linear, blocks, canvas))
+    with_linear!(level, attributes, simd, linear => mixed(simd, attributes, linear, blocks, canvas))
 }
 
-/// What lights the pixels of some blocks.
+/// The lights of fully covered blocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockLight<'a, T> {
-    /// How they are looked at; `None` where no light asks.
+    /// How pixels become positions and normals; `None` if no light reads them.
     pub(crate) look: Option<Look<T>>,
     /// The colour of the surface itself.
     pub(crate) tint: [T; 3],
     pub(crate) lights: TileLight<'a>,
-    /// What the lights do to the surface.
-    pub(crate) shines: &'a [LightTerm<T>],
+    /// The products of the lights and the material.
+    pub(crate) terms: &'a [LightTerm<T>],
 }
 
-/// Lights blocks that the first of some triangles covers as a whole, whose corners carry normals. Says
-/// whether that can be done so, as [`mix`] does.
+/// Lights blocks that the first triangle, whose corners carry normals, covers fully. Returns false,
+/// with nothing done, if the triangle is clipped.
 pub(crate) fn light(
     level: Level,
-    faces: &TriangleAttributes<f32>,
+    attributes: &TriangleAttributes<f32>,
     blocks: Blocks,
     (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
     canvas: &mut Canvas<'_>,
 ) -> bool {
-    with_linear!(level, faces, simd, linear => {
-        lit(simd, faces, linear, blocks, (light, &mut *batch), canvas);
+    with_linear!(level, attributes, simd, linear => {
+        lit(simd, attributes, linear, blocks, (light, &mut *batch), canvas);
     })
 }
 
 #[inline(always)]
 fn lit<S: Simd>(
     simd: S,
-    faces: &TriangleAttributes<f32>,
+    attributes: &TriangleAttributes<f32>,
     linear: impl Linear<S>,
     blocks: Blocks,
     (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let BlockLight { look, tint, lights, shines } = light;
-    let by_w = of_first(lanes, &faces.by_w);
-    let z = of_first(lanes, &faces.z);
-    let corners = corners(lanes, faces);
+    let BlockLight { look, tint, lights, terms } = light;
+    let by_w = of_first(lanes, &attributes.by_w);
+    let z = of_first(lanes, &attributes.z);
+    let corners = corners(lanes, attributes);
     let tint = set(lanes, tint);
     let across = i32x16::from_slice(simd, &ACROSS);
     let down = i32x16::from_slice(simd, &DOWN);
@@ -285,9 +284,9 @@ fn lit<S: Simd>(
             if look.is_some() || !is_lit {
                 is_lit = true;
                 batch.darken();
-                lights.shine(shines, simd.level(), batch);
+                lights.light_batch(terms, simd.level(), batch);
             }
-            let mut at = canvas.place([column as usize, row as usize]);
+            let mut at = canvas.offset([column as usize, row as usize]);
             for pair in 0..PAIRS {
                 let mut pixels = [0; 16];
                 lanes.store_pixels(reflected(lanes, tint, batch, 16 * pair), &mut pixels, 0);
@@ -298,35 +297,38 @@ fn lit<S: Simd>(
     );
 }
 
-/// Three numbers of the first of some triangles, the same for all lanes.
+/// Three numbers of the first triangle, the same for all lanes.
 #[inline(always)]
 fn of_first<S: Simd>(lanes: Sixteen<S>, rows: &[[f32; SLOTS]; 3]) -> Vec3<f32x16<S>> {
     set(lanes, [rows[0][0], rows[1][0], rows[2][0]])
 }
 
-/// What the corners of the first of some triangles carry.
+/// The attributes at the corners of the first triangle.
 #[inline(always)]
-fn corners<S: Simd>(lanes: Sixteen<S>, faces: &TriangleAttributes<f32>) -> [Vec3<f32x16<S>>; 3] {
-    let [a, b, c] = &faces.values;
+fn corners<S: Simd>(
+    lanes: Sixteen<S>,
+    attributes: &TriangleAttributes<f32>,
+) -> [Vec3<f32x16<S>>; 3] {
+    let [a, b, c] = &attributes.values;
     [of_first(lanes, a), of_first(lanes, b), of_first(lanes, c)]
 }
 
 #[inline(always)]
 fn mixed<S: Simd>(
     simd: S,
-    faces: &TriangleAttributes<f32>,
+    attributes: &TriangleAttributes<f32>,
     linear: impl Linear<S>,
     blocks: Blocks,
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let by_w = of_first(lanes, &faces.by_w);
-    let corners = corners(lanes, faces);
+    let by_w = of_first(lanes, &attributes.by_w);
+    let corners = corners(lanes, attributes);
     let [left, top] = blocks.corner;
     blocks.each(
         #[inline(always)]
         |[column, row]| {
-            let mut at = canvas.place([column as usize, row as usize]);
+            let mut at = canvas.offset([column as usize, row as usize]);
             for linear in linear.block(simd, [left + column, top + row]) {
                 let (weights, _) = with_perspective(lanes, linear, by_w);
                 let mut pixels = [0; 16];

@@ -1,10 +1,10 @@
-//! Which pixels of a block are coloured together: those of one draw that are drawn in one way.
+//! Groups the fragments of a block that are coloured together: those of one draw and one pipeline.
 
 use super::context::ShadingContext;
+use super::fragments::Fragments;
 use crate::render::frame::draw::Draw;
-use crate::render::shading::fragments::Fragments;
 
-/// Pixels that are coloured together.
+/// Fragments that are coloured together.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group<'a> {
     pub(crate) draw: &'a Draw,
@@ -22,14 +22,14 @@ pub(crate) fn group_of<'a, T>(context: &ShadingContext<'a, T>, number: u32) -> G
     Group { draw, draw_index, base: start.number, pipeline }
 }
 
-/// The group of all triangles of a list, where they are all of one.
+/// The group of all fragments of a list, if they belong to one.
 pub(crate) fn one_group<'a, T>(
     context: &ShadingContext<'a, T>,
-    items: &Fragments,
+    fragments: &Fragments,
 ) -> Option<Group<'a>> {
-    let group = group_of(context, items.numbers[0]);
-    let end = context.frame.draw_of(items.numbers[0]).1.end;
-    let numbers = &items.numbers[..items.count];
+    let group = group_of(context, fragments.numbers[0]);
+    let end = context.frame.draw_of(fragments.numbers[0]).1.end;
+    let numbers = &fragments.numbers[..fragments.count];
     let alike = |number: &u32| {
         (group.base..end).contains(number)
             && (group.draw.uniform.is_some()

@@ -1,26 +1,27 @@
-//! From pixels and the triangles that they show to what is there: place, normal, light.
+//! Interpolates attributes: from fragments and their triangles to positions, normals and light.
 //!
-//! What the corners carry is mixed by where in its triangle each pixel lies ([`Barycentrics`]). A value that
-//! all corners share comes out as it went in, bit for bit, since only differences are weighted.
+//! Attributes at corners are weighted by the barycentric coordinates of each pixel
+//! ([`Barycentrics`]). A value that all corners share comes out unchanged, bit for bit, since only
+//! differences are weighted.
 //!
-//! The place of a pixel in space is the point of its ray at its depth, so that the direction to the
-//! observer is exact whatever the triangle.
+//! The position of a pixel in space is the point of its ray at its depth, so the direction to the
+//! observer is exact for any triangle.
 
 use fearless_simd::Level;
 use glam::DMat3;
 
+use super::barycentrics::Barycentrics;
 use super::colors::Colors;
+use super::fragments::Fragments;
+use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::render::frame::draw::Draw;
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::{Batch, Rows, Sample, set, store};
 use crate::render::screen::coverage::SUBPIXELS;
-use crate::render::shading::barycentrics::Barycentrics;
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::triangle_attributes::{TriangleAttributes, picked};
 use crate::render::simd::gather::{SLOTS, paged};
 use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
 
-/// What the corners carry, at some pixels.
+/// Attributes at some pixels, interpolated between the corners.
 #[inline(always)]
 fn mixed<M: Lanes, const PAGES: usize>(
     lanes: M,
@@ -34,13 +35,13 @@ fn mixed<M: Lanes, const PAGES: usize>(
     between([a, b, c], weights)
 }
 
-/// What the first corner carries, and the weighted differences of the others from it.
+/// The attribute of the first corner, plus the weighted differences of the others from it.
 #[inline(always)]
 pub(crate) fn between<R: Real>([a, b, c]: [Vec3<R>; 3], [second, third]: [R; 2]) -> Vec3<R> {
     a.plus(b.times(second)).plus(c.times(third))
 }
 
-/// Where what is mixed goes.
+/// The destination of interpolated attributes.
 #[derive(Debug)]
 pub(crate) enum Mixed<'a, T> {
     /// Light.
@@ -49,33 +50,38 @@ pub(crate) enum Mixed<'a, T> {
     Colors(&'a mut Colors),
 }
 
-/// Mixes what the corners carry at every pixel.
+/// Interpolates attributes at every pixel.
 pub(crate) fn mix<T: Number>(
     level: Level,
-    items: &Fragments,
-    faces: &TriangleAttributes<T>,
-    located: &Barycentrics<T>,
+    fragments: &Fragments,
+    attributes: &TriangleAttributes<T>,
+    barycentrics: &Barycentrics<T>,
     to: Mixed<'_, T>,
 ) {
-    paged!(faces.count, PAGES => T::run(level, Mix::<T, PAGES> { items, faces, located, to }));
+    paged!(attributes.count, PAGES => T::run(
+        level,
+        Mix::<T, PAGES> { fragments, attributes, barycentrics, to },
+    ));
 }
 
 struct Mix<'a, T, const PAGES: usize> {
-    items: &'a Fragments,
-    faces: &'a TriangleAttributes<T>,
-    located: &'a Barycentrics<T>,
+    fragments: &'a Fragments,
+    attributes: &'a TriangleAttributes<T>,
+    barycentrics: &'a Barycentrics<T>,
     to: Mixed<'a, T>,
 }
 
 impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { items, faces, located, mut to } = self;
-        for at in (0..items.len).step_by(M::LANES) {
-            let slots = lanes.slots(&items.slots, at);
-            let weights =
-                [lanes.load(&located.weights[0], at), lanes.load(&located.weights[1], at)];
-            let value = mixed::<M, PAGES>(lanes, &faces.values, slots, weights);
+        let Self { fragments, attributes, barycentrics, mut to } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let weights = [
+                lanes.load(&barycentrics.weights[0], at),
+                lanes.load(&barycentrics.weights[1], at),
+            ];
+            let value = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
             match &mut to {
                 Mixed::Rows(rows) => store(lanes, value, rows, at),
                 Mixed::Colors(colors) => colors.store(lanes, value, at),
@@ -84,33 +90,36 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
     }
 }
 
-/// Place, normal and direction to the observer of every pixel, from normals that the corners carry.
-pub(crate) fn surroundings<T: Number>(
+/// Computes position, normal and direction to the observer of every pixel, from normals at the
+/// corners.
+pub(crate) fn surface_samples<T: Number>(
     level: Level,
     (plan, draw): (&FramePlan, &Draw),
-    items: &Fragments,
-    faces: &TriangleAttributes<T>,
-    located: &Barycentrics<T>,
+    fragments: &Fragments,
+    attributes: &TriangleAttributes<T>,
+    barycentrics: &Barycentrics<T>,
     batch: &mut Batch<T>,
 ) {
     let look = Look::new(plan, draw);
-    let way = plan.variants.rare_roots();
-    match (items.shared, way) {
+    let variant = plan.variants.root_variant();
+    match (fragments.shared, variant) {
         (true, Some(_)) => {
-            let kernel = Surroundings::<T, 4, true> { items, faces, located, batch, look };
-            T::run_by(level, way, kernel);
+            let kernel =
+                SurfaceSamples::<T, 4, true> { fragments, attributes, barycentrics, batch, look };
+            T::run_variant(level, variant, kernel);
         }
         (false, Some(_)) => {
-            let kernel = Surroundings::<T, 4, false> { items, faces, located, batch, look };
-            T::run_by(level, way, kernel);
+            let kernel =
+                SurfaceSamples::<T, 4, false> { fragments, attributes, barycentrics, batch, look };
+            T::run_variant(level, variant, kernel);
         }
-        (true, None) => paged!(faces.count, PAGES => T::run(
+        (true, None) => paged!(attributes.count, PAGES => T::run(
             level,
-            Surroundings::<T, PAGES, true> { items, faces, located, batch, look },
+            SurfaceSamples::<T, PAGES, true> { fragments, attributes, barycentrics, batch, look },
         )),
-        (false, None) => paged!(faces.count, PAGES => T::run(
+        (false, None) => paged!(attributes.count, PAGES => T::run(
             level,
-            Surroundings::<T, PAGES, false> { items, faces, located, batch, look },
+            SurfaceSamples::<T, PAGES, false> { fragments, attributes, barycentrics, batch, look },
         )),
     }
 }
@@ -120,8 +129,7 @@ fn matrix<T: Number>(m: DMat3) -> [[T; 3]; 3] {
     [m.x_axis, m.y_axis, m.z_axis].map(|column| column.to_array().map(T::from_f64))
 }
 
-/// From a pixel to the way on which its surface lies: x = (column a + b), y = (row c + d), each times
-/// w in perspective, where -w is z.
+/// The rays of pixels: x = column a + b, y = row c + d, each times w in perspective, where z = -w.
 #[derive(Clone, Copy, Debug)]
 struct Rays<T> {
     parallel: bool,
@@ -136,10 +144,10 @@ impl<T: Number> Rays<T> {
         let (width, height) = (plan.size.width as f64, plan.size.height as f64);
         let mut x = [2.0 / width / px, -1.0 / px];
         let mut y = [-2.0 / height / py, 1.0 / py];
-        // What is looked at lies beside the middle of its pixel.
-        for (way, shift) in [&mut x, &mut y].into_iter().zip(plan.shift) {
+        // A sample lies beside the centre of its pixel.
+        for (ray, shift) in [&mut x, &mut y].into_iter().zip(plan.shift) {
             if shift != 0 {
-                way[1] += way[0] * f64::from(shift) / f64::from(SUBPIXELS);
+                ray[1] += ray[0] * f64::from(shift) / f64::from(SUBPIXELS);
             }
         }
         let parallel = plan.eye == Eye::Parallel;
@@ -147,11 +155,11 @@ impl<T: Number> Rays<T> {
     }
 }
 
-/// How the observer looks at a draw.
+/// The rays of the observer, and the normal transform of a draw.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look<T> {
     rays: Rays<T>,
-    /// The columns of the matrix that turns normals into view space.
+    /// The columns of the matrix that transforms normals to view space.
     normals: [[T; 3]; 3],
 }
 
@@ -160,8 +168,9 @@ impl<T: Number> Look<T> {
         Self { rays: Rays::new(plan), normals: matrix(draw.view_from_normal) }
     }
 
-    /// Place, normal and direction to the observer of some pixels, from the normal there in object space,
-    /// where in the picture they are looked at, and their w; in parallel projection `z` is asked.
+    /// Position, normal and direction to the observer of some pixels, from their normals in object
+    /// space, their positions in the picture and their w; in orthographic projection `depth` gives
+    /// z.
     #[inline(always)]
     pub(crate) fn at<M: Lanes<Number = T>>(
         &self,
@@ -186,40 +195,47 @@ impl<T: Number> Look<T> {
     }
 }
 
-struct Surroundings<'a, T, const PAGES: usize, const SHARED: bool> {
-    items: &'a Fragments,
-    faces: &'a TriangleAttributes<T>,
-    located: &'a Barycentrics<T>,
+struct SurfaceSamples<'a, T, const PAGES: usize, const SHARED: bool> {
+    fragments: &'a Fragments,
+    attributes: &'a TriangleAttributes<T>,
+    barycentrics: &'a Barycentrics<T>,
     batch: &'a mut Batch<T>,
     look: Look<T>,
 }
 
 impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
-    for Surroundings<'_, T, PAGES, SHARED>
+    for SurfaceSamples<'_, T, PAGES, SHARED>
 {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { items, faces, located, batch, look } = self;
-        for at in (0..items.len).step_by(M::LANES) {
-            let slots = lanes.slots(&items.slots, at);
-            let weights =
-                [lanes.load(&located.weights[0], at), lanes.load(&located.weights[1], at)];
-            let normal = mixed::<M, PAGES>(lanes, &faces.values, slots, weights);
+        let Self { fragments, attributes, barycentrics, batch, look } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let weights = [
+                lanes.load(&barycentrics.weights[0], at),
+                lanes.load(&barycentrics.weights[1], at),
+            ];
+            let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
             let half = lanes.lift(0.5);
             let place = match SHARED {
-                true => [lanes.load(&located.places[0], at), lanes.load(&located.places[1], at)],
-                false => [lanes.whole(&items.x, at) + half, lanes.whole(&items.y, at) + half],
+                true => [
+                    lanes.load(&barycentrics.positions[0], at),
+                    lanes.load(&barycentrics.positions[1], at),
+                ],
+                false => {
+                    [lanes.whole(&fragments.x, at) + half, lanes.whole(&fragments.y, at) + half]
+                }
             };
-            let w = lanes.load(&located.w, at);
+            let w = lanes.load(&barycentrics.w, at);
             let sample = look.at(lanes, normal, place, w, || {
-                depth_between(picked::<M, PAGES>(lanes, &faces.z, slots), weights)
+                depth_between(picked::<M, PAGES>(lanes, &attributes.z, slots), weights)
             });
             batch.put(lanes, sample, at);
         }
     }
 }
 
-/// z between corners, in parallel projection.
+/// z interpolated between corners, in orthographic projection.
 #[inline(always)]
 pub(crate) fn depth_between<R: Real>(Vec3([z0, z1, z2]): Vec3<R>, weights: [R; 2]) -> R {
     z0 + (z1 - z0) * weights[0] + (z2 - z0) * weights[1]

@@ -1,11 +1,11 @@
-//! How fragments find where they lie in their triangles, in each of the two precisions.
+//! Computes barycentric coordinates of fragments, in each of the two precisions.
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
 
 use super::barycentrics::{Barycentrics, Perspective};
 use super::fragments::Fragments;
 use super::full_blocks::{self, BlockLight, Blocks, Canvas, Linear as _, Wide};
-use super::triangle_attributes::{Faced, TriangleAttributes, picked};
+use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
 use crate::render::lights::{Batch, Light, set};
@@ -14,36 +14,36 @@ use crate::render::screen::weights::{barycentric, cut_place, cut_w, cut_weights}
 use crate::render::simd::gather::{SLOTS, paged, pick};
 use crate::render::simd::{Lanes as _, Sixteen};
 
-/// Numbers that are interpolated.
-pub(crate) trait Interpolated: Faced {
-    /// Finds where every pixel lies, where the triangles allow it to be done sixteen pixels at a time;
-    /// says whether they do.
+/// Numbers in which attributes are interpolated.
+pub(crate) trait Interpolated: AttributeNumber {
+    /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow that.
+    /// Returns whether they do.
     fn find(
         level: Level,
-        items: &Fragments,
-        faces: &TriangleAttributes<Self>,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
     ) -> bool;
-    /// Finds the linear barycentric coordinates, but for those of wide triangles.
+    /// Computes the linear barycentric coordinates, except in wide triangles.
     fn find_linear(
         level: Level,
-        items: &Fragments,
-        faces: &TriangleAttributes<Self>,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
     );
-    /// Mixes the colours that the corners of one triangle carry in blocks of a tile that it covers as
-    /// a whole, where that can be done in one pass; says whether it can.
+    /// Interpolates the colours of one triangle in blocks that it covers fully, if that can be done
+    /// in one pass. Returns whether it can.
     fn mix_blocks(
         level: Level,
-        faces: &TriangleAttributes<Self>,
+        attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
         to: &mut Canvas<'_>,
     ) -> bool;
-    /// Lights the pixels of blocks of a tile that one triangle covers as a whole, where that can be done
-    /// in one pass a block; says whether it can.
+    /// Lights blocks that one triangle covers fully, if that can be done in one pass per block.
+    /// Returns whether it can.
     fn light_blocks(
         level: Level,
-        faces: &TriangleAttributes<Self>,
+        attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
         light: (BlockLight<'_, Self>, &mut Batch<Self>),
         to: &mut Canvas<'_>,
@@ -51,49 +51,52 @@ pub(crate) trait Interpolated: Faced {
 }
 
 impl<T: Interpolated> Barycentrics<T> {
-    /// Finds where every pixel lies.
+    /// Computes the barycentric coordinates of every fragment.
     pub(crate) fn find(
         &mut self,
         level: Level,
-        items: &Fragments,
-        faces: &TriangleAttributes<T>,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<T>,
         (plan, draw): (&FramePlan, &Draw),
     ) {
-        if items.shared || !T::find(level, items, faces, self) {
-            T::find_linear(level, items, faces, self);
-            self.find_wide(items, faces);
-            if items.shared {
-                self.hold(level, items, faces);
+        if fragments.shared || !T::find(level, fragments, attributes, self) {
+            T::find_linear(level, fragments, attributes, self);
+            self.find_wide(fragments, attributes);
+            if fragments.shared {
+                self.clamp_to_triangle(level, fragments, attributes);
             }
-            let count = faces.count;
-            paged!(count, PAGES => T::run(level, Perspective::<T, PAGES> { items, faces, to: self }));
-            if faces.cut != 0 {
-                self.find_cut(items, faces, plan, draw);
+            let count = attributes.count;
+            paged!(count, PAGES => T::run(
+                level,
+                Perspective::<T, PAGES> { fragments, attributes, to: self },
+            ));
+            if attributes.cut != 0 {
+                self.find_cut(fragments, attributes, plan, draw);
             }
         }
     }
 
-    /// Triangles that were cut are looked at one pixel at a time, in homogeneous coordinates.
+    /// Computes those in clipped triangles, one pixel at a time, in homogeneous coordinates.
     #[cold]
     fn find_cut(
         &mut self,
-        items: &Fragments,
-        faces: &TriangleAttributes<T>,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<T>,
         plan: &FramePlan,
         draw: &Draw,
     ) {
-        for i in 0..items.len {
-            let slot = items.slots[i].cast_unsigned() as usize;
-            if faces.cut >> slot & 1 == 1 {
-                let number = faces.numbers[slot];
-                let pixel = [items.x[i], items.y[i]];
+        for i in 0..fragments.len {
+            let slot = fragments.slots[i].cast_unsigned() as usize;
+            if attributes.cut >> slot & 1 == 1 {
+                let number = attributes.numbers[slot];
+                let pixel = [fragments.x[i], fragments.y[i]];
                 let weights = cut_weights(plan, draw, number, (pixel, [0; 2]));
                 self.weights[0][i] = T::from_f64(weights.y);
                 self.weights[1][i] = T::from_f64(weights.z);
                 self.w[i] = T::from_f64(cut_w(plan, draw, number, weights));
-                if items.shared {
+                if fragments.shared {
                     let place = cut_place(plan, draw, number, weights);
-                    for (row, place) in self.places.iter_mut().zip(place) {
+                    for (row, place) in self.positions.iter_mut().zip(place) {
                         row[i] = T::from_f64(place);
                     }
                 }
@@ -101,19 +104,19 @@ impl<T: Interpolated> Barycentrics<T> {
         }
     }
 
-    /// Finds the linear coordinates in wide triangles, with whole numbers of 64 bits.
-    fn find_wide(&mut self, items: &Fragments, faces: &TriangleAttributes<T>) {
+    /// Computes the linear coordinates in wide triangles, with 64-bit integers.
+    fn find_wide(&mut self, fragments: &Fragments, attributes: &TriangleAttributes<T>) {
         let (mut last, mut triangle) = (usize::MAX, None);
-        for i in 0..items.len {
-            let slot = items.slots[i].cast_unsigned() as usize;
-            if faces.wide >> slot & 1 == 0 {
+        for i in 0..fragments.len {
+            let slot = fragments.slots[i].cast_unsigned() as usize;
+            if attributes.wide >> slot & 1 == 0 {
                 continue;
             }
             if slot != last {
-                (last, triangle) = (slot, Triangle::new(faces.corners(slot)));
+                (last, triangle) = (slot, Triangle::new(attributes.corners(slot)));
             }
             if let Some(triangle) = &triangle {
-                let [second, third] = barycentric(triangle, [items.x[i], items.y[i]]);
+                let [second, third] = barycentric(triangle, [fragments.x[i], fragments.y[i]]);
                 self.linear[0][i] = T::from_f64(second);
                 self.linear[1][i] = T::from_f64(third);
             }
@@ -157,80 +160,80 @@ impl Interpolated for f64 {
 impl Interpolated for f32 {
     fn find(
         level: Level,
-        items: &Fragments,
-        faces: &TriangleAttributes<Self>,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
     ) -> bool {
-        let wide = faces.count == 1 && faces.wide == 1;
-        if wide && let Some(triangle) = Triangle::new(faces.corners(0)) {
-            dispatch!(level, simd => find_in_one(simd, items, &triangle, faces, to));
+        let wide = attributes.count == 1 && attributes.wide == 1;
+        if wide && let Some(triangle) = Triangle::new(attributes.corners(0)) {
+            dispatch!(level, simd => find_in_one(simd, fragments, &triangle, attributes, to));
             return true;
         }
-        if (faces.wide | faces.cut) != 0 {
+        if (attributes.wide | attributes.cut) != 0 {
             return false;
         }
-        paged!(faces.count, PAGES => {
-            dispatch!(level, simd => find_narrow::<_, PAGES>(simd, items, faces, to));
+        paged!(attributes.count, PAGES => {
+            dispatch!(level, simd => find_narrow::<_, PAGES>(simd, fragments, attributes, to));
         });
         true
     }
 
     fn find_linear(
         level: Level,
-        items: &Fragments,
-        faces: &TriangleAttributes<Self>,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
     ) {
-        paged!(faces.count, PAGES => {
-            dispatch!(level, simd => find_narrow::<_, PAGES>(simd, items, faces, to));
+        paged!(attributes.count, PAGES => {
+            dispatch!(level, simd => find_narrow::<_, PAGES>(simd, fragments, attributes, to));
         });
     }
 
     fn mix_blocks(
         level: Level,
-        faces: &TriangleAttributes<Self>,
+        attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
         to: &mut Canvas<'_>,
     ) -> bool {
-        full_blocks::mix(level, faces, blocks, to)
+        full_blocks::mix(level, attributes, blocks, to)
     }
 
     fn light_blocks(
         level: Level,
-        faces: &TriangleAttributes<Self>,
+        attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
         light: (BlockLight<'_, Self>, &mut Batch<Self>),
         to: &mut Canvas<'_>,
     ) -> bool {
-        full_blocks::light(level, faces, blocks, light, to)
+        full_blocks::light(level, attributes, blocks, light, to)
     }
 }
 
-/// Where pixels lie in narrow triangles.
+/// Computes the coordinates in narrow triangles.
 #[inline(always)]
 fn find_narrow<S: Simd, const PAGES: usize>(
     simd: S,
-    items: &Fragments,
-    faces: &TriangleAttributes<f32>,
+    fragments: &Fragments,
+    attributes: &TriangleAttributes<f32>,
     to: &mut Barycentrics<f32>,
 ) {
     let lanes = Sixteen(simd);
-    for at in (0..items.len).step_by(16) {
-        let slots = lanes.slots(&items.slots, at);
-        let x = i32x16::from_slice(simd, &items.x[at..at + 16]);
-        let y = i32x16::from_slice(simd, &items.y[at..at + 16]);
-        let per_area = lanes.pick::<PAGES>(&faces.per_area, slots);
-        let second = edge::<S, PAGES>(simd, &faces.edges[0], slots, [x, y]) * per_area;
-        let third = edge::<S, PAGES>(simd, &faces.edges[1], slots, [x, y]) * per_area;
+    for at in (0..fragments.len).step_by(16) {
+        let slots = lanes.slots(&fragments.slots, at);
+        let x = i32x16::from_slice(simd, &fragments.x[at..at + 16]);
+        let y = i32x16::from_slice(simd, &fragments.y[at..at + 16]);
+        let per_area = lanes.pick::<PAGES>(&attributes.per_area, slots);
+        let second = edge::<S, PAGES>(simd, &attributes.edges[0], slots, [x, y]) * per_area;
+        let third = edge::<S, PAGES>(simd, &attributes.edges[1], slots, [x, y]) * per_area;
         lanes.store(second, &mut to.linear[0], at);
         lanes.store(third, &mut to.linear[1], at);
-        let by_w = picked::<_, PAGES>(lanes, &faces.by_w, slots);
+        let by_w = picked::<_, PAGES>(lanes, &attributes.by_w, slots);
         to.put(lanes, at, [second, third], by_w);
     }
 }
 
-/// The edge functions of narrow triangles are exact in 32 bits, even where products of theirs are
-/// not: what overflows is taken away again.
+/// An edge function of narrow triangles. It is exact in 32 bits: products may wrap around, but the
+/// sum fits.
 #[inline(always)]
 fn edge<S: Simd, const PAGES: usize>(
     simd: S,
@@ -244,27 +247,29 @@ fn edge<S: Simd, const PAGES: usize>(
     (a * x + b * y + c).to_float()
 }
 
-/// Where pixels lie in one triangle whose edge functions need more bits.
+/// Computes the coordinates in one triangle whose edge functions need more bits.
 #[inline(always)]
 fn find_in_one<S: Simd>(
     simd: S,
-    items: &Fragments,
+    fragments: &Fragments,
     triangle: &Triangle,
-    faces: &TriangleAttributes<f32>,
+    attributes: &TriangleAttributes<f32>,
     to: &mut Barycentrics<f32>,
 ) {
     let lanes = Sixteen(simd);
     let wide = Wide::new(simd, triangle);
-    let [w0, w1, w2] = faces.by_w;
+    let [w0, w1, w2] = attributes.by_w;
     let by_w = set(lanes, [w0[0], w1[0], w2[0]]);
-    if items.is_whole() {
-        for (pair, linear) in wide.block(simd, [items.x[0], items.y[0]]).into_iter().enumerate() {
+    if fragments.is_whole() {
+        for (pair, linear) in
+            wide.block(simd, [fragments.x[0], fragments.y[0]]).into_iter().enumerate()
+        {
             to.put(lanes, 16 * pair, linear, by_w);
         }
         return;
     }
-    for at in (0..items.len).step_by(16) {
-        let linear = wide.scattered(simd, &items.x[at..at + 16], &items.y[at..at + 16]);
+    for at in (0..fragments.len).step_by(16) {
+        let linear = wide.scattered(simd, &fragments.x[at..at + 16], &fragments.y[at..at + 16]);
         to.put(lanes, at, linear, by_w);
     }
 }

@@ -1,8 +1,8 @@
-//! Light that is evaluated at faces or at vertices, and taken from there by pixels.
+//! Lighting: per face (flat), per vertex (Gouraud), and of batches of pixels (Phong).
 //!
-//! Vertices are lit when the first pixel asks for one of them, with those around it: what is turned
-//! away, behind something else or outside of the picture is never lit. Whichever thread asks first,
-//! the light is the same.
+//! Vertices are lit when the first pixel needs one of them, in batches of neighbours, so back
+//! faces, hidden parts and anything outside of the picture are never lit. The light is the same
+//! whichever thread needs it first.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -11,49 +11,47 @@ use fearless_simd::Level;
 use glam::{DMat3, DVec3};
 
 use super::interpolated::ShadingNumber;
+use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Normalising};
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::{Batch, LightTerm, load, set, store};
 use crate::render::plan::tile::TileLight;
-use crate::render::shading::triangle_attributes::TriangleAttributes;
-use crate::render::simd::BATCH;
-use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 use crate::scene::{Facet, Normals, dvec3};
 
-/// Light at the vertices of a frame, and what it takes to light faces.
+/// Light at the vertices of a frame, and the transforms that lighting faces needs.
 #[derive(Debug, Default)]
 pub(crate) struct Lit<T> {
     tables: Vec<Table<T>>,
-    /// How many of the tables are of this frame.
+    /// How many of the tables belong to this frame.
     used: usize,
-    /// For each draw the way to view space.
+    /// The transform of each draw to view space.
     to_view: Vec<ToView<T>>,
 }
 
-/// The light of as many vertices as are lit together.
+/// The light of a batch of vertices.
 type Lights<T> = [[T; 4]; BATCH];
 
-/// The light of one draw by one pipeline on one side, at its points or (with the normals of faces)
-/// at its corners.
+/// The light on one side of one draw by one pipeline, at its points or, with face normals, at its
+/// corners.
 #[derive(Debug, Default)]
 pub(crate) struct Table<T> {
     draw: u32,
     pipeline: u32,
-    /// The way to view space, with the normals of this side.
+    /// The transform to view space, with the normals of this side.
     to_view: Option<ToView<T>>,
-    /// The colour of the surface, where light becomes colours, ready to be mixed: t D + S with one t
-    /// for all of the surface.
+    /// The tint t, if the table holds final colours t D + S instead of light.
     tint: Option<[T; 3]>,
-    /// Diffuse light; where `specular` is empty, the colour that both give.
+    /// Diffuse light D; if `specular` is empty, final colours.
     diffuse: Vec<OnceLock<Lights<T>>>,
-    /// Specular light, which is there where diffuse light is.
+    /// Specular light S, set together with diffuse light.
     specular: Vec<OnceLock<Lights<T>>>,
 }
 
 impl<T: ShadingNumber> Lit<T> {
-    /// Makes ready for what the plan says is lit at vertices.
+    /// Prepares tables for everything that the plan lights at vertices.
     pub(crate) fn prepare(&mut self, plan: &FramePlan) {
         self.to_view.clear();
         self.to_view.extend(plan.draws.iter().map(|draw| ToView::new(plan, draw)));
@@ -85,10 +83,10 @@ impl<T: ShadingNumber> Lit<T> {
         }
     }
 
-    /// The light of a draw by a pipeline, on the front and on the back; the same where only one side
-    /// is lit.
+    /// The light of a draw by a pipeline, on the front and on the back; both are the same if only
+    /// one side is lit.
     pub(crate) fn tables(&self, draw: u32, pipeline: u32) -> [&Table<T>; 2] {
-        // They were made ready in this order.
+        // They were prepared in this order.
         let of = |table: &Table<T>| (table.draw, table.pipeline);
         let tables = &self.tables[..self.used];
         let first = tables.partition_point(|table| of(table) < (draw, pipeline));
@@ -97,28 +95,28 @@ impl<T: ShadingNumber> Lit<T> {
         [front, own.next().unwrap_or(front)]
     }
 
-    /// Puts the centres and the normals of some faces of a draw into a batch, in view space.
+    /// Fills a batch with the centres and the normals of some faces of a draw, in view space.
     pub(crate) fn place_faces(
         &self,
         level: Level,
         (index, draw): (u32, &Draw),
-        faces: &TriangleAttributes<T>,
+        attributes: &TriangleAttributes<T>,
         batch: &mut Batch<T>,
     ) {
         let mesh = &draw.model.mesh;
         let facets = mesh.facets();
-        for (slot, number) in faces.numbers[..faces.count].iter().enumerate() {
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
             let Facet { centre, normal } = facets[mesh.polygon_of(*number) as usize];
             let turn =
-                if faces.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
+                if attributes.back >> slot & 1 == 1 && draw.back == Back::Lit { -1.0 } else { 1.0 };
             put(batch, slot, centre, normal.map(|x| x * turn));
         }
         let to_view = self.to_view[index as usize];
-        T::run_by(level, to_view.way, Place { batch, to_view });
+        T::run_variant(level, to_view.variant, Place { batch, to_view });
     }
 }
 
-/// Writes a place and a normal of object space into a batch.
+/// Writes a position and a normal of object space into a batch.
 #[inline(always)]
 fn put<T: Number>(batch: &mut Batch<T>, i: usize, position: [f32; 3], normal: [f32; 3]) {
     for axis in 0..3 {
@@ -127,22 +125,22 @@ fn put<T: Number>(batch: &mut Batch<T>, i: usize, position: [f32; 3], normal: [f
     }
 }
 
-/// By what the vertices of a draw are lit.
+/// What lighting the vertices of a draw reads.
 #[derive(Debug)]
 pub(crate) struct Lighting<'a, T> {
     pub(crate) level: Level,
     pub(crate) draw: &'a Draw,
     pub(crate) stages: &'a [Stage],
-    pub(crate) shines: &'a [LightTerm<T>],
+    pub(crate) terms: &'a [LightTerm<T>],
 }
 
 impl<T: ShadingNumber> Table<T> {
-    /// Whether there are colours in the place of diffuse light, and no other.
+    /// Whether the table holds final colours instead of light.
     pub(crate) const fn is_colored(&self) -> bool {
         self.tint.is_some()
     }
 
-    /// Takes all light away, and makes room for that of a draw.
+    /// Clears the table for a draw.
     fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
         let count = place_count(draw).div_ceil(BATCH);
         let colored = shaded.texture.is_none() && !shaded.vertex_colors;
@@ -153,7 +151,7 @@ impl<T: ShadingNumber> Table<T> {
         self.specular.resize_with(if colored { 0 } else { count }, OnceLock::new);
     }
 
-    /// The diffuse light at a place, or its colour. What it takes to light it is done in `batch`.
+    /// The diffuse light or final colour of a vertex, which is lit in `batch` if it was not yet.
     #[inline(always)]
     pub(crate) fn diffuse(
         &self,
@@ -168,14 +166,14 @@ impl<T: ShadingNumber> Table<T> {
         }
     }
 
-    /// The specular light at a place whose diffuse light was asked for before.
+    /// The specular light of a vertex whose diffuse light was read before.
     #[inline(always)]
     pub(crate) fn specular(&self, place: u32) -> [T; 4] {
         let lights = self.specular[place as usize / BATCH].get();
         lights.expect("it comes with diffuse light")[place as usize % BATCH]
     }
 
-    /// Lights the places that are lit together, unless another thread does.
+    /// Lights a batch of vertices, unless another thread does.
     #[cold]
     #[inline(never)]
     #[expect(
@@ -183,19 +181,19 @@ impl<T: ShadingNumber> Table<T> {
         reason = "what lights a batch has other threads do nothing"
     )]
     fn light(&self, chunk: usize, lighting: &Lighting<'_, T>, batch: &mut Batch<T>) -> &Lights<T> {
-        let Lighting { level, draw, stages, shines } = *lighting;
+        let Lighting { level, draw, stages, terms } = *lighting;
         let to_view = self.to_view.expect("it was made ready");
         self.diffuse[chunk].get_or_init(|| {
             put_places(draw, chunk * BATCH, batch);
-            T::run_by(level, to_view.way, Place { batch, to_view });
+            T::run_variant(level, to_view.variant, Place { batch, to_view });
             batch.darken();
-            run(stages, shines, level, batch);
+            run(stages, terms, level, batch);
             let mut diffuse = [[T::default(); 4]; BATCH];
             let mut specular = [[T::default(); 4]; BATCH];
             let (tint, batch) = (self.tint, &*batch);
             T::run(level, Keep { batch, tint, to: [&mut diffuse, &mut specular] });
             if let Some(place) = self.specular.get(chunk) {
-                // Whoever lights the diffuse light of these is alone.
+                // The thread that initializes diffuse light is the only one here.
                 place.get_or_init(|| specular);
             }
             diffuse
@@ -203,7 +201,7 @@ impl<T: ShadingNumber> Table<T> {
     }
 }
 
-/// How many places of a draw are lit: its points or, with the normals of faces, its corners.
+/// The number of vertices of a draw that are lit: its points or, with face normals, its corners.
 fn place_count(draw: &Draw) -> usize {
     let mesh = &draw.model.mesh;
     match draw.normals {
@@ -212,7 +210,7 @@ fn place_count(draw: &Draw) -> usize {
     }
 }
 
-/// Puts places of a draw into a batch, from `first` on.
+/// Fills a batch with vertices of a draw, from `first` on.
 fn put_places<T: Number>(draw: &Draw, first: usize, batch: &mut Batch<T>) {
     let mesh = &draw.model.mesh;
     batch.len = (place_count(draw) - first).min(BATCH);
@@ -262,7 +260,7 @@ fn polygon_of_corner(draw: &Draw, corner: usize) -> u32 {
     low
 }
 
-/// Keeps the light of a batch: D and S, or with a `tint` t the colour t D + S in the place of D.
+/// Stores the light of a batch: D and S, or with a `tint` t the final colour t D + S in place of D.
 struct Keep<'a, T> {
     batch: &'a Batch<T>,
     tint: Option<[T; 3]>,
@@ -290,11 +288,11 @@ impl<T: Number> Kernel<T> for Keep<'_, T> {
     }
 }
 
-/// How far off a vertex is lit, in units of view space.
+/// The largest distance at which a vertex is lit, in units of view space.
 const FARTHEST: f64 = 1e15;
 
-/// From object space to view space. What is seen is first brought near the origin, so that f32 keeps its
-/// digits.
+/// The transform from object space to view space. Positions are first moved near the origin, so
+/// that f32 keeps their digits.
 #[derive(Clone, Copy, Debug)]
 struct ToView<T> {
     middle: [T; 3],
@@ -302,8 +300,8 @@ struct ToView<T> {
     linear: [[T; 3]; 3],
     normals: [[T; 3]; 3],
     eye: Eye,
-    /// By which rare way, where it is one.
-    way: Option<Normalising>,
+    /// The variant of roots, if it is not the default.
+    variant: Option<Normalising>,
 }
 
 impl<T: Number> ToView<T> {
@@ -317,11 +315,11 @@ impl<T: Number> ToView<T> {
             linear: columns(DMat3::from_mat4(draw.view_from_object)),
             normals: columns(draw.view_from_normal),
             eye: plan.eye,
-            way: plan.variants.rare_roots(),
+            variant: plan.variants.root_variant(),
         }
     }
 
-    /// The same for one side of the surface.
+    /// The transform for one side of the surface.
     fn seen_from(self, back: bool) -> Self {
         let normals =
             if back { self.normals.map(|column| column.map(|x| -x)) } else { self.normals };
@@ -329,10 +327,10 @@ impl<T: Number> ToView<T> {
     }
 }
 
-/// The place within the bounds of a draw's mesh that is nearest to the observer, in object space. What is
-/// seen is near to it, wherever the mesh has its origin, and however far off other parts of it are.
+/// The point of a mesh's bounds that is nearest to the observer, in object space. Visible parts are
+/// near it, wherever the mesh has its origin and however large it is.
 ///
-/// It is a place of f32, so that taking it away is exact where that matters.
+/// Its coordinates are f32 numbers, so that subtracting it is exact near to it.
 fn near_observer(draw: &Draw) -> DVec3 {
     let Some(bounds) = draw.model.mesh.bounds() else { return DVec3::ZERO };
     let observer = draw.view_from_object.inverse().w_axis.truncate();
@@ -340,7 +338,7 @@ fn near_observer(draw: &Draw) -> DVec3 {
     dvec3(near.as_vec3().to_array())
 }
 
-/// Vectors times a matrix, which is given by its columns.
+/// Multiplies vectors by a matrix, which is given by its columns.
 #[inline(always)]
 fn turned<M: Lanes>(
     lanes: M,
@@ -351,7 +349,7 @@ fn turned<M: Lanes>(
     a.times(x).plus(b.times(y)).plus(c.times(z))
 }
 
-/// Brings the places of a batch from object space to view space.
+/// Transforms a batch from object space to view space.
 struct Place<'a, T> {
     batch: &'a mut Batch<T>,
     to_view: ToView<T>,
@@ -364,12 +362,12 @@ impl<T: Number> Kernel<T> for Place<'_, T> {
         let (middle, origin) = (set(lanes, to_view.middle), set(lanes, to_view.middle_in_view));
         for at in (0..batch.len).step_by(M::LANES) {
             let near = load(lanes, &batch.position, at).minus(middle);
-            // What lies beyond everything that can be seen is brought near enough for its distance to
-            // a lamp to have a square.
+            // Positions far beyond the view are clamped, so that the square of their distance to a
+            // light is finite.
             let (low, high) = (lanes.lift(-FARTHEST), lanes.lift(FARTHEST));
-            let held = |x: M::R| Real::min(Real::max(x, low), high);
+            let clamped = |x: M::R| Real::min(Real::max(x, low), high);
             let [x, y, z] = turned(lanes, to_view.linear, near).plus(origin).0;
-            let position = Vec3([held(x), held(y), held(z)]);
+            let position = Vec3([clamped(x), clamped(y), clamped(z)]);
             let normal = turned(lanes, to_view.normals, load(lanes, &batch.normal, at)).unit();
             let zero = lanes.lift(0.0);
             let to_eye = match to_view.eye {
@@ -383,32 +381,32 @@ impl<T: Number> Kernel<T> for Place<'_, T> {
     }
 }
 
-/// Adds up the light of some stages at every place of a batch.
+/// Adds the light of some stages at every position of a batch.
 pub(crate) fn run<T: ShadingNumber>(
     stages: &[Stage],
-    shines: &[LightTerm<T>],
+    terms: &[LightTerm<T>],
     level: Level,
     batch: &mut Batch<T>,
 ) {
-    for (stage, shine) in stages.iter().zip(shines) {
-        T::add_light(stage.variant(), level, batch, shine);
+    for (stage, term) in stages.iter().zip(terms) {
+        T::add_light(stage.variant(), level, batch, term);
     }
 }
 
 impl TileLight<'_> {
-    /// Adds up the light that reaches a tile at every place of a batch.
-    pub(crate) fn shine<T: ShadingNumber>(
+    /// Adds the light that reaches a tile at every position of a batch.
+    pub(crate) fn light_batch<T: ShadingNumber>(
         &self,
-        shines: &[LightTerm<T>],
+        terms: &[LightTerm<T>],
         level: Level,
         batch: &mut Batch<T>,
     ) {
         match self.kept {
-            None => run(self.stages, shines, level, batch),
+            None => run(self.stages, terms, level, batch),
             Some(kept) => {
                 for place in kept {
                     let at = *place as usize..=*place as usize;
-                    run(&self.stages[at.clone()], &shines[at], level, batch);
+                    run(&self.stages[at.clone()], &terms[at], level, batch);
                 }
             }
         }

@@ -1,5 +1,5 @@
-//! What is made ready of a plan before any pixel: lamps in the numbers that light is computed in, tables
-//! of powers, and textures at smaller sizes. What the last picture had is used again.
+//! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and mip
+//! maps. Those of the last picture are reused.
 
 use crate::accuracy::Filter;
 use crate::base::Shared;
@@ -11,33 +11,35 @@ use crate::render::simd::power::{Power, Tables};
 use crate::render::texture::mips::Mips;
 use crate::scene::Texture;
 
-/// For each pipeline its lamps, in the order of its stages.
+/// The light terms of each pipeline, in the order of its stages.
 #[derive(Debug, Default)]
 pub(crate) struct LightTerms<T> {
-    lamps: Vec<Vec<LightTerm<T>>>,
+    terms: Vec<Vec<LightTerm<T>>>,
     tables: Tables,
-    /// Textures as they are seen from afar, where that is asked for.
+    /// Mip maps, if the filter needs them.
     mips: Vec<Mips>,
 }
 
 impl<T: Number> LightTerms<T> {
-    /// Prepares the lamps of a plan.
+    /// Prepares the light terms and mip maps of a plan.
     pub(crate) fn prepare(&mut self, plan: &FramePlan) {
         self.prepare_mips(plan);
-        self.lamps.resize_with(plan.pipelines.len(), Vec::new);
-        for (shines, pipeline) in self.lamps.iter_mut().zip(&plan.pipelines) {
-            shines.clear();
-            if let Pipeline::Shaded(Shaded { light: Some(stages), matter, .. }) = pipeline {
-                let PhongMaterial { exponent, floor, .. } = *matter;
+        self.terms.resize_with(plan.pipelines.len(), Vec::new);
+        for (terms, pipeline) in self.terms.iter_mut().zip(&plan.pipelines) {
+            terms.clear();
+            if let Pipeline::Shaded(Shaded { light: Some(stages), material, .. }) = pipeline {
+                let PhongMaterial { exponent, floor, .. } = *material;
                 let highlight = Power::by(plan.variants.powers, exponent, floor, &mut self.tables);
-                let lamps = stages.iter().map(|stage| &plan.lamps[stage.lamp as usize]);
-                let variant = plan.variants.rare_light::<T>();
-                shines.extend(lamps.map(|lamp| LightTerm::by(variant, lamp, matter, &highlight)));
+                let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
+                let variant = plan.variants.light_variant::<T>();
+                terms.extend(
+                    lights.map(|light| LightTerm::by(variant, light, material, &highlight)),
+                );
             }
         }
     }
 
-    /// Prepares textures that are seen from afar. Those of the last picture are there still.
+    /// Prepares mip maps, and reuses those of the last picture.
     fn prepare_mips(&mut self, plan: &FramePlan) {
         let before = std::mem::take(&mut self.mips);
         if plan.filter != Filter::Trilinear {
@@ -58,13 +60,13 @@ impl<T: Number> LightTerms<T> {
         }
     }
 
-    /// A texture as it is seen from afar, where that is asked for.
+    /// The mip maps of a texture, if the filter needs them.
     pub(crate) fn mips_of(&self, texture: &Shared<Texture>) -> Option<&Mips> {
         self.mips.iter().find(|mips| mips.are_of(texture))
     }
 
-    /// The lamps of a pipeline.
+    /// The light terms of a pipeline.
     pub(crate) fn of(&self, pipeline: u32) -> &[LightTerm<T>] {
-        &self.lamps[pipeline as usize]
+        &self.terms[pipeline as usize]
     }
 }

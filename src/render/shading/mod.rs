@@ -1,11 +1,11 @@
-//! From what is visible in a tile to its colours in the picture.
+//! Shading: from what is visible in a tile to its colours in the picture.
 //!
-//! A `painter` has the `surface` list the fragments of a block (`fragments`), fetch what is known of
-//! their triangles (`triangle_attributes`), find where they lie in them (`barycentrics`), interpolate
-//! what the corners carry (`interpolate`), and light them, per pixel, face or vertex (`light`), in the
-//! colour of the surface itself (`textured`); `quantize` makes bytes of it, and `resolve` means of
-//! samples. Blocks that one triangle covers (`blocks`) go through all of it in one pass, without a list
-//! (`full_blocks`).
+//! A `painter` draws tiles. For each block, `surface` lists the fragments (`fragments`), fetches
+//! the attributes of their triangles (`triangle_attributes`), computes barycentric coordinates
+//! (`barycentrics`), interpolates attributes (`interpolate`), lights fragments per pixel, face or
+//! vertex (`light`), and multiplies with the colour of the surface (`textured`). `quantize`
+//! converts the result to bytes, and `resolve` averages samples. Blocks that one triangle covers
+//! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`).
 
 mod barycentric_variants;
 pub(crate) mod barycentrics;

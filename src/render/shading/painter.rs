@@ -1,14 +1,15 @@
-//! Paints tiles: what is seen in a tile, its colours, and the copy into the picture.
+//! Paints tiles: visibility, shading, and the copy into the picture.
 //!
-//! A painter stays with its thread from frame to frame, so that a frame allocates and clears nothing
-//! for its tiles. A tile that showed nothing but the background and still does is not touched. Tiles
-//! are painted straight into the picture, or, where another thread is at work in the same rows or the
-//! picture ends inside of the tile, beside it and copied.
+//! Each thread keeps its painter from frame to frame, so a frame allocates and clears nothing for
+//! its tiles. A tile that showed only background and still does is not touched. Tiles are painted
+//! straight into the picture. If another thread works in the same rows, or the picture ends inside
+//! of the tile, they are painted into a buffer and copied.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::colors::Sums;
 use super::context::ShadingContext;
+use super::full_blocks::{Blocks, Canvas};
 use super::interpolated::ShadingNumber;
 use super::resolve::Samples;
 use super::surface::{Out, Shader};
@@ -19,7 +20,6 @@ use crate::render::raster::tile::Visibility;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::{ALL, FOUR};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
-use crate::render::shading::full_blocks::{Blocks, Canvas};
 
 /// The pixels of a tile; tiles are counted along rows.
 pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
@@ -32,15 +32,15 @@ pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
     PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
 }
 
-/// The rows of the picture that a row of tiles lies in.
+/// The rows of pixels of a row of tiles.
 #[derive(Debug)]
 pub(crate) struct Band<'a> {
     pub(crate) pixels: &'a mut [[u8; 4]],
-    /// For each of its tiles the colour that fills it as a whole, where one is known to.
+    /// For each of its tiles the colour that fills all of it, if one is known to.
     pub(crate) filled: &'a mut [Option<Color>],
 }
 
-/// A band that nobody else has.
+/// Locks a band for this thread.
 fn locked<'a, 'b>(band: &'a Mutex<Band<'b>>) -> MutexGuard<'a, Band<'b>> {
     band.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -50,22 +50,22 @@ const ROW: usize = BLOCK as usize;
 /// Blocks in a row of a tile.
 const BLOCKS: usize = TILE_SIDE / ROW;
 
-/// The colours of a tile over several passes, block by block; nothing before the first.
+/// The sums of a tile's colours over several passes, block by block; empty before the first.
 pub(crate) type TileSums = Mutex<Vec<Sums>>;
 
-/// Where a block of a tile begins.
+/// The first pixel of a block, by column and row of the tile.
 const fn corner_in_tile(block: usize) -> [usize; 2] {
     [block % BLOCKS * ROW, block / BLOCKS * ROW]
 }
 
-/// Draws one tile after another. No line of the cache has parts of two of these.
+/// Draws one tile after another. It is aligned, so that no two painters share a cache line.
 #[derive(Debug)]
 #[repr(align(128))]
 pub(crate) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
     samples: Samples,
-    /// A tile beside the picture.
+    /// A buffer for a tile that is not painted straight into the picture.
     pixels: Vec<[u8; 4]>,
 }
 
@@ -81,12 +81,12 @@ impl<T: ShadingNumber> Default for Painter<T> {
 }
 
 impl<T: ShadingNumber> Painter<T> {
-    /// Gets ready for another frame.
+    /// Begins a frame.
     pub(crate) const fn begin(&mut self) {
         self.shader.begin();
     }
 
-    /// Paints a tile of the picture, whose band is given.
+    /// Paints a tile of the picture into its band.
     pub(crate) fn paint(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -104,11 +104,11 @@ impl<T: ShadingNumber> Painter<T> {
         }
         self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
-        let (column, place) = Self::place(tile, size);
+        let (column, columns) = Self::columns(tile, size);
         if let (true, Ok(mut band)) = (whole, band.try_lock()) {
-            // Straight into the picture, where nobody else is at work in these rows.
+            // Straight into the picture, since no other thread works in these rows.
             let Band { pixels, filled } = &mut *band;
-            let mut canvas = Canvas { pixels: &mut pixels[place.start..], stride: size.width };
+            let mut canvas = Canvas { pixels: &mut pixels[columns.start..], stride: size.width };
             let shows = self.blocks(context, bounds, &mut canvas);
             filled[column] = Some(background).filter(|_| !shows);
             return;
@@ -125,14 +125,14 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
-    /// Colours the blocks of a tile; says whether it shows anything but the background.
+    /// Colours the blocks of a tile. Returns whether it shows anything but the background.
     fn blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
         bounds: PixelBox,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let mut whole = self.visibility.whole_blocks();
+        let mut whole = self.visibility.full_blocks();
         if whole != u64::MAX {
             for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
                 row[..TILE_SIDE].fill(context.plan.background.opaque());
@@ -147,16 +147,16 @@ impl<T: ShadingNumber> Painter<T> {
                         .fold(0, |which, other| which | 1 << other);
                     whole &= !which;
                     let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
-                    self.shader.whole_blocks(context, number, blocks, canvas);
+                    self.shader.full_blocks(context, number, blocks, canvas);
                 }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
-                let at = canvas.place(corner_in_tile(block));
-                shows |= if context.frame.places().are_many() {
+                let at = canvas.offset(corner_in_tile(block));
+                shows |= if context.frame.sample_positions().are_many() {
                     self.block_of_samples(context, (block, corner), canvas, at)
                 } else {
-                    let words = self.visibility.block(block);
-                    self.shader.block(context, words, corner, (canvas, at))
+                    let visibility = self.visibility.block(block);
+                    self.shader.block(context, visibility, corner, (canvas, at))
                 };
             }
         }
@@ -182,7 +182,7 @@ impl<T: ShadingNumber> Painter<T> {
         shows
     }
 
-    /// Adds the colours of a tile of a picture that one sample of its pixels sees to those of others.
+    /// Adds the colours of a tile, drawn for one sample of each pixel, to the sums.
     fn add_picture(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &mut [Sums]) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let bounds = bounds_of(tile, plan.size);
@@ -198,19 +198,19 @@ impl<T: ShadingNumber> Painter<T> {
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
         self.blocks(context, bounds, &mut canvas);
         for (block, to) in to.iter_mut().enumerate() {
-            let rows = canvas.pixels[canvas.place(corner_in_tile(block))..].chunks(TILE_SIDE);
+            let rows = canvas.pixels[canvas.offset(corner_in_tile(block))..].chunks(TILE_SIDE);
             let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
-            own.enumerate().for_each(|(place, color)| to.add(place, *color, 1));
+            own.enumerate().for_each(|(columns, color)| to.add(columns, *color, 1));
         }
         self.pixels = pixels;
     }
 
-    /// Adds the colours of four samples of a tile, or of the one that is looked at, to those of others.
+    /// Adds the colours of a tile, of four samples or of one, to the sums.
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
         to.resize(BLOCK_PIXELS, Sums::default());
-        if !frame.places().are_many() {
+        if !frame.sample_positions().are_many() {
             return self.add_picture(context, tile, &mut to);
         }
         let empty = frame.is_empty(tile);
@@ -227,7 +227,7 @@ impl<T: ShadingNumber> Painter<T> {
             }
             let corner = visibility.corner(block);
             if let Some(number) = visibility.whole(block) {
-                shader.whole_block(context, number, corner, &mut Out::Sums(to));
+                shader.full_block(context, number, corner, &mut Out::Sums(to));
             } else {
                 let planes = visibility.planes(block);
                 samples.compare(level, planes);
@@ -236,7 +236,7 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
-    /// Puts the means of all samples of a tile into its band of the picture.
+    /// Stores the means of all samples of a tile in its band of the picture.
     pub(crate) fn put_means(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -248,34 +248,34 @@ impl<T: ShadingNumber> Painter<T> {
         let FramePlan { size, samples, .. } = *context.plan;
         let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
         for (block, sums) in of.iter().enumerate() {
-            let at = canvas.place(corner_in_tile(block));
+            let at = canvas.offset(corner_in_tile(block));
             canvas.put(at, &sums.means(samples.count().ilog2()));
         }
         self.copy(tile, size, &mut locked(band));
     }
 
-    /// Copies the tile beside the picture into its band.
+    /// Copies the buffer of a tile into its band.
     fn copy(&self, tile: usize, size: Size, band: &mut Band<'_>) {
-        let (column, place) = Self::place(tile, size);
+        let (column, columns) = Self::columns(tile, size);
         band.filled[column] = None;
         for (from, to) in self.pixels.chunks(TILE_SIDE).zip(band.pixels.chunks_mut(size.width)) {
-            to[place.clone()].copy_from_slice(&from[..place.len()]);
+            to[columns.clone()].copy_from_slice(&from[..columns.len()]);
         }
     }
 
-    /// Fills a tile with a colour, where it is not filled with it.
+    /// Fills a tile with a colour, unless it is filled with it already.
     fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
-        let (column, place) = Self::place(tile, size);
+        let (column, columns) = Self::columns(tile, size);
         if band.filled[column] != Some(color) {
             band.filled[column] = Some(color);
             for row in band.pixels.chunks_mut(size.width) {
-                row[place.clone()].fill(color.opaque());
+                row[columns.clone()].fill(color.opaque());
             }
         }
     }
 
-    /// Which tile of its band it is, and its columns of the picture.
-    fn place(tile: usize, size: Size) -> (usize, std::ops::Range<usize>) {
+    /// The index of a tile in its band, and its columns of the picture.
+    fn columns(tile: usize, size: Size) -> (usize, std::ops::Range<usize>) {
         let column = tile % size.width.div_ceil(TILE_SIDE);
         let left = column * TILE_SIDE;
         (column, left..size.width.min(left + TILE_SIDE))

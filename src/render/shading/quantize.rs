@@ -1,17 +1,17 @@
-//! From light and the colour of the surface itself to bytes.
+//! Combines light with the colour of the surface, and converts colours to bytes.
 
 use super::colors::Colors;
 use crate::render::lights::{Batch, Rows, load, set};
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
 
-/// The colour t of the surface itself: one, or one for each pixel.
+/// The colour t of the surface: one tint, or a texel for each pixel.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Own<'a, T> {
+pub(crate) enum SurfaceColor<'a, T> {
     Tint([T; 3]),
     Texels(&'a Rows<T>),
 }
 
-impl<T: Number> Own<'_, T> {
+impl<T: Number> SurfaceColor<'_, T> {
     #[inline(always)]
     pub(crate) fn at<M: Lanes<Number = T>>(self, lanes: M, at: usize) -> Vec3<M::R> {
         match self {
@@ -21,15 +21,16 @@ impl<T: Number> Own<'_, T> {
     }
 }
 
-/// Makes bytes of colours: t D + S where it is lit, with D and S the two kinds of light, else t.
-pub(crate) struct Finish<'a, T> {
+/// Converts colours to bytes: t D + S if the surface is lit, with D and S the diffuse and the
+/// specular light, else t.
+pub(crate) struct Quantize<'a, T> {
     pub(crate) batch: &'a Batch<T>,
     pub(crate) lit: bool,
-    pub(crate) own: Own<'a, T>,
+    pub(crate) own: SurfaceColor<'a, T>,
     pub(crate) colors: &'a mut Colors,
 }
 
-impl<T: Number> Kernel<T> for Finish<'_, T> {
+impl<T: Number> Kernel<T> for Quantize<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { batch, lit, own, colors } = self;
@@ -43,7 +44,7 @@ impl<T: Number> Kernel<T> for Finish<'_, T> {
     }
 }
 
-/// t D + S at some places.
+/// t D + S at some pixels.
 #[inline(always)]
 pub(crate) fn reflected<M: Lanes>(
     lanes: M,

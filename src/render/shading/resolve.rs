@@ -1,8 +1,9 @@
-//! From four samples of a block's pixels to the mean of their colours.
+//! Resolves samples: from four samples of a block's pixels to the mean of their colours.
 //!
-//! Most blocks of a picture show the same in all samples of each pixel, and cost no more than with one
-//! sample. Elsewhere a pixel is lit once for each triangle that any of its samples shows: first what the
-//! first samples show, all pixels together; then, in lists of sixty-four, what others show besides.
+//! Most blocks show the same triangle in all samples of each pixel, and cost no more than with one
+//! sample. In other blocks a pixel is lit once for each triangle that any of its samples shows:
+//! first the triangles of the first samples, all pixels together; then all others, in lists of
+//! sixty-four fragments.
 
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16};
 
@@ -14,18 +15,17 @@ use crate::render::raster::visibility_buffer::{Planes, Visible, seen_number};
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::BLOCK_PIXELS;
 
-/// The number that the word of the background has.
+/// The number of the background in the visibility buffer.
 const BACKGROUND: u32 = u32::MAX;
 
 /// What the samples of a block's pixels show.
 #[derive(Debug)]
 pub(crate) struct Samples {
-    /// The numbers of what they show, as words hold them.
+    /// The numbers of the primitives that they show.
     numbers: [[u32; BLOCK_PIXELS]; FOUR],
-    /// For each sample, how many from it on show what it shows; of no meaning where it is not among the
-    /// `new`.
+    /// For each sample, how many from it on show the same primitive; only valid for those in `new`.
     shares: [[i32; BLOCK_PIXELS]; FOUR],
-    /// The pixels where a sample shows what none before it does.
+    /// The pixels in which a sample shows a primitive that no earlier sample shows.
     new: [u64; FOUR],
 }
 
@@ -37,7 +37,7 @@ impl Default for Samples {
 }
 
 impl Samples {
-    /// Compares the samples of each pixel. Says whether all pixels show one thing each.
+    /// Compares the samples of each pixel. Returns whether each pixel shows a single primitive.
     pub(crate) fn compare(&mut self, level: Level, planes: &Planes) -> bool {
         dispatch!(level, simd => self.compare_in(simd, planes));
         self.new[1..] == [0; FOUR - 1]
@@ -46,8 +46,8 @@ impl Samples {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
     fn compare_in<S: Simd>(&mut self, simd: S, planes: &Planes) {
-        for (numbers, words) in self.numbers.iter_mut().zip(planes) {
-            for (number, word) in numbers.iter_mut().zip(words) {
+        for (numbers, visibility) in self.numbers.iter_mut().zip(planes) {
+            for (number, word) in numbers.iter_mut().zip(visibility) {
                 *number = !(*word as u32);
             }
         }
@@ -79,8 +79,8 @@ impl Samples {
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Adds up the colours of a block, the corner of which is its upper left pixel, whose samples were
-    /// compared. Says whether any of them shows more than the background.
+    /// Adds the colours of a block, whose upper left pixel is `corner` and whose samples were
+    /// compared. Returns whether any of them shows more than the background.
     pub(crate) fn add_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -88,10 +88,10 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
         sums: &mut Sums,
     ) -> bool {
-        let mut shown = self.items.list(context.level, &planes[0], corner);
+        let mut shown = self.fragments.list(context.level, &planes[0], corner);
         if shown.triangles != 0 {
-            self.items.share(&samples.shares[0]);
-            self.color_items(context, corner, &mut Out::Sums(sums));
+            self.fragments.share(&samples.shares[0]);
+            self.color_fragments(context, corner, &mut Out::Sums(sums));
         }
         let mut others = !shown.triangles;
         while others != 0 {
@@ -100,7 +100,7 @@ impl<T: ShadingNumber> Shader<T> {
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
             add_other(context, number, place, share, sums);
         }
-        self.items.begin_shared();
+        self.fragments.begin_shared();
         for sample in 1..FOUR {
             let mut pixels = samples.new[sample];
             while pixels != 0 {
@@ -114,21 +114,21 @@ impl<T: ShadingNumber> Shader<T> {
                     continue;
                 }
                 shown.triangles |= 1 << place;
-                self.items.add(number, corner, place, share);
-                if self.items.is_full() {
-                    self.color_items(context, corner, &mut Out::Sums(sums));
-                    self.items.begin_shared();
+                self.fragments.add(number, corner, place, share);
+                if self.fragments.is_full() {
+                    self.color_fragments(context, corner, &mut Out::Sums(sums));
+                    self.fragments.begin_shared();
                 }
             }
         }
-        if self.items.len > 0 {
-            self.color_items(context, corner, &mut Out::Sums(sums));
+        if self.fragments.len > 0 {
+            self.color_fragments(context, corner, &mut Out::Sums(sums));
         }
         (shown.triangles | shown.lines) != 0
     }
 }
 
-/// Adds what is no triangle: a line, or the background.
+/// Adds the colour of a line or of the background.
 fn add_other<T>(
     context: &ShadingContext<'_, T>,
     number: u32,

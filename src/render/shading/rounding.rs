@@ -1,21 +1,20 @@
-//! How colours become bytes: to the nearest, downwards, or by a pattern.
+//! Variants of rounding colours to bytes: truncate, to the nearest, or dither.
 //!
-//! A byte is the whole part of 255 c + t, with a threshold t from 0 to 1: one half is rounding to the
-//! nearest, and 0 cuts off. A threshold that changes from pixel to pixel rounds as many up as the part
-//! behind the point says, so that a smooth colour stays smooth on average.
+//! A byte is the integer part of 255 c + t, with a threshold t from 0 to 1: one half rounds to the
+//! nearest, and 0 truncates. A threshold that varies from pixel to pixel dithers: the fraction
+//! decides how many pixels are rounded up, so a smooth gradient stays smooth on average.
 //!
-//! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973,
-//! of order 8.
+//! The pattern: Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC
+//! 1973, of order 8.
 
+use super::colors::Colors;
+use super::fragments::Fragments;
+use super::quantize::SurfaceColor;
 use crate::accuracy::Rounding;
 use crate::render::lights::{Batch, load};
-use crate::render::shading::colors::Colors;
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::quantize::Own;
-use crate::render::simd::BATCH;
-use crate::render::simd::{Kernel, Lanes, Number, Vec3};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Vec3};
 
-/// What is added to 255 c at a pixel before the rest is cut off.
+/// The threshold that is added to 255 c at a pixel before it is truncated.
 fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
     match rounding {
         Rounding::Truncated => 0.0,
@@ -24,7 +23,8 @@ fn threshold(rounding: Rounding, x: i32, y: i32) -> f64 {
     }
 }
 
-/// The pattern's number at a place, from 0 to 63: the bits of x xor y and of y in turn, the last first.
+/// The Bayer matrix at a pixel, from 0 to 63: the bits of x xor y and of y interleaved, the lowest
+/// first.
 #[expect(clippy::cast_possible_truncation, reason = "the last bits are meant")]
 const fn bayer(x: i32, y: i32) -> u8 {
     let (x, y) = ((x ^ y) as u8, y as u8);
@@ -37,25 +37,26 @@ const fn bayer(x: i32, y: i32) -> u8 {
     number
 }
 
-/// The thresholds of the pixels of a list.
-pub(crate) fn thresholds<T: Number>(rounding: Rounding, items: &Fragments) -> [T; BATCH] {
+/// The thresholds of a list of fragments.
+pub(crate) fn thresholds<T: Number>(rounding: Rounding, fragments: &Fragments) -> [T; BATCH] {
     let mut all = [T::default(); BATCH];
-    for ((to, x), y) in all.iter_mut().zip(&items.x).zip(&items.y) {
+    for ((to, x), y) in all.iter_mut().zip(&fragments.x).zip(&fragments.y) {
         *to = T::from_f64(threshold(rounding, *x, *y));
     }
     all
 }
 
-/// Makes bytes of colours, as `Finish` does, by thresholds.
-pub(crate) struct FinishBy<'a, T> {
+/// Converts colours to bytes, like [`Quantize`](super::quantize::Quantize), with a threshold per
+/// pixel.
+pub(crate) struct QuantizeWithThresholds<'a, T> {
     pub(crate) batch: &'a Batch<T>,
     pub(crate) lit: bool,
-    pub(crate) own: Own<'a, T>,
+    pub(crate) own: SurfaceColor<'a, T>,
     pub(crate) thresholds: &'a [T; BATCH],
     pub(crate) colors: &'a mut Colors,
 }
 
-impl<T: Number> Kernel<T> for FinishBy<'_, T> {
+impl<T: Number> Kernel<T> for QuantizeWithThresholds<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { batch, lit, own, thresholds, colors } = self;

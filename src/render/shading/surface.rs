@@ -1,17 +1,23 @@
-//! From what is seen to colours.
+//! Shades blocks: from visibility to colours.
 //!
-//! A block's pixels are listed by the triangles that they show ([`Fragments`]). What is known of these is
-//! fetched once for each triangle ([`TriangleAttributes`]), taken from there by the pixels ([`Barycentrics`]), lit
-//! ([`Batch`]), and made bytes. Light that is evaluated at faces is evaluated at the faces of the
-//! block; no pixel asks where it lies.
+//! A block's pixels are listed with the triangles that they show ([`Fragments`]). Attributes are
+//! fetched once per triangle ([`TriangleAttributes`]), interpolated ([`Barycentrics`]), lit
+//! ([`Batch`]), and converted to bytes. With flat shading, light is evaluated once for each face of
+//! the block, and no barycentric coordinates are computed.
 
 use super::barycentric_variants::locate_by_variant;
+use super::barycentrics::Barycentrics;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
+use super::fragments::Fragments;
+use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
-use super::interpolate::{Mixed, mix, surroundings};
+use super::interpolate::{Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
+use super::quantize::{Quantize, SurfaceColor};
+use super::rounding::{QuantizeWithThresholds, thresholds};
+use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
 use crate::render::frame::draw::{Back, Pipeline, Shaded, Stage};
@@ -20,38 +26,32 @@ use crate::render::plan::tile::TilePlan;
 use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::render::shading::barycentrics::Barycentrics;
-use crate::render::shading::fragments::Fragments;
-use crate::render::shading::full_blocks::Canvas;
-use crate::render::shading::quantize::{Finish, Own};
-use crate::render::shading::rounding::{FinishBy, thresholds};
-use crate::render::shading::triangle_attributes::TriangleAttributes;
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
 
-/// Colours pixels. Each thread has its own.
+/// Shades blocks. Each thread has its own.
 #[derive(Debug)]
 pub(crate) struct Shader<T> {
     /// The lights of the tile that is coloured.
     pub(crate) tile: TilePlan,
-    pub(crate) items: Fragments,
-    pub(crate) faces: TriangleAttributes<T>,
-    pub(crate) located: Barycentrics<T>,
+    pub(crate) fragments: Fragments,
+    pub(crate) attributes: TriangleAttributes<T>,
+    pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
     pub(crate) texels: Rows<T>,
     colors: Colors,
 }
 
-/// Where colours of a block go.
+/// The destination of a block's colours.
 #[derive(Debug)]
 pub(crate) enum Out<'a, 'b> {
-    /// Into a tile, from a place on.
+    /// A tile, from an index on.
     Tile(&'a mut Canvas<'b>, usize),
-    /// To what other samples show.
+    /// The sums over several samples.
     Sums(&'a mut Sums),
 }
 
-/// What mixing the light of vertices gave.
+/// The result of interpolating the light of vertices.
 #[derive(Clone, Copy, Debug)]
 enum Mixture {
     /// The bytes of the pixels.
@@ -66,9 +66,9 @@ impl<T: ShadingNumber> Default for Shader<T> {
     fn default() -> Self {
         Self {
             tile: TilePlan::default(),
-            items: Fragments::default(),
-            faces: TriangleAttributes::default(),
-            located: Barycentrics::default(),
+            fragments: Fragments::default(),
+            attributes: TriangleAttributes::default(),
+            barycentrics: Barycentrics::default(),
             batch: Batch::default(),
             texels: [[T::default(); BATCH]; 3],
             colors: Colors::default(),
@@ -77,64 +77,65 @@ impl<T: ShadingNumber> Default for Shader<T> {
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Gets ready for another frame.
+    /// Begins a frame.
     pub(crate) const fn begin(&mut self) {
-        self.faces.forget();
+        self.attributes.forget();
     }
 
-    /// Colours the pixels of a block whose upper left pixel is `corner` into a tile, from `at` on. What
-    /// shows the background is left as it is; says whether anything else is shown.
+    /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on. Pixels
+    /// that show the background are left as they are. Returns whether any pixel shows something
+    /// else.
     pub(crate) fn block(
         &mut self,
         context: &ShadingContext<'_, T>,
-        words: &[u64; BLOCK_PIXELS],
+        visibility: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
         (canvas, at): (&mut Canvas<'_>, usize),
     ) -> bool {
-        let shown = self.items.list(context.level, words, corner);
+        let shown = self.fragments.list(context.level, visibility, corner);
         let mut lines = shown.lines;
         while lines != 0 {
             let i = lines.trailing_zeros() as usize;
             lines &= lines - 1;
-            if let Visible::Line(line) = seen(words[i]) {
-                canvas.pixels[at + canvas.place(in_block(i))] =
+            if let Visible::Line(line) = seen(visibility[i]) {
+                canvas.pixels[at + canvas.offset(in_block(i))] =
                     context.frame.line_color(context.plan, line);
             }
         }
         if shown.triangles != 0 {
-            self.color_items(context, corner, &mut Out::Tile(canvas, at));
+            self.color_fragments(context, corner, &mut Out::Tile(canvas, at));
         }
         (shown.triangles | shown.lines) != 0
     }
 
-    /// Colours the pixels of the list.
-    pub(crate) fn color_items(
+    /// Colours the fragments of the list.
+    pub(crate) fn color_fragments(
         &mut self,
         context: &ShadingContext<'_, T>,
         corner: [i32; 2],
         out: &mut Out<'_, '_>,
     ) {
-        if let Some(group) = one_group(context, &self.items) {
+        if let Some(group) = one_group(context, &self.fragments) {
             self.color_group(context, &group, out);
         } else {
             self.color_groups(context, corner, out);
         }
     }
 
-    /// Colours the pixels of a block that one triangle covers as a whole.
-    pub(crate) fn whole_block(
+    /// Colours a block that one triangle covers fully.
+    pub(crate) fn full_block(
         &mut self,
         context: &ShadingContext<'_, T>,
         number: u32,
         corner: [i32; 2],
         out: &mut Out<'_, '_>,
     ) {
-        self.items.list_whole(number, corner);
-        self.items.shares = [ALL; BLOCK_PIXELS];
+        self.fragments.list_full_block(number, corner);
+        self.fragments.shares = [ALL; BLOCK_PIXELS];
         self.color_group(context, &group_of(context, number), out);
     }
 
-    /// Colours pixels that are coloured together.
+    /// Colours the fragments of a group.
     pub(crate) fn color_group(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -149,14 +150,13 @@ impl<T: ShadingNumber> Shader<T> {
         match out {
             Out::Tile(canvas, at) => self.copy(canvas, *at),
             Out::Sums(sums) => {
-                let Fragments { len, places, shares, .. } = &self.items;
-                sums.add_all(&self.colors, &places[..*len], &shares[..*len]);
+                let Fragments { len, pixels, shares, .. } = &self.fragments;
+                sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
             }
         }
     }
 
-    /// Colours the pixels of a block that shows several draws, or parts that are drawn in several
-    /// ways.
+    /// Colours a block that shows several draws or pipelines, group by group.
     fn color_groups(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -164,7 +164,7 @@ impl<T: ShadingNumber> Shader<T> {
         out: &mut Out<'_, '_>,
     ) {
         let mut done = [false; SLOTS];
-        let all = std::mem::take(&mut self.items);
+        let all = std::mem::take(&mut self.fragments);
         for slot in 0..all.count {
             if done[slot] {
                 continue;
@@ -177,21 +177,21 @@ impl<T: ShadingNumber> Shader<T> {
                     && group.draw.pipeline_of(number - group.base) == group.pipeline;
                 done[other] |= keep[other];
             }
-            self.items.take_from(&all, &keep, corner);
+            self.fragments.take_from(&all, &keep, corner);
             self.color_group(context, &group, out);
         }
-        self.items = all;
+        self.fragments = all;
     }
 
     /// Copies the colours into the tile.
     fn copy(&self, canvas: &mut Canvas<'_>, at: usize) {
-        if self.items.is_whole() {
+        if self.fragments.is_whole() {
             canvas.put(at, &self.colors.pixels);
         } else {
-            let places = &self.items.places[..self.items.len];
-            for (i, color) in places.iter().zip(&self.colors.pixels) {
-                let place = canvas.place(in_block(usize::from(*i)));
-                canvas.pixels[at + place] = color.to_le_bytes();
+            let pixels = &self.fragments.pixels[..self.fragments.len];
+            for (i, color) in pixels.iter().zip(&self.colors.pixels) {
+                let offset = canvas.offset(in_block(usize::from(*i)));
+                canvas.pixels[at + offset] = color.to_le_bytes();
             }
         }
     }
@@ -208,10 +208,10 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Backs that are red are red.
+    /// Colours back faces red.
     fn redden(&mut self) {
-        for (i, slot) in self.items.slots[..self.items.len].iter().enumerate() {
-            if self.faces.back >> slot & 1 == 1 {
+        for (i, slot) in self.fragments.slots[..self.fragments.len].iter().enumerate() {
+            if self.attributes.back >> slot & 1 == 1 {
                 self.colors.set(i, Color::BACK_FACE.opaque());
             }
         }
@@ -225,22 +225,22 @@ impl<T: ShadingNumber> Shader<T> {
         // Every pixel has its own colour.
         let each = textured || rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
-        let places = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
-        let new = self.take(context, group, places);
-        if places {
-            self.located.find(level, &self.items, &self.faces, (plan, draw));
-            if plan.variants.has_rare_places() {
+        let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
+        let new = self.take(context, group, located);
+        if located {
+            self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
+            if plan.variants.locates_one_by_one() {
                 let corners = context.frame.corners_of(plan, group.draw_index);
                 locate_by_variant(
                     plan.variants,
-                    &self.items,
-                    &self.faces,
+                    &self.fragments,
+                    &self.attributes,
                     corners,
-                    &mut self.located,
+                    &mut self.barycentrics,
                 );
             }
         }
-        self.batch.len = self.items.len;
+        self.batch.len = self.fragments.len;
         let mut tint = shaded.tint;
         match light {
             None => {}
@@ -258,43 +258,47 @@ impl<T: ShadingNumber> Shader<T> {
             self.texels(context, group, shaded);
         }
         let Self { batch, texels, colors, .. } = self;
-        let own = if textured { Own::Texels(texels) } else { Own::Tint(tint.map(T::from_f64)) };
+        let own = if textured {
+            SurfaceColor::Texels(texels)
+        } else {
+            SurfaceColor::Tint(tint.map(T::from_f64))
+        };
         let lit = light.is_some();
         if rounding == Rounding::Nearest {
-            T::run(level, Finish { batch, lit, own, colors });
+            T::run(level, Quantize { batch, lit, own, colors });
         } else {
-            let thresholds = &thresholds(rounding, &self.items);
-            T::run(level, FinishBy { batch, lit, own, thresholds, colors });
+            let thresholds = &thresholds(rounding, &self.fragments);
+            T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
         }
-        if !(places || each) {
-            self.colors.hand_out(&self.items.slots);
+        if !(located || each) {
+            self.colors.hand_out(&self.fragments.slots);
         }
     }
 
-    /// Takes the triangles of the list, and where they are if the pixels have `places`. Says whether
-    /// they are others than before.
+    /// Fetches the triangles of the list, with their screen positions if they are to be `located`.
+    /// Returns whether they differ from those before.
     pub(crate) fn take(
         &mut self,
         context: &ShadingContext<'_, T>,
         group: &Group<'_>,
-        places: bool,
+        located: bool,
     ) -> bool {
         let ShadingContext { level, plan, frame, .. } = *context;
         let Group { draw, draw_index, base, .. } = *group;
-        let corners = places || draw.back != Back::Left;
+        let corners = located || draw.back != Back::Culled;
         let order = corners.then(|| draw.model.mesh.draw_order());
-        let new = self.faces.take(&self.items, order, draw_index, base);
+        let new = self.attributes.take(&self.fragments, order, draw_index, base);
         if new {
             let vertices = frame.vertices_of(plan, draw_index);
-            self.faces.find_sides(draw, plan, frame.corners_of(plan, draw_index));
-            if places {
-                self.faces.locate(level, draw, plan, vertices);
+            self.attributes.find_sides(draw, plan, frame.corners_of(plan, draw_index));
+            if located {
+                self.attributes.locate(level, draw, plan, vertices);
             }
         }
         new
     }
 
-    /// Light at every pixel.
+    /// Phong shading: lights every pixel.
     fn light_pixels(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -302,24 +306,24 @@ impl<T: ShadingNumber> Shader<T> {
         shaded: &Shaded,
         new: bool,
     ) {
-        let ShadingContext { level, plan, shines, .. } = *context;
-        let Self { tile, items, faces, located, batch, .. } = self;
+        let ShadingContext { level, plan, terms, .. } = *context;
+        let Self { tile, fragments, attributes, barycentrics, batch, .. } = self;
         let light = tile.light(plan, group.pipeline, shaded);
-        if light.places {
+        if light.needs_positions {
             if new {
-                faces.carry_normals(group.draw);
-                faces.spread(level);
+                attributes.carry_normals(group.draw);
+                attributes.spread(level);
             }
-            surroundings(level, (plan, group.draw), items, faces, located, batch);
+            surface_samples(level, (plan, group.draw), fragments, attributes, barycentrics, batch);
         } else {
-            // What they carry is not taken, so it is not there.
-            faces.forget();
+            // The attributes were not fetched, so the next block must not reuse them.
+            attributes.forget();
         }
         batch.darken();
-        light.shine(shines.of(group.pipeline), level, batch);
+        light.light_batch(terms.of(group.pipeline), level, batch);
     }
 
-    /// Light of the vertices, mixed at every pixel.
+    /// Gouraud shading: interpolates the light of vertices at every pixel.
     fn mix_light(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -331,31 +335,31 @@ impl<T: ShadingNumber> Shader<T> {
         let tables = context.lit.tables(group.draw_index, group.pipeline);
         if new || !tables[0].is_colored() {
             self.carry_diffuse(context, group, shaded, tables);
-            self.faces.spread(level);
+            self.attributes.spread(level);
         }
-        let Self { items, faces, located, batch, colors, .. } = self;
+        let Self { fragments, attributes, barycentrics, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
         if colored && plan.variants.rounding == Rounding::Nearest {
-            mix(level, items, faces, located, Mixed::Colors(colors));
+            mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors));
             return Mixture::Bytes;
         }
-        mix(level, items, faces, located, Mixed::Rows(&mut batch.diffuse));
-        batch.len = items.len;
+        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
+        batch.len = fragments.len;
         if colored {
             batch.specular = [[T::default(); BATCH]; 3];
             return Mixture::Colors;
         }
-        faces.carry_light(
+        attributes.carry_light(
             group.draw,
             #[inline(always)]
             |place, back| tables[usize::from(back)].specular(place),
         );
-        faces.spread(level);
-        mix(level, items, faces, located, Mixed::Rows(&mut batch.specular));
+        attributes.spread(level);
+        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.specular));
         Mixture::Light
     }
 
-    /// Lets the faces carry the diffuse light of their corners, or their colours.
+    /// Sets the attributes of corners to their diffuse light, or to their final colours.
     pub(crate) fn carry_diffuse(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -363,39 +367,39 @@ impl<T: ShadingNumber> Shader<T> {
         shaded: &Shaded,
         tables: [&Table<T>; 2],
     ) {
-        let Self { faces, batch, .. } = self;
+        let Self { attributes, batch, .. } = self;
         let stages = shaded.light.as_deref().unwrap_or_default();
-        let shines = context.shines.of(group.pipeline);
-        let lighting = Lighting { level: context.level, draw: group.draw, stages, shines };
-        faces.carry_light(
+        let terms = context.terms.of(group.pipeline);
+        let lighting = Lighting { level: context.level, draw: group.draw, stages, terms };
+        attributes.carry_light(
             group.draw,
             #[inline(always)]
             |place, back| tables[usize::from(back)].diffuse(place, &lighting, batch),
         );
     }
 
-    /// Light of the faces: at every pixel where they have `places`, else face by face.
+    /// Flat shading: lights each face, and spreads the light to its pixels if they are `located`.
     fn light_faces(
         &mut self,
         context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         stages: &[Stage],
-        places: bool,
+        located: bool,
     ) {
-        let ShadingContext { level, lit, shines, .. } = *context;
-        let Self { items, faces, batch, .. } = self;
-        batch.len = faces.count;
-        lit.place_faces(level, (group.draw_index, group.draw), faces, batch);
+        let ShadingContext { level, lit, terms, .. } = *context;
+        let Self { fragments, attributes, batch, .. } = self;
+        batch.len = attributes.count;
+        lit.place_faces(level, (group.draw_index, group.draw), attributes, batch);
         batch.darken();
-        run(stages, shines.of(group.pipeline), level, batch);
-        if places {
+        run(stages, terms.of(group.pipeline), level, batch);
+        if located {
             for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
                 let of_faces = *row;
-                for (own, slot) in row.iter_mut().zip(&items.slots[..items.len]) {
+                for (own, slot) in row.iter_mut().zip(&fragments.slots[..fragments.len]) {
                     *own = of_faces[slot.cast_unsigned() as usize];
                 }
             }
-            batch.len = items.len;
+            batch.len = fragments.len;
         }
     }
 }

@@ -1,5 +1,4 @@
-//! What a surface shows of itself at a pixel: the footprint of a pixel on its texture, and the colour
-//! that its vertices give.
+//! The footprint of a pixel on its texture, and vertex colours.
 
 use glam::DVec3;
 
@@ -10,7 +9,7 @@ use crate::render::screen::weights::Weights;
 use crate::render::texture::uv::uvs;
 use crate::scene::dvec3;
 
-/// How far off on the texture the pixels to the right and below lie of a pixel of a triangle of a draw.
+/// The footprint of a pixel: the differences of uv to its neighbours on the right and below.
 #[cold]
 pub(crate) fn uv_ways(
     (plan, frame): (&FramePlan, &ScreenGeometry),
@@ -30,7 +29,7 @@ pub(crate) fn uv_ways(
     [at([x + 1, y]), at([x, y + 1])].map(|it| [it[0] - own[0], it[1] - own[1]])
 }
 
-/// The vertex colours' mixture.
+/// The interpolated vertex colour.
 pub(crate) fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
     let mesh = &draw.model.mesh;
     let own = mesh.triangles()[number as usize];

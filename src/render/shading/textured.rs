@@ -1,4 +1,4 @@
-//! The colour of a surface itself, pixel by pixel: its texture, its vertex colours, its tint.
+//! The colour of a surface, pixel by pixel: texture, vertex colours and tint.
 
 use fearless_simd::dispatch;
 
@@ -21,22 +21,23 @@ impl<T: ShadingNumber> Shader<T> {
         shaded: &Shaded,
     ) {
         let (plan, draw) = (context.plan, group.draw);
-        let mips = shaded.texture.as_ref().and_then(|texture| context.shines.mips_of(texture));
-        let Self { items, faces, located, texels, .. } = self;
+        let mips = shaded.texture.as_ref().and_then(|texture| context.terms.mips_of(texture));
+        let Self { fragments, attributes, barycentrics, texels, .. } = self;
         for (row, tint) in texels.iter_mut().zip(shaded.tint) {
             row.fill(T::from_f64(tint));
         }
         let mut corners = [None; SLOTS];
         if shaded.texture.is_some() {
-            for (corners, number) in corners.iter_mut().zip(&faces.numbers[..faces.count]) {
+            for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count])
+            {
                 *corners = uvs(draw, *number);
             }
         }
-        // Where a processor rounds down by an instruction, it is that.
-        dispatch!(context.level, _ => for i in 0..items.len {
-            let slot = items.slots[i].cast_unsigned() as usize % SLOTS;
-            let number = faces.numbers[slot];
-            let weights = located.weights(i);
+        // Dispatched so that rounding down uses the processor's instruction, if it has one.
+        dispatch!(context.level, _ => for i in 0..fragments.len {
+            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
+            let number = attributes.numbers[slot];
+            let weights = barycentrics.weights(i);
             if let Some(texture) = &shaded.texture
                 && let Some(corners) = corners[slot]
             {
@@ -49,7 +50,7 @@ impl<T: ShadingNumber> Shader<T> {
                             (plan, context.frame),
                             group.draw_index,
                             number,
-                            [items.x[i], items.y[i]],
+                            [fragments.x[i], fragments.y[i]],
                         ),
                     ),
                 };

@@ -1,62 +1,62 @@
-//! What is known of the triangles that a block shows.
+//! Attributes of the triangles that a block shows, and their edge functions.
 //!
-//! Each triangle has a slot. Its corners on the screen and what it carries at them (normals, or light
-//! that is there already) are fetched once, row after row, so that the fetches overlap; then sixteen
-//! triangles at a time are made ready for the pixels that take from them.
+//! Each triangle has a slot. Its corners on the screen and its attributes at them (normals, or
+//! light of vertices) are fetched once, row after row, so that the fetches overlap. Then sixteen
+//! triangles at a time are prepared for the pixels that gather from them.
 
 use fearless_simd::{
     Bytes as _, Level, Simd, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, f32x16, i32x16,
 };
 use glam::DVec3;
 
+use super::fragments::Fragments;
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::raster::vertices::fetch_vertices;
 use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
 use crate::render::screen::coverage::{SUBPIXELS, Snapped, doubled_area};
-use crate::render::shading::fragments::Fragments;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
 use crate::scene::{DrawOrder, Normals};
 
-/// The largest doubled area, in square parts of a pixel, whose edge functions fit 31 bits wherever a
-/// pixel of the triangle is, and the longest side that leaves room for their products.
+/// The largest doubled area, in square subpixels, whose edge functions fit 31 bits at every pixel
+/// of the triangle, and the longest side whose products fit.
 const NARROW_AREA: f32 = (1 << 30) as f32;
 const NARROW_SIDE: i32 = 1 << 20;
 
-/// What is known of some triangles of one draw. See the [module](self).
+/// The attributes of some triangles of one draw. See the [module](self).
 #[derive(Debug)]
 pub(crate) struct TriangleAttributes<T> {
     pub(crate) count: usize,
     /// Their numbers in the mesh.
     pub(crate) numbers: [u32; SLOTS],
-    /// Whether their corners are known.
+    /// Whether their corners were fetched.
     has_corners: bool,
     /// Their vertices in the mesh's draw order.
     ids: [[u32; 3]; SLOTS],
-    /// x and y of each corner on the screen, in parts of a pixel.
+    /// x and y of each corner on the screen, in subpixels.
     pub(crate) corners: [[[i32; SLOTS]; 2]; 3],
-    /// What each corner carries.
+    /// The attributes of each corner.
     pub(crate) carried: [[[T; 4]; SLOTS]; 3],
-    /// a, b and c of the edge functions that belong to the second and the third corner, for whole
-    /// pixels: e = a x + b y + c, but for multiples of 2^32.
+    /// a, b and c of the edge functions of the second and the third corner, at pixels: e = a x + b
+    /// y + c, modulo 2^32.
     pub(crate) edges: [[[i32; SLOTS]; 3]; 2],
-    /// One by the doubled area.
+    /// 1 / the doubled area.
     pub(crate) per_area: [f32; SLOTS],
-    /// One by w of each corner.
+    /// 1/w of each corner.
     pub(crate) by_w: [[T; SLOTS]; 3],
-    /// What the first corner carries, and what the second and third have more than it.
+    /// The attributes of the first corner, and the differences of the second and third from it.
     pub(crate) values: [[[T; SLOTS]; 3]; 3],
-    /// z in view space of each corner; in parallel projection only.
+    /// z of each corner in view space; in orthographic projection only.
     pub(crate) z: [[T; SLOTS]; 3],
-    /// Bit i: the triangle reaches beyond the planes that triangles are cut by.
+    /// Bit i: the triangle is clipped.
     pub(crate) cut: u64,
-    /// Bit i: its edge functions do not fit 31 bits inside.
+    /// Bit i: its edge functions do not fit 31 bits.
     pub(crate) wide: u64,
-    /// Bit i: the observer sees its back.
+    /// Bit i: it is a back face.
     pub(crate) back: u64,
-    /// The place of their draw in the plan.
+    /// The index of their draw in the plan.
     draw: Option<u32>,
 }
 
@@ -83,40 +83,40 @@ impl<T: Number> Default for TriangleAttributes<T> {
     }
 }
 
-/// Numbers that faces are known in.
-pub(crate) trait Faced: Number {
-    /// Whether barycentric coordinates come from whole numbers and f64, one by one.
+/// Numbers in which attributes are stored.
+pub(crate) trait AttributeNumber: Number {
+    /// Whether barycentric coordinates are computed from integers in f64, one by one.
     const EXACT: bool;
-    /// Fetches the corners, and makes the edge functions and one by w ready, where they are not yet.
-    fn prepare(level: Level, faces: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]);
+    /// Fetches the corners, and computes edge functions and 1/w.
+    fn prepare(level: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]);
 }
 
-impl<T: Faced> TriangleAttributes<T> {
-    /// Forgets what the last block showed.
+impl<T: AttributeNumber> TriangleAttributes<T> {
+    /// Forgets the triangles of the last block.
     pub(crate) const fn forget(&mut self) {
         self.draw = None;
     }
 
-    /// Takes the triangles of a list, all of one draw whose numbers begin at `base`, and their corners
-    /// where an order is given. Says whether they are others than those that are there already.
+    /// Sets the triangles to those of a list, all of one draw whose numbers begin at `base`, with
+    /// their corners if an order is given. Returns whether they differ from those before.
     pub(crate) fn take(
         &mut self,
-        items: &Fragments,
+        fragments: &Fragments,
         order: Option<&DrawOrder>,
         draw: u32,
         base: u32,
     ) -> bool {
-        let count = items.count;
+        let count = fragments.count;
         let same = self.draw == Some(draw)
             && (self.has_corners || order.is_none())
             && count == 1
             && self.count == 1
-            && self.numbers[0] == items.numbers[0] - base;
+            && self.numbers[0] == fragments.numbers[0] - base;
         if same {
             return false;
         }
         (self.draw, self.count, self.has_corners) = (Some(draw), count, order.is_some());
-        for (own, number) in self.numbers.iter_mut().zip(&items.numbers[..count]) {
+        for (own, number) in self.numbers.iter_mut().zip(&fragments.numbers[..count]) {
             *own = number - base;
         }
         if let Some(order) = order {
@@ -127,10 +127,10 @@ impl<T: Faced> TriangleAttributes<T> {
         true
     }
 
-    /// Which sides are seen, where that matters.
+    /// Finds which triangles are back faces, if that matters.
     pub(crate) fn find_sides(&mut self, draw: &Draw, plan: &FramePlan, vertices: &[ScreenVertex]) {
         self.back = 0;
-        if draw.back == Back::Left {
+        if draw.back == Back::Culled {
             return;
         }
         let order = draw.model.mesh.draw_order();
@@ -146,7 +146,7 @@ impl<T: Faced> TriangleAttributes<T> {
         }
     }
 
-    /// Fetches the corners and makes them ready.
+    /// Fetches the corners and prepares them for interpolation.
     pub(crate) fn locate(
         &mut self,
         level: Level,
@@ -174,7 +174,7 @@ impl<T: Faced> TriangleAttributes<T> {
         }
     }
 
-    /// Lets the corners carry their normals, turned where the back is seen and lit.
+    /// Sets the attributes of corners to their normals, reversed on back faces that are lit.
     pub(crate) fn carry_normals(&mut self, draw: &Draw) {
         let mesh = &draw.model.mesh;
         let order = mesh.draw_order();
@@ -198,8 +198,8 @@ impl<T: Faced> TriangleAttributes<T> {
         }
     }
 
-    /// Lets the corners carry the light of their vertices; `light` is asked for it by place, and by
-    /// whether it is that of the back.
+    /// Sets the attributes of corners to the light of their vertices: `light` gives it by vertex,
+    /// for the front or the back.
     #[inline(always)]
     pub(crate) fn carry_light(&mut self, draw: &Draw, mut light: impl FnMut(u32, bool) -> [T; 4]) {
         let mesh = &draw.model.mesh;
@@ -217,12 +217,12 @@ impl<T: Faced> TriangleAttributes<T> {
         }
     }
 
-    /// Makes what the corners carry ready.
+    /// Prepares the attributes of corners for interpolation.
     pub(crate) fn spread(&mut self, level: Level) {
         T::run(level, Spread(self));
     }
 
-    /// The corners of a triangle, of those of its draw.
+    /// The corners of a triangle among the vertices of its draw.
     pub(crate) fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
         self.ids[slot].map(|id| all[id as usize])
     }
@@ -233,18 +233,18 @@ impl<T: Faced> TriangleAttributes<T> {
     }
 }
 
-/// From what corners carry to the first and the differences of the others.
+/// Computes the first corner's attributes and the differences of the others.
 struct Spread<'a, T>(&'a mut TriangleAttributes<T>);
 
 impl<T: Number> Kernel<T> for Spread<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self(faces) = self;
-        for at in (0..faces.count).step_by(M::LANES) {
-            let a = carried(lanes, &faces.carried[0], at);
-            let b = carried(lanes, &faces.carried[1], at);
-            let c = carried(lanes, &faces.carried[2], at);
-            for (rows, value) in faces.values.iter_mut().zip([a, b.minus(a), c.minus(a)]) {
+        let Self(attributes) = self;
+        for at in (0..attributes.count).step_by(M::LANES) {
+            let a = carried(lanes, &attributes.carried[0], at);
+            let b = carried(lanes, &attributes.carried[1], at);
+            let c = carried(lanes, &attributes.carried[2], at);
+            for (rows, value) in attributes.values.iter_mut().zip([a, b.minus(a), c.minus(a)]) {
                 lanes.store(value.0[0], &mut rows[0], at);
                 lanes.store(value.0[1], &mut rows[1], at);
                 lanes.store(value.0[2], &mut rows[2], at);
@@ -253,14 +253,14 @@ impl<T: Number> Kernel<T> for Spread<'_, T> {
     }
 }
 
-/// What one corner of some triangles carries.
+/// The attributes of one corner of some triangles.
 #[inline(always)]
 fn carried<M: Lanes>(lanes: M, rows: &[[M::Number; 4]; SLOTS], at: usize) -> Vec3<M::R> {
     let [x, y, z, _] = lanes.load_four(rows, at);
     Vec3([x, y, z])
 }
 
-/// Three numbers of the triangles that some pixels show.
+/// Gathers three numbers of the triangles that some pixels show.
 #[inline(always)]
 pub(crate) fn picked<M: Lanes, const PAGES: usize>(
     lanes: M,
@@ -274,44 +274,45 @@ pub(crate) fn picked<M: Lanes, const PAGES: usize>(
     ])
 }
 
-impl Faced for f64 {
+impl AttributeNumber for f64 {
     const EXACT: bool = true;
 
-    fn prepare(_: Level, faces: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
-        faces.cut = 0;
-        for slot in 0..faces.count {
-            let own = faces.corners_among(slot, vertices);
+    fn prepare(_: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
+        attributes.cut = 0;
+        for slot in 0..attributes.count {
+            let own = attributes.corners_among(slot, vertices);
             let inside = own.iter().all(ScreenVertex::is_inside);
-            faces.cut |= u64::from(!inside) << slot;
-            for ([x, y], own) in faces.corners.iter_mut().zip(own) {
+            attributes.cut |= u64::from(!inside) << slot;
+            for ([x, y], own) in attributes.corners.iter_mut().zip(own) {
                 (x[slot], y[slot]) = (own.at().x, own.at().y);
             }
         }
-        faces.wide = !faces.cut;
+        attributes.wide = !attributes.cut;
     }
 }
 
-impl Faced for f32 {
+impl AttributeNumber for f32 {
     const EXACT: bool = false;
 
-    fn prepare(level: Level, faces: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
-        (faces.cut, faces.wide) = (0, 0);
-        dispatch!(level, simd => prepare(simd, faces, vertices));
+    fn prepare(level: Level, attributes: &mut TriangleAttributes<Self>, vertices: &[ScreenVertex]) {
+        (attributes.cut, attributes.wide) = (0, 0);
+        dispatch!(level, simd => prepare(simd, attributes, vertices));
     }
 }
 
 /// The edge functions of sixteen triangles at a time.
 #[inline(always)]
-fn prepare<S: Simd>(simd: S, faces: &mut TriangleAttributes<f32>, vertices: &[ScreenVertex]) {
-    for at in (0..faces.count).step_by(16) {
+fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices: &[ScreenVertex]) {
+    for at in (0..attributes.count).step_by(16) {
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
-            corners(simd, &faces.ids, at, vertices);
-        for ([own_x, own_y], (x, y)) in faces.corners.iter_mut().zip([(x0, y0), (x1, y1), (x2, y2)])
+            corners(simd, &attributes.ids, at, vertices);
+        for ([own_x, own_y], (x, y)) in
+            attributes.corners.iter_mut().zip([(x0, y0), (x1, y1), (x2, y2)])
         {
             x.store_slice(&mut own_x[at..at + 16]);
             y.store_slice(&mut own_y[at..at + 16]);
         }
-        for (row, w) in faces.by_w.iter_mut().zip([w0, w1, w2]) {
+        for (row, w) in attributes.by_w.iter_mut().zip([w0, w1, w2]) {
             w.bitcast::<f32x16<S>>().store_slice(&mut row[at..at + 16]);
         }
         let beyond = x0.simd_eq(ScreenVertex::BEYOND)
@@ -323,17 +324,17 @@ fn prepare<S: Simd>(simd: S, faces: &mut TriangleAttributes<f32>, vertices: &[Sc
         let large = rough.simd_gt(NARROW_AREA) | rough.simd_lt(-NARROW_AREA);
         let (low, high) = (ux.min(uy).min(vx).min(vy), ux.max(uy).max(vx).max(vy));
         let wide = large | low.simd_lt(-NARROW_SIDE) | high.simd_gt(NARROW_SIDE);
-        faces.cut |= beyond.to_bitmask() << at;
-        faces.wide |= (wide.to_bitmask() & !beyond.to_bitmask()) << at;
+        attributes.cut |= beyond.to_bitmask() << at;
+        attributes.wide |= (wide.to_bitmask() & !beyond.to_bitmask()) << at;
 
         let area = ux * vy - uy * vx;
         let per_area = f32x16::splat(simd, 1.0) / area.to_float::<f32x16<S>>();
-        per_area.store_slice(&mut faces.per_area[at..at + 16]);
-        // a (x - p.x) + b (y - p.y) with x and y in the middle of a pixel.
+        per_area.store_slice(&mut attributes.per_area[at..at + 16]);
+        // a (x - p.x) + b (y - p.y) with x and y at the centre of a pixel.
         let (half, log2) = (SUBPIXELS / 2, SUBPIXELS.trailing_zeros());
         let second = (vy, x0 - x2, half - x2, half - y2);
         let third = (y0 - y1, ux, half - x0, half - y0);
-        for (rows, (a, b, x, y)) in faces.edges.iter_mut().zip([second, third]) {
+        for (rows, (a, b, x, y)) in attributes.edges.iter_mut().zip([second, third]) {
             (a << log2).store_slice(&mut rows[0][at..at + 16]);
             (b << log2).store_slice(&mut rows[1][at..at + 16]);
             (a * x + b * y).store_slice(&mut rows[2][at..at + 16]);
@@ -341,8 +342,8 @@ fn prepare<S: Simd>(simd: S, faces: &mut TriangleAttributes<f32>, vertices: &[Sc
     }
 }
 
-/// x, y, depth and one by w of the corners of sixteen triangles. Slots that nobody has taken name vertices
-/// of other draws: what is fetched for them is of no meaning.
+/// x, y, depth and 1/w of the corners of sixteen triangles. Unused slots name vertices of other
+/// draws, so what is fetched for them is meaningless.
 #[inline(always)]
 fn corners<S: Simd>(
     simd: S,

@@ -1,15 +1,15 @@
-//! Numbers taken from a short table, sixteen at once, each from a place of its own.
+//! Gathers numbers from a short table, sixteen at once.
 //!
-//! What a block shows are few triangles and many pixels: what is known of the triangles stands in
-//! rows, a number for each, and the pixels take from them. Processors have an instruction for that,
-//! which moves the lanes of a register; where they have none, numbers are taken one by one.
+//! A block shows few triangles on many pixels: attributes of the triangles are stored in rows, a
+//! number for each, and pixels gather from them. Processors have an instruction that permutes the
+//! lanes of a register; without it, numbers are gathered one by one.
 
 use fearless_simd::{Level, Select as _, Simd, SimdBase as _, i32x16};
 
-/// Positions in a table.
+/// The length of a table.
 pub(crate) const SLOTS: usize = 64;
 
-/// The numbers of a row at `slots`, all of which are among the first `PAGES` times sixteen.
+/// Gathers the numbers of a row at `slots`, all below `PAGES` times sixteen.
 #[inline(always)]
 pub(crate) fn pick<S: Simd, const PAGES: usize>(
     simd: S,
@@ -19,22 +19,22 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
     match simd.level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(token) => {
-            let places = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
+            let slots = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
             let picked = match PAGES {
-                1 => x86::of_one(token, page(token, row, 0), places),
-                2 => x86::of_two(token, page(token, row, 0), page(token, row, 1), places),
+                1 => x86::of_one(token, page(token, row, 0), slots),
+                2 => x86::of_two(token, page(token, row, 0), page(token, row, 1), slots),
                 _ => {
-                    let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), places);
-                    let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), places);
-                    places.simd_lt(32).select(low, high)
+                    let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), slots);
+                    let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), slots);
+                    slots.simd_lt(32).select(low, high)
                 }
             };
             i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
         }
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(token) if PAGES == 1 => {
-            let places = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
-            let picked = x86::of_halves(token, page(token, row, 0), places);
+            let slots = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
+            let picked = x86::of_halves(token, page(token, row, 0), slots);
             i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
         }
         _ => {
@@ -53,7 +53,7 @@ fn page<S: Simd>(simd: S, row: &[i32; SLOTS], page: usize) -> i32x16<S> {
     i32x16::from_slice(simd, &row[16 * page..16 * page + 16])
 }
 
-/// Does something for as many pages of slots as `count` triangles take.
+/// Evaluates an expression with the number of pages that `count` slots take as a constant.
 macro_rules! paged {
     ($count:expr, $pages:ident => $what:expr) => {
         match $count {
@@ -74,7 +74,7 @@ macro_rules! paged {
 }
 pub(crate) use paged;
 
-/// The instructions that move lanes by the places in another register.
+/// The instructions that permute lanes by the indices in another register.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod x86 {
     #[cfg(target_arch = "x86")]
@@ -96,9 +96,9 @@ mod x86 {
         pub(crate) fn of_one(
             token: Avx512,
             page: i32x16<Avx512>,
-            places: i32x16<Avx512>,
+            slots: i32x16<Avx512>,
         ) -> i32x16<Avx512> {
-            _mm512_permutexvar_epi32(places.into(), page.into()).simd_into(token)
+            _mm512_permutexvar_epi32(slots.into(), page.into()).simd_into(token)
         }
     );
 
@@ -108,27 +108,27 @@ mod x86 {
             token: Avx512,
             low: i32x16<Avx512>,
             high: i32x16<Avx512>,
-            places: i32x16<Avx512>,
+            slots: i32x16<Avx512>,
         ) -> i32x16<Avx512> {
-            _mm512_permutex2var_epi32(low.into(), places.into(), high.into()).simd_into(token)
+            _mm512_permutex2var_epi32(low.into(), slots.into(), high.into()).simd_into(token)
         }
     );
 
     fearless_simd::kernel!(
         #[inline(always)]
-        fn of_eight(token: Avx2, half: i32x8<Avx2>, places: i32x8<Avx2>) -> i32x8<Avx2> {
-            _mm256_permutevar8x32_epi32(half.into(), places.into()).simd_into(token)
+        fn of_eight(token: Avx2, half: i32x8<Avx2>, slots: i32x8<Avx2>) -> i32x8<Avx2> {
+            _mm256_permutevar8x32_epi32(half.into(), slots.into()).simd_into(token)
         }
     );
 
-    /// From sixteen places, by halves of eight.
+    /// Gathers from sixteen numbers, by halves of eight.
     #[inline(always)]
-    pub(crate) fn of_halves(token: Avx2, page: i32x16<Avx2>, places: i32x16<Avx2>) -> i32x16<Avx2> {
+    pub(crate) fn of_halves(token: Avx2, page: i32x16<Avx2>, slots: i32x16<Avx2>) -> i32x16<Avx2> {
         let (low, high) = page.split();
-        let (first, second) = places.split();
+        let (first, second) = slots.split();
         let from_low = of_eight(token, low, first).combine(of_eight(token, low, second));
         let from_high = of_eight(token, high, first).combine(of_eight(token, high, second));
-        places.simd_lt(8).select(from_low, from_high)
+        slots.simd_lt(8).select(from_low, from_high)
     }
 }
 

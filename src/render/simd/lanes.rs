@@ -1,4 +1,4 @@
-//! What takes numbers from rows in memory, some at a time, computes with them, and stores them.
+//! Lanes: load numbers from rows in memory, some at a time, and store them.
 
 use super::gather::SLOTS;
 use super::real::Real;
@@ -6,39 +6,40 @@ use super::variant_real::VariantReal;
 use super::vec3::Vec3;
 use crate::base::color::byte;
 
-/// Positions lit together: a block of 8 x 8 pixels, small enough for the nearest cache, large enough
-/// that the call of a light's shader costs nothing beside its work.
+/// The number of positions that are lit together: those of a block of 8 x 8 pixels. It is small
+/// enough for the L1 cache, and large enough that the call of a light shader costs nothing beside
+/// its work.
 pub const BATCH: usize = 64;
 
-/// What takes numbers from rows in memory, some at a time, computes with them, and puts them back.
+/// Loads numbers from rows in memory, some at a time, and stores them.
 ///
-/// Code that is written over a lanes is compiled for each: see [`Kernel`].
+/// Code that is generic over lanes is compiled for each: see [`Kernel`].
 pub trait Lanes: Copy {
     /// The numbers in memory.
     type Number: Copy;
-    /// The numbers that are computed with: [`Self::LANES`] of them.
+    /// The vector of [`Self::LANES`] numbers that equations compute with.
     type R: VariantReal;
-    /// Positions in a row: [`Self::LANES`] of them.
+    /// A vector of [`Self::LANES`] slots.
     type Slots: Copy;
-    /// How many numbers are taken at a time.
+    /// How many numbers are loaded at a time.
     const LANES: usize;
-    /// The numbers of a row that begin at `at`.
+    /// Loads numbers of a row from `at` on.
     fn load(self, row: &[Self::Number], at: usize) -> Self::R;
-    /// The numbers of four rows that lie side by side, from `at` on.
+    /// Loads numbers of four interleaved rows from `at` on.
     fn load_four(self, rows: &[[Self::Number; 4]], at: usize) -> [Self::R; 4];
-    /// Puts numbers into four rows that lie side by side, from `at` on.
+    /// Stores numbers in four interleaved rows from `at` on.
     fn store_four(self, values: [Self::R; 4], rows: &mut [[Self::Number; 4]], at: usize);
-    /// Puts numbers into a row from `at` on.
+    /// Stores numbers in a row from `at` on.
     fn store(self, value: Self::R, row: &mut [Self::Number], at: usize);
-    /// The whole numbers of a row that begin at `at`.
+    /// Loads integers of a row from `at` on.
     fn whole(self, row: &[i32], at: usize) -> Self::R;
-    /// Puts colours into a row of pixels: red, green, blue and 255, as bytes in this order, each the
-    /// nearest to 255 times the number, as [`Number::byte`] has it.
+    /// Stores colours in a row of pixels: red, green, blue and 255, as bytes in this order, each
+    /// rounded like [`Number::byte`].
     fn store_pixels(self, color: Vec3<Self::R>, row: &mut [u32], at: usize);
-    /// The same, each the whole part of 255 times the number and a threshold from 0 to 1.
+    /// The same, each the integer part of 255 times the number plus a threshold from 0 to 1.
     fn store_pixels_by(self, color: Vec3<Self::R>, threshold: Self::R, row: &mut [u32], at: usize);
-    /// Puts colours into three rows: red, green and blue as the bytes of [`Self::store_pixels_by`] before
-    /// they are rounded down, in parts of 2^-16.
+    /// Stores colours in three rows: red, green and blue as the bytes of [`Self::store_pixels_by`]
+    /// before they are rounded down, in units of 2^-16.
     fn store_parts(
         self,
         color: Vec3<Self::R>,
@@ -50,18 +51,18 @@ pub trait Lanes: Copy {
     fn lift(self, constant: f64) -> Self::R;
     /// One number for all.
     fn set(self, number: Self::Number) -> Self::R;
-    /// The places in rows of `SLOTS` that [`Self::pick`] takes numbers from.
+    /// Loads slots for [`Self::pick`].
     fn slots(self, slots: &[i32], at: usize) -> Self::Slots;
-    /// The numbers of a row at some places, all of which are among the first `PAGES` times sixteen.
+    /// Gathers the numbers of a row at some slots, all below `PAGES` times sixteen.
     fn pick<const PAGES: usize>(self, row: &[Self::Number; SLOTS], slots: Self::Slots) -> Self::R;
-    /// Whether any of some numbers is more than its counterpart.
+    /// Whether any number is more than its counterpart.
     fn any_more(self, a: Self::R, b: Self::R) -> bool;
 }
 
 /// Work that is written once for every [`Lanes`] over the same numbers.
 pub trait Kernel<T> {
     /// Does the work. Implementations are `#[inline(always)]`, so that they are compiled for the
-    /// instructions that the lanes stands for.
+    /// instruction set of the lanes.
     fn run<M: Lanes<Number = T>>(self, lanes: M);
 }
 
@@ -124,8 +125,8 @@ impl Lanes for Exact {
         at: usize,
     ) {
         for (row, number) in rows.iter_mut().zip(color.0) {
-            let held = Real::min(Real::max(number, 0.0), 1.0);
-            row[at] = ((held * 255.0 + threshold) * PARTS) as u32;
+            let clamped = Real::min(Real::max(number, 0.0), 1.0);
+            row[at] = ((clamped * 255.0 + threshold) * PARTS) as u32;
         }
     }
 
@@ -156,5 +157,5 @@ impl Lanes for Exact {
     }
 }
 
-/// Into how many parts a step of a byte is cut where colours are added up.
+/// The fixed-point units per step of a byte when colours are added up.
 pub(crate) const PARTS: f64 = 65536.0;

@@ -1,11 +1,12 @@
 //! The numbers that light is computed in, one at a time or sixteen at once.
 //!
-//! * [`Real`]: what an equation of light does with numbers; `single` does it in 32 bits.
-//! * [`Lanes`]: takes numbers from memory and stores them; [`Exact`] one f64 at a time, [`Sixteen`]
+//! * [`Real`]: the operations of equations of light; `single` implements them in f32.
+//! * [`Lanes`]: loads numbers from memory and stores them; [`Exact`] one f64 at a time, [`Sixteen`]
 //!   sixteen f32 at a time. A [`Kernel`] is work that is compiled for both.
-//! * `gather`: takes numbers from short tables.
+//! * `gather`: gathers numbers from short tables.
 //! * [`Power`], `power_variants`, `reciprocal_root`: powers of cosines and reciprocal roots by each
-//!   variant that settings name; `variant_real` and `variant_lanes` bring them into equations.
+//!   variant that the settings choose; `variant_real` and `variant_lanes` bring them into
+//!   equations.
 
 pub(crate) mod gather;
 mod lanes;

@@ -12,14 +12,14 @@ use crate::accuracy::{Normalising, SpecularPower};
 pub trait Number: Real + Default + Into<f64> + Send + Sync + std::fmt::Debug + 'static {
     /// The nearest such number.
     fn from_f64(number: f64) -> Self;
-    /// The byte nearest to 255 times the number: clamped once, rounded, NaN gives 0.
+    /// The byte nearest to 255 times the number, clamped and rounded; NaN gives 0.
     fn byte(self) -> u8;
-    /// How such numbers take powers by themselves.
+    /// The default variant of powers for such numbers.
     const POWER: SpecularPower;
-    /// Does the work with the lanes for such numbers, and with instructions of this level.
+    /// Runs a kernel with the lanes for such numbers and the instructions of this level.
     fn run(level: Level, kernel: impl Kernel<Self>);
-    /// The same by a rare way, where there is one.
-    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>);
+    /// The same by a variant of roots, if there is one.
+    fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>);
 }
 
 impl Number for f64 {
@@ -39,10 +39,10 @@ impl Number for f64 {
         kernel.run(Exact);
     }
 
-    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>) {
-        match way {
+    fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>) {
+        match variant {
             None => Self::run(level, kernel),
-            Some(way) => kernel.run(VariantLanes { lanes: Exact, way }),
+            Some(variant) => kernel.run(VariantLanes { lanes: Exact, variant }),
         }
     }
 }
@@ -66,11 +66,13 @@ impl Number for f32 {
         dispatch!(level, simd => kernel.run(Sixteen(simd)));
     }
 
-    fn run_by(level: Level, way: Option<Normalising>, kernel: impl Kernel<Self>) {
-        match way {
+    fn run_variant(level: Level, variant: Option<Normalising>, kernel: impl Kernel<Self>) {
+        match variant {
             None => Self::run(level, kernel),
-            Some(way) => {
-                dispatch!(level, simd => kernel.run(VariantLanes { lanes: Sixteen(simd), way }));
+            Some(variant) => {
+                dispatch!(level, simd => {
+                    kernel.run(VariantLanes { lanes: Sixteen(simd), variant });
+                });
             }
         }
     }

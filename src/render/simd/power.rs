@@ -1,47 +1,47 @@
-//! Powers of cosines, by each way that a highlight may be computed.
+//! The power of a highlight: a cosine to an exponent, by each variant.
 //!
-//! A power that a material calls for is made ready once: its exponent is looked at, and its table is
-//! filled, before any pixel asks. What is below the floor counts as 0 by every way.
+//! A power is prepared once per material: its exponent is examined and its table is filled before
+//! any pixel is drawn. Results below the floor count as 0 in every variant.
 
 use std::sync::Arc;
 
 use crate::accuracy::SpecularPower;
 
-/// To which power numbers are taken, and how.
+/// An exponent, and the variant that computes powers with it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Power {
-    /// At least 0.
+    /// The exponent, at least 0.
     pub(crate) exponent: f64,
-    /// A power below 2^`floor` counts as 0. It keeps subnormal numbers out, and the work with them.
+    /// A power below 2^`floor` counts as 0. That avoids subnormal numbers, which are slow.
     pub(crate) floor: f64,
     /// 2^`floor`.
     pub(crate) least: f64,
-    /// The exponent, where it is a whole number that squaring reaches fast.
+    /// The exponent, if it is an integer that squaring reaches fast.
     pub(crate) whole: Option<u32>,
-    /// A number whose power is below the floor, but normal in 32 bits; where the exponent is whole.
-    pub(crate) held: f64,
-    /// By which of the rare ways.
-    pub(super) rare: Rare,
+    /// A number whose power is below the floor, but normal in f32; for integer exponents.
+    pub(crate) clamped: f64,
+    /// The variant.
+    pub(super) variant: PowerVariant,
 }
 
-/// The ways that are not those of the numbers themselves.
+/// The variants of powers.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) enum Rare {
-    /// The number's own.
+pub(super) enum PowerVariant {
+    /// The default of the arithmetic.
     #[default]
-    Own,
+    Default,
     /// `libm`'s.
     Library,
-    /// The power of sixteen numbers at once: squarings of whole exponents, a polynomial elsewhere.
+    /// That of sixteen numbers at once: squarings for integer exponents, else a polynomial.
     Polynomial,
     /// The exponent is two to this power.
     Squarings(u32),
     /// Powers of the numbers i / 255: the nearest is taken.
     Nearest(Arc<[f64]>),
-    /// Powers of the numbers i / 1023: between two of them runs a line.
+    /// Powers of the numbers i / 1023, with linear interpolation between them.
     Linear(Arc<[f64]>),
-    /// x / (n - n x + x): Schlick, "A Fast Alternative to Phong's Specular Model", Graphics Gems IV,
-    /// 1994. Another curve, that is 0 at 0 and 1 at 1 too.
+    /// x / (n - n x + x): Schlick, "A Fast Alternative to Phong's Specular Model", Graphics Gems
+    /// IV, 1994. An approximation that is also 0 at 0 and 1 at 1.
     Schlick,
 }
 
@@ -49,49 +49,62 @@ impl Power {
     /// The largest exponent that is reached by squaring.
     const LARGEST: u32 = 64;
 
-    /// The power with an exponent of at least 0; 0 where it is below 2^`floor`, from -60 to 0. It is
-    /// taken as the numbers do it by themselves.
+    /// Prepares powers with an exponent of at least 0, which are 0 below 2^`floor`, with `floor`
+    /// from -60 to 0, by the default of the arithmetic.
     #[must_use]
     pub fn new(exponent: f64, floor: f64) -> Self {
         let whole = (1..=Self::LARGEST).find(|n| f64::from(*n) == exponent);
-        let held = whole.map_or(0.0, |n| libm::exp2(-f64::from(126 / n)));
-        Self { exponent, floor, least: libm::exp2(floor), whole, held, rare: Rare::Own }
+        let clamped = whole.map_or(0.0, |n| libm::exp2(-f64::from(126 / n)));
+        Self {
+            exponent,
+            floor,
+            least: libm::exp2(floor),
+            whole,
+            clamped,
+            variant: PowerVariant::Default,
+        }
     }
 
-    /// The same by a way that settings name. A table that is among `tables` already is used again.
+    /// The same by a variant that the settings choose. A table that is in `tables` already is
+    /// reused.
     #[must_use]
-    pub(crate) fn by(way: SpecularPower, exponent: f64, floor: f64, tables: &mut Tables) -> Self {
-        let rare = match way {
-            SpecularPower::Library => Rare::Library,
-            SpecularPower::Polynomial => Rare::Polynomial,
+    pub(crate) fn by(
+        variant: SpecularPower,
+        exponent: f64,
+        floor: f64,
+        tables: &mut Tables,
+    ) -> Self {
+        let variant = match variant {
+            SpecularPower::Library => PowerVariant::Library,
+            SpecularPower::Polynomial => PowerVariant::Polynomial,
             SpecularPower::Squaring => {
-                squarings(exponent).map_or(Rare::Polynomial, Rare::Squarings)
+                squarings(exponent).map_or(PowerVariant::Polynomial, PowerVariant::Squarings)
             }
-            SpecularPower::Table1024 => Rare::Linear(tables.of(exponent, 1024)),
-            SpecularPower::Table256 => Rare::Nearest(tables.of(exponent, 256)),
-            SpecularPower::Schlick => Rare::Schlick,
+            SpecularPower::Table1024 => PowerVariant::Linear(tables.of(exponent, 1024)),
+            SpecularPower::Table256 => PowerVariant::Nearest(tables.of(exponent, 256)),
+            SpecularPower::Schlick => PowerVariant::Schlick,
         };
-        Self { rare, ..Self::new(exponent, floor) }
+        Self { variant, ..Self::new(exponent, floor) }
     }
 
-    /// Whether sixteen numbers take it at once, and do it by themselves.
+    /// Whether it is computed for sixteen numbers at once by the default code.
     #[inline(always)]
-    pub(crate) const fn is_own(&self) -> bool {
-        matches!(self.rare, Rare::Own | Rare::Polynomial)
+    pub(crate) const fn is_default(&self) -> bool {
+        matches!(self.variant, PowerVariant::Default | PowerVariant::Polynomial)
     }
 }
 
-/// k, where n is 2^k.
+/// k, if n is 2^k.
 pub(crate) fn squarings(n: f64) -> Option<u32> {
     (0..=20).find(|k| libm::exp2(f64::from(*k)) == n)
 }
 
-/// Tables of powers that were filled, by their exponents.
+/// Tables of powers, by their exponents.
 #[derive(Debug, Default)]
 pub(crate) struct Tables(Vec<(f64, Arc<[f64]>)>);
 
 impl Tables {
-    /// As many are kept at most: a scene has few materials.
+    /// The most tables that are kept: a scene has few materials.
     const MOST: usize = 64;
 
     #[expect(clippy::cast_precision_loss, reason = "small numbers")]
@@ -110,16 +123,16 @@ impl Tables {
     }
 }
 
-/// The largest number whose power is surely not above 2^`floor`, by a way that settings name.
-pub(crate) fn least_cosine(way: SpecularPower, exponent: f64, floor: f64) -> f64 {
+/// The largest number whose power is certainly not above 2^`floor`, by a variant.
+pub(crate) fn least_cosine(variant: SpecularPower, exponent: f64, floor: f64) -> f64 {
     if exponent <= 0.0 {
         return 0.0;
     }
     let least = libm::exp2(floor);
     let cosine = libm::exp2(floor / exponent);
-    match way {
+    match variant {
         SpecularPower::Library | SpecularPower::Polynomial | SpecularPower::Squaring => cosine,
-        // Up to a whole step of the table below.
+        // Up to one step of the table below.
         SpecularPower::Table1024 | SpecularPower::Table256 => (cosine - 1.0 / 255.0).max(0.0),
         // s = x / (n - n x + x), so x = s n / (1 - s + s n).
         SpecularPower::Schlick => least * exponent / (1.0 - least + least * exponent),

@@ -4,9 +4,10 @@
 //! at a time, the reference that pictures are judged by; for `f32x16`, sixteen at a time, what the
 //! editor shows; and for `f32`, which does to one number what `f32x16` does to sixteen.
 //!
-//! There is no fused multiply-add here. It rounds once where `a * b + c` rounds twice, and only some
-//! processors have it; without it a picture is the same, bit for bit, on all of them. Nor is there a
-//! minimum or maximum of the processor's own: they disagree about NaN and about the sign of zero.
+//! There is no fused multiply-add here. It rounds once where `a * b + c` rounds twice, and only
+//! some processors have it; without it a picture is the same, bit for bit, on all of them. Nor are
+//! the processor's own minimum and maximum used: processors disagree about NaN and about the sign
+//! of zero.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -24,26 +25,24 @@ pub trait Real:
     /// A constant beside `self`: as many of it as `self` has numbers.
     #[must_use]
     fn lift(self, constant: f64) -> Self;
-    /// One by the square root; 0 where `self` is not more than 0, and where its bits tell no digits:
-    /// infinity, NaN, and what is below the normal numbers.
+    /// 1 / the square root; 0 if `self` is not more than 0, infinite, NaN or subnormal.
     #[must_use]
     fn reciprocal_root(self) -> Self;
-    /// `yes` where `self` is more than `than`, `no` elsewhere and where either is NaN.
+    /// `yes` if `self` is more than `than`, else `no`, also if either is NaN.
     #[must_use]
     fn if_more(self, than: Self, yes: Self, no: Self) -> Self;
-    /// The power of `self`, which is from 0 to 1; 0 where that is below the floor, and where `self`
-    /// is 0.
+    /// The power of `self`, which is from 0 to 1; 0 if it is below the floor, or `self` is 0.
     #[must_use]
     fn power(self, power: &Power) -> Self;
 
-    /// The larger of two numbers; `other` where `self` is NaN.
+    /// The larger of two numbers; `other` if `self` is NaN.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
         self.if_more(other, self, other)
     }
 
-    /// The smaller of two numbers; `other` where `self` is NaN.
+    /// The smaller of two numbers; `other` if `self` is NaN.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {

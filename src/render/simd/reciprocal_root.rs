@@ -1,8 +1,9 @@
-//! Reciprocal roots that are quick and not exact.
+//! Variants of the reciprocal square root: fast and inexact.
 //!
-//! Processors have an instruction that estimates one by the root: to 3.7e-4 of itself with SSE and AVX,
-//! to 6.1e-5 with AVX-512, and not with the same bits on two makes. Where there is none the estimate is
-//! made of the number's bits, to 6.5e-4. A step of Newton's doubles the digits:
+//! Processors have an instruction that estimates it: with a relative error of 3.7e-4 with SSE and
+//! AVX and 6.1e-5 with AVX-512, and not with the same bits on processors of different makers.
+//! Without it, the estimate is made from the number's bits, to 6.5e-4. A Newton step doubles the
+//! digits:
 //!
 //!   y' = y (3/2 - x y^2 / 2)
 //!
@@ -19,7 +20,7 @@ use fearless_simd::{SimdCombine as _, SimdInto as _, SimdSplit as _, f32x4, f32x
 use super::real::Real;
 use crate::accuracy::Normalising;
 
-/// Below this, a number of 32 bits is not normal any more; above the other, it is infinite.
+/// Below this, an f32 is subnormal; above the other, it is infinite.
 const SMALLEST: f64 = 1.175_494_4e-38;
 const LARGEST: f64 = 3.402_823_4e38;
 
@@ -47,7 +48,7 @@ fearless_simd::kernel!(
     }
 );
 
-/// The processor's estimate of one by the root of normal numbers above 0.
+/// The processor's estimate of the reciprocal root of normal numbers above 0.
 #[inline(always)]
 fn estimate<S: Simd>(x: f32x16<S>) -> f32x16<S> {
     #[cfg(target_arch = "x86_64")]
@@ -78,7 +79,7 @@ fn estimate<S: Simd>(x: f32x16<S>) -> f32x16<S> {
     f32x16::from_slice(x.simd, &lanes)
 }
 
-/// The estimate that the bits of a normal number above 0 give.
+/// The estimate from the bits of a normal number above 0.
 #[inline(always)]
 fn of_bits(x: f32) -> f32 {
     let y = f32::from_bits(0x5f1f_fff9_u32.wrapping_sub(x.to_bits() >> 1));
@@ -90,7 +91,7 @@ fn newton<R: Real>(x: R, y: R) -> R {
     y * (x.lift(1.5) - x * x.lift(0.5) * (y * y))
 }
 
-/// `y` where `x` is a normal number above 0, else 0.
+/// `y` if `x` is a normal number above 0, else 0.
 #[inline(always)]
 fn if_normal<R: Real>(x: R, y: R) -> R {
     let zero = x.lift(0.0);
@@ -99,20 +100,20 @@ fn if_normal<R: Real>(x: R, y: R) -> R {
 
 /// Sixteen reciprocal roots.
 #[inline(always)]
-pub(crate) fn sixteen<S: Simd>(x: f32x16<S>, way: Normalising) -> f32x16<S> {
-    match way {
+pub(crate) fn sixteen<S: Simd>(x: f32x16<S>, variant: Normalising) -> f32x16<S> {
+    match variant {
         Normalising::Root => x.reciprocal_root(),
         Normalising::Newton => if_normal(x, newton(x, estimate(x))),
         Normalising::Rsqrt => if_normal(x, estimate(x)),
     }
 }
 
-/// The same of 64 bits, which have no instruction for it: the estimate is made of the bits.
+/// The same in f64, which has no such instruction: the estimate is made from the bits.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "it is an estimate")]
-pub(crate) fn one(x: f64, way: Normalising) -> f64 {
+pub(crate) fn one(x: f64, variant: Normalising) -> f64 {
     let estimate = || f64::from(of_bits(x as f32));
-    match way {
+    match variant {
         Normalising::Root => x.reciprocal_root(),
         Normalising::Newton => if_normal(x, newton(x, estimate())),
         Normalising::Rsqrt => if_normal(x, estimate()),
@@ -125,10 +126,10 @@ mod tests {
 
     use super::*;
 
-    fn roots(level: Level, x: [f32; 16], way: Normalising) -> [f32; 16] {
+    fn roots(level: Level, x: [f32; 16], variant: Normalising) -> [f32; 16] {
         let mut out = [0.0; 16];
         dispatch!(level, simd => {
-            sixteen(f32x16::from_slice(simd, &x), way).store_slice(&mut out);
+            sixteen(f32x16::from_slice(simd, &x), variant).store_slice(&mut out);
         });
         out
     }
@@ -144,7 +145,7 @@ mod tests {
 
     #[test]
     fn an_estimate_has_eleven_digits_of_two_and_newton_doubles_them() {
-        for (way, least, most) in
+        for (variant, least, most) in
             [(Normalising::Rsqrt, 1e-6, 6.6e-4), (Normalising::Newton, 0.0, 7e-7)]
         {
             for level in levels() {
@@ -153,24 +154,28 @@ mod tests {
                     let x = [0; 16].map(|_: i32| f32::from_bits(start));
                     let want = 1.0 / f64::from(x[0]).sqrt();
                     let apart = |got: f64| (got - want).abs() / want;
-                    worst = worst.max(apart(f64::from(roots(level, x, way)[5])));
-                    worst_of_64 = worst_of_64.max(apart(one(f64::from(x[0]), way)));
+                    worst = worst.max(apart(f64::from(roots(level, x, variant)[5])));
+                    worst_of_64 = worst_of_64.max(apart(one(f64::from(x[0]), variant)));
                 }
-                assert!((least..most).contains(&worst), "{way:?} {level:?}: {worst:e}");
-                assert!((least..most).contains(&worst_of_64), "{way:?}: {worst_of_64:e}");
+                assert!((least..most).contains(&worst), "{variant:?} {level:?}: {worst:e}");
+                assert!((least..most).contains(&worst_of_64), "{variant:?}: {worst_of_64:e}");
             }
         }
     }
 
     #[test]
     fn what_has_no_reciprocal_root_gives_zero() {
-        for way in [Normalising::Rsqrt, Normalising::Newton, Normalising::Root] {
+        for variant in [Normalising::Rsqrt, Normalising::Newton, Normalising::Root] {
             for x in [0.0, -0.0, -1.0, 1e-40, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
                 for level in levels() {
-                    assert_eq!(roots(level, [x; 16], way), [0.0; 16], "{x} {way:?} {level:?}");
+                    assert_eq!(
+                        roots(level, [x; 16], variant),
+                        [0.0; 16],
+                        "{x} {variant:?} {level:?}"
+                    );
                 }
-                let in_64 = if x == 1e-40 { 0.0 } else { one(f64::from(x), way) };
-                assert_eq!(in_64, 0.0, "{x} {way:?}");
+                let in_64 = if x == 1e-40 { 0.0 } else { one(f64::from(x), variant) };
+                assert_eq!(in_64, 0.0, "{x} {variant:?}");
             }
         }
     }

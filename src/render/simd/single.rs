@@ -1,8 +1,8 @@
-//! Numbers of 32 bits: one, and sixteen side by side with the same bits.
+//! Implements [`Real`] in f32: for one number, and for sixteen with the same bits.
 //!
-//! Powers and reciprocal roots are made of sums, products and whole-number arithmetic on the bits.
-//! These are the same on every processor, and take a fraction of the time of the processor's own
-//! root and quotient, which would be most of the time of light.
+//! Powers and reciprocal roots are made of sums, products and integer arithmetic on the bits. These
+//! are the same on every processor, and take a fraction of the time of the processor's own root and
+//! division, which would dominate lighting.
 
 use fearless_simd::{
     Bytes as _, Level, Select as _, Simd, SimdBase, SimdFloat as _, SimdInt as _, SimdInto as _,
@@ -12,31 +12,32 @@ use fearless_simd::{
 use super::power::Power;
 use super::real::Real;
 
-/// Numbers of 32 bits whose exponent can be taken apart from their digits.
+/// Numbers in f32 that can be split into exponent and mantissa.
 trait Single: Real {
     /// m and e with self = m 2^e, m from 1/sqrt 2 to sqrt 2, for normal numbers above 0.
     fn split(self) -> (Self, Self);
-    /// 2^n for a whole number n from -126 to 127.
+    /// 2^n for an integer n from -126 to 127.
     fn power_of_two(self) -> Self;
-    /// The nearest whole number, ties to even.
+    /// The nearest integer, ties to even.
     fn round(self) -> Self;
     /// The number whose bits are `from` less half of the bits of `self`.
     fn halved_from(self, from: i32) -> Self;
-    /// `yes` where `self` is a normal number above 0, else 0.
+    /// `yes` if `self` is a normal number above 0, else 0.
     fn if_normal(self, yes: Self) -> Self;
 }
 
-/// Below this, a number of 32 bits is not normal any more.
+/// Below this, an f32 is subnormal.
 const SMALLEST: f64 = 1.2e-38;
 
-/// One by the root of a normal number above 0, to 1.5e-7 of itself; 0 elsewhere.
+/// The reciprocal root of a normal number above 0, with a relative error of 1.5e-7; else 0.
 ///
 ///   y0 = bits(0x5f1ffff9 - bits(x) / 2)
 ///   y1 = y0 (1.68191391 - 0.703952253 x y0^2)                  to 6.5e-4
 ///   y2 = y1 (1 + h/2 + 3 h^2/8),  h = 1 - x y1^2               to 7e-10, and rounding
 ///
-/// The first line is half of the logarithm that the bits of a number are. The constants of the first
-/// two: Kadlec, "Improving the fast inverse square root", 2010; the third: Householder's, of order 3.
+/// The first line halves the logarithm, which the bits of a number approximate. The constants of
+/// the first two: Kadlec, "Improving the fast inverse square root", 2010; the third: Householder's,
+/// of order 3.
 #[inline(always)]
 fn single_reciprocal_root<R: Single>(x: R) -> R {
     let y = x.halved_from(0x5f1f_fff9);
@@ -45,7 +46,7 @@ fn single_reciprocal_root<R: Single>(x: R) -> R {
     x.if_normal(y + y * (h * (x.lift(0.5) + h * x.lift(0.375))))
 }
 
-/// x^n, to 4e-6 of itself for powers above 2^-24.
+/// x^n, with a relative error of 4e-6 for powers above 2^-24.
 #[inline(always)]
 fn single_power<R: Single>(x: R, power: &Power) -> R {
     match power.whole {
@@ -54,11 +55,11 @@ fn single_power<R: Single>(x: R, power: &Power) -> R {
     }
 }
 
-/// x^n by squaring: n roundings at the most.
+/// x^n by squaring, with n roundings at most.
 #[inline(always)]
 fn whole_power<R: Single>(x: R, n: u32, power: &Power) -> R {
-    // Held up so far that nothing on the way becomes subnormal, and the power stays below the floor.
-    let mut square = Real::max(x, x.lift(power.held));
+    // Clamped so that no intermediate result becomes subnormal and the power stays below the floor.
+    let mut square = Real::max(x, x.lift(power.clamped));
     let mut result = x.lift(1.0);
     let mut left = n;
     loop {
@@ -78,8 +79,8 @@ fn whole_power<R: Single>(x: R, n: u32, power: &Power) -> R {
 ///
 ///   x = m 2^e, f = m - 1:   ln m = f - f^2/2 + f^3 P(f)
 ///
-/// with the polynomials of `logf` and `exp2f` in Moshier's Cephes library. Since ln m is right to a
-/// part of itself, and not of 1, the power is right for x next to 1 however large n is.
+/// with the polynomials of `logf` and `exp2f` in Moshier's Cephes library. Since the error of ln m
+/// is relative to ln m, and not to 1, the power is accurate for x near 1 however large n is.
 #[inline(always)]
 fn any_power<R: Single>(x: R, power: &Power) -> R {
     const LOGARITHM: [f64; 9] = [
@@ -109,10 +110,10 @@ fn any_power<R: Single>(x: R, power: &Power) -> R {
     let log2 = ln * x.lift(std::f64::consts::LOG2_E) + e;
 
     let log2 = log2 * x.lift(power.exponent);
-    // Held to what 2^n can be made of; what is below the floor is thrown away in the end.
-    let held = Real::max(log2, x.lift(-126.0));
-    let whole = held.round();
-    let result = polynomial(held - whole, &EXPONENTIAL) * whole.power_of_two();
+    // Clamped to the exponents of f32; results below the floor are discarded in the end.
+    let clamped = Real::max(log2, x.lift(-126.0));
+    let whole = clamped.round();
+    let result = polynomial(clamped - whole, &EXPONENTIAL) * whole.power_of_two();
     let zero = x.lift(0.0);
     x.if_more(zero, log2.if_more(x.lift(power.floor), result, zero), zero)
 }
@@ -129,7 +130,7 @@ fn polynomial<R: Real>(x: R, coefficients: &[f64]) -> R {
 
 const EXPONENT_BITS: i32 = 0xff << 23;
 const ONE_BITS: i32 = 127 << 23;
-/// The digits of sqrt 2, which decide to which power of two a number is nearer.
+/// The bits of sqrt 2, which decide to which power of two a number is nearer.
 const SQRT_2_BITS: i32 = 0x3fb5_04f3;
 
 impl Real for f32 {
@@ -188,8 +189,8 @@ impl Single for f32 {
     }
 }
 
-/// Whether the processor's own maximum of a and b is a where a > b, else b, also of NaN and of zeros:
-/// that of x86 is. "Intel 64 and IA-32 Architectures Software Developer's Manual", MAXPS.
+/// Whether the processor's own maximum of a and b is a if a > b, else b, even for NaN and zeros, as
+/// on x86. "Intel 64 and IA-32 Architectures Software Developer's Manual", MAXPS.
 #[inline(always)]
 fn has_own_maximum<S: Simd>(simd: S) -> bool {
     match simd.level() {
@@ -269,7 +270,7 @@ impl<S: Simd> Single for f32x16<S> {
     #[inline(always)]
     fn if_normal(self, yes: Self) -> Self {
         let bits: i32x16<S> = self.bitcast();
-        // Of the bits less those of the smallest normal number; below 0 where it is smaller.
+        // The bits less those of the smallest normal number: below 0 if the number is smaller.
         let above = bits - (1 << 23);
         let zero = self.lift(0.0);
         let normal = above.simd_ge(0) & above.simd_lt(EXPONENT_BITS - (1 << 23));
@@ -337,7 +338,8 @@ mod tests {
     #[test]
     fn a_reciprocal_root_is_wrong_by_less_than_it_says() {
         let mut worst = 0.0_f64;
-        // Every 97th of the numbers of two powers of two, which hold all digits, and of all sizes.
+        // Every 97th number between two powers of two, which have all mantissas, and numbers of all
+        // sizes.
         let digits = (0x3f80_0000..0x4080_0000).step_by(97);
         let sizes = (0x0080_0000..0x7f80_0000).step_by(9_973);
         for x in digits.chain(sizes).map(f32::from_bits) {

@@ -1,4 +1,4 @@
-//! The lanes of what the editor shows: numbers of 32 bits, sixteen at a time.
+//! The lanes that the editor draws with: f32, sixteen at a time.
 
 use fearless_simd::{
     Bytes as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdInto as _, SimdMask as _,
@@ -10,7 +10,7 @@ use super::lanes::{BATCH, Lanes, PARTS};
 use super::real::Real;
 use super::vec3::Vec3;
 
-/// Computes in f32, sixteen numbers at a time, with the instructions that `S` stands for.
+/// Computes in f32, sixteen numbers at a time, with the instruction set `S`.
 #[derive(Clone, Copy, Debug)]
 pub struct Sixteen<S>(pub S);
 
@@ -124,7 +124,8 @@ impl<S: Simd> Lanes for Sixteen<S> {
     }
 }
 
-/// What [`Number::byte`](super::number::Number::byte) does to one number, with a threshold of one half.
+/// What [`Number::byte`](super::number::Number::byte) does to one number, with a threshold of one
+/// half.
 #[inline(always)]
 fn lanes_byte<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> i32x16<S> {
     before_rounding(number, threshold).to_int()

@@ -6,19 +6,19 @@ use super::variant_real::VariantNumber;
 use super::vec3::Vec3;
 use crate::accuracy::Normalising;
 
-/// What another lanes does, by a rare way.
+/// Lanes that compute roots and powers by a variant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VariantLanes<M> {
-    /// The other.
+    /// The lanes that load and store.
     pub(crate) lanes: M,
-    /// How roots are taken.
-    pub(crate) way: Normalising,
+    /// The variant of roots.
+    pub(crate) variant: Normalising,
 }
 
 impl<M: Lanes> VariantLanes<M> {
     #[inline(always)]
     const fn chosen(self, value: M::R) -> VariantNumber<M::R> {
-        VariantNumber { value, way: self.way }
+        VariantNumber { value, variant: self.variant }
     }
 }
 

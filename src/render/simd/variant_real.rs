@@ -1,32 +1,31 @@
-//! Numbers whose reciprocal roots and powers are computed by a variant that settings name.
+//! Numbers whose reciprocal roots and powers are computed by a variant that the settings choose.
 //!
-//! Such a number carries its [`Normalising`]; a [`Power`] knows its own variant. The compiler sees the
-//! same variant in all numbers of a batch, so it is asked for once a root.
+//! Such a number carries its [`Normalising`]; a [`Power`] knows its own variant. All numbers of a
+//! batch have the same variant, so it is matched once per root.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use fearless_simd::{Simd, SimdBase as _, f32x16};
 
 use super::power::Power;
-use super::power_variants;
 use super::real::Real;
-use super::reciprocal_root;
+use super::{power_variants, reciprocal_root};
 use crate::accuracy::Normalising;
 
-/// Numbers that can be asked for a rare way.
+/// Numbers that can compute roots and powers by a variant.
 pub trait VariantReal: Real {
-    /// As [`Real::reciprocal_root`], by a way that is named.
+    /// Like [`Real::reciprocal_root`], by a variant.
     #[must_use]
-    fn reciprocal_root_by(self, way: Normalising) -> Self;
-    /// As [`Real::power`], by the way that the power names.
+    fn reciprocal_root_by(self, variant: Normalising) -> Self;
+    /// Like [`Real::power`], by the power's variant.
     #[must_use]
     fn power_by(self, power: &Power) -> Self;
 }
 
 impl VariantReal for f64 {
     #[inline(always)]
-    fn reciprocal_root_by(self, way: Normalising) -> Self {
-        reciprocal_root::one(self, way)
+    fn reciprocal_root_by(self, variant: Normalising) -> Self {
+        reciprocal_root::one(self, variant)
     }
 
     #[inline(always)]
@@ -37,13 +36,13 @@ impl VariantReal for f64 {
 
 impl<S: Simd> VariantReal for f32x16<S> {
     #[inline(always)]
-    fn reciprocal_root_by(self, way: Normalising) -> Self {
-        reciprocal_root::sixteen(self, way)
+    fn reciprocal_root_by(self, variant: Normalising) -> Self {
+        reciprocal_root::sixteen(self, variant)
     }
 
     #[inline(always)]
     fn power_by(self, power: &Power) -> Self {
-        if power.is_own() {
+        if power.is_default() {
             return self.power(power);
         }
         let mut lanes: [f32; 16] = *self;
@@ -52,11 +51,11 @@ impl<S: Simd> VariantReal for f32x16<S> {
     }
 }
 
-/// Numbers, and how their roots are taken.
+/// Numbers, with the variant of their roots.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VariantNumber<R> {
     pub(super) value: R,
-    pub(super) way: Normalising,
+    pub(super) variant: Normalising,
 }
 
 impl<R> VariantNumber<R> {
@@ -65,7 +64,7 @@ impl<R> VariantNumber<R> {
     where
         R: Copy,
     {
-        Self { value, way: self.way }
+        Self { value, variant: self.variant }
     }
 }
 
@@ -103,7 +102,7 @@ impl<R: VariantReal> Real for VariantNumber<R> {
 
     #[inline(always)]
     fn reciprocal_root(self) -> Self {
-        self.with(self.value.reciprocal_root_by(self.way))
+        self.with(self.value.reciprocal_root_by(self.variant))
     }
 
     #[inline(always)]
@@ -119,8 +118,8 @@ impl<R: VariantReal> Real for VariantNumber<R> {
 
 impl<R: VariantReal> VariantReal for VariantNumber<R> {
     #[inline(always)]
-    fn reciprocal_root_by(self, way: Normalising) -> Self {
-        self.with(self.value.reciprocal_root_by(way))
+    fn reciprocal_root_by(self, variant: Normalising) -> Self {
+        self.with(self.value.reciprocal_root_by(variant))
     }
 
     #[inline(always)]

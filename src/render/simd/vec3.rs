@@ -2,7 +2,7 @@
 
 use super::real::Real;
 
-/// Three numbers: a direction, a place, or light in red, green and blue.
+/// Three numbers: a direction, a position, or light in red, green and blue.
 #[derive(Clone, Copy, Debug)]
 pub struct Vec3<R>(pub [R; 3]);
 
@@ -44,7 +44,7 @@ impl<R: Real> Vec3<R> {
         Self([a - x, b - y, c - z])
     }
 
-    /// At length 1; what has no length stays without.
+    /// Normalizes to length 1; a vector without length stays 0.
     #[inline(always)]
     #[must_use]
     pub fn unit(self) -> Self {

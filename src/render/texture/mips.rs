@@ -1,20 +1,20 @@
-//! Textures that are seen from afar: a mean of the texels that a pixel covers, from pictures of them at
-//! half, a quarter, an eighth of the size.
+//! Mip maps: the mean of the texels that a pixel covers, from copies of the texture at half, a
+//! quarter, an eighth of its size.
 //!
-//! How many texels a pixel covers is the longer of the ways that its neighbours to the right and below
-//! lie off on the texture; its logarithm says between which two pictures to mix.
+//! The footprint of a pixel is the longer of the distances on the texture to its neighbours on the
+//! right and below; its logarithm gives the two levels to interpolate between.
 //!
-//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer way as in the specification of OpenGL
-//! 4.6, 8.14.1.
+//! Williams, "Pyramidal Parametrics", SIGGRAPH 1983; the longer distance as in the specification of
+//! OpenGL 4.6, 8.14.1.
 
+use super::sample::sample;
 use crate::accuracy::Filter;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
 use crate::render::simd::Number;
-use crate::render::texture::sample::sample;
 use crate::scene::Texture;
 
-/// A texture at the size that it has, at half of that, and so on down to one texel.
+/// A texture at its own size, at half of that, and so on down to one texel.
 #[derive(Debug)]
 pub(crate) struct Mips {
     of: Shared<Texture>,
@@ -32,12 +32,13 @@ impl Mips {
         Self { of: of.clone(), levels }
     }
 
-    /// Whether they are those of this texture.
+    /// Whether they belong to this texture.
     pub(crate) fn are_of(&self, texture: &Shared<Texture>) -> bool {
         Shared::same(&self.of, texture)
     }
 
-    /// Red, green, blue and alpha at a place whose neighbours on the screen lie these ways off.
+    /// Samples red, green, blue and alpha at `uv`, with the differences `ways` to the neighbours on
+    /// the screen.
     pub(crate) fn sample<T: Number>(&self, uv: [f64; 2], ways: [[f64; 2]; 2]) -> [T; 4] {
         let level = self.level(ways);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 32")]
@@ -54,7 +55,7 @@ impl Mips {
         }
     }
 
-    /// log2 of how many texels a pixel covers, as far as there are pictures.
+    /// The mip level: log2 of the texels that a pixel covers, clamped to the existing levels.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     fn level(&self, ways: [[f64; 2]; 2]) -> f64 {
         let Texture { picture, scale, .. } = &self.levels[0];
@@ -66,7 +67,7 @@ impl Mips {
     }
 }
 
-/// A picture at half its size: each pixel the mean of four, rounded to the nearest byte.
+/// Halves a picture: each pixel is the mean of four, rounded to the nearest byte.
 fn halved(picture: &Picture) -> Picture {
     let from = picture.size();
     let half = |side: usize| (side / 2).max(1);

@@ -1,4 +1,4 @@
-//! What a texture shows at a place: texels are bytes / 255, and (0, 0) is the lower left corner.
+//! Samples textures: texels are bytes / 255, and (0, 0) is the lower left corner.
 
 use crate::accuracy::Filter;
 use crate::render::simd::Number;
@@ -6,8 +6,8 @@ use crate::scene::{Texture, Wrap};
 
 /// Red, green, blue and alpha at `uv`, as factors.
 ///
-/// The place is computed in f64, so that every arithmetic of light sees the same texels; what lies
-/// between them is computed in `T`.
+/// The texel position is computed in f64, so that every arithmetic sees the same texels; bilinear
+/// interpolation is computed in `T`.
 #[inline(always)]
 pub(crate) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter) -> [T; 4] {
     let size = texture.picture.size();
@@ -27,7 +27,7 @@ pub(crate) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter)
     };
     match filter {
         Filter::Nearest => texel(whole(x), whole(y)),
-        // Of what the picture has at its own size; that it is seen from afar is asked before.
+        // At the texture's own size; mip maps are handled by the caller.
         Filter::Bilinear | Filter::Trilinear => {
             let (x, y) = (x - 0.5, y - 0.5);
             let (column, row) = (whole(x), whole(y));
@@ -42,7 +42,7 @@ pub(crate) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter)
     }
 }
 
-/// What each byte is as a factor: a part of 255.
+/// Each byte as a factor: byte / 255.
 const FACTORS: [f64; 256] = {
     let mut factors = [0.0; 256];
     let mut byte = 0;
@@ -53,7 +53,7 @@ const FACTORS: [f64; 256] = {
     factors
 };
 
-/// A coordinate brought to 0 to 1; 0 for what is no number.
+/// Wraps a coordinate to 0 to 1; NaN becomes 0.
 #[inline(always)]
 fn wrapped(coordinate: f64, wrap: Wrap) -> f64 {
     if !coordinate.is_finite() {
@@ -65,19 +65,19 @@ fn wrapped(coordinate: f64, wrap: Wrap) -> f64 {
     }
 }
 
-/// The whole number below a coordinate of the picture.
+/// Rounds a coordinate of the picture down to an integer.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "a place in or next to a picture")]
 fn whole(coordinate: f64) -> i64 {
     coordinate.floor() as i64
 }
 
-/// A column or row inside the picture.
+/// Wraps a column or row into the picture.
 #[inline(always)]
 fn bring(i: i64, count: usize, wrap: Wrap) -> usize {
     let count = i64::try_from(count).unwrap_or(i64::MAX);
     let inside = match wrap {
-        // As nearly always; a division takes longer than all else.
+        // The usual case; a division takes longer than everything else.
         _ if (0..count).contains(&i) => i,
         Wrap::Repeat => i.rem_euclid(count),
         Wrap::Clamp => i.clamp(0, count - 1),

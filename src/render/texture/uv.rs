@@ -1,14 +1,14 @@
-//! Where a triangle's pixels lie on its texture.
+//! Texture coordinates of triangles.
 
 use glam::DVec3;
 
 use crate::render::frame::draw::Draw;
 use crate::scene::NONE;
 
-/// The places on the texture of a triangle's corners.
+/// The texture coordinates of a triangle's corners.
 pub(crate) type Uvs = [[f64; 2]; 3];
 
-/// The place on the texture between those of the corners.
+/// Interpolates the texture coordinates of the corners.
 #[inline(always)]
 pub(crate) fn uv([a, b, c]: Uvs, weights: DVec3) -> [f64; 2] {
     let between = |axis: usize| {
@@ -19,7 +19,7 @@ pub(crate) fn uv([a, b, c]: Uvs, weights: DVec3) -> [f64; 2] {
     [between(0), between(1)]
 }
 
-/// The places on the texture of a triangle's corners; `None` where one has none.
+/// The texture coordinates of a triangle's corners; `None` if a corner has none.
 pub(crate) fn uvs(draw: &Draw, number: u32) -> Option<Uvs> {
     let mesh = &draw.model.mesh;
     let own = mesh.triangles()[number as usize];

@@ -15,14 +15,14 @@ const SIZE: Size = Size { width: 150, height: 140 };
 const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };
 const TILE_BOX: PixelBox = PixelBox { left: 0, top: 0, right: TILE, bottom: TILE };
 
-/// The middle, and what lies farthest from it to all sides.
+/// The centre, and the samples farthest from it to all sides.
 fn middle_and_others() -> [SamplePositions; 3] {
     [passes(Samples::One)[0], passes(Samples::Four)[0], passes(Samples::Sixteen)[3]]
 }
 
-/// Where sample `i` lies.
-fn shift(places: &SamplePositions, i: usize) -> [i32; 2] {
-    if places.are_many() { places.shift::<FOUR>(i) } else { [0; 2] }
+/// The offset of sample `i`.
+fn shift(sample_positions: &SamplePositions, i: usize) -> [i32; 2] {
+    if sample_positions.are_many() { sample_positions.shift::<FOUR>(i) } else { [0; 2] }
 }
 
 /// Numbers that look random.
@@ -33,22 +33,22 @@ fn numbers(mut state: u64) -> impl FnMut(i32) -> i32 {
     }
 }
 
-fn bins(places: SamplePositions) -> Bins {
+fn bins(sample_positions: SamplePositions) -> Bins {
     let mut bins = Bins::default();
-    bins.clear(SIZE, places);
+    bins.clear(SIZE, sample_positions);
     bins
 }
 
-/// The box of pixels that a triangle may cover in some of their samples.
-fn reached(corners: [Snapped; 3], places: &SamplePositions) -> PixelBox {
-    match places.are_many() {
-        true => PixelBox::reached(corners, places.reach::<FOUR>()),
+/// The pixels that a triangle may cover in some of their samples.
+fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBox {
+    match sample_positions.are_many() {
+        true => PixelBox::reached(corners, sample_positions.reach::<FOUR>()),
         false => PixelBox::of(corners),
     }
 }
 
 /// The bins with some small triangles, sixteen at the most.
-fn small(triangles: &[[Snapped; 3]], places: SamplePositions) -> Bins {
+fn small(triangles: &[[Snapped; 3]], sample_positions: SamplePositions) -> Bins {
     let mut rows = [[0; 16]; ROWS];
     for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
         for (i, corner) in corners.iter().enumerate() {
@@ -57,13 +57,13 @@ fn small(triangles: &[[Snapped; 3]], places: SamplePositions) -> Bins {
         }
         rows[9][lane] = number;
     }
-    let mut bins = bins(places);
+    let mut bins = bins(sample_positions);
     dispatch!(Level::new(), simd => {
         let mut pack = [i32x16::splat(simd, 0); ROWS];
         for (row, values) in rows.iter().zip(&mut pack) {
             *values = i32x16::from_slice(simd, row);
         }
-        match places.are_many() {
+        match sample_positions.are_many() {
             true => small::draw::<_, FOUR>(simd, &pack, &mut bins),
             false => small::draw::<_, 1>(simd, &pack, &mut bins),
         }
@@ -79,8 +79,8 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
         let (left, top) = (tile % 3 * TILE, tile / 3 * TILE);
         let own = PixelBox { left, top, right: left + TILE, bottom: top + TILE };
         let own = own.intersection(PICTURE);
-        visibility.clear(own, bins.places);
-        dispatch!(Level::new(), simd => match bins.places.are_many() {
+        visibility.clear(own, bins.sample_positions);
+        dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
             true => {
                 visibility.draw_plain::<_, FOUR>(simd, bins, tile as usize);
                 visibility.draw_hits::<_, FOUR>(simd, bins, tile as usize);
@@ -100,11 +100,11 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
     found
 }
 
-/// A sample is covered where the middle of its pixel is, when all is moved the other way.
-fn covered(corners: [Snapped; 3], places: &SamplePositions) -> Vec<(i32, i32, usize)> {
+/// A sample is covered if the centre of its pixel is, once the corners are moved the other way.
+fn covered(corners: [Snapped; 3], sample_positions: &SamplePositions) -> Vec<(i32, i32, usize)> {
     let mut samples = Vec::new();
-    for sample in 0..places.count() {
-        let seen_from = corners.map(|corner| corner.seen_from(shift(places, sample)));
+    for sample in 0..sample_positions.count() {
+        let seen_from = corners.map(|corner| corner.seen_from(shift(sample_positions, sample)));
         if let Some(triangle) = Triangle::new(seen_from) {
             triangle.covered(PICTURE, |pixel| samples.push((pixel.y, pixel.x, sample)));
         }
@@ -116,54 +116,54 @@ fn covered(corners: [Snapped; 3], places: &SamplePositions) -> Vec<(i32, i32, us
 #[test]
 fn every_way_covers_the_samples_that_the_rule_says() {
     let mut random = numbers(7);
-    for places in middle_and_others() {
+    for sample_positions in middle_and_others() {
         for extent in [1, 2, 4, 8, 30, 100] {
             for _ in 0..400 {
                 // Every second coordinate on a pixel's centre or border, or on that of a sample.
                 let (left, top) = (random(158) - 8, random(148) - 8);
                 let mut coordinate = |from: i32| {
                     let place = from * 256 + random(extent * 256);
-                    let grid = if places.are_many() { 16 } else { 128 };
+                    let grid = if sample_positions.are_many() { 16 } else { 128 };
                     if random(2) == 0 { place } else { place / grid * grid }
                 };
                 let corners =
                     [0, 1, 2].map(|_| Snapped { x: coordinate(left), y: coordinate(top) });
-                look_at(corners, places);
+                look_at(corners, sample_positions);
             }
         }
     }
 }
 
-/// Holds all ways of drawing a triangle to the rule.
-fn look_at(corners: [Snapped; 3], places: SamplePositions) {
-    let want = covered(corners, &places);
-    let bounds = reached(corners, &places);
+/// Compares all rasterizers with the rule of coverage.
+fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
+    let want = covered(corners, &sample_positions);
+    let bounds = reached(corners, &sample_positions);
     let side = bounds.width().max(bounds.height());
     if side <= SMALL[3] && !bounds.is_empty() {
-        let got = seen_in(&small(&[corners], places));
+        let got = seen_in(&small(&[corners], sample_positions));
         assert_eq!(got, want, "{corners:?} alone");
-        // Others far away are drawn pixel by pixel, whatever the tile.
+        // With others far away it is drawn pixel by pixel, whatever the tile.
         let far = [(2, 2), (140, 3), (4, 130), (141, 135)].map(|(x, y)| {
             [(0, 0), (200, 0), (0, 200)]
                 .map(|(dx, dy)| Snapped { x: x * 256 + dx, y: y * 256 + dy })
         });
-        let got = seen_in(&small(&[corners, far[0], far[1], far[2], far[3]], places));
+        let got = seen_in(&small(&[corners, far[0], far[1], far[2], far[3]], sample_positions));
         let nearer = |pixel: &(i32, i32, usize)| !got.contains(pixel);
         assert!(!want.iter().any(nearer), "{corners:?} among others");
         assert_eq!(got.len(), want.len(), "{corners:?} among others");
     }
-    let mut bins = bins(places);
+    let mut bins = bins(sample_positions);
     let corners = corners.map(|corner| ScreenVertex::new(corner, 0.5));
     bins.add_large(LargeTriangle { corners, number: 0, cutout: false }, bounds);
     assert_eq!(seen_in(&bins), want, "{corners:?} alone in 64 bits");
 }
 
-/// Squares that cover blocks as a whole, in few depths, some of them tilted.
+/// Squares that cover whole blocks, in few depths, some of them tilted.
 #[test]
 fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
     let mut random = numbers(5);
     for round in 0..300 {
-        let places = middle_and_others()[round % 3];
+        let sample_positions = middle_and_others()[round % 3];
         let triangles: Vec<LargeTriangle> = (0..6)
             .map(|number| {
                 let depth = random(4) as f32 / 4.0;
@@ -177,20 +177,23 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
             })
             .collect();
         let mut visibility = Visibility::default();
-        visibility.clear(TILE_BOX, places);
+        visibility.clear(TILE_BOX, sample_positions);
         for large in &triangles {
-            dispatch!(Level::new(), simd => match places.are_many() {
+            dispatch!(Level::new(), simd => match sample_positions.are_many() {
                 true => visibility.draw_large::<_, FOUR>(simd, large),
                 false => visibility.draw_large::<_, 1>(simd, large),
             });
         }
-        let want = one_by_one(&triangles, &places);
+        let want = one_by_one(&triangles, &sample_positions);
         let pixels = || (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y)));
         for (x, y) in pixels() {
             if let Some(number) = visibility.whole(block_at(x, y)) {
                 let want = want[(y * TILE + x) as usize];
                 let alike = |word: &u64| seen(*word) == Visible::Triangle(number);
-                assert!(want[..places.count()].iter().all(alike), "{x}, {y}: {triangles:?}");
+                assert!(
+                    want[..sample_positions.count()].iter().all(alike),
+                    "{x}, {y}: {triangles:?}"
+                );
             }
         }
         for (x, y) in pixels() {
@@ -201,13 +204,14 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
     }
 }
 
-/// The words of each pixel's samples, found triangle by triangle and sample by sample.
+/// The visibility of each pixel's samples, found triangle by triangle and sample by sample.
 #[expect(clippy::needless_range_loop, reason = "a sample is one of each pixel's")]
-fn one_by_one(triangles: &[LargeTriangle], places: &SamplePositions) -> Vec<[u64; FOUR]> {
+fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -> Vec<[u64; FOUR]> {
     let mut words = vec![[0; FOUR]; PIXELS];
     for large in triangles {
-        for sample in 0..places.count() {
-            let ends = large.corners.map(|corner| corner.seen_from(shift(places, sample)));
+        for sample in 0..sample_positions.count() {
+            let ends =
+                large.corners.map(|corner| corner.seen_from(shift(sample_positions, sample)));
             let moved = LargeTriangle { corners: ends, ..*large };
             let Some(triangle) = Triangle::new(ends.map(|corner| corner.at())) else { continue };
             let seen = Large::new(&moved, &triangle, [0, 0]);

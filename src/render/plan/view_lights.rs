@@ -1,25 +1,25 @@
-//! The lights of a frame, in the observer's terms.
+//! The lights of a frame, in view space.
 
 use glam::DVec3;
 
+use super::observer::ObserverSpace;
 use super::planning::{Planning, Shining};
 use super::rules::LightFacts;
-use super::uses::{Effect, EffectUse, State};
+use super::uses::{Effect, EffectState, EffectUse};
 use crate::base::math;
-use crate::render::lights;
-use crate::render::lights::{LightRow, ViewLight};
-use crate::render::plan::observer::ObserverSpace;
+use crate::render::lights::{self, LightRow, ViewLight};
 use crate::scene::{Aim, Attenuation, LightKind, Scene, View};
 
-/// The lights that a frame evaluates, in the observer's space.
-pub(super) fn lamps(
+/// Transforms the lights that a frame evaluates to view space.
+pub(super) fn view_lights(
     into: &mut Planning,
     scene: &Scene,
     view: &View,
     observer: &ObserverSpace,
 ) -> Vec<Shining> {
     let mut shining = Vec::new();
-    // The oldest first, as with objects: the order of the list cannot show in the last bit of a sum.
+    // The oldest first, as with objects, so that the order of the list does not change the last bit
+    // of a sum.
     let mut lights: Vec<_> = scene.lights.iter().collect();
     lights.sort_by_key(|(id, _)| *id);
     for (id, light) in lights {
@@ -31,20 +31,20 @@ pub(super) fn lamps(
                 effect: Effect::Light(id),
                 name: light.name.clone(),
                 on: None,
-                state: State::exact(reason),
+                state: EffectState::exact(reason),
                 pixels: None,
             });
             continue;
         }
-        // What is off or nowhere shines black: so it can be computed, too.
+        // A light that is off or has no position is black, so that it can be computed, too.
         let shines = light.on && source.is_some();
         let source = source.unwrap_or_else(|| Source::new(&lights::SPOT));
-        let lamp = u32::try_from(into.plan.lamps.len()).expect("fewer than 2^32 lights");
+        let index = u32::try_from(into.plan.lights.len()).expect("fewer than 2^32 lights");
         let (position, attenuation) =
             within_reach(place_of(&source), &light.attenuation, observer.unit);
         let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
-        into.plan.lights.push(id);
-        into.plan.lamps.push(ViewLight {
+        into.plan.light_ids.push(id);
+        into.plan.lights.push(ViewLight {
             color: if shines { light.color.factors() } else { [0.0; 3] },
             position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
@@ -52,33 +52,39 @@ pub(super) fn lamps(
             cos_half_aperture: source.cos_half_aperture,
             exponent: source.exponent.min(LARGEST),
         });
-        shining.push(Shining { id, name: light.name.clone(), effect: source.effect, lamp, shines });
+        shining.push(Shining {
+            id,
+            name: light.name.clone(),
+            effect: source.effect,
+            light: index,
+            shines,
+        });
     }
     shining
 }
 
-/// How far off a lamp may be, in units of view space, so that in f32 its distance has a square.
+/// The largest distance of a light, in units of view space, whose square fits f32.
 const REACH: f64 = 1e15;
 
-/// The largest exponent: what is off the axis is dark long before it.
+/// The largest exponent of a spot: everything off its axis is dark long before.
 const LARGEST: f64 = 1e30;
 
-/// A lamp's place in view space and the coefficients by which it fades there. One that is farther than
-/// [`REACH`] is brought that near, and fades in proportion: seen from a view of some thousand units,
-/// neither its direction nor its light changes by a part in 10^11.
+/// A light's position and attenuation in view space. A light that is farther than [`REACH`] is
+/// moved to that distance, with its attenuation in proportion: within a view of some thousand
+/// units, neither its direction nor its light changes by a part in 10^11.
 fn within_reach(place: DVec3, fades: &Attenuation, unit: f64) -> (DVec3, [f64; 3]) {
     let largest = place.abs().max_element();
     let nearer = if largest > REACH { largest / REACH } else { 1.0 };
-    // Held to what has a square.
+    // Clamped, so that its square fits f64.
     let step = (nearer / unit).min(1e150);
-    // What fades to nothing at once fades so at any distance.
-    let held = |coefficient: f64| coefficient.min(f64::MAX);
+    // A coefficient beyond the largest number is dark at any distance.
+    let clamped = |coefficient: f64| coefficient.min(f64::MAX);
     let coefficients =
-        [fades.constant, held(fades.linear * step), held(fades.quadratic * step * step)];
+        [fades.constant, clamped(fades.linear * step), clamped(fades.quadratic * step * step)];
     (place / nearer, coefficients)
 }
 
-/// Where light comes from, in world space.
+/// The source of a light in world space.
 struct Source {
     effect: &'static LightRow,
     position: DVec3,
@@ -100,7 +106,7 @@ impl Source {
     }
 }
 
-/// Where a light is now; `None` for a spot whose owner is not there.
+/// The source of a light at the view's time; `None` for a spot whose owner does not exist.
 fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
     Some(match kind {
         LightKind::Ambient => Source::new(&lights::AMBIENT),
