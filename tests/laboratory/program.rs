@@ -50,7 +50,7 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
         assert!(out.contains(part), "{part}\n{out}");
     }
     // The current settings are marked, and have no separate row if they are a choice of an axis.
-    assert!(out.lines().any(|line| line.contains('>') && line.contains("Face")), "{out}");
+    assert!(out.lines().any(|line| line.contains('>') && line.contains("Flat")), "{out}");
     let found = folder.path().join("found");
     let read = |name: &str| std::fs::read_to_string(found.join(name)).unwrap();
     assert_eq!(read("table.txt"), out);
