@@ -73,8 +73,7 @@ impl WorkStealing {
 ///
 /// The work holds locks on what it draws, so it calls nothing that waits for other threads: a
 /// thread that waits takes up other work, which may need the same locks. Everything that the work
-/// reads of a mesh is computed before
-/// ([`FramePlan::prepare`](crate::render::frame::FramePlan::prepare)).
+/// reads of a mesh is computed before (`FramePlan::prepare`).
 pub(crate) fn together(threads: usize, work: impl Fn() + Sync) {
     if threads == 1 {
         without_computing(work);

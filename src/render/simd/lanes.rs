@@ -34,7 +34,7 @@ pub trait Lanes: Copy {
     /// Loads integers of a row from `at` on.
     fn whole(self, row: &[i32], at: usize) -> Self::R;
     /// Stores colours in a row of pixels: red, green, blue and 255, as bytes in this order, each
-    /// rounded like [`Number::byte`].
+    /// rounded like [`Number::byte`](super::Number::byte).
     fn store_pixels(self, color: Vec3<Self::R>, row: &mut [u32], at: usize);
     /// The same, each the integer part of 255 times the number plus a threshold from 0 to 1.
     fn store_pixels_by(self, color: Vec3<Self::R>, threshold: Self::R, row: &mut [u32], at: usize);
