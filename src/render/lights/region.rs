@@ -20,7 +20,7 @@ const LEAST_ASIDE: f64 = 1e-6;
 /// The cosine up to which light along a face may count as coming from either side.
 pub(crate) const EDGE_ON: f64 = 1e-4;
 
-/// The convex hull of eight positions in view space, and a distance by which others may lie outside.
+/// The convex hull of eight positions in view space, and how far others may lie outside of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     corners: [DVec3; 8],
