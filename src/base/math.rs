@@ -138,8 +138,8 @@ pub fn at_power_of_two(m: DMat3) -> DMat3 {
     m * power_of_two_near(1.0 / largest_entry(m))
 }
 
-/// The largest power of two that is at most `x`, for `x` above 0; 1 if there is none. A number that
-/// is multiplied by it keeps its digits.
+/// The largest power of two that is at most `x`, for `x` above 0; 1 for any other. A number
+/// that is multiplied by it keeps its digits.
 #[must_use]
 pub fn power_of_two_near(x: f64) -> f64 {
     if x.is_normal() && x > 0.0 { libm::ldexp(1.0, libm::ilogb(x)) } else { 1.0 }

@@ -43,7 +43,7 @@ pub fn look(
     set_transform::pose(scene, view.camera, Pose { axes: turn * pose.axes, ..pose }, phase)
 }
 
-/// Orbits the camera around the centre of the selected object (the origin if there is none), by
+/// Orbits the camera around the centre of the selected object (the origin without one), by
 /// `yaw` about the world's Y and `pitch` about the camera's X, in radians.
 ///
 /// # Errors

@@ -6,7 +6,7 @@
 //!
 //! Each item has a label, a number that grows along the list. An id leads to its label, and a
 //! binary search for the label leads to the position. A new item gets a label between those of its
-//! neighbours; if there is none left, all items are relabelled: Dietz and Sleator, "Two Algorithms
+//! neighbours; if no label is left, all items are relabelled: Dietz and Sleator, "Two Algorithms
 //! for Maintaining Order in a List", STOC 1987.
 
 use std::fmt;

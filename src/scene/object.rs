@@ -48,7 +48,7 @@ pub enum Surface {
     Material,
     /// The texture, not lit.
     Texture,
-    /// The texture, lit; the material alone if there is none.
+    /// The texture, lit; the material alone without a texture.
     #[default]
     TextureAndLight,
 }

@@ -48,7 +48,7 @@ impl<T: Clone> Tracked<T> {
         Self { now, before: self.before.clone() }
     }
 
-    /// The value before the last transformation; `None` if there is none.
+    /// The value before the last transformation; `None` before the first.
     #[must_use]
     pub fn undone(&self) -> Option<Self> {
         self.before.as_deref().cloned()

@@ -12,11 +12,11 @@ use super::{CameraId, LightId, ObjectId};
 pub struct View {
     /// What the keys act on.
     pub subject: Subject,
-    /// The selected object; `None` only if there is none.
+    /// The selected object; `None` only in a scene without objects.
     pub object: Option<ObjectId>,
     /// The selected camera.
     pub camera: CameraId,
-    /// The selected light; `None` only if there is none.
+    /// The selected light; `None` only in a scene without lights.
     pub light: Option<LightId>,
     /// What the keys x, y and z do.
     pub transformation: Transformation,

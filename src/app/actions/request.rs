@@ -89,7 +89,7 @@ pub enum LabRequest {
     ShowLesson(&'static str),
 }
 
-/// Asks for a change of the scene, or tells why there is none.
+/// Asks for a change of the scene, or says why it is refused.
 pub(crate) fn change(
     requests: &mut Vec<Request>,
     label: impl Into<String>,

@@ -10,7 +10,7 @@ pub struct Batch<T> {
     pub len: usize,
     /// The positions, in view space.
     pub position: [[T; BATCH]; 3],
-    /// Their normals: of length 1, or zero where there is none.
+    /// Their normals: of length 1, or zero at positions without a normal.
     pub normal: [[T; BATCH]; 3],
     /// The directions to the observer, of length 1: V.
     pub to_eye: [[T; BATCH]; 3],
@@ -62,7 +62,7 @@ pub struct Sample<R> {
 pub struct Reflected<R> {
     /// See [`Batch::diffuse`].
     pub diffuse: Vec3<R>,
-    /// See [`Batch::specular`]; `None` if there is none.
+    /// See [`Batch::specular`]; `None` if it is zero.
     pub specular: Option<Vec3<R>>,
 }
 

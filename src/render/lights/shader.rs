@@ -31,7 +31,7 @@ pub trait LightShader {
     fn is_behind(_: &ViewLight, _: &Region, _: &Turning) -> bool {
         false
     }
-    /// The largest fraction of its light that arrives in a region, or anywhere if there is none.
+    /// The largest fraction of its light that arrives in a region, or anywhere without one.
     fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
         1.0
     }

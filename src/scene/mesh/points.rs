@@ -267,7 +267,7 @@ fn filed_points(
     if chained.is_empty() { Vec::new() } else { filed }
 }
 
-/// A normal as it is shown: (0, 0, 1) if there is none.
+/// A normal as it is shown: (0, 0, 1) if it has no length.
 pub(crate) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
     narrow(normal.unwrap_or(DVec3::Z))
 }
