@@ -18,7 +18,7 @@ use cpu_time::ProcessTime;
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::Shot;
-use marraztu::accuracy::{LightAt, Samples, Settings};
+use marraztu::accuracy::{Filter, LightAt, Samples, Settings};
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::{Shared, color::Color, math};
 use marraztu::io::{self, LoadError, Progress, SaveError};
@@ -30,8 +30,8 @@ use marraztu::render::plan_frame;
 use marraztu::scene::{
     Aim, Attenuation, Camera, CameraId, Command, CommandError, Crease, Fill, Item, Lens, Light,
     LightId, LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
-    Normals, Object, ObjectId, Orbit, Part, Pose, Scene, Sides, SourceCorner, SpotOwner, Tracked,
-    View, dvec3,
+    Normals, Object, ObjectId, Orbit, Part, Pose, Scene, Sides, SourceCorner, SpotOwner, Surface,
+    Texture, Tracked, View, Wrap, dvec3,
 };
 
 /// Measures one drawing job, in a form that other renderers share.
@@ -49,7 +49,7 @@ struct Job {
     /// The model (.obj)
     #[arg(long)]
     mesh: PathBuf,
-    /// How to draw it: flat, gouraud, phong, depth, wire
+    /// How to draw it: flat, gouraud, phong, nearest, bilinear, trilinear, depth, wire
     #[arg(long)]
     mode: String,
     /// Width and height in pixels; one number for a square
@@ -107,6 +107,8 @@ enum Mode {
     Gouraud,
     /// Lit at pixels.
     Phong,
+    /// Lit at pixels, with a texture.
+    Textured(Filter),
     /// One colour.
     Depth,
     /// Every edge once.
@@ -114,10 +116,13 @@ enum Mode {
 }
 
 impl Mode {
-    const ALL: [(&str, Self); 5] = [
+    const ALL: [(&str, Self); 8] = [
         ("flat", Self::Flat),
         ("gouraud", Self::Gouraud),
         ("phong", Self::Phong),
+        ("nearest", Self::Textured(Filter::Nearest)),
+        ("bilinear", Self::Textured(Filter::Bilinear)),
+        ("trilinear", Self::Textured(Filter::Trilinear)),
         ("depth", Self::Depth),
         ("wire", Self::Wire),
     ];
@@ -160,7 +165,8 @@ fn run(job: &Job) -> Result<String, Failure> {
     let (mode, samples, level) = supported(job).map_err(Failure::Unsupported)?;
     // The job computes its own normals.
     let options = LoadOptions { crease: Crease::SMOOTH, ..LoadOptions::default() };
-    let model = prepared(&io::load(&job.mesh, &options, &Progress::new())?.model, job.raw);
+    let loaded = &io::load(&job.mesh, &options, &Progress::new())?.model;
+    let model = prepared(loaded, job.raw, matches!(mode, Mode::Textured(_)));
     let triangles = model.mesh.triangle_count();
     let measured = measure(job, level, &stage(job, mode, samples, Shared::new(model))?)?;
     if let Some(out) = &job.out {
@@ -183,7 +189,8 @@ fn supported(job: &Job) -> Result<(Mode, Samples, Level), String> {
     let Job { mode, msaa, instructions, .. } = job;
     let found = Mode::ALL.into_iter().find(|(name, _)| name == mode);
     let (_, mode) = found.ok_or_else(|| {
-        format!("the mode \"{mode}\" is not supported; there are flat, gouraud, phong, depth, wire")
+        let all = Mode::ALL.map(|(name, _)| name).join(", ");
+        format!("the mode \"{mode}\" is not supported; there are {all}")
     })?;
     let samples = Samples::ALL.into_iter().find(|samples| samples.count() == *msaa);
     let samples = samples.ok_or_else(|| {
@@ -245,8 +252,9 @@ fn measure(
 }
 
 /// The job's mesh: its bounding box centred at the origin, its farthest vertex 100 away, with
-/// normals that are the sums of the face normals around a vertex, weighted by area.
-fn prepared(model: &Model, raw: bool) -> Model {
+/// normals that are the sums of the face normals around a vertex, weighted by area, and with places
+/// on the texture if it is `textured`.
+fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
     let mesh = &model.mesh;
     let positions: Vec<DVec3> = mesh.positions().iter().map(|p| dvec3(*p)).collect();
     let centre = mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
@@ -266,9 +274,15 @@ fn prepared(model: &Model, raw: bool) -> Model {
     }
     let narrow = |v: &DVec3| v.as_vec3().to_array();
     let unit = |v: &DVec3| narrow(&math::unit(*v).unwrap_or(DVec3::Z));
-    let corner = |&position: &u32| SourceCorner { position, uv: NONE, normal: position };
+    let corner = |&position: &u32| {
+        let uv = if textured { position } else { NONE };
+        SourceCorner { position, uv, normal: position }
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    let uv = |p: &DVec3| [(2.0 + p.x / 50.0) as f32, (2.0 + p.y / 50.0) as f32];
     let source = MeshSource {
         positions: positions.iter().map(narrow).collect(),
+        uvs: if textured { positions.iter().map(uv).collect() } else { Vec::new() },
         normals: normals.iter().map(unit).collect(),
         corners: corners.as_flattened().iter().map(corner).collect(),
         arities: vec![3; corners.len()],
@@ -286,6 +300,28 @@ fn prepared(model: &Model, raw: bool) -> Model {
     }
 }
 
+/// The texture of the job: random texels, the row at v = 0 first.
+fn texture() -> Texture {
+    const SIDE: usize = 512;
+    let mut state = 1_u32;
+    let mut byte = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        state.to_be_bytes()[0]
+    };
+    let rows: Vec<[[u8; 4]; SIDE]> =
+        (0..SIDE).map(|_| std::array::from_fn(|_| [byte(), byte(), byte(), 255])).collect();
+    // A picture's rows run down.
+    let pixels = rows.iter().rev().flatten().copied().collect();
+    let picture = Picture::from_pixels(Size::new(SIDE, SIDE), pixels).expect("all its pixels");
+    Texture {
+        source: PathBuf::new(),
+        picture: picture.into(),
+        wrap: Wrap::Repeat,
+        offset: [0.0; 2],
+        scale: [1.0; 2],
+    }
+}
+
 fn stage(
     job: &Job,
     mode: Mode,
@@ -294,7 +330,7 @@ fn stage(
 ) -> Result<Stage, CommandError> {
     let [ambient, diffuse, specular] = match mode {
         Mode::Depth => [[0.9, 0.8, 0.6], [0.0; 3], [0.0; 3]],
-        Mode::Flat | Mode::Gouraud | Mode::Phong | Mode::Wire => {
+        Mode::Flat | Mode::Gouraud | Mode::Phong | Mode::Textured(_) | Mode::Wire => {
             [[0.8, 0.75, 0.7], [0.8, 0.75, 0.7], [0.5; 3]]
         }
     };
@@ -312,6 +348,14 @@ fn stage(
     object.edge_color = Color::from_factors([0.9, 0.8, 0.6]);
     // Edges are drawn whichever way their faces are turned.
     object.sides = if mode == Mode::Wire { Sides::Two } else { Sides::One };
+    let mut settings = Settings { samples, ..Settings::default() };
+    match mode {
+        Mode::Textured(filter) => {
+            object.texture = Some(Shared::new(texture()));
+            settings.filter = filter;
+        }
+        _ => object.surface = Surface::Material,
+    }
     let item = Item::Object(ObjectId(1), Box::new(object));
     Command::Insert { at: 0, item }.apply(&mut scene)?;
     for (i, light) in (0..).zip(lights(mode)) {
@@ -324,12 +368,12 @@ fn stage(
         normals: if mode == Mode::Flat { Normals::Face } else { Normals::Vertex },
         ..scene.first_view()
     };
-    let light = match mode {
+    settings.light = match mode {
         Mode::Flat => LightAt::Face,
         Mode::Gouraud => LightAt::Vertex,
-        Mode::Phong | Mode::Depth | Mode::Wire => LightAt::Pixel,
+        Mode::Phong | Mode::Textured(_) | Mode::Depth | Mode::Wire => LightAt::Pixel,
     };
-    Ok((scene, view, Settings { light, samples, ..Settings::default() }))
+    Ok((scene, view, settings))
 }
 
 fn lights(mode: Mode) -> Vec<Light> {

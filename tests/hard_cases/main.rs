@@ -28,4 +28,5 @@ mod files_and_scale;
 mod geometry;
 mod interpolation;
 mod light;
+mod textures;
 mod undo;

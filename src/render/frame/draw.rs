@@ -58,8 +58,6 @@ impl Draw {
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
-        let placed = |shaded: &&Shaded| shaded.texture.is_some() || shaded.vertex_colors;
-        let by_corner = by_face || shaded.iter().any(placed);
         let Lines { edges, face_normals, .. } = self.lines;
         for (what, needed) in [
             (Derived::DrawOrder, true),
@@ -67,8 +65,8 @@ impl Draw {
             (Derived::EdgeOrder, edges),
             (Derived::Facets, flat),
             (Derived::PolygonNormals, by_face || face_normals.is_some()),
-            (Derived::Triangles, by_corner),
-            (Derived::Corners, by_corner || edges),
+            (Derived::Triangles, by_face),
+            (Derived::Corners, by_face || edges),
         ] {
             if needed {
                 self.model.mesh.prepare(what);

@@ -4,11 +4,13 @@
 //! fragments; everything else is coloured like other blocks.
 
 use super::context::ShadingContext;
-use super::full_blocks::{BlockLight, Blocks, Canvas};
+use super::full_blocks::{BlockLight, Blocks, Canvas, ROW};
 use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::surface::{Out, Shader};
+use super::texels::PlacedTexture;
+use super::textured::sampler;
 use crate::accuracy::{LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
 
@@ -24,7 +26,8 @@ impl<T: ShadingNumber> Shader<T> {
         let group = group_of(context, number);
         let [x, y] = blocks.corner;
         self.fragments.list_full_block(number, [x, y]);
-        if self.mix_blocks(context, &group, blocks, canvas)
+        if self.fill_blocks(context, &group, blocks, canvas)
+            || self.mix_blocks(context, &group, blocks, canvas)
             || self.light_blocks(context, &group, blocks, canvas)
         {
             return;
@@ -35,6 +38,38 @@ impl<T: ShadingNumber> Shader<T> {
             let at = canvas.offset(place);
             self.color_group(context, &group, &mut Out::Tile(canvas, at));
         });
+    }
+
+    /// Fills fully covered blocks, if all of their pixels have one colour. Returns whether that was
+    /// so.
+    fn fill_blocks(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        blocks: Blocks,
+        canvas: &mut Canvas<'_>,
+    ) -> bool {
+        let plan = context.plan;
+        let is_uniform = match &plan.pipelines[group.pipeline as usize] {
+            Pipeline::Flat(_) => true,
+            Pipeline::Shaded(shaded) => {
+                shaded.texture.is_none()
+                    && !shaded.vertex_colors
+                    && plan.variants.rounding != Rounding::Dithered
+                    && (shaded.light.is_none() || plan.light_at == LightAt::Face)
+            }
+        };
+        if is_uniform {
+            let color = self.first_color(context, group);
+            blocks.each(|[column, row]| {
+                let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
+                let at = canvas.offset(place);
+                for row in canvas.pixels[at..].chunks_mut(canvas.stride).take(ROW) {
+                    row[..ROW].fill(color);
+                }
+            });
+        }
+        is_uniform
     }
 
     /// Colours fully covered blocks in one pass, if only the colours of the corners have to be
@@ -66,7 +101,8 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
-    /// per pixel and nothing else is done to them. Returns whether that was so.
+    /// per pixel or not at all, with or without a texture, and nothing else is done to them. Returns
+    /// whether that was so.
     fn light_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -78,31 +114,46 @@ impl<T: ShadingNumber> Shader<T> {
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return false;
         };
+        let is_lit = shaded.light.is_some();
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
-        let textured = shaded.texture.is_some() || shaded.vertex_colors;
         let has_variant = plan.variants.locates_one_by_one()
             || plan.variants.root_variant().is_some()
             || plan.variants.rounding != Rounding::Nearest;
-        if shaded.light.is_none()
-            || !pixels
-            || textured
+        if (is_lit && !pixels)
+            || shaded.vertex_colors
             || has_variant
             || group.draw.back == Back::Red
         {
             return false;
         }
+        let texture = shaded.texture.as_deref();
+        let mips = shaded.texture.as_ref().and_then(|texture| terms.mips_of(texture));
+        let sampler = texture.and_then(|texture| sampler(context, texture, mips));
         let new = self.take(context, group, true);
-        let Self { tile, attributes, batch, .. } = self;
-        let lights = tile.light(plan, group.pipeline, shaded);
-        if !lights.needs_positions {
+        if let Some(texture) = texture {
+            let Some(sampler) = &sampler else { return false };
+            if new {
+                self.place_texture(context, group, texture, sampler);
+            }
+            if self.placement.known & 1 == 0 {
+                // The other way fetches what it needs.
+                self.attributes.forget();
+                return false;
+            }
+        }
+        let Self { tile, attributes, batch, placement, .. } = self;
+        let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
+        let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
+        if !needs_positions {
             attributes.forget();
         } else if new {
             attributes.carry_normals(group.draw);
             attributes.spread(level);
         }
         let light = BlockLight {
-            look: lights.needs_positions.then(|| Look::new(plan, group.draw)),
+            look: needs_positions.then(|| Look::new(plan, group.draw)),
             tint: shaded.tint.map(T::from_f64),
+            texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, sampler }),
             lights,
             terms: terms.of(group.pipeline),
         };

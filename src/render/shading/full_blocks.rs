@@ -11,13 +11,14 @@ use fearless_simd::{
 use super::barycentrics::with_perspective;
 use super::interpolate::{Look, between, depth_between};
 use super::quantize::reflected;
+use super::texels::{OfFirst, PlacedTexture, product};
 use super::triangle_attributes::TriangleAttributes;
-use crate::render::lights::{Batch, LightTerm, set};
+use crate::render::lights::{Batch, LightTerm, load, set, store};
 use crate::render::plan::tile::TileLight;
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Lanes as _, Sixteen, Vec3};
+use crate::render::simd::{BATCH, Lanes as _, Sixteen, Vec3};
 
 /// The pixels of a tile, in rows that begin `stride` pixels apart.
 #[derive(Debug)]
@@ -67,7 +68,8 @@ impl Blocks {
     }
 }
 
-const ROW: usize = BLOCK as usize;
+/// Pixels to a side of a block.
+pub(crate) const ROW: usize = BLOCK as usize;
 /// Two rows of a block at a time.
 const PAIRS: usize = ROW / 2;
 const COLUMNS: [f64; ROW] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
@@ -228,7 +230,10 @@ pub(crate) struct BlockLight<'a, T> {
     pub(crate) look: Option<Look<T>>,
     /// The colour of the surface itself.
     pub(crate) tint: [T; 3],
-    pub(crate) lights: TileLight<'a>,
+    /// The texture by which it is multiplied.
+    pub(crate) texture: Option<PlacedTexture<'a>>,
+    /// The lights, if it is lit.
+    pub(crate) lights: Option<TileLight<'a>>,
     /// The products of the lights and the material.
     pub(crate) terms: &'a [LightTerm<T>],
 }
@@ -257,7 +262,7 @@ fn lit<S: Simd>(
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let BlockLight { look, tint, lights, terms } = light;
+    let BlockLight { look, tint, texture, lights, terms } = light;
     let by_w = of_first(lanes, &attributes.by_w);
     let z = of_first(lanes, &attributes.z);
     let corners = corners(lanes, attributes);
@@ -267,21 +272,30 @@ fn lit<S: Simd>(
     let [left, top] = blocks.corner;
     batch.len = BLOCK_PIXELS;
     let mut is_lit = false;
+    let mut texels = [[0.0; BATCH]; 3];
     blocks.each(
         #[inline(always)]
         |[column, row]| {
             let [x, y] = [left + column, top + row];
-            if let Some(look) = &look {
+            if look.is_some() || texture.is_some() {
                 let pairs = linear.block(simd, [x, y]);
                 for ((pair, linear), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
                     let (weights, w) = with_perspective(lanes, linear, by_w);
-                    let place = [across + x, down + y].map(|i| i.to_float::<f32x16<S>>() + 0.5);
-                    let normal = between(corners, weights);
-                    let sample = look.at(lanes, normal, place, w, || depth_between(z, weights));
-                    batch.put(lanes, sample, 16 * pair);
+                    if let Some(look) = &look {
+                        let place = [across + x, down + y].map(|i| i.to_float::<f32x16<S>>() + 0.5);
+                        let normal = between(corners, weights);
+                        let sample = look.at(lanes, normal, place, w, || depth_between(z, weights));
+                        batch.put(lanes, sample, 16 * pair);
+                    }
+                    if let Some(texture) = &texture {
+                        let texel = texture.texel(simd, &OfFirst, weights, w);
+                        store(lanes, product(tint, texel), &mut texels, 16 * pair);
+                    }
                 }
             }
-            if look.is_some() || !is_lit {
+            if let Some(lights) = &lights
+                && (look.is_some() || !is_lit)
+            {
                 is_lit = true;
                 batch.darken();
                 lights.light_batch(terms, simd.level(), batch);
@@ -289,7 +303,15 @@ fn lit<S: Simd>(
             let mut at = canvas.offset([column as usize, row as usize]);
             for pair in 0..PAIRS {
                 let mut pixels = [0; 16];
-                lanes.store_pixels(reflected(lanes, tint, batch, 16 * pair), &mut pixels, 0);
+                let own = match texture {
+                    Some(_) => load(lanes, &texels, 16 * pair),
+                    None => tint,
+                };
+                let color = match lights {
+                    Some(_) => reflected(lanes, own, batch, 16 * pair),
+                    None => own,
+                };
+                lanes.store_pixels(color, &mut pixels, 0);
                 canvas.put(at, &pixels);
                 at += 2 * canvas.stride;
             }

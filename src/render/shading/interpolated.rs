@@ -5,10 +5,11 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, 
 use super::barycentrics::{Barycentrics, Perspective};
 use super::fragments::Fragments;
 use super::full_blocks::{self, BlockLight, Blocks, Canvas, Linear as _, Wide};
+use super::texels::TextureSamples;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
-use crate::render::lights::{Batch, Light, set};
+use crate::render::lights::{Batch, Light, Rows, set};
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::weights::{barycentric, cut_place, cut_w, cut_weights};
 use crate::render::simd::gather::{SLOTS, paged, pick};
@@ -48,6 +49,14 @@ pub(crate) trait Interpolated: AttributeNumber {
         light: (BlockLight<'_, Self>, &mut Batch<Self>),
         to: &mut Canvas<'_>,
     ) -> bool;
+    /// Multiplies the colours of fragments by those of a texture, if that can be done sixteen
+    /// pixels at a time. Returns the slots, a bit for each, of the triangles that it was done for.
+    fn multiply_texels(
+        level: Level,
+        count: usize,
+        samples: &TextureSamples<'_, Self>,
+        to: &mut Rows<Self>,
+    ) -> u64;
 }
 
 impl<T: Interpolated> Barycentrics<T> {
@@ -155,6 +164,15 @@ impl Interpolated for f64 {
     ) -> bool {
         false
     }
+
+    fn multiply_texels(
+        _: Level,
+        _: usize,
+        _: &TextureSamples<'_, Self>,
+        _: &mut Rows<Self>,
+    ) -> u64 {
+        0
+    }
 }
 
 impl Interpolated for f32 {
@@ -206,6 +224,16 @@ impl Interpolated for f32 {
         to: &mut Canvas<'_>,
     ) -> bool {
         full_blocks::light(level, attributes, blocks, light, to)
+    }
+
+    fn multiply_texels(
+        level: Level,
+        count: usize,
+        samples: &TextureSamples<'_, Self>,
+        to: &mut Rows<Self>,
+    ) -> u64 {
+        paged!(count, PAGES => dispatch!(level, simd => samples.multiply::<_, PAGES>(simd, to)));
+        samples.texture.placement.known
     }
 }
 

@@ -28,6 +28,7 @@ use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
+use crate::render::texture::placement::Placement;
 
 /// Shades blocks. Each thread has its own.
 #[derive(Debug)]
@@ -38,6 +39,8 @@ pub(crate) struct Shader<T> {
     pub(crate) attributes: TriangleAttributes<T>,
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
+    /// Where the textures of the triangles lie.
+    pub(crate) placement: Placement,
     pub(crate) texels: Rows<T>,
     colors: Colors,
 }
@@ -70,6 +73,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             attributes: TriangleAttributes::default(),
             barycentrics: Barycentrics::default(),
             batch: Batch::default(),
+            placement: Placement::default(),
             texels: [[T::default(); BATCH]; 3],
             colors: Colors::default(),
         }
@@ -154,6 +158,17 @@ impl<T: ShadingNumber> Shader<T> {
                 sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
             }
         }
+    }
+
+    /// The colour of the first fragment of a group.
+    pub(crate) fn first_color(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+    ) -> [u8; 4] {
+        self.colors.form = Form::Pixels;
+        self.group(context, group);
+        self.colors.pixels[0].to_le_bytes()
     }
 
     /// Colours a block that shows several draws or pipelines, group by group.
@@ -255,7 +270,7 @@ impl<T: ShadingNumber> Shader<T> {
             Some((LightAt::Face, stages)) => self.light_faces(context, group, stages, each),
         }
         if textured {
-            self.texels(context, group, shaded);
+            self.texels(context, group, shaded, new);
         }
         let Self { batch, texels, colors, .. } = self;
         let own = if textured {

@@ -1,13 +1,211 @@
-//! The footprint of a pixel on its texture, and vertex colours.
+//! Texels of fragments, sixteen at a time; the footprint of a pixel on its texture; vertex colours.
 
+use fearless_simd::{Simd, SimdBase as _, f32x16, i32x16};
 use glam::DVec3;
 
+use super::barycentrics::Barycentrics;
+use super::fragments::Fragments;
+use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
+use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
+use crate::render::lights::{Rows, load, store};
 use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::screen::clip::Screen;
+use crate::render::screen::coverage::{SUBPIXELS, doubled_area};
 use crate::render::screen::weights::Weights;
+use crate::render::simd::gather::SLOTS;
+use crate::render::simd::{Lanes as _, Real, Sixteen, Vec3};
+use crate::render::texture::lanes::Sampler;
+use crate::render::texture::placement::{Placement, Steps};
 use crate::render::texture::uv::uvs;
 use crate::scene::dvec3;
+
+/// A texture on the triangles of a list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedTexture<'a> {
+    pub(crate) placement: &'a Placement,
+    pub(crate) sampler: &'a Sampler<'a>,
+}
+
+/// What the texels of some fragments are sampled from.
+#[derive(Debug)]
+pub(crate) struct TextureSamples<'a, T> {
+    pub(crate) fragments: &'a Fragments,
+    pub(crate) barycentrics: &'a Barycentrics<T>,
+    pub(crate) texture: PlacedTexture<'a>,
+}
+
+impl TextureSamples<'_, f32> {
+    /// Multiplies colours by the texels of all fragments; those of triangles whose placement is not
+    /// known get arbitrary factors.
+    #[inline(always)]
+    pub(crate) fn multiply<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut Rows<f32>) {
+        let Self { fragments, barycentrics, texture } = *self;
+        let lanes = Sixteen(simd);
+        for at in (0..fragments.len).step_by(16) {
+            let slots = OfSlots::<S, PAGES>(lanes.slots(&fragments.slots, at));
+            let second = lanes.load(&barycentrics.weights[0], at);
+            let third = lanes.load(&barycentrics.weights[1], at);
+            let w = lanes.load(&barycentrics.w, at);
+            let texel = texture.texel(simd, &slots, [second, third], w);
+            store(lanes, product(load(lanes, to, at), texel), to, at);
+        }
+    }
+}
+
+/// The product of two colours.
+#[inline(always)]
+pub(crate) fn product<R: Real>(Vec3([r, g, b]): Vec3<R>, Vec3([x, y, z]): Vec3<R>) -> Vec3<R> {
+    Vec3([r * x, g * y, b * z])
+}
+
+/// The triangles of sixteen pixels.
+pub(crate) trait Triangles<S: Simd> {
+    /// The numbers of the triangles in a row.
+    fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S>;
+}
+
+/// Those of some slots, all below `PAGES` times sixteen.
+struct OfSlots<S: Simd, const PAGES: usize>(i32x16<S>);
+
+impl<S: Simd, const PAGES: usize> Triangles<S> for OfSlots<S, PAGES> {
+    #[inline(always)]
+    fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S> {
+        Sixteen(simd).pick::<PAGES>(row, self.0)
+    }
+}
+
+/// The first triangle of the list.
+pub(crate) struct OfFirst;
+
+impl<S: Simd> Triangles<S> for OfFirst {
+    #[inline(always)]
+    fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S> {
+        f32x16::splat(simd, row[0])
+    }
+}
+
+impl PlacedTexture<'_> {
+    /// Red, green and blue, as factors, at sixteen points with these perspective-correct weights of
+    /// the second and third corner, and this w.
+    #[inline(always)]
+    pub(crate) fn texel<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        weights: [f32x16<S>; 2],
+        w: f32x16<S>,
+    ) -> Vec3<f32x16<S>> {
+        let way = [self.way(simd, of, weights, 0), self.way(simd, of, weights, 1)];
+        let position = [self.position(simd, of, way[0], 0), self.position(simd, of, way[1], 1)];
+        self.sampler.sample(
+            simd,
+            position,
+            #[inline(always)]
+            || {
+                let right = self.to_neighbour(simd, of, (way, w), 0);
+                Real::max(right, self.to_neighbour(simd, of, (way, w), 1))
+            },
+        )
+    }
+
+    /// The texels from the first corner to the point along an axis.
+    #[inline(always)]
+    fn way<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        [second, third]: [f32x16<S>; 2],
+        axis: usize,
+    ) -> f32x16<S> {
+        of.pick(simd, &self.placement.second[axis]) * second
+            + of.pick(simd, &self.placement.third[axis]) * third
+    }
+
+    /// The position of the point along an axis, in texels.
+    #[inline(always)]
+    fn position<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        way: f32x16<S>,
+        axis: usize,
+    ) -> f32x16<S> {
+        let texels = of.pick(simd, &self.placement.first[axis]) + way;
+        let texels = Real::max(texels, of.pick(simd, &self.placement.low[axis]));
+        Real::min(texels, of.pick(simd, &self.placement.high[axis]))
+    }
+
+    /// The square of the distance in texels to the next pixel on the right (0) or below (1). With
+    /// u = U w, where U and 1/w change by dU and d to that pixel:
+    ///
+    ///   (U + dU) / (1/w + d) - U w = (dU - u d) w / (1 + w d)
+    #[inline(always)]
+    fn to_neighbour<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        ([u, v], w): ([f32x16<S>; 2], f32x16<S>),
+        which: usize,
+    ) -> f32x16<S> {
+        let Placement { steps, by_w_steps, .. } = self.placement;
+        let by_w = of.pick(simd, &by_w_steps[which]);
+        let per = w / (by_w * w + 1.0);
+        let u = (of.pick(simd, &steps[which][0]) - u * by_w) * per;
+        let v = (of.pick(simd, &steps[which][1]) - v * by_w) * per;
+        u * u + v * v
+    }
+}
+
+/// The [`Steps`] of a triangle; `None` if it has no area.
+pub(crate) fn steps<T: AttributeNumber>(
+    (plan, draw): (&FramePlan, &Draw),
+    attributes: &TriangleAttributes<T>,
+    slot: usize,
+) -> Option<Steps> {
+    if attributes.cut >> slot & 1 == 1 {
+        return cut_steps(plan, draw, attributes.numbers[slot]);
+    }
+    let corners = attributes.corners(slot);
+    let [a, b, c] = corners.map(|corner| [corner.x, corner.y].map(f64::from));
+    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+    let area = doubled_area(corners) as f64;
+    if area == 0.0 {
+        return None;
+    }
+    let by_w: [f64; 3] = [0, 1, 2].map(|corner| attributes.by_w[corner][slot].into());
+    let per_pixel = f64::from(SUBPIXELS) / area;
+    // Of the barycentric coordinates of the second and the third corner.
+    let right = [c[1] - a[1], a[1] - b[1]].map(|step| step * per_pixel);
+    let down = [a[0] - c[0], b[0] - a[0]].map(|step| step * per_pixel);
+    Some(
+        [right, down].map(|[second, third]| {
+            [-(second + third) * by_w[0], second * by_w[1], third * by_w[2]]
+        }),
+    )
+}
+
+/// Those of a clipped triangle, in homogeneous coordinates: with corners p, q and r as (x, y, w),
+/// N0 is (q x r) . (x, y, 1) / (p . (q x r)) at (x, y). See
+/// [`homogeneous_weights`](crate::render::screen::clip::homogeneous_weights).
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+fn cut_steps(plan: &FramePlan, draw: &Draw, number: u32) -> Option<Steps> {
+    let screen = Screen::new(draw.clip_from_object, plan.size);
+    let order = draw.model.mesh.draw_order();
+    let [p, q, r] = order.vertices_of(number).map(|vertex| {
+        let [x, y, _, w] = screen.clip(order.position(vertex));
+        DVec3::new(x, y, w)
+    });
+    let planes = [q.cross(r), r.cross(p), p.cross(q)];
+    let volume = p.dot(planes[0]);
+    if volume == 0.0 {
+        return None;
+    }
+    let right = 2.0 / plan.size.width as f64 / volume;
+    let down = -2.0 / plan.size.height as f64 / volume;
+    Some([planes.map(|plane| plane.x * right), planes.map(|plane| plane.y * down)])
+}
 
 /// The footprint of a pixel: the differences of uv to its neighbours on the right and below.
 #[cold]
@@ -30,11 +228,8 @@ pub(crate) fn uv_ways(
 }
 
 /// The interpolated vertex colour.
-pub(crate) fn color(draw: &Draw, number: u32, weights: DVec3) -> [f64; 3] {
-    let mesh = &draw.model.mesh;
-    let own = mesh.triangles()[number as usize];
-    let [a, b, c] = own
-        .corners
-        .map(|corner| dvec3(mesh.colors()[mesh.corners()[corner as usize].position as usize]));
+#[inline(always)]
+pub(crate) fn color(corners: [[f32; 3]; 3], weights: DVec3) -> [f64; 3] {
+    let [a, b, c] = each(corners, dvec3);
     (a + (b - a) * weights.y + (c - a) * weights.z).to_array()
 }

@@ -1,67 +1,157 @@
 //! The colour of a surface, pixel by pixel: texture, vertex colours and tint.
 
-use fearless_simd::dispatch;
+use fearless_simd::{Level, dispatch};
 
 use super::context::ShadingContext;
 use super::groups::Group;
 use super::interpolated::ShadingNumber;
 use super::surface::Shader;
-use super::texels::{color, uv_ways};
+use super::texels::{PlacedTexture, TextureSamples, color, steps, uv_ways};
 use crate::render::frame::draw::Shaded;
 use crate::render::simd::gather::SLOTS;
+use crate::render::texture::lanes::Sampler;
+use crate::render::texture::mips::Mips;
+use crate::render::texture::placement::texels;
 use crate::render::texture::sample;
 use crate::render::texture::uv::{uv, uvs};
+use crate::scene::Texture;
+
+/// How lanes sample a texture; `None` if they cannot.
+pub(super) fn sampler<'a, T>(
+    context: &ShadingContext<'_, T>,
+    texture: &'a Texture,
+    mips: Option<&'a Mips>,
+) -> Option<Sampler<'a>> {
+    let levels = mips.map_or(std::slice::from_ref(texture), Mips::levels);
+    let plan = context.plan;
+    Sampler::new(levels, plan.filter).filter(|_| !plan.variants.locates_one_by_one())
+}
 
 impl<T: ShadingNumber> Shader<T> {
-    /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent.
+    /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent. `new` says
+    /// whether the triangles differ from those before.
     pub(crate) fn texels(
         &mut self,
         context: &ShadingContext<'_, T>,
         group: &Group<'_>,
         shaded: &Shaded,
+        new: bool,
     ) {
-        let (plan, draw) = (context.plan, group.draw);
-        let mips = shaded.texture.as_ref().and_then(|texture| context.terms.mips_of(texture));
-        let Self { fragments, attributes, barycentrics, texels, .. } = self;
-        for (row, tint) in texels.iter_mut().zip(shaded.tint) {
+        for (row, tint) in self.texels.iter_mut().zip(shaded.tint) {
             row.fill(T::from_f64(tint));
         }
-        let mut corners = [None; SLOTS];
-        if shaded.texture.is_some() {
-            for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count])
-            {
-                *corners = uvs(draw, *number);
+        if let Some(texture) = &shaded.texture {
+            let mips = context.terms.mips_of(texture);
+            let done = self.multiply_texels(context, group, (texture, mips), new);
+            let slots = u64::MAX >> (SLOTS - self.attributes.count);
+            if done & slots != slots {
+                self.sample_one_by_one(context, group, (shaded, texture, mips), done);
             }
+        }
+        if shaded.vertex_colors {
+            self.multiply_vertex_colors(context.level, group);
+        }
+    }
+
+    /// Samples the texture sixteen pixels at a time. Returns the slots, a bit for each, for whose
+    /// triangles that could be done.
+    fn multiply_texels(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        (texture, mips): (&Texture, Option<&Mips>),
+        new: bool,
+    ) -> u64 {
+        let Some(sampler) = sampler(context, texture, mips) else { return 0 };
+        if new {
+            self.place_texture(context, group, texture, &sampler);
+        }
+        let Self { fragments, attributes, barycentrics, placement, texels, .. } = self;
+        let texture = PlacedTexture { placement, sampler: &sampler };
+        let samples = TextureSamples { fragments, barycentrics, texture };
+        T::multiply_texels(context.level, attributes.count, &samples, texels)
+    }
+
+    /// Finds where a texture lies on the triangles of the list.
+    pub(super) fn place_texture(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        texture: &Texture,
+        sampler: &Sampler<'_>,
+    ) {
+        let Self { attributes, placement, .. } = self;
+        placement.clear();
+        let mut corners = [None; SLOTS];
+        // One after another, so that the processor fetches many at once.
+        for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
+            *corners = uvs(group.draw, *number);
+        }
+        let reads_mips = sampler.reads_mips();
+        // Dispatched so that rounding down uses the processor's instruction, if it has one.
+        dispatch!(context.level, _ => for (slot, uvs) in corners.iter().enumerate() {
+            let Some(uvs) = uvs else { continue };
+            let texels = texels(*uvs, texture);
+            if let Some(texels) = texels {
+                let steps =
+                    if reads_mips { steps((context.plan, group.draw), attributes, slot) } else { None };
+                placement.set(slot, texels, steps);
+            }
+        });
+    }
+
+    /// Samples the texture pixel by pixel, except for the triangles of the slots that are `done`.
+    fn sample_one_by_one(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        (shaded, texture, mips): (&Shaded, &Texture, Option<&Mips>),
+        done: u64,
+    ) {
+        let plan = context.plan;
+        let Self { fragments, attributes, barycentrics, texels, .. } = self;
+        let mut corners = [None; SLOTS];
+        for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
+            *corners = uvs(group.draw, *number);
         }
         // Dispatched so that rounding down uses the processor's instruction, if it has one.
         dispatch!(context.level, _ => for i in 0..fragments.len {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
-            let number = attributes.numbers[slot];
-            let weights = barycentrics.weights(i);
-            if let Some(texture) = &shaded.texture
-                && let Some(corners) = corners[slot]
-            {
-                let uv = uv(corners, weights);
-                let texel = match mips {
-                    None => sample::sample::<T>(texture, uv, plan.filter),
-                    Some(mips) => mips.sample(
-                        uv,
-                        uv_ways(
-                            (plan, context.frame),
-                            group.draw_index,
-                            number,
-                            [fragments.x[i], fragments.y[i]],
-                        ),
-                    ),
-                };
-                for (row, part) in texels.iter_mut().zip(texel) {
-                    row[i] = row[i] * part;
-                }
+            if done >> slot & 1 == 1 {
+                continue;
             }
-            if shaded.vertex_colors {
-                for (row, part) in texels.iter_mut().zip(color(draw, number, weights)) {
-                    row[i] = row[i] * T::from_f64(part);
+            for (row, tint) in texels.iter_mut().zip(shaded.tint) {
+                row[i] = T::from_f64(tint);
+            }
+            let Some(corners) = corners[slot] else { continue };
+            let uv = uv(corners, barycentrics.weights(i));
+            let texel = match mips {
+                None => sample::sample::<T>(texture, uv, plan.filter),
+                Some(mips) => {
+                    let number = attributes.numbers[slot];
+                    let pixel = [fragments.x[i], fragments.y[i]];
+                    let frame = (plan, context.frame);
+                    mips.sample(uv, uv_ways(frame, group.draw_index, number, pixel))
                 }
+            };
+            for (row, part) in texels.iter_mut().zip(texel) {
+                row[i] = row[i] * part;
+            }
+        });
+    }
+
+    /// Multiplies by the vertex colours.
+    fn multiply_vertex_colors(&mut self, level: Level, group: &Group<'_>) {
+        let Self { fragments, attributes, barycentrics, texels, .. } = self;
+        let mut colors = [[[0.0; 3]; 3]; SLOTS];
+        for (colors, number) in colors.iter_mut().zip(&attributes.numbers[..attributes.count]) {
+            *colors = group.draw.model.mesh.triangle_colors(*number);
+        }
+        dispatch!(level, _ => for i in 0..fragments.len {
+            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
+            let color = color(colors[slot], barycentrics.weights(i));
+            for (row, part) in texels.iter_mut().zip(color) {
+                row[i] = row[i] * T::from_f64(part);
             }
         });
     }

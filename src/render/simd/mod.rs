@@ -25,5 +25,6 @@ pub use lanes::{BATCH, Exact, Kernel, Lanes};
 pub use number::Number;
 pub use power::Power;
 pub use real::Real;
+pub(crate) use single::log2;
 pub use sixteen::Sixteen;
 pub use vec3::Vec3;

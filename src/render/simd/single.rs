@@ -83,6 +83,28 @@ fn whole_power<R: Single>(x: R, n: u32, power: &Power) -> R {
 /// is relative to ln m, and not to 1, the power is accurate for x near 1 however large n is.
 #[inline(always)]
 fn any_power<R: Single>(x: R, power: &Power) -> R {
+    const EXPONENTIAL: [f64; 7] = [
+        1.535_336_188_319_5e-4,
+        1.339_887_440_266_574e-3,
+        9.618_437_357_674_64e-3,
+        5.550_332_471_162_809e-2,
+        2.402_264_791_363_012e-1,
+        6.931_472_028_550_42e-1,
+        1.0,
+    ];
+    let log2 = binary_logarithm(x) * x.lift(power.exponent);
+    // Clamped to the exponents of f32; results below the floor are discarded in the end.
+    let clamped = Real::max(log2, x.lift(-126.0));
+    let whole = clamped.round();
+    let result = polynomial(clamped - whole, &EXPONENTIAL) * whole.power_of_two();
+    let zero = x.lift(0.0);
+    x.if_more(zero, log2.if_more(x.lift(power.floor), result, zero), zero)
+}
+
+/// log2 x of a number above 0, with an error relative to it of some 1e-7; subnormal numbers count as
+/// the smallest that is not. See [`any_power`].
+#[inline(always)]
+fn binary_logarithm<R: Single>(x: R) -> R {
     const LOGARITHM: [f64; 9] = [
         7.037_683_629e-2,
         -1.151_461_031e-1,
@@ -94,28 +116,17 @@ fn any_power<R: Single>(x: R, power: &Power) -> R {
         -2.499_999_399_3e-1,
         3.333_333_117_4e-1,
     ];
-    const EXPONENTIAL: [f64; 7] = [
-        1.535_336_188_319_5e-4,
-        1.339_887_440_266_574e-3,
-        9.618_437_357_674_64e-3,
-        5.550_332_471_162_809e-2,
-        2.402_264_791_363_012e-1,
-        6.931_472_028_550_42e-1,
-        1.0,
-    ];
     let (m, e) = Real::max(x, x.lift(SMALLEST)).split();
     let f = m - x.lift(1.0);
     let square = f * f;
     let ln = f - square * x.lift(0.5) + square * f * polynomial(f, &LOGARITHM);
-    let log2 = ln * x.lift(std::f64::consts::LOG2_E) + e;
+    ln * x.lift(std::f64::consts::LOG2_E) + e
+}
 
-    let log2 = log2 * x.lift(power.exponent);
-    // Clamped to the exponents of f32; results below the floor are discarded in the end.
-    let clamped = Real::max(log2, x.lift(-126.0));
-    let whole = clamped.round();
-    let result = polynomial(clamped - whole, &EXPONENTIAL) * whole.power_of_two();
-    let zero = x.lift(0.0);
-    x.if_more(zero, log2.if_more(x.lift(power.floor), result, zero), zero)
+/// log2 of sixteen numbers above 0, to within 1e-6.
+#[inline(always)]
+pub(crate) fn log2<S: Simd>(x: f32x16<S>) -> f32x16<S> {
+    binary_logarithm(x)
 }
 
 /// A polynomial by Horner's rule, the coefficient of the highest power first.

@@ -37,6 +37,11 @@ impl Mips {
         Shared::same(&self.of, texture)
     }
 
+    /// The texture and its copies, the largest first.
+    pub(crate) fn levels(&self) -> &[Texture] {
+        &self.levels
+    }
+
     /// Samples red, green, blue and alpha at `uv`, with the differences `ways` to the neighbours on
     /// the screen.
     pub(crate) fn sample<T: Number>(&self, uv: [f64; 2], ways: [[f64; 2]; 2]) -> [T; 4] {

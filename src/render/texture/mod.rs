@@ -1,5 +1,7 @@
 //! The colours of textures, and where they lie on triangles.
 
+pub(crate) mod lanes;
 pub(crate) mod mips;
+pub(crate) mod placement;
 pub(crate) mod sample;
 pub(crate) mod uv;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use crate::base::math::each;
 use crate::render::frame::draw::Draw;
-use crate::scene::NONE;
 
 /// The texture coordinates of a triangle's corners.
 pub(crate) type Uvs = [[f64; 2]; 3];
@@ -20,9 +20,8 @@ pub(crate) fn uv([a, b, c]: Uvs, weights: DVec3) -> [f64; 2] {
 }
 
 /// The texture coordinates of a triangle's corners; `None` if a corner has none.
+#[inline(always)]
 pub(crate) fn uvs(draw: &Draw, number: u32) -> Option<Uvs> {
-    let mesh = &draw.model.mesh;
-    let own = mesh.triangles()[number as usize];
-    let ids = own.corners.map(|corner| mesh.corners()[corner as usize].uv);
-    (!ids.contains(&NONE)).then(|| ids.map(|id| mesh.uvs()[id as usize].map(f64::from)))
+    let own = draw.model.mesh.triangle_uvs(number)?;
+    Some(each(own, |[u, v]| [f64::from(u), f64::from(v)]))
 }

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::closed::is_closed;
+use crate::base::math::each;
 use crate::base::once::get_or_compute;
 use crate::scene::mesh::build::{Outlines, triangles};
 use crate::scene::mesh::edges::{Edge, Edges};
@@ -122,11 +123,32 @@ impl Mesh {
     }
 
     /// The corners of a triangle, as places in [`Self::corners`].
+    #[inline(always)]
     pub(crate) fn triangle(&self, number: usize) -> [usize; 3] {
         if self.has_triangles_only() {
             return [3 * number, 3 * number + 1, 3 * number + 2];
         }
-        self.triangles()[number].corners.map(|corner| corner as usize)
+        each(self.triangles()[number].corners, |corner| corner as usize)
+    }
+
+    /// The uv coordinates of a triangle's corners; `None` if one has none.
+    #[inline(always)]
+    #[must_use]
+    pub fn triangle_uvs(&self, number: u32) -> Option<[[f32; 2]; 3]> {
+        let [a, b, c] = self.triangle(number as usize);
+        let of = |corner: usize| -> Option<[f32; 2]> {
+            self.shape.uvs.get(*self.shape.corner_uvs.get(corner)? as usize).copied()
+        };
+        Some([of(a)?, of(b)?, of(c)?])
+    }
+
+    /// The colours of a triangle's corners, which the mesh must have.
+    #[inline(always)]
+    #[must_use]
+    pub fn triangle_colors(&self, number: u32) -> [[f32; 3]; 3] {
+        each(self.triangle(number as usize), |corner| {
+            self.shape.colors[self.shape.corners[corner] as usize]
+        })
     }
 
     /// The normal of each polygon by Newell's method, of length 1; (0, 0, 1) for one without area.
