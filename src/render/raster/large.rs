@@ -6,11 +6,12 @@
 //! pixels, until its depths are needed.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
-    SimdNarrow as _, SimdWiden as _, f32x16, f64x8, i64x8, u32x16, u64x8,
+    Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, SimdNarrow as _,
+    f32x16, f64x8, i64x8, mask32x16,
 };
 
 use super::bins::LargeTriangle;
+use super::visibility_buffer::put_rows;
 use crate::base::math::each;
 use crate::render::screen::coverage::{PixelBox, Triangle};
 use crate::render::screen::sample_positions::SamplePositions;
@@ -70,12 +71,11 @@ impl Large {
         }
     }
 
-    /// The change of the edge functions by an offset in subpixels, which is a multiple of 1/16
-    /// pixel.
+    /// The change of the edge functions by an offset in subpixels.
     #[inline(always)]
     pub(crate) fn gain(&self, [x, y]: [i32; 2]) -> [i64; 3] {
-        let [x, y] = [x, y].map(|by| i64::from(by / 16));
-        let gain = |i: usize| (self.right[i] >> 4) * x + (self.down[i] >> 4) * y;
+        let (x, y) = (i64::from(x), i64::from(y));
+        let gain = |i: usize| (self.right[i] >> 8) * x + (self.down[i] >> 8) * y;
         [gain(0), gain(1), gain(2)]
     }
 
@@ -181,19 +181,10 @@ impl Large {
             let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
-            let (upper, lower) = depth.bitcast::<u32x16<S>>().widen();
-            let (up, down) = visibility.split_at_mut(8);
-            self.put(simd, upper, covered[0], up);
-            self.put(simd, lower, covered[1], down);
+            let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
+            let covered = mask32x16::from_bitmask(simd, covered);
+            put_rows(simd, covered, depth, self.number, visibility);
         }
-    }
-
-    #[inline(always)]
-    fn put<S: Simd>(&self, simd: S, depth: u64x8<S>, covered: u64, visibility: &mut [u64]) {
-        let new = (depth << 32) | u64::from(!self.number);
-        let covered = fearless_simd::mask64x8::from_bitmask(simd, covered & 0xff);
-        let new = covered.select(new, u64x8::splat(simd, 0));
-        new.max(u64x8::from_slice(simd, visibility)).store_slice(visibility);
     }
 
     #[inline(always)]

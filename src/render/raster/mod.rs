@@ -20,6 +20,7 @@ pub(crate) mod geometry;
 mod hits;
 mod large;
 pub(crate) mod lines;
+mod medium;
 mod parts;
 mod pixel_by_pixel;
 mod queue;

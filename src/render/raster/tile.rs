@@ -7,7 +7,8 @@
 //!
 //! Coverage and depth are computed in one of two ways, chosen by the triangle's size alone: in f32,
 //! in which integers below 2^24 are exact, for bounding boxes up to 8 x 8 pixels, sixteen triangles
-//! at once (`small`); and in 64 bits for all others, a block of 8 x 8 pixels at once (`large`). So
+//! at once (`small`); and in integers for all others, a block of 8 x 8 pixels at once: of 32 bits for
+//! boxes up to 64 x 64 pixels (`medium`), else of 64 bits, with the same result (`large`). So
 //! neither tiles nor threads nor instruction sets show in the picture.
 //!
 //! A block that nothing reaches is never touched. For a block that a single large triangle covers
@@ -23,6 +24,7 @@ use super::alpha_test::AlphaTest;
 use super::bins::{Bins, LargeTriangle};
 use super::geometry::ScreenGeometry;
 use super::large::Large;
+use super::medium::{self, Medium};
 use super::visibility_buffer::{Planes, depths_of, seen, word};
 use super::{lines, pixel_by_pixel};
 use crate::base::math::each;
@@ -391,22 +393,25 @@ impl Visibility {
     #[inline(always)]
     fn draw_large<S: Simd, const N: usize>(&mut self, simd: S, large: &LargeTriangle) {
         let corners = each(large.corners, |corner| corner.at());
-        let Some(triangle) = Triangle::new(corners) else {
-            return;
-        };
         let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
         let area = reached.intersection(self.bounds);
         if area.is_empty() {
             return;
         }
         let (left, top) = (self.bounds.left, self.bounds.top);
-        let large = Large::new(large, &triangle, [left, top]);
         let area = PixelBox {
             left: area.left - left,
             top: area.top - top,
             right: area.right - left,
             bottom: area.bottom - top,
         };
+        if reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST {
+            return self.draw_medium::<S, N>(simd, large, area);
+        }
+        let Some(triangle) = Triangle::new(corners) else {
+            return;
+        };
+        let large = Large::new(large, &triangle, [left, top]);
         let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
         let mut some = touched.some;
         let mut place = None;
@@ -421,6 +426,47 @@ impl Visibility {
             } else {
                 self.write::<S, N>(simd, block);
                 self.draw_planes::<S, N>(simd, &large, block, false);
+            }
+        }
+    }
+
+    /// Draws a triangle whose bounding box is at most as large as a tile; `area` is the part of it
+    /// in the tile.
+    #[inline(always)]
+    fn draw_medium<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        triangle: &LargeTriangle,
+        area: PixelBox,
+    ) {
+        let first = [self.bounds.left, self.bounds.top];
+        let Some(medium) = Medium::new(simd, triangle, first) else { return };
+        let touched = medium.blocks::<N>(simd, area, &self.sample_positions);
+        let (mut some, mut whole) = (touched.some & !touched.whole, touched.whole);
+        while some != 0 {
+            let block = some.trailing_zeros() as usize;
+            some &= some - 1;
+            if medium.high < self.farthest[block] {
+                continue;
+            }
+            self.write::<S, N>(simd, block);
+            for sample in 0..N {
+                let shift = self.sample_positions.shift::<N>(sample);
+                let plane = self.plane::<N>(block, sample);
+                medium.draw(simd, (block, shift), area, plane);
+            }
+        }
+        if whole == 0 {
+            return;
+        }
+        let corners = each(triangle.corners, |corner| corner.at());
+        let Some(edges) = Triangle::new(corners) else { return };
+        let (large, mut place) = (Large::new(triangle, &edges, first), None);
+        while whole != 0 {
+            let block = whole.trailing_zeros() as usize;
+            whole &= whole - 1;
+            if large.high >= self.farthest[block] {
+                self.draw_full_block::<S, N>(simd, &large, block, &mut place);
             }
         }
     }

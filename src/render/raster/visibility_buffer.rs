@@ -3,7 +3,9 @@
 //! A sample's entry is one 64-bit word: the bits of the depth above, the inverted number of the
 //! primitive below. So the depth test is a maximum: the larger entry is visible.
 
-use fearless_simd::Simd;
+use fearless_simd::{
+    Bytes as _, Select as _, Simd, SimdBase as _, f32x16, f64x8, mask32x16, u32x16,
+};
 
 use super::lines::LineNumber;
 use crate::render::screen::sample_positions::FOUR;
@@ -46,6 +48,30 @@ pub(crate) const fn key(word: u64) -> u32 {
 #[inline(always)]
 pub(crate) fn word(depth: f32, number: u32) -> u64 {
     u64::from(depth.to_bits()) << 32 | u64::from(!number)
+}
+
+/// The depth test of sixteen entries, those of two rows of a block: writes the ones that a triangle
+/// with these depths covers, where it is in front.
+///
+/// Entries are compared as f64: their bits are in the order of the numbers, since depths are from 0
+/// to 1, and every processor has a maximum of f64.
+#[inline(always)]
+pub(crate) fn put_rows<S: Simd>(
+    simd: S,
+    covered: mask32x16<S>,
+    depth: f32x16<S>,
+    number: u32,
+    visibility: &mut [u64; 16],
+) {
+    let nothing = u32x16::splat(simd, 0);
+    let depth = covered.select(depth.bitcast::<u32x16<S>>(), nothing);
+    let number = covered.select(u32x16::splat(simd, !number), nothing);
+    let (upper, lower) = number.interleave(depth);
+    let (up, down) = bytemuck::cast_slice_mut::<u64, f64>(visibility).split_at_mut(8);
+    for (new, row) in [(upper, up), (lower, down)] {
+        let old = f64x8::from_slice(simd, row);
+        new.bitcast::<f64x8<S>>().max(old).store_slice(row);
+    }
 }
 
 /// The entries of a block for each of four samples.
