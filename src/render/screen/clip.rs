@@ -245,23 +245,6 @@ fn between(inner: &Clip, outer: &Clip, t: f64) -> Clip {
     std::array::from_fn(|i| inner[i] + (outer[i] - inner[i]) * t)
 }
 
-/// The perspective-correct weights of a triangle's corners at a position of the picture, from its
-/// corners in clip space. It works even if some of them lie behind the observer.
-///
-///   m ~ (q x r, r x p, p x q) . s   for corners p, q, r and the position s, each as (x, y, w)
-///
-/// Olano and Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997. The weights
-/// are clamped to the triangle, and their sum is 1.
-pub(crate) fn homogeneous_weights(corners: [Clip; 3], [x, y]: [f64; 2]) -> DVec3 {
-    let [p, q, r] = corners.map(|[x, y, _, w]| DVec3::new(x, y, w));
-    let place = DVec3::new(x, y, 1.0);
-    let weights = DVec3::new(q.cross(r).dot(place), r.cross(p).dot(place), p.cross(q).dot(place));
-    let weights = if weights.element_sum() < 0.0 { -weights } else { weights };
-    let clamped = weights.max(DVec3::ZERO);
-    let sum = clamped.element_sum();
-    if sum > 0.0 { clamped / sum } else { DVec3::splat(1.0 / 3.0) }
-}
-
 /// Whether the corners of a triangle of clip space run counter-clockwise for the observer.
 pub(crate) fn faces_observer(corners: [Clip; 3]) -> bool {
     let [p, q, r] = corners.map(|[x, y, _, w]| DVec3::new(x, y, w));

@@ -1,9 +1,10 @@
 //! Perspective-correct weights of single pixels in one triangle, in f64: for the alpha test, and
 //! for clipped triangles.
 
+use fearless_simd::{Select as _, Simd, SimdBase as _, f64x8};
 use glam::DVec3;
 
-use super::clip::{Screen, ScreenVertex, homogeneous_weights};
+use super::clip::{Screen, ScreenVertex};
 use super::coverage::{SUBPIXELS, Snapped, Triangle};
 use super::interpolation::parts_at;
 use crate::base::math::each;
@@ -15,8 +16,6 @@ use crate::render::frame::draw::Draw;
 #[derive(Debug)]
 pub(crate) struct Weights<'a> {
     plan: &'a FramePlan,
-    draw: &'a Draw,
-    number: u32,
     shift: [i32; 2],
     method: Method,
 }
@@ -25,7 +24,7 @@ pub(crate) struct Weights<'a> {
 #[derive(Debug)]
 enum Method {
     /// The triangle is clipped.
-    Cut,
+    Cut(HomogeneousWeights),
     /// By a variant, from its corners and 1/w of each.
     Variant([Snapped; 3], [f64; 3]),
     /// From edge functions, if it has an area, and w of each corner.
@@ -46,21 +45,24 @@ impl<'a> Weights<'a> {
         let screen = Screen::new(draw.clip_from_object, plan.size);
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
         let method = if !own.iter().all(ScreenVertex::is_inside) {
-            Method::Cut
+            Method::Cut(HomogeneousWeights::new(plan, draw, number, shift))
         } else if plan.variants.locates_one_by_one() {
             Method::Variant(own.map(|vertex| vertex.at()), w.map(|w| 1.0 / w))
         } else {
             let triangle = Triangle::new(own.map(|vertex| vertex.at().seen_from(shift)));
             Method::Edges(triangle, DVec3::from_array(w))
         };
-        Self { plan, draw, number, shift, method }
+        Self { plan, shift, method }
     }
 
     /// The weights at a pixel.
     #[inline(always)]
     pub(crate) fn at(&self, pixel: [i32; 2]) -> DVec3 {
         match &self.method {
-            Method::Cut => cut_weights(self.plan, self.draw, self.number, (pixel, self.shift)),
+            Method::Cut(weights) => {
+                let ([second, third], _) = weights.at(pixel);
+                DVec3::new(1.0 - second - third, second, third)
+            }
             Method::Variant(corners, by_w) => {
                 let at = (pixel, self.shift);
                 let ([second, third], _) = parts_at(self.plan.variants, *corners, *by_w, at, false);
@@ -85,33 +87,98 @@ pub(crate) fn barycentric(triangle: &Triangle, [x, y]: [i32; 2]) -> [f64; 2] {
     [second as f64 * per_area, third as f64 * per_area]
 }
 
-/// The weights of a clipped triangle's corners at a pixel, as for [`Weights`].
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-pub(crate) fn cut_weights(
-    plan: &FramePlan,
-    draw: &Draw,
-    number: u32,
-    (pixel, shift): ([i32; 2], [i32; 2]),
-) -> DVec3 {
-    let screen = Screen::new(draw.clip_from_object, plan.size);
-    let order = draw.model.mesh.draw_order();
-    let vertices = order.vertices_of(number);
-    let clip = vertices.map(|vertex| screen.clip(order.position(vertex)));
-    let shift = [0, 1].map(|axis| shift[axis] + plan.shift[axis]);
-    let at =
-        |axis: usize| f64::from(pixel[axis]) + 0.5 + f64::from(shift[axis]) / f64::from(SUBPIXELS);
-    let x = at(0) / plan.size.width as f64 * 2.0 - 1.0;
-    let y = 1.0 - at(1) / plan.size.height as f64 * 2.0;
-    homogeneous_weights(clip, [x, y])
+/// The perspective-correct weights of a triangle's corners at any pixel, in f64 and from its corners
+/// in clip space: for clipped triangles, and wherever f32 is not enough.
+///
+///   N0 = (q x r) . s / (p . (q x r)), N1 and N2 alike, for corners p, q, r and the position s,
+///   each as (x, y, w)
+///
+/// Their sum is 1 / w of the position, and each divided by the sum is the weight of a corner.
+/// Weights are clamped to the triangle, and their sum is 1.
+///
+/// Olano and Greer, "Triangle Scan Conversion Using 2D Homogeneous Coordinates", 1997.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HomogeneousWeights {
+    /// For each corner a, b and c: N = a x + (b y + c) at the pixel (x, y).
+    planes: [[f64; 3]; 3],
+    /// w of each corner.
+    w: [f64; 3],
 }
 
-/// The w of a clipped triangle at a pixel with these weights.
-pub(crate) fn cut_w(plan: &FramePlan, draw: &Draw, number: u32, weights: DVec3) -> f64 {
-    let screen = Screen::new(draw.clip_from_object, plan.size);
-    let order = draw.model.mesh.draw_order();
-    let w = order.vertices_of(number).map(|vertex| screen.clip(order.position(vertex))[3]);
-    weights.dot(DVec3::from_array(w))
+impl HomogeneousWeights {
+    /// Those of a triangle, `shift` subpixels from the centres of pixels.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    pub(crate) fn new(plan: &FramePlan, draw: &Draw, number: u32, shift: [i32; 2]) -> Self {
+        let screen = Screen::new(draw.clip_from_object, plan.size);
+        let order = draw.model.mesh.draw_order();
+        let vertices = order.vertices_of(number);
+        let [p, q, r] = each(vertices, |vertex| {
+            let [x, y, _, w] = screen.clip(order.position(vertex));
+            DVec3::new(x, y, w)
+        });
+        let normals = [q.cross(r), r.cross(p), p.cross(q)];
+        let volume = p.dot(normals[0]);
+        let scale = if volume == 0.0 { 1.0 } else { 1.0 / volume };
+        let (right, down) = (2.0 / plan.size.width as f64, -2.0 / plan.size.height as f64);
+        let centre = |axis: usize| {
+            0.5 + f64::from(shift[axis] + plan.shift[axis]) / f64::from(SUBPIXELS)
+        };
+        // The position of the first pixel, from -1 to 1.
+        let (x, y) = (centre(0) * right - 1.0, centre(1) * down + 1.0);
+        let planes = each(normals, |n| {
+            let n = n * scale;
+            [n.x * right, n.y * down, n.x * x + n.y * y + n.z]
+        });
+        Self { planes, w: [p.z, q.z, r.z] }
+    }
+
+    /// The steps of N0, N1 and N2 by a pixel to the right and by one down.
+    pub(crate) fn steps(&self) -> [[f64; 3]; 2] {
+        let [p, q, r] = self.planes;
+        [[p[0], q[0], r[0]], [p[1], q[1], r[1]]]
+    }
+
+    /// The weights of the second and the third corner at a pixel, and w.
+    #[inline(always)]
+    pub(crate) fn at(&self, [x, y]: [i32; 2]) -> ([f64; 2], f64) {
+        let (x, y) = (f64::from(x), f64::from(y));
+        let [m0, m1, m2] = each(self.planes, |[a, b, c]| {
+            let n = a * x + (b * y + c);
+            if n > 0.0 { n } else { 0.0 }
+        });
+        let sum = m0 + m1 + m2;
+        let ([m0, m1, m2], sum) = if sum > 0.0 { ([m0, m1, m2], sum) } else { ([1.0; 3], 3.0) };
+        let per = 1.0 / sum;
+        let [w0, w1, w2] = self.w;
+        ([m1 * per, m2 * per], (w0 * m0 + w1 * m1 + w2 * m2) * per)
+    }
+
+    /// The same at eight pixels of a row, from its first on: the same bits.
+    #[inline(always)]
+    pub(crate) fn of_row<S: Simd>(&self, simd: S, [x, y]: [i32; 2]) -> ([f64x8<S>; 2], f64x8<S>) {
+        let x = f64x8::from_slice(simd, &COLUMNS) + f64::from(x);
+        let y = f64::from(y);
+        let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
+        let [m0, m1, m2] = each(
+            self.planes,
+            #[inline(always)]
+            |[a, b, c]| {
+                let n = x * a + (b * y + c);
+                n.simd_gt(0.0).select(n, zero)
+            },
+        );
+        let sum = m0 + m1 + m2;
+        let inside = sum.simd_gt(0.0);
+        let (m0, m1, m2) =
+            (inside.select(m0, one), inside.select(m1, one), inside.select(m2, one));
+        let per = one / inside.select(sum, one + one + one);
+        let [w0, w1, w2] = self.w;
+        ([m1 * per, m2 * per], (m0 * w0 + m1 * w1 + m2 * w2) * per)
+    }
 }
+
+/// Numbers of columns.
+const COLUMNS: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// The screen position, in pixels, of a clipped triangle's point with these weights. Points in the
 /// observer's own plane have none: then the position is arbitrary.

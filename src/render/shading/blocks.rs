@@ -11,8 +11,10 @@ use super::interpolated::ShadingNumber;
 use super::surface::{Out, Shader};
 use super::texels::PlacedTexture;
 use super::textured::sampler;
+use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
+use crate::render::screen::weights::HomogeneousWeights;
 
 impl<T: ShadingNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers fully.
@@ -38,6 +40,17 @@ impl<T: ShadingNumber> Shader<T> {
             let at = canvas.offset(place);
             self.color_group(context, &group, &mut Out::Tile(canvas, at));
         });
+    }
+
+    /// The weights of the first triangle, if it is clipped.
+    fn cut_weights(
+        &self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+    ) -> Option<HomogeneousWeights> {
+        let TriangleAttributes { cut, numbers, .. } = &self.attributes;
+        let is_cut = cut & 1 == 1;
+        is_cut.then(|| HomogeneousWeights::new(context.plan, group.draw, numbers[0], [0; 2]))
     }
 
     /// Fills fully covered blocks, if all of their pixels have one colour. Returns whether that was
@@ -97,7 +110,8 @@ impl<T: ShadingNumber> Shader<T> {
             self.carry_diffuse(context, group, shaded, tables);
             self.attributes.spread(level);
         }
-        T::mix_blocks(level, &self.attributes, blocks, canvas)
+        let cut = self.cut_weights(context, group);
+        T::mix_blocks(level, &self.attributes, blocks, cut.as_ref(), canvas)
     }
 
     /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
@@ -141,6 +155,7 @@ impl<T: ShadingNumber> Shader<T> {
                 return false;
             }
         }
+        let cut = self.cut_weights(context, group);
         let Self { tile, attributes, batch, placement, .. } = self;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
@@ -151,6 +166,7 @@ impl<T: ShadingNumber> Shader<T> {
             attributes.spread(level);
         }
         let light = BlockLight {
+            cut: cut.as_ref(),
             look: needs_positions.then(|| Look::new(plan, group.draw)),
             tint: shaded.tint.map(T::from_f64),
             texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, sampler }),

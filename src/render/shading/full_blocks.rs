@@ -17,6 +17,7 @@ use crate::render::lights::{Batch, LightTerm, load, set, store};
 use crate::render::plan::tile::TileLight;
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{BATCH, Lanes as _, Sixteen, Vec3};
 
@@ -187,22 +188,75 @@ impl<S: Simd> Linear<S> for Wide<'_, S> {
     }
 }
 
-/// Evaluates an expression with the [`Linear`] coordinates of the first triangle, and returns
-/// whether it has any: a clipped triangle has not.
-macro_rules! with_linear {
-    ($level:expr, $attributes:expr, $simd:ident, $linear:ident => $what:expr) => {{
+/// The perspective-correct weights of the second and the third corner, and w.
+type Weighted<S> = ([f32x16<S>; 2], f32x16<S>);
+
+/// Computes the perspective-correct weights of pixels in one triangle.
+trait Points<S: Simd>: Copy {
+    /// Those of a whole block, two rows at a time, from its first pixel.
+    fn block(&self, simd: S, first: [i32; 2]) -> [Weighted<S>; PAIRS];
+}
+
+/// From linear coordinates and 1/w of each corner.
+#[derive(Clone, Copy)]
+struct Inside<S: Simd, L> {
+    linear: L,
+    by_w: Vec3<f32x16<S>>,
+}
+
+impl<S: Simd, L: Linear<S>> Points<S> for Inside<S, L> {
+    #[inline(always)]
+    fn block(&self, simd: S, first: [i32; 2]) -> [Weighted<S>; PAIRS] {
+        let [a, b, c, d] = self.linear.block(simd, first);
+        let lanes = Sixteen(simd);
+        [
+            with_perspective(lanes, a, self.by_w),
+            with_perspective(lanes, b, self.by_w),
+            with_perspective(lanes, c, self.by_w),
+            with_perspective(lanes, d, self.by_w),
+        ]
+    }
+}
+
+/// Those of a clipped triangle.
+impl<S: Simd> Points<S> for &HomogeneousWeights {
+    #[inline(always)]
+    fn block(&self, simd: S, [x, y]: [i32; 2]) -> [Weighted<S>; PAIRS] {
+        [
+            two_rows(simd, self, [x, y]),
+            two_rows(simd, self, [x, y + 2]),
+            two_rows(simd, self, [x, y + 4]),
+            two_rows(simd, self, [x, y + 6]),
+        ]
+    }
+}
+
+#[inline(always)]
+fn two_rows<S: Simd>(simd: S, of: &HomogeneousWeights, [x, y]: [i32; 2]) -> Weighted<S> {
+    let ([b, c], w) = of.of_row(simd, [x, y]);
+    let ([b_below, c_below], w_below) = of.of_row(simd, [x, y + 1]);
+    ([b.narrow(b_below), c.narrow(c_below)], w.narrow(w_below))
+}
+
+/// Evaluates an expression with the [`Points`] of the first triangle, and returns whether it has
+/// any: a triangle without area has not.
+macro_rules! with_points {
+    ($level:expr, $attributes:expr, $cut:expr, $simd:ident, $points:ident => $what:expr) => {{
         let attributes: &TriangleAttributes<f32> = $attributes;
-        if attributes.cut & 1 != 0 {
-            false
+        if let Some($points) = $cut {
+            dispatch!($level, $simd => $what);
+            true
         } else if attributes.wide & 1 == 0 {
             dispatch!($level, $simd => {
-                let $linear = Narrow::new($simd, attributes);
+                let by_w = of_first(Sixteen($simd), &attributes.by_w);
+                let $points = Inside { linear: Narrow::new($simd, attributes), by_w };
                 $what
             });
             true
         } else if let Some(triangle) = &Triangle::new(attributes.corners(0)) {
             dispatch!($level, $simd => {
-                let $linear = Wide::new($simd, triangle);
+                let by_w = of_first(Sixteen($simd), &attributes.by_w);
+                let $points = Inside { linear: Wide::new($simd, triangle), by_w };
                 $what
             });
             true
@@ -212,20 +266,25 @@ macro_rules! with_linear {
     }};
 }
 
-/// Interpolates the colours of the first triangle in blocks that it covers fully. Returns false,
-/// with nothing done, if the triangle is clipped.
+/// Interpolates the colours of the first triangle in blocks that it covers fully; `cut` has its
+/// weights if it is clipped. Returns false, with nothing done, if it has no area.
 pub(crate) fn mix(
     level: Level,
     attributes: &TriangleAttributes<f32>,
     blocks: Blocks,
+    cut: Option<&HomogeneousWeights>,
     canvas: &mut Canvas<'_>,
 ) -> bool {
-    with_linear!(level, attributes, simd, linear => mixed(simd, attributes, linear, blocks, canvas))
+    with_points!(level, attributes, cut, simd, points => {
+        mixed(simd, attributes, points, blocks, canvas);
+    })
 }
 
 /// The lights of fully covered blocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockLight<'a, T> {
+    /// The weights of the triangle, if it is clipped.
+    pub(crate) cut: Option<&'a HomogeneousWeights>,
     /// How pixels become positions and normals; `None` if no light reads them.
     pub(crate) look: Option<Look<T>>,
     /// The colour of the surface itself.
@@ -239,7 +298,7 @@ pub(crate) struct BlockLight<'a, T> {
 }
 
 /// Lights blocks that the first triangle, whose corners carry normals, covers fully. Returns false,
-/// with nothing done, if the triangle is clipped.
+/// with nothing done, if it has no area.
 pub(crate) fn light(
     level: Level,
     attributes: &TriangleAttributes<f32>,
@@ -247,8 +306,8 @@ pub(crate) fn light(
     (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
     canvas: &mut Canvas<'_>,
 ) -> bool {
-    with_linear!(level, attributes, simd, linear => {
-        lit(simd, attributes, linear, blocks, (light, &mut *batch), canvas);
+    with_points!(level, attributes, light.cut, simd, points => {
+        lit(simd, attributes, points, blocks, (light, &mut *batch), canvas);
     })
 }
 
@@ -256,14 +315,13 @@ pub(crate) fn light(
 fn lit<S: Simd>(
     simd: S,
     attributes: &TriangleAttributes<f32>,
-    linear: impl Linear<S>,
+    points: impl Points<S>,
     blocks: Blocks,
     (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let BlockLight { look, tint, texture, lights, terms } = light;
-    let by_w = of_first(lanes, &attributes.by_w);
+    let BlockLight { look, tint, texture, lights, terms, .. } = light;
     let z = of_first(lanes, &attributes.z);
     let corners = corners(lanes, attributes);
     let tint = set(lanes, tint);
@@ -278,9 +336,9 @@ fn lit<S: Simd>(
         |[column, row]| {
             let [x, y] = [left + column, top + row];
             if look.is_some() || texture.is_some() {
-                let pairs = linear.block(simd, [x, y]);
-                for ((pair, linear), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
-                    let (weights, w) = with_perspective(lanes, linear, by_w);
+                let pairs = points.block(simd, [x, y]);
+                for ((pair, point), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
+                    let (weights, w) = point;
                     if let Some(look) = &look {
                         let place = [across + x, down + y].map(|i| i.to_float::<f32x16<S>>() + 0.5);
                         let normal = between(corners, weights);
@@ -339,20 +397,18 @@ fn corners<S: Simd>(
 fn mixed<S: Simd>(
     simd: S,
     attributes: &TriangleAttributes<f32>,
-    linear: impl Linear<S>,
+    points: impl Points<S>,
     blocks: Blocks,
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let by_w = of_first(lanes, &attributes.by_w);
     let corners = corners(lanes, attributes);
     let [left, top] = blocks.corner;
     blocks.each(
         #[inline(always)]
         |[column, row]| {
             let mut at = canvas.offset([column as usize, row as usize]);
-            for linear in linear.block(simd, [left + column, top + row]) {
-                let (weights, _) = with_perspective(lanes, linear, by_w);
+            for (weights, _) in points.block(simd, [left + column, top + row]) {
                 let mut pixels = [0; 16];
                 lanes.store_pixels(between(corners, weights), &mut pixels, 0);
                 canvas.put(at, &pixels);

@@ -1,6 +1,7 @@
 //! Computes barycentric coordinates of fragments, in each of the two precisions.
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
+use glam::DVec3;
 
 use super::barycentrics::{Barycentrics, Perspective};
 use super::fragments::Fragments;
@@ -11,7 +12,7 @@ use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
 use crate::render::lights::{Batch, Light, Rows, set};
 use crate::render::screen::coverage::Triangle;
-use crate::render::screen::weights::{barycentric, cut_place, cut_w, cut_weights};
+use crate::render::screen::weights::{HomogeneousWeights, barycentric, cut_place};
 use crate::render::simd::gather::{SLOTS, paged, pick};
 use crate::render::simd::{Lanes as _, Sixteen};
 
@@ -38,6 +39,7 @@ pub(crate) trait Interpolated: AttributeNumber {
         level: Level,
         attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
+        cut: Option<&HomogeneousWeights>,
         to: &mut Canvas<'_>,
     ) -> bool;
     /// Lights blocks that one triangle covers fully, if that can be done in one pass per block.
@@ -94,16 +96,19 @@ impl<T: Interpolated> Barycentrics<T> {
         plan: &FramePlan,
         draw: &Draw,
     ) {
-        for i in 0..fragments.len {
-            let slot = fragments.slots[i].cast_unsigned() as usize;
-            if attributes.cut >> slot & 1 == 1 {
-                let number = attributes.numbers[slot];
-                let pixel = [fragments.x[i], fragments.y[i]];
-                let weights = cut_weights(plan, draw, number, (pixel, [0; 2]));
-                self.weights[0][i] = T::from_f64(weights.y);
-                self.weights[1][i] = T::from_f64(weights.z);
-                self.w[i] = T::from_f64(cut_w(plan, draw, number, weights));
+        let mut slots = attributes.cut & (u64::MAX >> (SLOTS - attributes.count));
+        while slots != 0 {
+            let slot = slots.trailing_zeros();
+            slots &= slots - 1;
+            let number = attributes.numbers[slot as usize];
+            let of = HomogeneousWeights::new(plan, draw, number, [0; 2]);
+            for i in (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() == slot) {
+                let ([second, third], w) = of.at([fragments.x[i], fragments.y[i]]);
+                self.weights[0][i] = T::from_f64(second);
+                self.weights[1][i] = T::from_f64(third);
+                self.w[i] = T::from_f64(w);
                 if fragments.shared {
+                    let weights = DVec3::new(1.0 - second - third, second, third);
                     let place = cut_place(plan, draw, number, weights);
                     for (row, place) in self.positions.iter_mut().zip(place) {
                         row[i] = T::from_f64(place);
@@ -151,7 +156,13 @@ impl Interpolated for f64 {
     ) {
     }
 
-    fn mix_blocks(_: Level, _: &TriangleAttributes<Self>, _: Blocks, _: &mut Canvas<'_>) -> bool {
+    fn mix_blocks(
+        _: Level,
+        _: &TriangleAttributes<Self>,
+        _: Blocks,
+        _: Option<&HomogeneousWeights>,
+        _: &mut Canvas<'_>,
+    ) -> bool {
         false
     }
 
@@ -211,9 +222,10 @@ impl Interpolated for f32 {
         level: Level,
         attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
+        cut: Option<&HomogeneousWeights>,
         to: &mut Canvas<'_>,
     ) -> bool {
-        full_blocks::mix(level, attributes, blocks, to)
+        full_blocks::mix(level, attributes, blocks, cut, to)
     }
 
     fn light_blocks(

@@ -11,9 +11,8 @@ use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
 use crate::render::lights::{Rows, load, store};
 use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::screen::clip::Screen;
 use crate::render::screen::coverage::{SUBPIXELS, doubled_area};
-use crate::render::screen::weights::Weights;
+use crate::render::screen::weights::{HomogeneousWeights, Weights};
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Lanes as _, Real, Sixteen, Vec3};
 use crate::render::texture::lanes::Sampler;
@@ -165,7 +164,8 @@ pub(crate) fn steps<T: AttributeNumber>(
     slot: usize,
 ) -> Option<Steps> {
     if attributes.cut >> slot & 1 == 1 {
-        return cut_steps(plan, draw, attributes.numbers[slot]);
+        let number = attributes.numbers[slot];
+        return Some(HomogeneousWeights::new(plan, draw, number, [0; 2]).steps());
     }
     let corners = attributes.corners(slot);
     let [a, b, c] = corners.map(|corner| [corner.x, corner.y].map(f64::from));
@@ -184,27 +184,6 @@ pub(crate) fn steps<T: AttributeNumber>(
             [-(second + third) * by_w[0], second * by_w[1], third * by_w[2]]
         }),
     )
-}
-
-/// Those of a clipped triangle, in homogeneous coordinates: with corners p, q and r as (x, y, w),
-/// N0 is (q x r) . (x, y, 1) / (p . (q x r)) at (x, y). See
-/// [`homogeneous_weights`](crate::render::screen::clip::homogeneous_weights).
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-fn cut_steps(plan: &FramePlan, draw: &Draw, number: u32) -> Option<Steps> {
-    let screen = Screen::new(draw.clip_from_object, plan.size);
-    let order = draw.model.mesh.draw_order();
-    let [p, q, r] = order.vertices_of(number).map(|vertex| {
-        let [x, y, _, w] = screen.clip(order.position(vertex));
-        DVec3::new(x, y, w)
-    });
-    let planes = [q.cross(r), r.cross(p), p.cross(q)];
-    let volume = p.dot(planes[0]);
-    if volume == 0.0 {
-        return None;
-    }
-    let right = 2.0 / plan.size.width as f64 / volume;
-    let down = -2.0 / plan.size.height as f64 / volume;
-    Some([planes.map(|plane| plane.x * right), planes.map(|plane| plane.y * down)])
 }
 
 /// The footprint of a pixel: the differences of uv to its neighbours on the right and below.
