@@ -156,7 +156,7 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
         let cut = self.cut_weights(context, group);
-        let Self { tile, attributes, batch, placement, .. } = self;
+        let Self { tile, attributes, batch, placement, far, .. } = self;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
         if !needs_positions {
@@ -169,7 +169,7 @@ impl<T: ShadingNumber> Shader<T> {
             cut: cut.as_ref(),
             look: needs_positions.then(|| Look::new(plan, group.draw)),
             tint: shaded.tint.map(T::from_f64),
-            texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, sampler }),
+            texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, far, sampler }),
             lights,
             terms: terms.of(group.pipeline),
         };

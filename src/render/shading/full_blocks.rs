@@ -346,7 +346,12 @@ fn lit<S: Simd>(
                         batch.put(lanes, sample, 16 * pair);
                     }
                     if let Some(texture) = &texture {
-                        let texel = texture.texel(simd, &OfFirst, weights, w);
+                        let way = texture.way(simd, &OfFirst, weights);
+                        let position = match texture.far.first() {
+                            Some(far) => far.of_two_rows(simd, [x, y]),
+                            None => texture.position(simd, &OfFirst, way),
+                        };
+                        let texel = texture.texel(simd, &OfFirst, (way, w), position);
                         store(lanes, product(tint, texel), &mut texels, 16 * pair);
                     }
                 }

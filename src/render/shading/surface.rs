@@ -9,6 +9,7 @@ use super::barycentric_variants::locate_by_variant;
 use super::barycentrics::Barycentrics;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
+use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
@@ -41,6 +42,8 @@ pub(crate) struct Shader<T> {
     pub(crate) batch: Batch<T>,
     /// Where the textures of the triangles lie.
     pub(crate) placement: Placement,
+    /// Those among them that f32 is not enough for.
+    pub(super) far: Vec<FarTexture>,
     pub(crate) texels: Rows<T>,
     colors: Colors,
 }
@@ -74,6 +77,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             barycentrics: Barycentrics::default(),
             batch: Batch::default(),
             placement: Placement::default(),
+            far: Vec::new(),
             texels: [[T::default(); BATCH]; 3],
             colors: Colors::default(),
         }

@@ -4,26 +4,28 @@ use fearless_simd::{Simd, SimdBase as _, f32x16, i32x16};
 use glam::DVec3;
 
 use super::barycentrics::Barycentrics;
+use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
 use crate::render::lights::{Rows, load, store};
-use crate::render::raster::geometry::ScreenGeometry;
 use crate::render::screen::coverage::{SUBPIXELS, doubled_area};
-use crate::render::screen::weights::{HomogeneousWeights, Weights};
+use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Lanes as _, Real, Sixteen, Vec3};
 use crate::render::texture::lanes::Sampler;
 use crate::render::texture::placement::{Placement, Steps};
-use crate::render::texture::uv::uvs;
+use crate::render::texture::uv::Uvs;
 use crate::scene::dvec3;
 
 /// A texture on the triangles of a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedTexture<'a> {
     pub(crate) placement: &'a Placement,
+    /// The triangles that f32 is not enough for.
+    pub(crate) far: &'a [FarTexture],
     pub(crate) sampler: &'a Sampler<'a>,
 }
 
@@ -47,9 +49,36 @@ impl TextureSamples<'_, f32> {
             let second = lanes.load(&barycentrics.weights[0], at);
             let third = lanes.load(&barycentrics.weights[1], at);
             let w = lanes.load(&barycentrics.w, at);
-            let texel = texture.texel(simd, &slots, [second, third], w);
+            let way = texture.way(simd, &slots, [second, third]);
+            let mut position = texture.position(simd, &slots, way);
+            if !texture.far.is_empty() {
+                position = self.far_positions(simd, at, position);
+            }
+            let texel = texture.texel(simd, &slots, (way, w), position);
             store(lanes, product(load(lanes, to, at), texel), to, at);
         }
+    }
+}
+
+impl<T> TextureSamples<'_, T> {
+    /// Replaces the positions of sixteen fragments in triangles that f32 is not enough for.
+    #[cold]
+    fn far_positions<S: Simd>(
+        &self,
+        simd: S,
+        at: usize,
+        positions: [f32x16<S>; 2],
+    ) -> [f32x16<S>; 2] {
+        let mut rows = [<[f32; 16]>::from(positions[0]), <[f32; 16]>::from(positions[1])];
+        for lane in 0..16.min(self.fragments.len - at) {
+            let Fragments { x, y, slots, .. } = self.fragments;
+            let slot = slots[at + lane].cast_unsigned() as usize;
+            if let Some(far) = self.texture.far.iter().find(|far| far.slot == slot) {
+                let [u, v] = far.at([x[at + lane], y[at + lane]]);
+                (rows[0][lane], rows[1][lane]) = (u, v);
+            }
+        }
+        [f32x16::from_slice(simd, &rows[0]), f32x16::from_slice(simd, &rows[1])]
     }
 }
 
@@ -86,45 +115,52 @@ impl<S: Simd> Triangles<S> for OfFirst {
 }
 
 impl PlacedTexture<'_> {
-    /// Red, green and blue, as factors, at sixteen points with these perspective-correct weights of
-    /// the second and third corner, and this w.
+    /// Red, green and blue, as factors, at sixteen positions on the texture, these texels from the
+    /// first corner and with this w.
     #[inline(always)]
     pub(crate) fn texel<S: Simd>(
         &self,
         simd: S,
         of: &impl Triangles<S>,
-        weights: [f32x16<S>; 2],
-        w: f32x16<S>,
+        at: ([f32x16<S>; 2], f32x16<S>),
+        position: [f32x16<S>; 2],
     ) -> Vec3<f32x16<S>> {
-        let way = [self.way(simd, of, weights, 0), self.way(simd, of, weights, 1)];
-        let position = [self.position(simd, of, way[0], 0), self.position(simd, of, way[1], 1)];
         self.sampler.sample(
             simd,
             position,
             #[inline(always)]
-            || {
-                let right = self.to_neighbour(simd, of, (way, w), 0);
-                Real::max(right, self.to_neighbour(simd, of, (way, w), 1))
-            },
+            || Real::max(self.to_neighbour(simd, of, at, 0), self.to_neighbour(simd, of, at, 1)),
         )
     }
 
-    /// The texels from the first corner to the point along an axis.
+    /// The texels from the first corner to the point with these weights of the second and third.
     #[inline(always)]
-    fn way<S: Simd>(
+    pub(crate) fn way<S: Simd>(
         &self,
         simd: S,
         of: &impl Triangles<S>,
-        [second, third]: [f32x16<S>; 2],
-        axis: usize,
-    ) -> f32x16<S> {
-        of.pick(simd, &self.placement.second[axis]) * second
-            + of.pick(simd, &self.placement.third[axis]) * third
+        [b, c]: [f32x16<S>; 2],
+    ) -> [f32x16<S>; 2] {
+        let Placement { second, third, .. } = self.placement;
+        [
+            of.pick(simd, &second[0]) * b + of.pick(simd, &third[0]) * c,
+            of.pick(simd, &second[1]) * b + of.pick(simd, &third[1]) * c,
+        ]
     }
 
-    /// The position of the point along an axis, in texels.
+    /// The position in texels, so many from the first corner.
     #[inline(always)]
-    fn position<S: Simd>(
+    pub(crate) fn position<S: Simd>(
+        &self,
+        simd: S,
+        of: &impl Triangles<S>,
+        [u, v]: [f32x16<S>; 2],
+    ) -> [f32x16<S>; 2] {
+        [self.clamped(simd, of, u, 0), self.clamped(simd, of, v, 1)]
+    }
+
+    #[inline(always)]
+    fn clamped<S: Simd>(
         &self,
         simd: S,
         of: &impl Triangles<S>,
@@ -186,24 +222,18 @@ pub(crate) fn steps<T: AttributeNumber>(
     )
 }
 
-/// The footprint of a pixel: the differences of uv to its neighbours on the right and below.
-#[cold]
-pub(crate) fn uv_ways(
-    (plan, frame): (&FramePlan, &ScreenGeometry),
-    draw_index: u32,
-    number: u32,
-    [x, y]: [i32; 2],
-) -> [[f64; 2]; 2] {
-    let draw = &plan.draws[draw_index as usize];
-    let Some(uvs) = uvs(draw, number) else { return [[0.0; 2]; 2] };
-    let corners = frame.corners_of(plan, draw_index);
-    let parts = Weights::new(plan, draw, corners, number, [0; 2]);
-    let at = |pixel: [i32; 2]| -> [f64; 2] {
-        let weights = parts.at(pixel).to_array();
-        [0, 1].map(|axis| (0..3).map(|i| weights[i] * uvs[i][axis]).sum())
-    };
-    let own = at([x, y]);
-    [at([x + 1, y]), at([x, y + 1])].map(|it| [it[0] - own[0], it[1] - own[1]])
+/// The footprint of a pixel with these perspective-correct weights and this w: the differences of uv
+/// to its neighbours on the right and below. See [`PlacedTexture::to_neighbour`].
+pub(crate) fn footprint([a, b, c]: Uvs, weights: DVec3, w: f64, steps: Steps) -> [[f64; 2]; 2] {
+    steps.map(|[first, second, third]| {
+        let by_w = first + second + third;
+        let per = w / (1.0 + w * by_w);
+        [0, 1].map(|axis| {
+            let (b, c) = (b[axis] - a[axis], c[axis] - a[axis]);
+            let way = b * weights.y + c * weights.z;
+            (b * second + c * third - way * by_w) * per
+        })
+    })
 }
 
 /// The interpolated vertex colour.

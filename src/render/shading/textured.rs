@@ -3,15 +3,17 @@
 use fearless_simd::{Level, dispatch};
 
 use super::context::ShadingContext;
+use super::far_texture::FarTexture;
 use super::groups::Group;
 use super::interpolated::ShadingNumber;
 use super::surface::Shader;
-use super::texels::{PlacedTexture, TextureSamples, color, steps, uv_ways};
+use super::texels::{PlacedTexture, TextureSamples, color, footprint, steps};
 use crate::render::frame::draw::Shaded;
+use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
 use crate::render::texture::lanes::Sampler;
 use crate::render::texture::mips::Mips;
-use crate::render::texture::placement::texels;
+use crate::render::texture::placement::{fits_f32, texels};
 use crate::render::texture::sample;
 use crate::render::texture::uv::{uv, uvs};
 use crate::scene::Texture;
@@ -66,8 +68,8 @@ impl<T: ShadingNumber> Shader<T> {
         if new {
             self.place_texture(context, group, texture, &sampler);
         }
-        let Self { fragments, attributes, barycentrics, placement, texels, .. } = self;
-        let texture = PlacedTexture { placement, sampler: &sampler };
+        let Self { fragments, attributes, barycentrics, placement, far, texels, .. } = self;
+        let texture = PlacedTexture { placement, far, sampler: &sampler };
         let samples = TextureSamples { fragments, barycentrics, texture };
         T::multiply_texels(context.level, attributes.count, &samples, texels)
     }
@@ -80,8 +82,9 @@ impl<T: ShadingNumber> Shader<T> {
         texture: &Texture,
         sampler: &Sampler<'_>,
     ) {
-        let Self { attributes, placement, .. } = self;
+        let Self { attributes, placement, far, .. } = self;
         placement.clear();
+        far.clear();
         let mut corners = [None; SLOTS];
         // One after another, so that the processor fetches many at once.
         for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
@@ -90,13 +93,22 @@ impl<T: ShadingNumber> Shader<T> {
         let reads_mips = sampler.reads_mips();
         // Dispatched so that rounding down uses the processor's instruction, if it has one.
         dispatch!(context.level, _ => for (slot, uvs) in corners.iter().enumerate() {
-            let Some(uvs) = uvs else { continue };
-            let texels = texels(*uvs, texture);
-            if let Some(texels) = texels {
-                let steps =
-                    if reads_mips { steps((context.plan, group.draw), attributes, slot) } else { None };
-                placement.set(slot, texels, steps);
+            let Some(uvs) = *uvs else { continue };
+            let texels = texels(uvs, texture);
+            if !fits_f32(&texels) {
+                let Some(own) = FarTexture::new(slot, uvs, texture, || {
+                    let number = attributes.numbers[slot];
+                    HomogeneousWeights::new(context.plan, group.draw, number, [0; 2])
+                }) else {
+                    continue;
+                };
+                far.push(own);
             }
+            let steps = match reads_mips {
+                true => steps((context.plan, group.draw), attributes, slot),
+                false => None,
+            };
+            placement.set(slot, texels, steps);
         });
     }
 
@@ -110,9 +122,12 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         let plan = context.plan;
         let Self { fragments, attributes, barycentrics, texels, .. } = self;
-        let mut corners = [None; SLOTS];
-        for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
-            *corners = uvs(group.draw, *number);
+        let (mut corners, mut all_steps) = ([None; SLOTS], [None; SLOTS]);
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            corners[slot] = uvs(group.draw, *number);
+            if mips.is_some() && done >> slot & 1 == 0 {
+                all_steps[slot] = steps((plan, group.draw), attributes, slot);
+            }
         }
         // Dispatched so that rounding down uses the processor's instruction, if it has one.
         dispatch!(context.level, _ => for i in 0..fragments.len {
@@ -124,14 +139,14 @@ impl<T: ShadingNumber> Shader<T> {
                 row[i] = T::from_f64(tint);
             }
             let Some(corners) = corners[slot] else { continue };
-            let uv = uv(corners, barycentrics.weights(i));
+            let weights = barycentrics.weights(i);
+            let uv = uv(corners, weights);
             let texel = match mips {
                 None => sample::sample::<T>(texture, uv, plan.filter),
                 Some(mips) => {
-                    let number = attributes.numbers[slot];
-                    let pixel = [fragments.x[i], fragments.y[i]];
-                    let frame = (plan, context.frame);
-                    mips.sample(uv, uv_ways(frame, group.draw_index, number, pixel))
+                    let steps = all_steps[slot].unwrap_or_default();
+                    let w = barycentrics.w[i].into();
+                    mips.sample(uv, footprint(corners, weights, w, steps))
                 }
             };
             for (row, part) in texels.iter_mut().zip(texel) {

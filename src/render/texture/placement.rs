@@ -8,8 +8,8 @@ use crate::base::math::each;
 use crate::render::simd::gather::SLOTS;
 use crate::scene::{Texture, Wrap};
 
-/// The largest coordinate in texels at which f32 tells 1/512 texel apart.
-const FARTHEST: f64 = 32_768.0;
+/// The largest coordinate in texels at which f32 tells 1/1024 texel apart.
+const FARTHEST: f64 = 16_384.0;
 
 /// The coordinates of the triangles of a list, slot by slot, along u and v.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ pub(crate) struct Placement {
     /// The steps of (u - first) / w by a pixel to the right and by one down, and those of 1 / w.
     pub(crate) steps: [[[f32; SLOTS]; 2]; 2],
     pub(crate) by_w_steps: [[f32; SLOTS]; 2],
-    /// Bit i: the triangle has coordinates that f32 can tell apart.
+    /// Bit i: the triangle has coordinates.
     pub(crate) known: u64,
 }
 
@@ -78,16 +78,23 @@ impl Placement {
     }
 }
 
-/// The coordinates of a triangle's corners in texels, along u and v; `None` if they are so far
-/// apart that f32 could not tell texels apart between them.
+/// The coordinates of a triangle's corners in texels, along u and v.
 #[inline(always)]
-pub(crate) fn texels(uvs: Uvs, texture: &Texture) -> Option<[[f64; 3]; 2]> {
-    Some([along(uvs, texture, 0)?, along(uvs, texture, 1)?])
+pub(crate) fn texels(uvs: Uvs, texture: &Texture) -> [[f64; 3]; 2] {
+    [along(uvs, texture, 0), along(uvs, texture, 1)]
+}
+
+/// Whether f32 can tell texels apart between these coordinates.
+#[inline(always)]
+pub(crate) fn fits_f32(texels: &[[f64; 3]; 2]) -> bool {
+    let [[a, b, c], [d, e, f]] = texels.map(|along| each(along, f64::abs));
+    let near = |x: f64| x <= FARTHEST;
+    near(a) && near(b) && near(c) && near(d) && near(e) && near(f)
 }
 
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-fn along(uvs: Uvs, texture: &Texture, axis: usize) -> Option<[f64; 3]> {
+fn along(uvs: Uvs, texture: &Texture, axis: usize) -> [f64; 3] {
     let size = texture.picture.size();
     let side = [size.width, size.height][axis] as f64;
     let own = each(uvs, |uv| uv[axis] * texture.scale[axis] + texture.offset[axis]);
@@ -96,7 +103,5 @@ fn along(uvs: Uvs, texture: &Texture, axis: usize) -> Option<[f64; 3]> {
         Wrap::Repeat => least.floor(),
         Wrap::Clamp => 0.0,
     };
-    let texels = each(own, |own| (own - repetitions) * side);
-    let [a, b, c] = each(texels, f64::abs);
-    (a <= FARTHEST && b <= FARTHEST && c <= FARTHEST).then_some(texels)
+    each(own, |own| (own - repetitions) * side)
 }
