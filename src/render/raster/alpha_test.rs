@@ -1,13 +1,26 @@
 //! The alpha test: a pixel at which a texture's alpha is below one half shows what is behind it.
+//!
+//! Alpha is sampled sixteen pixels at a time in f32. Where that could decide otherwise than f64, it
+//! is sampled again in f64.
+
+use fearless_simd::{Simd, SimdBase as _, SimdFloat as _, SimdMask as _, SimdNarrow as _, f64x8};
 
 use super::geometry::ScreenGeometry;
+use super::large::Holes;
 use crate::accuracy::Filter;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Pipeline, Shaded};
+use crate::render::screen::tiles::BLOCK;
 use crate::render::screen::weights::Weights;
+use crate::render::texture::exact_placement::ExactPlacement;
+use crate::render::texture::lanes::Sampler;
 use crate::render::texture::sample::sample;
 use crate::render::texture::uv::{Uvs, uv, uvs};
 use crate::scene::Texture;
+
+/// How near to one half an alpha in f32 decides nothing, and how near to a border, in texels, a
+/// position does not tell the texel. Positions in f32 are off by 1/1024 texel at most.
+const NEAR: f32 = 1.0 / 128.0;
 
 /// A triangle that needs the alpha test.
 #[derive(Debug)]
@@ -17,6 +30,8 @@ pub(crate) struct AlphaTest<'a> {
     texture: &'a Texture,
     opacity: f64,
     filter: Filter,
+    /// How lanes sample it; `None` if they cannot.
+    lanes: Option<(ExactPlacement, Sampler<'a>)>,
 }
 
 impl<'a> AlphaTest<'a> {
@@ -36,12 +51,15 @@ impl<'a> AlphaTest<'a> {
         else {
             return None;
         };
+        let uvs = uvs(draw, number)?;
+        let placement = ExactPlacement::new(uvs, texture);
         Some(Self {
             weights: Weights::new(plan, draw, frame.corners_of(plan, index), number, shift),
-            uvs: uvs(draw, number)?,
+            uvs,
             texture,
             opacity: *opacity,
             filter: plan.filter,
+            lanes: placement.zip(Sampler::new(std::slice::from_ref(texture), plan.filter)),
         })
     }
 
@@ -50,5 +68,60 @@ impl<'a> AlphaTest<'a> {
     pub(crate) fn is_opaque(&self, pixel: [i32; 2]) -> bool {
         let uv = uv(self.uvs, self.weights.at(pixel));
         sample::<f64>(self.texture, uv, self.filter)[3] * self.opacity >= 0.5
+    }
+
+    /// The pixels of two rows that are opaque and those that f32 cannot decide, a bit for each. The
+    /// edge functions are those of the second and the third corner in each row.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    fn decide<S: Simd>(
+        &self,
+        simd: S,
+        [x, y]: [i32; 2],
+        [upper, lower]: [[f64x8<S>; 2]; 2],
+    ) -> Option<[u64; 2]> {
+        let (placement, sampler) = self.lanes.as_ref()?;
+        let [u, v] = placement.of_row(self.weights.of_row(simd, [x, y], upper)?);
+        let [u_below, v_below] = placement.of_row(self.weights.of_row(simd, [x, y + 1], lower)?);
+        let position = [u.narrow(u_below), v.narrow(v_below)];
+        let alpha = sampler.alpha(simd, position) * self.opacity as f32;
+        let mut open = (alpha - 0.5).abs().simd_lt(NEAR);
+        if sampler.shows_texels() {
+            for at in position {
+                open |= ((at - at.floor()) - 0.5).abs().simd_gt(0.5 - NEAR);
+            }
+        }
+        Some([alpha.simd_gt(0.5).to_bitmask(), open.to_bitmask()])
+    }
+}
+
+/// The alpha test of a triangle in one block.
+pub(crate) struct BlockHoles<'a, 'b> {
+    pub(crate) test: &'b AlphaTest<'a>,
+    /// The first pixel of the block in the picture.
+    pub(crate) first: [i32; 2],
+}
+
+impl<S: Simd> Holes<S> for BlockHoles<'_, '_> {
+    #[inline(always)]
+    fn there_are(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn opaque(&self, simd: S, pair: usize, pixels: u64, edges: [[f64x8<S>; 2]; 2]) -> u64 {
+        let [x, y] = self.first;
+        let y = y + 2 * i32::try_from(pair).unwrap_or(0);
+        let [solid, open] = self.test.decide(simd, [x, y], edges).unwrap_or([0, u64::MAX]);
+        let (mut solid, mut open) = (solid & !open & pixels, open & pixels);
+        while open != 0 {
+            let lane = open.trailing_zeros();
+            open &= open - 1;
+            let at = lane.cast_signed();
+            if self.test.is_opaque([x + at % BLOCK, y + at / BLOCK]) {
+                solid |= 1 << lane;
+            }
+        }
+        solid
     }
 }

@@ -11,7 +11,7 @@ use fearless_simd::{
 };
 
 use super::bins::LargeTriangle;
-use super::visibility_buffer::put_rows;
+use super::visibility_buffer::{in_front, put_rows};
 use crate::base::math::each;
 use crate::render::screen::coverage::{PixelBox, Triangle};
 use crate::render::screen::sample_positions::SamplePositions;
@@ -39,6 +39,30 @@ pub(crate) struct Large {
     pub(crate) high: f32,
     /// Its number in the frame.
     pub(crate) number: u32,
+}
+
+/// What lets through what is behind a triangle.
+pub(crate) trait Holes<S: Simd> {
+    /// Whether there may be any.
+    fn there_are(&self) -> bool;
+    /// Which of some pixels are opaque: those of two rows of a block, a bit for each, with the edge
+    /// functions of the second and the third corner in each row.
+    fn opaque(&self, simd: S, pair: usize, pixels: u64, edges: [[f64x8<S>; 2]; 2]) -> u64;
+}
+
+/// No holes.
+pub(crate) struct Solid;
+
+impl<S: Simd> Holes<S> for Solid {
+    #[inline(always)]
+    fn there_are(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn opaque(&self, _: S, _: usize, pixels: u64, _: [[f64x8<S>; 2]; 2]) -> u64 {
+        pixels
+    }
 }
 
 /// Blocks of a tile, a bit for each.
@@ -153,13 +177,14 @@ impl Large {
     }
 
     /// Draws the triangle into a block of the visibility buffer, for the sample with this offset;
-    /// the triangle covers the block fully or in part.
+    /// the triangle covers the block fully or in part, and may have holes.
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
+        holes: &impl Holes<S>,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
@@ -168,7 +193,7 @@ impl Large {
         let [a, b, c] = self.right;
         let mut edges = [across * a + first[0], across * b + first[1], across * c + first[2]];
         let (two, _) = visibility.as_chunks_mut::<16>();
-        for visibility in two {
+        for (pair, visibility) in two.iter_mut().enumerate() {
             let upper = edges;
             let lower = self.below(upper);
             edges = self.below(lower);
@@ -182,7 +207,17 @@ impl Large {
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
             let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
-            let covered = mask32x16::from_bitmask(simd, covered);
+            let mut covered = mask32x16::from_bitmask(simd, covered);
+            if holes.there_are() {
+                let front = in_front(simd, covered, depth, self.number, visibility);
+                if front == 0 {
+                    continue;
+                }
+                let float = |edges: i64x8<S>| edges.to_float::<f64x8<S>>();
+                let rows = [[float(upper[1]), float(upper[2])], [float(lower[1]), float(lower[2])]];
+                let opaque = holes.opaque(simd, pair, front, rows);
+                covered = mask32x16::from_bitmask(simd, opaque);
+            }
             put_rows(simd, covered, depth, self.number, visibility);
         }
     }
@@ -206,6 +241,7 @@ impl Large {
     }
 
     /// The depth at a point with these edge functions.
+    #[cfg(test)]
     #[expect(
         clippy::cast_precision_loss,
         clippy::cast_possible_truncation,

@@ -20,16 +20,16 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::alpha_test::AlphaTest;
+use super::alpha_test::{AlphaTest, BlockHoles};
 use super::bins::{Bins, LargeTriangle};
 use super::geometry::ScreenGeometry;
-use super::large::Large;
+use super::large::{Large, Solid, Touched};
 use super::medium::{self, Medium};
 use super::visibility_buffer::{Planes, depths_of, seen, word};
 use super::{lines, pixel_by_pixel};
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
-use crate::render::screen::coverage::{Covered, PixelBox, Triangle};
+use crate::render::screen::coverage::{PixelBox, Snapped, Triangle};
 use crate::render::screen::sample_positions::{FOUR, SamplePositions};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
 
@@ -107,7 +107,9 @@ impl Visibility {
             for &number in &bins.tiles[tile].large {
                 let large = &bins.large[number as usize];
                 if large.cutout {
-                    self.draw_cutout::<N>(level, plan, frame, large);
+                    dispatch!(level, simd => {
+                        self.draw_cutout::<_, N>(simd, plan, frame, large);
+                    });
                 }
             }
             dispatch!(level, simd => self.draw_lines::<_, N>(simd, bins, plan.line_width, tile));
@@ -276,22 +278,8 @@ impl Visibility {
         let sample_positions = self.sample_positions;
         for sample in 0..N {
             let shift = sample_positions.shift::<N>(sample);
-            large.draw(simd, (block, shift), whole, self.plane::<N>(block, sample));
+            large.draw(simd, (block, shift), whole, &Solid, self.plane::<N>(block, sample));
         }
-    }
-
-    /// The depth test of one sample: whether the entry there already hides a triangle.
-    #[inline(always)]
-    fn hides<const N: usize>(
-        &mut self,
-        (x, y, sample): (i32, i32, usize),
-        depth: f32,
-        number: u32,
-    ) -> bool {
-        let (x, y) = (x - self.bounds.left, y - self.bounds.top);
-        let block = block_at(x, y);
-        self.written >> block & 1 != 0
-            && self.plane::<N>(block, sample)[within(x, y)] >= word(depth, number)
     }
 
     #[inline(always)]
@@ -333,32 +321,63 @@ impl Visibility {
     }
 
     /// Draws a triangle with the alpha test in each sample.
-    fn draw_cutout<const N: usize>(
+    #[inline(always)]
+    fn draw_cutout<S: Simd, const N: usize>(
         &mut self,
-        level: Level,
+        simd: S,
         plan: &FramePlan,
         frame: &ScreenGeometry,
-        large: &LargeTriangle,
+        triangle: &LargeTriangle,
     ) {
-        for sample in 0..N {
+        let Some((large, area)) = self.set_up::<N>(triangle) else { return };
+        let tests: [Option<AlphaTest<'_>>; N] = std::array::from_fn(|sample| {
             let shift = self.sample_positions.shift::<N>(sample);
-            let corners = each(large.corners, |corner| corner.at().seen_from(shift));
-            let Some(triangle) = Triangle::new(corners) else { return };
-            let seen = Large::new(large, &triangle, [self.bounds.left, self.bounds.top]);
-            let holes = AlphaTest::of(plan, frame, large.number, shift);
-            dispatch!(level, simd => triangle.covered(
-                self.bounds,
-                #[inline(always)]
-                |Covered { x, y, edges }| {
-                    let (at, depth) = ((x, y, sample), seen.depth(edges));
-                    if !self.hides::<N>(at, depth, large.number)
-                        && holes.as_ref().is_none_or(|holes| holes.is_opaque([x, y]))
-                    {
-                        self.put::<_, N>(simd, at, depth, large.number);
+            AlphaTest::of(plan, frame, triangle.number, shift)
+        });
+        let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
+        while some != 0 {
+            let block = some.trailing_zeros() as usize;
+            some &= some - 1;
+            if large.high < self.farthest[block] {
+                continue;
+            }
+            self.write::<S, N>(simd, block);
+            let (first, whole) = (self.corner(block), whole >> block & 1 != 0);
+            for (sample, test) in tests.iter().enumerate() {
+                let at = (block, self.sample_positions.shift::<N>(sample));
+                let plane = self.plane::<N>(block, sample);
+                match test {
+                    Some(test) => {
+                        large.draw(simd, at, whole, &BlockHoles { test, first }, plane);
                     }
-                },
-            ));
+                    None => large.draw(simd, at, whole, &Solid, plane),
+                }
+            }
         }
+    }
+
+    /// A triangle relative to the tile, and the pixels of its bounding box in it, counted from the
+    /// tile's first; `None` if there are none.
+    fn set_up<const N: usize>(&self, triangle: &LargeTriangle) -> Option<(Large, PixelBox)> {
+        let corners = each(triangle.corners, |corner| corner.at());
+        let area = self.reached::<N>(corners)?;
+        let edges = Triangle::new(corners)?;
+        Some((Large::new(triangle, &edges, [self.bounds.left, self.bounds.top]), area))
+    }
+
+    /// The pixels of the tile that a triangle's bounding box reaches into, counted from the tile's
+    /// first.
+    #[inline(always)]
+    fn reached<const N: usize>(&self, corners: [Snapped; 3]) -> Option<PixelBox> {
+        let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
+        let area = reached.intersection(self.bounds);
+        let PixelBox { left, top, .. } = self.bounds;
+        (!area.is_empty()).then_some(PixelBox {
+            left: area.left - left,
+            top: area.top - top,
+            right: area.right - left,
+            bottom: area.bottom - top,
+        })
     }
 
     /// Draws the small triangles of a tile, and lines that are short.
@@ -394,24 +413,10 @@ impl Visibility {
     fn draw_large<S: Simd, const N: usize>(&mut self, simd: S, large: &LargeTriangle) {
         let corners = each(large.corners, |corner| corner.at());
         let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
-        let area = reached.intersection(self.bounds);
-        if area.is_empty() {
-            return;
-        }
-        let (left, top) = (self.bounds.left, self.bounds.top);
-        let area = PixelBox {
-            left: area.left - left,
-            top: area.top - top,
-            right: area.right - left,
-            bottom: area.bottom - top,
-        };
         if reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST {
-            return self.draw_medium::<S, N>(simd, large, area);
+            return self.draw_medium::<S, N>(simd, large);
         }
-        let Some(triangle) = Triangle::new(corners) else {
-            return;
-        };
-        let large = Large::new(large, &triangle, [left, top]);
+        let Some((large, area)) = self.set_up::<N>(large) else { return };
         let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
         let mut some = touched.some;
         let mut place = None;
@@ -430,15 +435,11 @@ impl Visibility {
         }
     }
 
-    /// Draws a triangle whose bounding box is at most as large as a tile; `area` is the part of it
-    /// in the tile.
+    /// Draws a triangle whose bounding box is at most as large as a tile.
     #[inline(always)]
-    fn draw_medium<S: Simd, const N: usize>(
-        &mut self,
-        simd: S,
-        triangle: &LargeTriangle,
-        area: PixelBox,
-    ) {
+    fn draw_medium<S: Simd, const N: usize>(&mut self, simd: S, triangle: &LargeTriangle) {
+        let corners = each(triangle.corners, |corner| corner.at());
+        let Some(area) = self.reached::<N>(corners) else { return };
         let first = [self.bounds.left, self.bounds.top];
         let Some(medium) = Medium::new(simd, triangle, first) else { return };
         let touched = medium.blocks::<N>(simd, area, &self.sample_positions);
@@ -459,7 +460,6 @@ impl Visibility {
         if whole == 0 {
             return;
         }
-        let corners = each(triangle.corners, |corner| corner.at());
         let Some(edges) = Triangle::new(corners) else { return };
         let (large, mut place) = (Large::new(triangle, &edges, first), None);
         while whole != 0 {

@@ -4,7 +4,7 @@
 //! primitive below. So the depth test is a maximum: the larger entry is visible.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, f32x16, f64x8, mask32x16, u32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, f64x8, mask32x16, u32x16,
 };
 
 use super::lines::LineNumber;
@@ -63,15 +63,43 @@ pub(crate) fn put_rows<S: Simd>(
     number: u32,
     visibility: &mut [u64; 16],
 ) {
+    let (upper, lower) = entries(simd, covered, depth, number);
+    let (up, down) = bytemuck::cast_slice_mut::<u64, f64>(visibility).split_at_mut(8);
+    for (new, row) in [(upper, up), (lower, down)] {
+        let old = f64x8::from_slice(simd, row);
+        new.max(old).store_slice(row);
+    }
+}
+
+/// Those among sixteen pixels that a triangle covers and where it is in front, a bit for each. See
+/// [`put_rows`].
+#[inline(always)]
+pub(crate) fn in_front<S: Simd>(
+    simd: S,
+    covered: mask32x16<S>,
+    depth: f32x16<S>,
+    number: u32,
+    visibility: &[u64; 16],
+) -> u64 {
+    let (upper, lower) = entries(simd, covered, depth, number);
+    let (up, down) = bytemuck::cast_slice::<u64, f64>(visibility).split_at(8);
+    let front = |new: f64x8<S>, row: &[f64]| new.simd_gt(f64x8::from_slice(simd, row)).to_bitmask();
+    front(upper, up) | front(lower, down) << 8
+}
+
+/// Entries as f64, where a triangle covers pixels, else 0.
+#[inline(always)]
+fn entries<S: Simd>(
+    simd: S,
+    covered: mask32x16<S>,
+    depth: f32x16<S>,
+    number: u32,
+) -> (f64x8<S>, f64x8<S>) {
     let nothing = u32x16::splat(simd, 0);
     let depth = covered.select(depth.bitcast::<u32x16<S>>(), nothing);
     let number = covered.select(u32x16::splat(simd, !number), nothing);
     let (upper, lower) = number.interleave(depth);
-    let (up, down) = bytemuck::cast_slice_mut::<u64, f64>(visibility).split_at_mut(8);
-    for (new, row) in [(upper, up), (lower, down)] {
-        let old = f64x8::from_slice(simd, row);
-        new.bitcast::<f64x8<S>>().max(old).store_slice(row);
-    }
+    (upper.bitcast(), lower.bitcast())
 }
 
 /// The entries of a block for each of four samples.

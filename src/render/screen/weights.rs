@@ -78,6 +78,32 @@ impl<'a> Weights<'a> {
     }
 }
 
+impl Weights<'_> {
+    /// The weights of the second and the third corner at eight pixels of a row, from its first on,
+    /// to a few last places; `edges` are the edge functions of both there. `None` for variants.
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
+    pub(crate) fn of_row<S: Simd>(
+        &self,
+        simd: S,
+        first: [i32; 2],
+        [second, third]: [f64x8<S>; 2],
+    ) -> Option<[f64x8<S>; 2]> {
+        match &self.method {
+            Method::Cut(weights) => Some(weights.of_row(simd, first).0),
+            Method::Variant(..) => None,
+            Method::Edges(triangle, w) => {
+                let area = triangle.as_ref()?.doubled_area() as f64;
+                let by_w = [1.0 / w.x, 1.0 / w.y, 1.0 / w.z];
+                let rest = f64x8::splat(simd, area) - second - third;
+                let (second, third) = (second * by_w[1], third * by_w[2]);
+                let per = f64x8::splat(simd, 1.0) / (rest * by_w[0] + second + third);
+                Some([second * per, third * per])
+            }
+        }
+    }
+}
+
 /// The second and third barycentric coordinate of a pixel, linear on the screen.
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
@@ -120,9 +146,8 @@ impl HomogeneousWeights {
         let volume = p.dot(normals[0]);
         let scale = if volume == 0.0 { 1.0 } else { 1.0 / volume };
         let (right, down) = (2.0 / plan.size.width as f64, -2.0 / plan.size.height as f64);
-        let centre = |axis: usize| {
-            0.5 + f64::from(shift[axis] + plan.shift[axis]) / f64::from(SUBPIXELS)
-        };
+        let centre =
+            |axis: usize| 0.5 + f64::from(shift[axis] + plan.shift[axis]) / f64::from(SUBPIXELS);
         // The position of the first pixel, from -1 to 1.
         let (x, y) = (centre(0) * right - 1.0, centre(1) * down + 1.0);
         let planes = each(normals, |n| {
@@ -169,8 +194,7 @@ impl HomogeneousWeights {
         );
         let sum = m0 + m1 + m2;
         let inside = sum.simd_gt(0.0);
-        let (m0, m1, m2) =
-            (inside.select(m0, one), inside.select(m1, one), inside.select(m2, one));
+        let (m0, m1, m2) = (inside.select(m0, one), inside.select(m1, one), inside.select(m2, one));
         let per = one / inside.select(sum, one + one + one);
         let [w0, w1, w2] = self.w;
         ([m1 * per, m2 * per], (m0 * w0 + m1 * w1 + m2 * w2) * per)

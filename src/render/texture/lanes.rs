@@ -4,8 +4,7 @@
 //! [`mips`](super::mips), in f32; only the texels themselves are fetched one by one.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _,
-    f32x16, i32x16,
+    Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
 };
 
 use crate::accuracy::Filter;
@@ -68,6 +67,34 @@ impl<'a> Sampler<'a> {
         }
     }
 
+    /// Alpha at sixteen positions in texels, from 0 to 1, of the texture's own size.
+    #[inline(always)]
+    pub(crate) fn alpha<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
+        let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
+        let level = Level::of(self, simd, i32x16::splat(simd, 0));
+        let alpha = match self.filter {
+            Filter::Nearest => alpha_of(level.nearest(simd, self, position)),
+            Filter::Bilinear | Filter::Trilinear => {
+                let Footprint { left, right, lower, upper, s, t } = level.footprint(self, position);
+                let at = [[left, lower], [right, lower], [left, upper], [right, upper]];
+                let [a, b, c, d] = [
+                    alpha_of(level.fetch(simd, self, at[0])),
+                    alpha_of(level.fetch(simd, self, at[1])),
+                    alpha_of(level.fetch(simd, self, at[2])),
+                    alpha_of(level.fetch(simd, self, at[3])),
+                ];
+                let (below, above) = (a + (b - a) * s, c + (d - c) * s);
+                below + (above - below) * t
+            }
+        };
+        alpha * (1.0 / 255.0)
+    }
+
+    /// Whether the filter shows texels as they are.
+    pub(crate) fn shows_texels(&self) -> bool {
+        self.filter == Filter::Nearest
+    }
+
     /// Brings a coordinate in texels into the picture: from 0 to its side.
     #[inline(always)]
     fn reduced<S: Simd>(&self, x: f32x16<S>, axis: usize) -> f32x16<S> {
@@ -85,13 +112,9 @@ impl<'a> Sampler<'a> {
     }
 
     #[inline(always)]
-    fn nearest<S: Simd>(&self, simd: S, [x, y]: Positions<S>) -> Vec3<f32x16<S>> {
+    fn nearest<S: Simd>(&self, simd: S, position: Positions<S>) -> Vec3<f32x16<S>> {
         let level = Level::of(self, simd, i32x16::splat(simd, 0));
-        // A position on the upper border is that of the last texel.
-        let column = x.to_int::<i32x16<S>>().min(level.width - 1);
-        let row = y.to_int::<i32x16<S>>().min(level.height - 1);
-        let texels = level.fetch(simd, self, [column, row]);
-        let Vec3([r, g, b]) = channels(texels);
+        let Vec3([r, g, b]) = channels(level.nearest(simd, self, position));
         Vec3([r / 255.0, g / 255.0, b / 255.0])
     }
 
@@ -134,6 +157,17 @@ struct Level<S: Simd> {
     height: i32x16<S>,
 }
 
+/// The columns and rows of four texels, and the weights of the right and the upper ones.
+#[derive(Clone, Copy)]
+struct Footprint<S: Simd> {
+    left: i32x16<S>,
+    right: i32x16<S>,
+    lower: i32x16<S>,
+    upper: i32x16<S>,
+    s: f32x16<S>,
+    t: f32x16<S>,
+}
+
 impl<S: Simd> Level<S> {
     #[inline(always)]
     fn of(sampler: &Sampler<'_>, simd: S, numbers: i32x16<S>) -> Self {
@@ -145,6 +179,15 @@ impl<S: Simd> Level<S> {
         let [height, up] = sides_of(lanes, heights, numbers, one);
         let (width, height) = (width.to_int(), height.to_int());
         Self { one, numbers, scale: [across, up], width, height }
+    }
+
+    /// The texels at some positions.
+    #[inline(always)]
+    fn nearest(&self, simd: S, sampler: &Sampler<'_>, [x, y]: Positions<S>) -> i32x16<S> {
+        // A position on the upper border is that of the last texel.
+        let column = x.to_int::<i32x16<S>>().min(self.width - 1);
+        let row = y.to_int::<i32x16<S>>().min(self.height - 1);
+        self.fetch(simd, sampler, [column, row])
     }
 
     /// Interpolates between four texels: red, green and blue from 0 to 255.
@@ -167,6 +210,17 @@ impl<S: Simd> Level<S> {
             s,
         );
         between(below, above, t)
+    }
+
+    /// The four texels around some positions.
+    #[inline(always)]
+    fn footprint(&self, sampler: &Sampler<'_>, [x, y]: Positions<S>) -> Footprint<S> {
+        let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
+        let (column, row) = (x.floor(), y.floor());
+        let wrap = sampler.levels[0].wrap;
+        let [left, right] = beside(column.to_int(), self.width, wrap);
+        let [lower, upper] = beside(row.to_int(), self.height, wrap);
+        Footprint { left, right, lower, upper, s: x - column, t: y - row }
     }
 
     /// The texels at some columns and rows, all of which are in the picture; rows count upwards.
@@ -240,4 +294,10 @@ fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
         ((texels >> 8) & 255).to_float(),
         ((texels >> 16) & 255).to_float(),
     ])
+}
+
+/// Alpha of texels, from 0 to 255.
+#[inline(always)]
+fn alpha_of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
+    ((texels >> 24) & 255).to_float()
 }

@@ -1,5 +1,6 @@
 //! The colours of textures, and where they lie on triangles.
 
+pub(crate) mod exact_placement;
 pub(crate) mod lanes;
 pub(crate) mod mips;
 pub(crate) mod placement;
