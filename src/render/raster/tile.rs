@@ -7,8 +7,8 @@
 //!
 //! Coverage and depth are computed in one of two ways, chosen by the triangle's size alone: in f32,
 //! in which integers below 2^24 are exact, for bounding boxes up to 8 x 8 pixels, sixteen triangles
-//! at once (`small`); and in integers for all others, a block of 8 x 8 pixels at once: of 32 bits for
-//! boxes up to 64 x 64 pixels (`medium`), else of 64 bits, with the same result (`large`). So
+//! at once (`small`); and in integers for all others, a block of 8 x 8 pixels at once: of 32 bits
+//! for boxes up to 64 x 64 pixels (`medium`), else of 64 bits, with the same result (`large`). So
 //! neither tiles nor threads nor instruction sets show in the picture.
 //!
 //! A block that nothing reaches is never touched. For a block that a single large triangle covers

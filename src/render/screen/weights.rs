@@ -113,8 +113,8 @@ pub(crate) fn barycentric(triangle: &Triangle, [x, y]: [i32; 2]) -> [f64; 2] {
     [second as f64 * per_area, third as f64 * per_area]
 }
 
-/// The perspective-correct weights of a triangle's corners at any pixel, in f64 and from its corners
-/// in clip space: for clipped triangles, and wherever f32 is not enough.
+/// The perspective-correct weights of a triangle's corners at any pixel, in f64 and from its
+/// corners in clip space: for clipped triangles, and wherever f32 is not enough.
 ///
 ///   N0 = (q x r) . s / (p . (q x r)), N1 and N2 alike, for corners p, q, r and the position s,
 ///   each as (x, y, w)

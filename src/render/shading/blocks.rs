@@ -115,8 +115,8 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
-    /// per pixel or not at all, with or without a texture, and nothing else is done to them. Returns
-    /// whether that was so.
+    /// per pixel or not at all, with or without a texture, and nothing else is done to them.
+    /// Returns whether that was so.
     fn light_blocks(
         &mut self,
         context: &ShadingContext<'_, T>,

@@ -1,5 +1,5 @@
-//! Triangles over so many texels that f32 could not tell them apart: their positions on the texture
-//! are computed in f64, and reduced to one repetition before they are rounded to f32.
+//! Triangles over more texels than f32 can tell apart: their positions on the texture are computed
+//! in f64, and reduced to one repetition before they are rounded to f32.
 
 use fearless_simd::{Simd, SimdNarrow as _, f32x16};
 

@@ -148,7 +148,7 @@ impl PlacedTexture<'_> {
         ]
     }
 
-    /// The position in texels, so many from the first corner.
+    /// The position in texels, for this way in texels from the first corner.
     #[inline(always)]
     pub(crate) fn position<S: Simd>(
         &self,
@@ -222,8 +222,8 @@ pub(crate) fn steps<T: AttributeNumber>(
     )
 }
 
-/// The footprint of a pixel with these perspective-correct weights and this w: the differences of uv
-/// to its neighbours on the right and below. See [`PlacedTexture::to_neighbour`].
+/// The footprint of a pixel with these perspective-correct weights and this w: the differences of
+/// uv to its neighbours on the right and below. See [`PlacedTexture::to_neighbour`].
 pub(crate) fn footprint([a, b, c]: Uvs, weights: DVec3, w: f64, steps: Steps) -> [[f64; 2]; 2] {
     steps.map(|[first, second, third]| {
         let by_w = first + second + third;

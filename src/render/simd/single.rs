@@ -101,8 +101,8 @@ fn any_power<R: Single>(x: R, power: &Power) -> R {
     x.if_more(zero, log2.if_more(x.lift(power.floor), result, zero), zero)
 }
 
-/// log2 x of a number above 0, with an error relative to it of some 1e-7; subnormal numbers count as
-/// the smallest that is not. See [`any_power`].
+/// log2 x of a number above 0, with an error relative to it of some 1e-7; subnormal numbers count
+/// as the smallest that is not. See [`any_power`].
 #[inline(always)]
 fn binary_logarithm<R: Single>(x: R) -> R {
     const LOGARITHM: [f64; 9] = [

@@ -1,5 +1,5 @@
 //! Positions on a texture in f64, reduced to one repetition before they are rounded to f32: for
-//! triangles over so many texels that f32 could not tell them apart, and for the alpha test.
+//! triangles over more texels than f32 can tell apart, and for the alpha test.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdFloat as _, f64x8};
 

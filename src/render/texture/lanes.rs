@@ -223,7 +223,7 @@ impl<S: Simd> Level<S> {
         Footprint { left, right, lower, upper, s: x - column, t: y - row }
     }
 
-    /// The texels at some columns and rows, all of which are in the picture; rows count upwards.
+    /// The texels at some columns and rows of the picture; rows count upwards.
     #[inline(always)]
     fn fetch(&self, simd: S, sampler: &Sampler<'_>, [column, row]: [i32x16<S>; 2]) -> i32x16<S> {
         // The picture's own rows run down.

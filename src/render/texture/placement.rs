@@ -1,4 +1,4 @@
-//! Where the textures of some triangles lie: their coordinates in texels, as lanes read them.
+//! The coordinates of some triangles on their texture, in texels, as lanes read them.
 //!
 //! Coordinates of a texture that repeats are moved by whole repetitions, so that f32 keeps their
 //! digits however far from 0 they are.
