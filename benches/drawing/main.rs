@@ -1,4 +1,4 @@
-//! Benchmarks of drawing: by stage and shape, by effect, and by size.
+//! Benchmarks of drawing: by stage and shape, by effect, by size, and by texture.
 //!
 //! `cargo bench --bench drawing` runs them all; a part of a name selects some. Times depend on the
 //! machine and the moment, so only their ratios are meaningful. `tools/speed.sh` makes a page of
@@ -10,6 +10,7 @@ mod objects;
 mod shapes;
 mod stage;
 mod stages;
+mod textures;
 
 use std::time::Duration;
 
@@ -25,5 +26,6 @@ fn main() {
     effects::measure(&mut criterion);
     growth::measure(&mut criterion);
     objects::measure(&mut criterion);
+    textures::measure(&mut criterion);
     criterion.final_summary();
 }
