@@ -30,8 +30,8 @@ pub enum StartError {
     Other(String),
 }
 
-/// Opens the editor with these files, and comes back when it is left: models are put into the first
-/// scene with their own materials, a scene is opened in its place.
+/// Opens the editor with these files, and comes back when it is left: models are shown
+/// alone, framed and lit; a scene is opened in place of the first one.
 ///
 /// # Errors
 /// If no window can be opened.

@@ -7,6 +7,7 @@
 mod dialogs;
 mod editor;
 mod examples;
+mod first_models;
 mod keys_and_clicks;
 mod laboratory;
 mod mouse;

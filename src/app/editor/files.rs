@@ -42,29 +42,6 @@ impl App {
         }
     }
 
-    /// Loads the files of the command line: models with their own materials, otherwise silver. They
-    /// do not count as unsaved changes.
-    pub fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
-        for path in paths {
-            if is_scene(&path) {
-                self.open_scene(ctx, path);
-            } else {
-                let material = Some(MaterialChoice::File);
-                let wish = Wish { material, keeps_saved: true, ..Wish::default() };
-                self.load_model(ctx, path, wish);
-            }
-        }
-    }
-
-    /// Loads files that were dropped onto the window.
-    pub(crate) fn take_dropped(&mut self, ctx: &Context) {
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
-        if !paths.is_empty() {
-            self.load_files(ctx, paths);
-        }
-    }
-
     /// Handles the answer to a dialog.
     pub(crate) fn take_answer(&mut self, ctx: &Context, answer: Answer) {
         match answer {
@@ -134,7 +111,7 @@ impl App {
         }
     }
 
-    fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
+    pub(crate) fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
         let label = format!("Loading {}", file_name(&path));
         let asks = wish.material.is_none();
         self.begin_loading(ctx, label, asks, move |progress| {
@@ -242,10 +219,11 @@ impl App {
                 }
             }
             Fetched::Scene(opening) => self.take_scene(ctx, *opening),
+            Fetched::Alone(read, arrival) => self.take_alone(ctx, read, arrival),
         }
     }
 
-    fn tell_load_error(&mut self, error: &LoadError) {
+    pub(crate) fn tell_load_error(&mut self, error: &LoadError) {
         match error {
             LoadError::Cancelled => self.state.tell(Some("Loading was cancelled".to_owned())),
             LoadError::File { .. } | LoadError::Line { .. } => {
@@ -328,6 +306,7 @@ impl App {
         let State { panels, theme, .. } = self.state;
         let statistics = self.state.statistics.clone();
         self.end_measuring();
+        self.first_steps = None;
         self.state = State { panels, theme, statistics, ..state };
     }
 }

@@ -5,6 +5,7 @@
 
 mod comparing;
 mod files;
+mod first_models;
 mod laboratory;
 mod measuring;
 mod requests;
@@ -29,7 +30,7 @@ use crate::app::panels::{self, notices};
 use crate::app::state::State;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
-use crate::scene::{Scene, View};
+use crate::scene::{Scene, Steps, View};
 use laboratory::Work;
 use measuring::Measuring;
 use unseen::Search;
@@ -60,6 +61,8 @@ pub struct App {
     /// The times of the pictures of the last second.
     shown_at: VecDeque<f64>,
     title: String,
+    /// The steps of the first scene, once models have taken its place.
+    first_steps: Option<Steps>,
     /// The number of consecutive failed frames.
     faults: u32,
 }
@@ -85,6 +88,7 @@ impl App {
             moved_at: None,
             shown_at: VecDeque::new(),
             title: String::new(),
+            first_steps: None,
             faults: 0,
         }
     }

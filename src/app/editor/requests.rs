@@ -185,6 +185,7 @@ impl App {
         let before = self.state.scene.clone();
         self.state.message = None;
         steps(&mut self.state);
+        self.follow_steps();
         self.state.gesture = Gesture::Whole;
         selection::follow(&before, &self.state.scene, &mut self.state.view);
     }
