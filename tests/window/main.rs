@@ -8,6 +8,7 @@ mod dialogs;
 mod editor;
 mod examples;
 mod first_models;
+mod keeping;
 mod keys_and_clicks;
 mod laboratory;
 mod mouse;

@@ -241,6 +241,9 @@ impl App {
         texture: Option<Shared<Texture>>,
     ) {
         let found = summary(&loaded);
+        if let Some(path) = loaded.model.source.clone() {
+            self.note_recent(&path);
+        }
         let material = settled(material, &loaded);
         let details = loaded.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
         let mut object = Object::new(Shared::new(loaded.model), material);
@@ -296,6 +299,7 @@ impl App {
                 self.replace(State::new(scene, view));
             }
             After::Lesson(key) => self.show_lesson(key),
+            After::Recover(at) => self.recover(ctx, at),
             After::Open(Some(path)) => self.open_scene(ctx, path),
             After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
         }
@@ -305,9 +309,11 @@ impl App {
     pub(crate) fn replace(&mut self, state: State) {
         let State { panels, theme, .. } = self.state;
         let statistics = self.state.statistics.clone();
+        let recent = std::mem::take(&mut self.state.recent);
+        let recoverable = std::mem::take(&mut self.state.recoverable);
         self.end_measuring();
         self.first_steps = None;
-        self.state = State { panels, theme, statistics, ..state };
+        self.state = State { panels, theme, statistics, recent, recoverable, ..state };
     }
 }
 

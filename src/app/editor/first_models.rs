@@ -106,6 +106,9 @@ impl App {
             return self.refuse(refusal.to_string());
         }
         for Arrived { object, found, findings } in arrived {
+            if let Some(path) = &object.model.source {
+                self.note_recent(path);
+            }
             self.state.tell(Some(format!("Loaded {}: {found}", object.name)));
             if !findings.is_empty() {
                 let text = format!("{}: {found}", object.name);

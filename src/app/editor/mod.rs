@@ -6,6 +6,7 @@
 mod comparing;
 mod files;
 mod first_models;
+mod keeping;
 mod laboratory;
 mod measuring;
 mod requests;
@@ -31,6 +32,7 @@ use crate::app::state::State;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::scene::{Scene, Steps, View};
+use keeping::Keeping;
 use laboratory::Work;
 use measuring::Measuring;
 use unseen::Search;
@@ -63,6 +65,8 @@ pub struct App {
     title: String,
     /// The steps of the first scene, once models have taken its place.
     first_steps: Option<Steps>,
+    /// The program's own files, if it keeps any.
+    keeping: Option<Keeping>,
     /// The number of consecutive failed frames.
     faults: u32,
 }
@@ -89,6 +93,7 @@ impl App {
             shown_at: VecDeque::new(),
             title: String::new(),
             first_steps: None,
+            keeping: None,
             faults: 0,
         }
     }
@@ -144,6 +149,7 @@ impl App {
         self.compare(&ctx);
         self.take_dropped(&ctx);
         self.close_requested(&ctx);
+        self.keep(&ctx);
         self.draw(&ctx);
         self.name_window(&ctx);
     }
@@ -277,6 +283,10 @@ impl eframe::App for App {
                 ui.ctx().request_repaint();
             }
         }
+    }
+
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        self.end_keeping();
     }
 }
 

@@ -79,6 +79,8 @@ impl App {
                     loading.task.progress.cancel();
                 }
             }
+            Request::Recover(at) => self.unless_unsaved(ctx, After::Recover(at)),
+            Request::DiscardWork(at) => self.discard_work(at),
             Request::Refuse(why) => self.refuse(why),
         }
     }
