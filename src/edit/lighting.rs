@@ -7,7 +7,8 @@
 //!
 //! ```text
 //! s = distance of the camera that frames the models / 400          (the first camera's distance)
-//! I = f (Ka Ia + Kd D) <= 0.97        D = max over points p and sets of lights S of |sum of S: I_l(p) L_l(p)|
+//! I = f (Ka Ia + Kd D) <= 0.97
+//! D = max over points p and sets of lights S of |sum over S of I_l(p) L_l(p)|
 //! ```
 //!
 //! The diffuse light that a normal N receives is the sum of the positive N.L, which is N times the
@@ -25,10 +26,10 @@ use crate::scene::{
 /// The distance of the first scene's camera, for which its lights are made.
 const FIRST_DISTANCE: f64 = 400.0;
 
-/// Where the first scene's bulb stands, seen from the centre.
+/// The position of the first scene's bulb, relative to the centre.
 const BULB: DVec3 = DVec3::new(0.0, 0.0, -200.0);
 
-/// Where the sun shines from: left of the front, and above.
+/// The direction towards the sun: to the left of the front and up.
 const KEY_FROM: DVec3 = DVec3::new(-0.25, 0.75, 0.612_372_435_695_794_5);
 
 /// The most ambient and diffuse light, as a fraction of white.

@@ -18,6 +18,7 @@ pub mod presenting;
 mod refusal;
 pub mod selection;
 mod set_transform;
+pub mod shapes;
 pub mod steps;
 pub mod transform;
 

@@ -37,7 +37,7 @@ pub fn extent(scene: &Scene) -> f64 {
 
 /// The nearest of 1, 2 and 5 times the powers of 10, by ratio; `None` if `length` is not a positive
 /// finite number.
-fn rounded(length: f64) -> Option<f64> {
+pub(super) fn rounded(length: f64) -> Option<f64> {
     if !(length.is_finite() && length > 0.0) {
         return None;
     }

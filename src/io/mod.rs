@@ -24,7 +24,7 @@ mod scene_file;
 mod texture;
 
 pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
-pub use describe::describe;
+pub use describe::{describe, shape};
 pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, is_example};
 pub use findings::{Finding, FindingKind, joined};

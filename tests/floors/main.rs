@@ -91,6 +91,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "framing",
             "lighting",
             "steps",
+            "shapes",
             "transform",
             "navigation",
             "placement",

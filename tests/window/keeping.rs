@@ -288,7 +288,7 @@ fn a_program_killed_at_any_moment_loses_at_most_the_last_seconds() {
         std::env::var("MARRAZTU_KILLS").ok().and_then(|text| text.parse().ok()).unwrap_or(20);
     let folder = tempfile::tempdir().unwrap();
     let mut rng = Rng::new(17);
-    let mut most = 0;
+    let mut most_wanted = 0;
     for round in 0..kills.div_ceil(AT_ONCE) {
         let numbers = AT_ONCE * round..AT_ONCE * (round + 1);
         let running: Vec<_> = numbers.map(|n| (n, Running::start(folder.path(), n))).collect();
@@ -299,10 +299,10 @@ fn a_program_killed_at_any_moment_loses_at_most_the_last_seconds() {
             let file = folder.path().join(format!("saved-{number}.marraztu"));
             let recovered = recovered(&own, &file);
             assert!(recovered >= wanted, "kill {number}: {recovered} of {wanted} steps");
-            most = most.max(recovered);
+            most_wanted = most_wanted.max(wanted);
         }
     }
-    assert!(most > 0, "no program was killed while it worked");
+    assert!(most_wanted > 0, "no program was killed after its first seconds");
 }
 
 /// The steps of the camera in the work that is offered, or else in the scene file.

@@ -15,3 +15,4 @@ mod mouse;
 mod panels;
 mod plan;
 mod properties;
+mod shapes;

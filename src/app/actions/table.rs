@@ -152,6 +152,16 @@ actions! {
     ToggleVisible Edit ONCE []
         "Visible" "Shows or hides the selected object or camera.";
 
+    AddPlane Add ONCE []
+        "Plane" "Adds a plane as ground, below all objects.";
+    AddCube Add ONCE []
+        "Cube" "Adds a cube, a fifth as large as the scene, at the origin.";
+    AddSphere Add ONCE []
+        "Sphere" "Adds a sphere, a fifth as large as the scene, at the origin.";
+    AddCylinder Add ONCE []
+        "Cylinder" "Adds a cylinder, a fifth as large as the scene, at the origin.";
+    AddTorus Add ONCE []
+        "Torus" "Adds a torus, a fifth as large as the scene, at the origin.";
     AddCamera Add ONCE [Upper(Key::F)]
         "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z.";
     AddSun Add ONCE []

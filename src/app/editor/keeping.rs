@@ -119,7 +119,7 @@ impl App {
         if let Some((changed, _)) = keeping.changed.take() {
             keeping.preferences = changed;
         }
-        // There is nobody left to tell.
+        // If that fails, the window that could say so is gone.
         let _ = keeping.preferences.save(&keeping.folders);
         if (self.leaving || self.state.history.is_saved())
             && let Some(journal) = keeping.journal
@@ -168,9 +168,10 @@ impl App {
     /// If the scene that was opened is offered work: it counts as unsaved, and as a scene of the
     /// file that it once was saved to. Returns whether it is.
     pub(crate) fn settle_recovered(&mut self, opened: &Path) -> bool {
-        let at = self.keeping.as_ref().and_then(|keeping| {
-            keeping.offered.iter().position(|work| work.path() == opened)
-        });
+        let at = self
+            .keeping
+            .as_ref()
+            .and_then(|keeping| keeping.offered.iter().position(|work| work.path() == opened));
         let Some(work) = at.and_then(|at| self.take_offered(at)) else { return false };
         self.state.path.clone_from(&work.scene_file);
         self.state.history.mark_unsaved();
@@ -179,7 +180,7 @@ impl App {
             keeping.kept = None;
             match &keeping.journal {
                 Some(journal) => journal.replace(work),
-                // Nobody else keeps it: it is offered again until it is saved.
+                // Without a journal it is offered again by the next program.
                 None => drop(work),
             }
         }

@@ -3,7 +3,7 @@
 //! ```text
 //! state folder    work-<process>-<number>.marraztu   the unsaved scene of a running program
 //!                 work-<process>-<number>.lock       locked while that program runs
-//!                 lock                               locked while somebody looks at the list of these
+//!                 lock                               locked while a program looks for others
 //! config folder   preferences.ron                    theme, panels, scale, window, recent files
 //! ```
 //!
@@ -48,7 +48,7 @@ impl OwnFolders {
     }
 }
 
-/// A file of which one program at a time has the lock, until it drops this or ends.
+/// The lock of a file, which one program at a time has until it drops this or ends.
 #[derive(Debug)]
 struct Lock(File);
 

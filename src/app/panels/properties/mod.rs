@@ -62,7 +62,7 @@ fn title(ui: &mut Ui, state: &State, item: ItemId) {
 
 /// How far one press of x, y or z goes.
 fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bool) {
-    // Steps that nobody has chosen are shown.
+    // Steps that go by size are shown, since the program has chosen them.
     section(ui, "Step sizes", state.view.steps.by_size, |ui| {
         let steps = state.view.steps;
         let does = |to| match to {
