@@ -149,26 +149,26 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Chooses the camera. Models alone are framed and lit for it.
+/// Chooses the camera. Models alone are framed, and lit for that view; a camera that is named sees
+/// them under the first scene's own lights.
 fn aim(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if let Some(number) = seeing.camera {
         stage.view.camera = camera(stage, number)?;
+        return Ok(());
     }
     if !stage.models_alone {
         return Ok(());
     }
-    if seeing.camera.is_none() {
-        let from = seeing.from.unwrap_or(framing::MODELS_FROM);
-        match framing::models(&stage.scene, &stage.view, from) {
-            Ok(command) => stage.change(command)?,
-            Err(refusal) => note(&refusal),
-        }
+    let from = seeing.from.unwrap_or(framing::MODELS_FROM);
+    match framing::models(&stage.scene, &stage.view, from) {
+        Ok(command) => stage.change(command)?,
+        Err(refusal) => note(&refusal),
     }
-    // What has no vertices needs no light; a note has been written.
-    if let Ok(command) = lighting::models(&stage.scene, &stage.view) {
-        stage.change(command)?;
+    match lighting::models(&stage.scene, &stage.view) {
+        Ok(command) => stage.change(command),
+        // The note about framing has said why.
+        Err(_) => Ok(()),
     }
-    Ok(())
 }
 
 /// Switches the lights in these slots on, and all others off.

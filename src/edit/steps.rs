@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{Object, Scene, View};
+use crate::scene::{Object, Scene, Shape, View};
 
 /// The extent of the scene is this number of steps, before rounding.
 const STEPS_ACROSS: f64 = 100.0;
@@ -21,7 +21,8 @@ pub fn length(scene: &Scene, view: &View) -> f64 {
 /// them. 0 if there are none.
 ///
 /// Each object counts as a cube as wide as its largest extent, so that turning it, or moving it if
-/// it is the only one, leaves the extent as it is.
+/// it is the only one, leaves the extent as it is. The plane of the menu of shapes does not count
+/// beside other objects: it is the ground, and larger than what stands on it.
 #[must_use]
 pub fn extent(scene: &Scene) -> f64 {
     let cube = |object: &Object| {
@@ -30,9 +31,15 @@ pub fn extent(scene: &Scene) -> f64 {
         let centre = object.placement.now().transform_point3(middle);
         Some((centre - half, centre + half))
     };
-    let cubes = scene.objects.iter().filter_map(|(_, object)| cube(object));
-    let whole = cubes.reduce(|(min, max), (low, high)| (min.min(low), max.max(high)));
-    whole.map_or(0.0, |(min, max)| (max - min).max_element())
+    let is_ground = |object: &Object| {
+        object.model.source.is_none() && Shape::named(&object.model.name) == Some(Shape::Plane)
+    };
+    let around = |with_ground: bool| {
+        let objects = scene.objects.iter().map(|(_, object)| object);
+        let cubes = objects.filter(|object| with_ground || !is_ground(object)).filter_map(cube);
+        cubes.reduce(|(min, max), (low, high)| (min.min(low), max.max(high)))
+    };
+    around(false).or_else(|| around(true)).map_or(0.0, |(min, max)| (max - min).max_element())
 }
 
 /// The nearest of 1, 2 and 5 times the powers of 10, by ratio; `None` if `length` is not a positive

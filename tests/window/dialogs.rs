@@ -17,7 +17,8 @@ use marraztu::scene::{MaterialChoice, ObjectId, PresetId, Sides};
 use crate::editor::Editor;
 use crate::panels::{click, control, type_text};
 
-pub(crate) const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+pub(crate) const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
+    v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 pub(crate) fn folder_with(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {
@@ -267,6 +268,22 @@ fn the_picture_is_saved_as_it_is_shown() {
     let size = editor.state().statistics.size;
     assert_eq!((saved.width() as usize, saved.height() as usize), (size.width, size.height));
     assert_eq!(saved.get_pixel(0, 0).0, [0, 0, 179]);
+}
+
+#[test]
+fn the_picture_is_copied_as_it_is_shown() {
+    let mut editor = Editor::new();
+    let ctx = editor.harness.ctx.clone();
+    editor.harness.state_mut().perform(&ctx, Action::CopyPicture, marraztu::edit::Gesture::Whole);
+    editor.harness.step();
+    let commands = &editor.harness.output().platform_output.commands;
+    let copied = commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyImage(image) => Some(image.clone()),
+        _ => None,
+    });
+    let (copied, size) = (copied.unwrap(), editor.state().statistics.size);
+    assert_eq!(copied.size, [size.width, size.height]);
+    assert_eq!(copied.pixels[0], egui::Color32::from_rgb(0, 0, 179));
 }
 
 #[test]

@@ -51,5 +51,14 @@ fn the_plane_lies_below_everything_and_touches_it() {
     let floor = lowest(&editor, false);
     editor.perform(Action::AddPlane);
     assert_eq!(lowest(&editor, true), floor);
+    // The ground makes neither steps nor further shapes larger.
+    let scale = |editor: &Editor| {
+        let scene = editor.scene();
+        let (_, first) = scene.objects.iter().next().unwrap();
+        first.placement.now().x_axis.x
+    };
+    assert_eq!(scale(&editor), 1000.0);
+    editor.perform(Action::AddCube);
+    assert_eq!(scale(&editor), 100.0);
     assert!(floor < 0.0);
 }

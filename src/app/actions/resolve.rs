@@ -62,6 +62,7 @@ pub(crate) enum FileIntent {
     Save,
     SaveAs,
     SavePicture,
+    CopyPicture,
     Quit,
 }
 
@@ -99,6 +100,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::Save => file(FileIntent::Save),
         Action::SaveAs => file(FileIntent::SaveAs),
         Action::SavePicture => file(FileIntent::SavePicture),
+        Action::CopyPicture => file(FileIntent::CopyPicture),
         Action::Quit => file(FileIntent::Quit),
 
         Action::Undo if state.history.position() == 0 => Err(Refusal::NothingDone),
@@ -387,6 +389,7 @@ impl Action {
             Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
                 return None;
             }
+            Self::CopyPicture => return None,
             Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
             Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
                 return None;

@@ -132,6 +132,8 @@ actions! {
         "Save scene as..." "Saves the scene to a new file.";
     SavePicture File ONCE [Named(Key::F12)]
         "Save picture..." "Saves the picture in the viewport as PNG, JPEG, WebP or PPM.";
+    CopyPicture File ONCE [CommandShift(Key::C)]
+        "Copy picture" "Copies the picture in the viewport to the clipboard.";
     Quit File ONCE [Named(Key::Escape), Command(Key::Q)]
         "Quit" "Closes the program; asks first if there are unsaved changes.";
 

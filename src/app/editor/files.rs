@@ -280,6 +280,18 @@ impl App {
         }
     }
 
+    /// Copies the picture of the viewport to the clipboard.
+    pub(crate) fn copy_picture(&mut self, ctx: &Context) {
+        let Some(picture) = self.picture() else {
+            self.refuse("no picture has been drawn yet".to_owned());
+            return;
+        };
+        let Size { width, height } = picture.size();
+        let bytes: &[u8] = picture.pixels().as_flattened();
+        ctx.copy_image(egui::ColorImage::from_rgba_unmultiplied([width, height], bytes));
+        self.state.tell(Some(format!("Copied a picture of {width} x {height} pixels")));
+    }
+
     /// The picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
         let State { scene, view, settings, statistics, .. } = &self.state;

@@ -26,7 +26,8 @@ impl App {
         let (scenes, models): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_scene(path));
         if scenes.is_empty() && !models.is_empty() {
             // The first scene's objects would only be seen to vanish.
-            let (scene, view) = io::empty_scene();
+            let (scene, mut view) = io::empty_scene();
+            view.steps.by_size = true;
             self.replace(State::new(scene, view));
             return self.load_alone(ctx, models, Arrival::Start);
         }

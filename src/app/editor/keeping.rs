@@ -176,6 +176,13 @@ impl App {
         self.state.path.clone_from(&work.scene_file);
         self.state.history.mark_unsaved();
         self.state.tell(Some(format!("Recovered {}", name_of(&work))));
+        // The file of the work is none that the user knows.
+        let own_name = file_name(opened);
+        for notice in &mut self.state.notices {
+            if let Some(rest) = notice.text.strip_prefix(&own_name) {
+                notice.text = format!("Recovered work{rest}");
+            }
+        }
         if let Some(keeping) = &mut self.keeping {
             keeping.kept = None;
             match &keeping.journal {

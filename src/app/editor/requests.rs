@@ -132,6 +132,7 @@ impl App {
             FileIntent::Load => self.dialogs.ask_file(ctx, Wanted::Model, ""),
             FileIntent::Save => self.save(ctx, None),
             FileIntent::SaveAs => self.save_as(ctx, None),
+            FileIntent::CopyPicture => self.copy_picture(ctx),
             FileIntent::SavePicture => self.dialogs.ask_file(ctx, Wanted::PictureTo, "picture.png"),
         }
     }
