@@ -58,6 +58,7 @@ impl Editor {
     }
 
     /// How far the camera has gone along Z: one step of `z` each.
+    #[expect(clippy::cast_possible_truncation, reason = "a test makes few steps")]
     fn steps_of_camera(&self) -> u64 {
         let (scene, view) = (self.scene(), self.view());
         let z = scene.selected_camera(&view).pose.now().eye.z;

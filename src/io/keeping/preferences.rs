@@ -73,9 +73,8 @@ impl Preferences {
                 return (Self::default(), Some(text + &reason(&error) + "."));
             }
         };
-        let read = text.and_then(|text| {
-            ron::from_str::<Self>(&text).map_err(|error| format!("line {}", error))
-        });
+        let read = text
+            .and_then(|text| ron::from_str::<Self>(&text).map_err(|error| format!("line {error}")));
         match read {
             Ok(preferences) => (preferences.within_limits(), None),
             Err(why) => {
