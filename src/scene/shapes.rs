@@ -305,7 +305,7 @@ mod tests {
         let corners = |i: u32| {
             let corner = |c: &crate::scene::Corner| {
                 let p = dvec3(mesh.positions()[c.position as usize]);
-                (p, dvec3(mesh.points()[c.point as usize].normal))
+                (p, dvec3(mesh.points()[c.filed as usize].normal))
             };
             mesh.polygon(i).iter().map(corner).collect()
         };
