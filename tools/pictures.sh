@@ -15,6 +15,7 @@ done
 
 work=$(mktemp -d)
 export LIBGL_ALWAYS_SOFTWARE=1 XDG_CONFIG_HOME="$work/config" XDG_DATA_HOME="$work/data"
+export XDG_STATE_HOME="$work/state" XDG_CACHE_HOME="$work/cache"
 unset WAYLAND_DISPLAY WAYLAND_SOCKET
 editor= xvfb=
 trap 'kill $editor $xvfb 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT

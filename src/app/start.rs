@@ -8,7 +8,7 @@ use egui::ViewportBuilder;
 
 use crate::app::editor::App;
 use crate::app::theme;
-use crate::io;
+use crate::io::{self, OwnFolders, Preferences};
 
 /// Why no window could be opened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -30,8 +30,8 @@ pub enum StartError {
     Other(String),
 }
 
-/// Opens the editor with these files, and comes back when it is left: models are put into the first
-/// scene with their own materials, a scene is opened in its place.
+/// Opens the editor with these files, and comes back when it is left: models are shown
+/// alone, framed and lit; a scene is opened in place of the first one.
 ///
 /// # Errors
 /// If no window can be opened.
@@ -41,18 +41,23 @@ pub fn run(files: Vec<PathBuf>) -> Result<(), StartError> {
     }
     // Until the window stands, the system's libraries tell of their absence by panics. They are
     // told in one sentence instead of being printed.
+    let own = OwnFolders::of_user().map(|folders| (Preferences::load(&folders), folders));
+    let options = options(own.as_ref().map(|((preferences, _), _)| preferences));
     let earlier = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
     let started = catch_unwind(AssertUnwindSafe(|| {
         eframe::run_native(
             "Marraztu",
-            options(),
+            options,
             Box::new(move |creation| {
                 std::panic::set_hook(earlier);
                 theme::install(&creation.egui_ctx);
                 let (scene, view) = io::default_scene();
                 let mut app = App::new(scene, view);
                 app.use_system_dialogs();
+                if let Some(((preferences, said), folders)) = own {
+                    app.keep_in(&creation.egui_ctx, folders, preferences, said);
+                }
                 app.load_at_start(&creation.egui_ctx, files);
                 Ok(Box::new(app))
             }),
@@ -80,12 +85,15 @@ fn has_display() -> bool {
         .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
 }
 
-fn options() -> NativeOptions {
+/// The window, as large as it was last time.
+fn options(preferences: Option<&Preferences>) -> NativeOptions {
+    let size = preferences.and_then(|preferences| preferences.window);
     NativeOptions {
         viewport: ViewportBuilder::default()
             .with_title("Marraztu")
             .with_app_id("marraztu")
-            .with_inner_size([1280.0, 800.0])
+            .with_inner_size(size.unwrap_or([1280.0, 800.0]))
+            .with_maximized(preferences.is_some_and(|preferences| preferences.maximized))
             .with_min_inner_size([640.0, 400.0])
             .with_drag_and_drop(true),
         ..NativeOptions::default()

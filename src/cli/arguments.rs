@@ -70,8 +70,9 @@ pub(crate) enum Headless {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Without files, draws the first scene. A scene is drawn through its own camera; models without a
-scene get the lights of the first scene and a camera that shows all of them. Options that are not
-given stay as the scene has them; a star marks the choice of the first scene.
+scene get a camera that shows all of them and the lights of the first scene, placed and balanced for
+them. Options that are not given stay as the scene has them; a star marks the choice of the first
+scene.
 
 The file \"-\" is a model or a scene on standard input. Models may be compressed (.obj.gz). The
 picture never replaces a file that it is made from, or a file that is not a picture.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-use marraztu::io::{Input, Progress, describe};
+use marraztu::io::{Input, Progress, describe, shape};
 use marraztu::scene::{LoadOptions, Observer, Projection, Scene, View};
 
 use super::arguments::Info;
@@ -67,9 +67,11 @@ fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
     for (id, object) in scene.objects.iter() {
         let mesh = &object.model.mesh;
         let counts = format!("{} vertices, {} faces", mesh.positions().len(), mesh.polygon_count());
+        let kind = shape(&object.model);
+        let kind = kind.map_or_else(String::new, |shape| format!("a {}, ", shape.name()));
         let hidden = if object.visible { "" } else { ", not shown" };
         let mark = mark(view.object == Some(id));
-        lines.push(format!("{mark} {}: {counts}{hidden}", object.name));
+        lines.push(format!("{mark} {}: {kind}{counts}{hidden}", object.name));
     }
     lines.push(head("cameras", scene.cameras.len()));
     for (id, camera) in scene.cameras.iter() {

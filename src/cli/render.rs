@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use marraztu::accuracy::Shot;
-use marraztu::edit::{framing, items};
+use marraztu::edit::{framing, items, lighting};
 use marraztu::io::{self, Progress};
 use marraztu::render::plan_frame;
 use marraztu::render::{Renderer, Unseen, unseen};
@@ -124,6 +124,10 @@ fn cover(stage: &mut Stage, surfaces: &Surfaces) -> Result<(), Failure> {
 
 /// Applies the options for the view.
 fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
+    if seeing.from.is_some() && !stage.models_alone {
+        return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
+    }
+    aim(stage, seeing)?;
     if let Some(Slots(slots)) = &seeing.lights {
         light(stage, slots)?;
     }
@@ -142,21 +146,29 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     view.face_normals |= seeing.face_normals;
     view.vertex_normals |= seeing.vertex_normals;
     view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
-    if seeing.from.is_some() && !stage.models_alone {
-        return Err(usage("--from says from where models alone are seen; a scene has its cameras"));
-    }
-    match seeing.camera {
-        Some(number) => stage.view.camera = camera(stage, number)?,
-        None if stage.models_alone => {
-            let from = seeing.from.unwrap_or(framing::MODELS_FROM);
-            match framing::models(&stage.scene, &stage.view, from) {
-                Ok(command) => stage.change(command)?,
-                Err(refusal) => note(&refusal),
-            }
-        }
-        None => {}
-    }
     Ok(())
+}
+
+/// Chooses the camera. Models alone are framed, and lit for that view; a camera that is named sees
+/// them under the first scene's own lights.
+fn aim(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
+    if let Some(number) = seeing.camera {
+        stage.view.camera = camera(stage, number)?;
+        return Ok(());
+    }
+    if !stage.models_alone {
+        return Ok(());
+    }
+    let from = seeing.from.unwrap_or(framing::MODELS_FROM);
+    match framing::models(&stage.scene, &stage.view, from) {
+        Ok(command) => stage.change(command)?,
+        Err(refusal) => note(&refusal),
+    }
+    match lighting::models(&stage.scene, &stage.view) {
+        Ok(command) => stage.change(command),
+        // The note about framing has said why.
+        Err(_) => Ok(()),
+    }
 }
 
 /// Switches the lights in these slots on, and all others off.

@@ -66,7 +66,8 @@ impl Stage {
 
     /// The first scene, or its camera and lights alone.
     fn first(with_objects: bool) -> Self {
-        let (scene, view) = if with_objects { io::default_scene() } else { io::empty_scene() };
+        let (scene, mut view) = if with_objects { io::default_scene() } else { io::empty_scene() };
+        view.steps.by_size = !with_objects;
         Self {
             scene,
             view,

@@ -100,6 +100,12 @@ pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Comma
     framed(scene, view, &shown(scene, view), axes, MARGIN)
 }
 
+/// The distance at which [`models`] shows a sphere of radius `r`.
+#[must_use]
+pub fn models_distance(first: &Lens, r: f64) -> f64 {
+    lens(first, r * (1.0 + MARGIN)).0
+}
+
 /// Frames the selected object from a side (Ctrl+1, 3 and 7).
 ///
 /// # Errors

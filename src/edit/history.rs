@@ -124,6 +124,11 @@ impl History {
         self.saved = Some(self.position);
     }
 
+    /// Marks the scene as unsaved, although no step leads to it.
+    pub const fn mark_unsaved(&mut self) {
+        self.saved = None;
+    }
+
     /// Discards all steps: the scene is new and counts as saved.
     pub fn clear(&mut self) {
         *self = Self::new();

@@ -9,7 +9,7 @@ use super::names::Names;
 use crate::base::Shared;
 use crate::scene::{
     Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId, LightKind,
-    MaterialChoice, Model, Object, ObjectId, Pose, Scene, Smoothing, SpotOwner, Tracked,
+    MaterialChoice, Model, Object, ObjectId, Pose, Scene, Shape, Smoothing, SpotOwner, Tracked,
 };
 
 /// The maximum number of parts to split at once, so that the outline stays readable.
@@ -229,7 +229,9 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refu
 /// Why a crease angle has no effect on a model, if so.
 #[must_use]
 pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
-    if model.source.is_none() {
+    if Shape::named(&model.name).is_some_and(|shape| shape.model().shares_file_with(model)) {
+        Some("the shape has exact normals of its own")
+    } else if model.source.is_none() {
         Some("the program's own models are smooth all over")
     } else if matches!(model.mesh.smoothing(), Smoothing::Groups(_)) {
         Some("the file has smoothing groups, which are used instead")

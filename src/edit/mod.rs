@@ -8,14 +8,18 @@ pub mod framing;
 mod gesture;
 mod history;
 pub mod items;
+pub mod lighting;
 pub mod lights;
 pub mod motion;
 mod names;
 pub mod navigation;
 pub mod placement;
+pub mod presenting;
 mod refusal;
 pub mod selection;
 mod set_transform;
+pub mod shapes;
+pub mod steps;
 pub mod transform;
 
 pub use gesture::{Gesture, GesturePhase};

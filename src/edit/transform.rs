@@ -10,11 +10,11 @@
 use glam::{DMat3, DMat4, DVec3};
 
 use super::set_transform::{self, LightPlace};
-use super::{GesturePhase, Refusal};
+use super::{GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Aim, CameraMode, Command, Frame, Item, LightKind, Object, Orbit, Pose, Scene, SpotOwner,
-    Subject, Transformation, View,
+    Aim, CameraMode, Command, Frame, Item, LightKind, Orbit, Pose, Scene, SpotOwner, Subject,
+    Transformation, View,
 };
 
 /// The direction along or about an axis.
@@ -84,18 +84,18 @@ pub fn step(
 /// frame it is moved in.
 #[must_use]
 pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
-    let object = view.object.and_then(|id| scene.objects.get(id));
-    let extent = object.map_or(0.0, Object::largest_extent);
-    if !(view.steps.by_size && extent > 0.0) {
-        return view.steps.translation;
-    }
-    match object {
+    let length = steps::length(scene, view);
+    match view.object.and_then(|id| scene.objects.get(id)) {
         // A scaled object's own units are as long as its axes.
-        Some(object) if view.subject == Subject::Object && view.frame == Frame::Local => {
+        Some(object)
+            if view.steps.by_size
+                && view.subject == Subject::Object
+                && view.frame == Frame::Local =>
+        {
             let unit = object.placement.now().transform_vector3(axis.unit()).length();
-            if unit > 0.0 { extent / 20.0 / unit } else { view.steps.translation }
+            if unit > 0.0 { length / unit } else { view.steps.translation }
         }
-        _ => extent / 20.0,
+        _ => length,
     }
 }
 

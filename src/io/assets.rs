@@ -11,7 +11,7 @@ use crate::base::Shared;
 use crate::base::once::get_or_compute;
 use crate::scene::{
     Camera, CameraId, Crease, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model,
-    Object, ObjectId, Pose, PresetId, Scene, Texture, Tracked, View, Wrap,
+    Object, ObjectId, Pose, PresetId, Scene, Shape, Texture, Tracked, View, Wrap,
 };
 
 /// A built-in model.
@@ -56,9 +56,12 @@ pub fn cam_model() -> Shared<Model> {
     CAM.model()
 }
 
-/// A built-in model, by its name.
+/// A built-in model or a simple shape, by its name.
 #[must_use]
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
+    if let Some(shape) = Shape::named(name) {
+        return Some(shape.model());
+    }
     let all = [&CAM, &X_WING, &R_FALKE, &BALL, &CUSHION, &PLATE, &WHEEL];
     all.into_iter().find(|asset| asset.name == name).map(Asset::model)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::obj::Loaded;
-use crate::scene::{FileMaterial, Mesh, Model, Smoothing, UpAxis, Winding};
+use crate::scene::{FileMaterial, Mesh, Model, Shape, Smoothing, UpAxis, Winding};
 
 /// The shape, parts, materials and findings of a loaded file, line by line.
 #[must_use]
@@ -14,6 +14,9 @@ pub fn describe(loaded: &Loaded) -> String {
     text.line("name", &model.name);
     if let Some(source) = &model.source {
         text.line("file", &source.display().to_string());
+    }
+    if let Some(shape) = shape(model) {
+        text.line("shape", shape.name());
     }
     describe_options(model, &mut text);
     describe_mesh(&model.mesh, &mut text);
@@ -32,6 +35,12 @@ pub fn describe(loaded: &Loaded) -> String {
         }
     }
     text.0
+}
+
+/// The simple shape that a model is.
+#[must_use]
+pub fn shape(model: &Model) -> Option<Shape> {
+    Shape::named(&model.name).filter(|shape| shape.model().shares_file_with(model))
 }
 
 /// Lines of a label and its value.

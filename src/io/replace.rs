@@ -35,6 +35,9 @@ pub(super) enum Worth {
     /// It is a user's work: it is flushed to the disk, and the old file is kept with `~` after its
     /// name.
     Work,
+    /// It is the program's own file about a user's work: it is flushed to the disk, and the old
+    /// file is not kept.
+    Journal,
 }
 
 /// Checks whether a file could be written at `path`: its folder exists and can be written to.
@@ -123,7 +126,7 @@ fn write(beside: &Path, target: &Path, content: &[u8], worth: Worth) -> std::io:
     }
     file.sync_all()?;
     drop(file);
-    if target.exists() {
+    if worth == Worth::Work && target.exists() {
         let kept = with_ending(target, "~");
         let _ = fs::remove_file(&kept);
         if fs::hard_link(target, &kept).is_err() {

@@ -11,6 +11,7 @@ mod material;
 mod mesh;
 mod model;
 mod object;
+mod shapes;
 mod tracked;
 pub mod triangulate;
 mod view;
@@ -34,6 +35,7 @@ pub use model::{
     Crease, FileMaterial, LoadOptions, Model, Scale, Smoothing, Texture, UpAxis, Winding, Wrap,
 };
 pub use object::{Object, PartLook, Sides, Spin, Surface};
+pub use shapes::Shape;
 pub use tracked::Tracked;
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,

@@ -170,7 +170,8 @@ pub enum Frame {
 pub struct Steps {
     /// Units of the world.
     pub translation: f64,
-    /// Whether a translation is 1/20 of the selected object's largest extent instead.
+    /// Whether a translation is a hundredth of the scene's extent instead, rounded to 1, 2 or 5
+    /// times a power of 10.
     pub by_size: bool,
     /// Degrees.
     pub rotation: f64,

@@ -261,7 +261,7 @@ fn a_spot_of_its_own_moves_and_turns() {
 }
 
 #[test]
-fn by_size_a_step_is_a_twentieth_of_the_selected_objects_largest_extent() {
+fn by_size_a_step_is_a_rounded_hundredth_of_the_scenes_extent() {
     for frame in [Frame::Local, Frame::Global] {
         let mut desk = Desk::new(Subject::Object, Transformation::Scaling);
         desk.view.frame = frame;
@@ -270,9 +270,9 @@ fn by_size_a_step_is_a_twentieth_of_the_selected_objects_largest_extent() {
         desk.view.transformation = Transformation::Translation;
         let before = desk.placement();
         desk.press(Axis::X, Sign::Positive);
-        // The plate is 8 high; 1.2 times that, whichever frame it is moved in.
+        // From -404 to 4.8 along Z, in whichever frame it is moved.
         let moved = (desk.placement().w_axis - before.w_axis).truncate();
-        close(moved, DVec3::X * 8.0 * 1.2 / 20.0);
+        close(moved, DVec3::X * 5.0);
     }
 }
 

@@ -7,9 +7,12 @@
 mod dialogs;
 mod editor;
 mod examples;
+mod first_models;
+mod keeping;
 mod keys_and_clicks;
 mod laboratory;
 mod mouse;
 mod panels;
 mod plan;
 mod properties;
+mod shapes;

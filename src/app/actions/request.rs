@@ -52,6 +52,10 @@ pub enum Request {
     CancelLoading(usize),
     /// Puts away the notice that stands at this place.
     PutAway(usize),
+    /// Shows the unsaved work that is offered at this place.
+    Recover(usize),
+    /// Removes the unsaved work that is offered at this place.
+    DiscardWork(usize),
     /// Takes a gesture back while it lasts, as if it had never begun.
     Abandon(Gesture),
     /// Says in the status line why a request was refused.

@@ -14,10 +14,10 @@ use crate::edit::framing::Side;
 use crate::edit::lights::{APERTURE_STEP, Channel};
 use crate::edit::selection::Selection;
 use crate::edit::transform::Sign;
-use crate::edit::{GesturePhase, Refusal, framing, items, lights, selection, transform};
+use crate::edit::{GesturePhase, Refusal, framing, items, lights, selection, shapes, transform};
 use crate::scene::{
     CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
-    Panels, Projection, SpotOwner, Subject, Transformation, View,
+    Panels, Projection, Shape, SpotOwner, Subject, Transformation, View,
 };
 
 /// What an action means.
@@ -62,6 +62,7 @@ pub(crate) enum FileIntent {
     Save,
     SaveAs,
     SavePicture,
+    CopyPicture,
     Quit,
 }
 
@@ -99,6 +100,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::Save => file(FileIntent::Save),
         Action::SaveAs => file(FileIntent::SaveAs),
         Action::SavePicture => file(FileIntent::SavePicture),
+        Action::CopyPicture => file(FileIntent::CopyPicture),
         Action::Quit => file(FileIntent::Quit),
 
         Action::Undo if state.history.position() == 0 => Err(Refusal::NothingDone),
@@ -118,6 +120,11 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::Split => items::split(scene, object(state)?).map(Intent::Change),
         Action::ToggleVisible => items::toggle_shown(scene, selected(state)?).map(Intent::Change),
 
+        Action::AddPlane => add_shape(state, Shape::Plane),
+        Action::AddCube => add_shape(state, Shape::Cube),
+        Action::AddSphere => add_shape(state, Shape::Sphere),
+        Action::AddCylinder => add_shape(state, Shape::Cylinder),
+        Action::AddTorus => add_shape(state, Shape::Torus),
         Action::AddCamera => Ok(Intent::AskCamera),
         Action::AddSun => add_light(state, lights::sun()),
         Action::AddBulb => add_light(state, lights::bulb()),
@@ -234,6 +241,11 @@ fn selected(state: &State) -> Result<ItemId, Refusal> {
 
 fn object(state: &State) -> Result<ObjectId, Refusal> {
     state.view.object.ok_or(Refusal::NoObject)
+}
+
+fn add_shape(state: &State, shape: Shape) -> Resolved {
+    let command = shapes::insert(&state.scene, &state.view, shape);
+    Ok(Intent::Add(command, Subject::Object))
 }
 
 fn add_light(state: &State, kind: LightKind) -> Resolved {
@@ -377,6 +389,7 @@ impl Action {
             Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
                 return None;
             }
+            Self::CopyPicture => return None,
             Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
             Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
                 return None;
@@ -384,6 +397,8 @@ impl Action {
             Self::AddBulb | Self::AddSpot | Self::AddObjectSpot | Self::AddCameraSpot => {
                 return None;
             }
+            Self::AddPlane | Self::AddCube | Self::AddSphere | Self::AddCylinder => return None,
+            Self::AddTorus => return None,
             Self::NextItem | Self::NextPolygon | Self::NextSubject => return None,
             Self::StepXUp | Self::StepXDown | Self::StepYUp | Self::StepYDown => return None,
             Self::StepZUp | Self::StepZDown | Self::FrameSelection | Self::FrameAll => return None,

@@ -132,6 +132,8 @@ actions! {
         "Save scene as..." "Saves the scene to a new file.";
     SavePicture File ONCE [Named(Key::F12)]
         "Save picture..." "Saves the picture in the viewport as PNG, JPEG, WebP or PPM.";
+    CopyPicture File ONCE [CommandShift(Key::C)]
+        "Copy picture" "Copies the picture in the viewport to the clipboard.";
     Quit File ONCE [Named(Key::Escape), Command(Key::Q)]
         "Quit" "Closes the program; asks first if there are unsaved changes.";
 
@@ -152,6 +154,16 @@ actions! {
     ToggleVisible Edit ONCE []
         "Visible" "Shows or hides the selected object or camera.";
 
+    AddPlane Add ONCE []
+        "Plane" "Adds a plane as ground, below all objects.";
+    AddCube Add ONCE []
+        "Cube" "Adds a cube, a fifth as large as the scene, at the origin.";
+    AddSphere Add ONCE []
+        "Sphere" "Adds a sphere, a fifth as large as the scene, at the origin.";
+    AddCylinder Add ONCE []
+        "Cylinder" "Adds a cylinder, a fifth as large as the scene, at the origin.";
+    AddTorus Add ONCE []
+        "Torus" "Adds a torus, a fifth as large as the scene, at the origin.";
     AddCamera Add ONCE [Upper(Key::F)]
         "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z.";
     AddSun Add ONCE []

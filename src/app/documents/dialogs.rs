@@ -43,6 +43,8 @@ pub(crate) enum After {
     Quit,
     New,
     Open(Option<PathBuf>),
+    /// Recover the unsaved work that is offered at this place.
+    Recover(usize),
     /// The scene of a lesson, by the key of its axis.
     Lesson(&'static str),
 }
@@ -327,6 +329,7 @@ fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
         After::Lesson(_) => {
             "The scene of the lesson will replace this one, which has unsaved changes."
         }
+        After::Recover(_) => "Recovered work will replace this scene, which has unsaved changes.",
         After::Open(_) => "Another scene will replace this one, which has unsaved changes.",
     });
     ui.add_space(4.0);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::app::tasks::Task;
 use crate::base::Shared;
 use crate::io::{self, Finding, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError};
-use crate::scene::{LoadOptions, MaterialChoice, ObjectId, Texture};
+use crate::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Texture};
 
 /// A file that is being read.
 #[derive(Debug)]
@@ -39,6 +39,25 @@ pub(crate) enum Fetched {
     Texture(ObjectId, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
     /// A scene.
     Scene(Box<Opening>),
+    /// Models that are shown together and alone.
+    Alone(Vec<Result<Arrived, LoadError>>, Arrival),
+}
+
+/// How models that are shown alone were named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Arrival {
+    /// On the command line.
+    Start,
+    /// By dropping their files on the window.
+    Dropped,
+}
+
+/// A model that was read with its own material, and what is told about it.
+#[derive(Debug)]
+pub(crate) struct Arrived {
+    pub(crate) object: Object,
+    pub(crate) found: String,
+    pub(crate) findings: Vec<String>,
 }
 
 /// A model that was read, or could not be.

@@ -42,29 +42,6 @@ impl App {
         }
     }
 
-    /// Loads the files of the command line: models with their own materials, otherwise silver. They
-    /// do not count as unsaved changes.
-    pub fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
-        for path in paths {
-            if is_scene(&path) {
-                self.open_scene(ctx, path);
-            } else {
-                let material = Some(MaterialChoice::File);
-                let wish = Wish { material, keeps_saved: true, ..Wish::default() };
-                self.load_model(ctx, path, wish);
-            }
-        }
-    }
-
-    /// Loads files that were dropped onto the window.
-    pub(crate) fn take_dropped(&mut self, ctx: &Context) {
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
-        if !paths.is_empty() {
-            self.load_files(ctx, paths);
-        }
-    }
-
     /// Handles the answer to a dialog.
     pub(crate) fn take_answer(&mut self, ctx: &Context, answer: Answer) {
         match answer {
@@ -134,7 +111,7 @@ impl App {
         }
     }
 
-    fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
+    pub(crate) fn load_model(&mut self, ctx: &Context, path: PathBuf, wish: Wish) {
         let label = format!("Loading {}", file_name(&path));
         let asks = wish.material.is_none();
         self.begin_loading(ctx, label, asks, move |progress| {
@@ -242,10 +219,11 @@ impl App {
                 }
             }
             Fetched::Scene(opening) => self.take_scene(ctx, *opening),
+            Fetched::Alone(read, arrival) => self.take_alone(ctx, read, arrival),
         }
     }
 
-    fn tell_load_error(&mut self, error: &LoadError) {
+    pub(crate) fn tell_load_error(&mut self, error: &LoadError) {
         match error {
             LoadError::Cancelled => self.state.tell(Some("Loading was cancelled".to_owned())),
             LoadError::File { .. } | LoadError::Line { .. } => {
@@ -263,6 +241,9 @@ impl App {
         texture: Option<Shared<Texture>>,
     ) {
         let found = summary(&loaded);
+        if let Some(path) = loaded.model.source.clone() {
+            self.note_recent(&path);
+        }
         let material = settled(material, &loaded);
         let details = loaded.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
         let mut object = Object::new(Shared::new(loaded.model), material);
@@ -299,6 +280,18 @@ impl App {
         }
     }
 
+    /// Copies the picture of the viewport to the clipboard.
+    pub(crate) fn copy_picture(&mut self, ctx: &Context) {
+        let Some(picture) = self.picture() else {
+            self.refuse("no picture has been drawn yet".to_owned());
+            return;
+        };
+        let Size { width, height } = picture.size();
+        let bytes: &[u8] = picture.pixels().as_flattened();
+        ctx.copy_image(egui::ColorImage::from_rgba_unmultiplied([width, height], bytes));
+        self.state.tell(Some(format!("Copied a picture of {width} x {height} pixels")));
+    }
+
     /// The picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
         let State { scene, view, settings, statistics, .. } = &self.state;
@@ -318,6 +311,7 @@ impl App {
                 self.replace(State::new(scene, view));
             }
             After::Lesson(key) => self.show_lesson(key),
+            After::Recover(at) => self.recover(ctx, at),
             After::Open(Some(path)) => self.open_scene(ctx, path),
             After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
         }
@@ -327,8 +321,11 @@ impl App {
     pub(crate) fn replace(&mut self, state: State) {
         let State { panels, theme, .. } = self.state;
         let statistics = self.state.statistics.clone();
+        let recent = std::mem::take(&mut self.state.recent);
+        let recoverable = std::mem::take(&mut self.state.recoverable);
         self.end_measuring();
-        self.state = State { panels, theme, statistics, ..state };
+        self.first_steps = None;
+        self.state = State { panels, theme, statistics, recent, recoverable, ..state };
     }
 }
 

@@ -5,6 +5,8 @@
 
 mod comparing;
 mod files;
+mod first_models;
+mod keeping;
 mod laboratory;
 mod measuring;
 mod requests;
@@ -29,7 +31,8 @@ use crate::app::panels::{self, notices};
 use crate::app::state::State;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
-use crate::scene::{Scene, View};
+use crate::scene::{Scene, Steps, View};
+use keeping::Keeping;
 use laboratory::Work;
 use measuring::Measuring;
 use unseen::Search;
@@ -60,6 +63,10 @@ pub struct App {
     /// The times of the pictures of the last second.
     shown_at: VecDeque<f64>,
     title: String,
+    /// The steps of the first scene, once models have taken its place.
+    first_steps: Option<Steps>,
+    /// The program's own files, if it keeps any.
+    keeping: Option<Keeping>,
     /// The number of consecutive failed frames.
     faults: u32,
 }
@@ -85,6 +92,8 @@ impl App {
             moved_at: None,
             shown_at: VecDeque::new(),
             title: String::new(),
+            first_steps: None,
+            keeping: None,
             faults: 0,
         }
     }
@@ -140,6 +149,7 @@ impl App {
         self.compare(&ctx);
         self.take_dropped(&ctx);
         self.close_requested(&ctx);
+        self.keep(&ctx);
         self.draw(&ctx);
         self.name_window(&ctx);
     }
@@ -273,6 +283,10 @@ impl eframe::App for App {
                 ui.ctx().request_repaint();
             }
         }
+    }
+
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        self.end_keeping();
     }
 }
 

@@ -79,6 +79,8 @@ impl App {
                     loading.task.progress.cancel();
                 }
             }
+            Request::Recover(at) => self.unless_unsaved(ctx, After::Recover(at)),
+            Request::DiscardWork(at) => self.discard_work(at),
             Request::Refuse(why) => self.refuse(why),
         }
     }
@@ -130,6 +132,7 @@ impl App {
             FileIntent::Load => self.dialogs.ask_file(ctx, Wanted::Model, ""),
             FileIntent::Save => self.save(ctx, None),
             FileIntent::SaveAs => self.save_as(ctx, None),
+            FileIntent::CopyPicture => self.copy_picture(ctx),
             FileIntent::SavePicture => self.dialogs.ask_file(ctx, Wanted::PictureTo, "picture.png"),
         }
     }
@@ -185,6 +188,7 @@ impl App {
         let before = self.state.scene.clone();
         self.state.message = None;
         steps(&mut self.state);
+        self.follow_steps();
         self.state.gesture = Gesture::Whole;
         selection::follow(&before, &self.state.scene, &mut self.state.view);
     }

@@ -46,6 +46,7 @@ impl App {
         }
         self.state.history.mark_saved();
         self.state.tell(Some(format!("Saved {}", path.display())));
+        self.note_recent(&path);
         self.state.path = Some(path);
         if let Some(after) = after {
             self.after(ctx, after);
@@ -132,9 +133,12 @@ impl App {
             state.notices.push(Notice { text, details, offer: None });
         }
         // An example is saved under a name of its own.
-        state.path = (!io::is_example(&path)).then_some(path);
+        state.path = (!io::is_example(&path)).then(|| path.clone());
         self.replace(state);
         self.state.panels = panels;
+        if !self.settle_recovered(&path) {
+            self.note_recent(&path);
+        }
         let objects = self.state.scene.objects.ids().collect();
         self.look_for_unseen(ctx, objects);
     }

@@ -5,6 +5,7 @@ use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
 use crate::app::state::State;
+use crate::app::widgets::text::file_name;
 use crate::io::EXAMPLES;
 
 /// The actions of [`Group::Window`] that have a menu of their own.
@@ -20,6 +21,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         menu(ui, "File", |ui| {
             group_ui(ui, state, requests, Group::File);
             ui.separator();
+            submenu(ui, "Recent files", |ui| recent_ui(ui, state, requests));
             submenu(ui, "Examples", |ui| examples_ui(ui, requests));
         });
         menu(ui, "Edit", |ui| {
@@ -87,6 +89,22 @@ fn examples_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
         response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, example.title));
         if response.clicked() {
             requests.push(Request::LoadFiles(vec![example.path.into()]));
+            ui.close();
+        }
+    }
+}
+
+/// The files opened or saved last; a click loads a model, or opens a scene.
+fn recent_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    if state.recent.is_empty() {
+        ui.weak("No files yet");
+    }
+    for path in &state.recent {
+        let name = file_name(path);
+        let response = ui.button(&name);
+        response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, &name));
+        if response.on_hover_text(path.display().to_string()).clicked() {
+            requests.push(Request::LoadFiles(vec![path.clone()]));
             ui.close();
         }
     }

@@ -9,7 +9,7 @@ use crate::edit::Gesture;
 
 /// Shows them at the top of the picture; their requests are added to `requests`.
 pub(crate) fn show(ctx: &Context, state: &State, loading: &[Loading], requests: &mut Vec<Request>) {
-    if loading.is_empty() && state.notices.is_empty() {
+    if loading.is_empty() && state.notices.is_empty() && state.recoverable.is_empty() {
         return;
     }
     let corner = Area::new(Id::unique("notices"))
@@ -19,6 +19,9 @@ pub(crate) fn show(ctx: &Context, state: &State, loading: &[Loading], requests: 
         ui.set_max_width(420.0);
         for (at, loading) in loading.iter().enumerate() {
             Frame::popup(ui.style()).show(ui, |ui| loading_ui(ui, at, loading, requests));
+        }
+        for (at, work) in state.recoverable.iter().enumerate() {
+            Frame::popup(ui.style()).show(ui, |ui| recoverable_ui(ui, at, work, requests));
         }
         for (at, notice) in state.notices.iter().enumerate() {
             Frame::popup(ui.style()).show(ui, |ui| notice_ui(ui, at, notice, state, requests));
@@ -38,6 +41,19 @@ fn loading_ui(ui: &mut Ui, at: usize, loading: &Loading, requests: &mut Vec<Requ
     });
     // The bar has to move although nothing else does.
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+}
+
+/// Unsaved work that a program has left behind.
+fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request>) {
+    ui.label(work);
+    ui.horizontal(|ui| {
+        if ui.button("Recover").on_hover_text("Shows it instead of this scene").clicked() {
+            requests.push(Request::Recover(at));
+        }
+        if ui.button("Discard").on_hover_text("Removes it for good").clicked() {
+            requests.push(Request::DiscardWork(at));
+        }
+    });
 }
 
 fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &mut Vec<Request>) {

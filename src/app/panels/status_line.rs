@@ -11,6 +11,7 @@ use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::short;
+use crate::edit::steps;
 use crate::scene::{
     CameraMode, Frame, ItemId, LightKind, Observer, Projection, SpotOwner, Subject, Transformation,
 };
@@ -170,12 +171,14 @@ fn frame(state: &State) -> Option<&'static str> {
 
 /// How far the next press of x, y or z goes.
 fn step(state: &State) -> Option<String> {
-    let steps = &state.view.steps;
+    let by = &state.view.steps;
     Some(match transformation(state).ok()? {
-        Transformation::Translation if steps.by_size => "step by size".to_owned(),
-        Transformation::Translation => format!("step {}", short(steps.translation)),
-        Transformation::Rotation => format!("step {} deg", short(steps.rotation)),
-        Transformation::Scaling => format!("step x {}", short(steps.scaling)),
+        Transformation::Translation => {
+            let length = short(steps::length(&state.scene, &state.view));
+            format!("step {length}{}", if by.by_size { " by size" } else { "" })
+        }
+        Transformation::Rotation => format!("step {} deg", short(by.rotation)),
+        Transformation::Scaling => format!("step x {}", short(by.scaling)),
     })
 }
 

@@ -47,6 +47,10 @@ pub struct State {
     pub theme: ThemePreference,
     /// The state of the laboratory.
     pub lab: Laboratory,
+    /// The files opened or saved last, the latest first.
+    pub recent: Vec<PathBuf>,
+    /// What is said about each unsaved work that a program has left behind.
+    pub recoverable: Vec<String>,
     /// The item that is being renamed.
     pub renaming: Option<ItemId>,
     /// The gesture of the last change.
@@ -208,6 +212,8 @@ impl State {
             panels: Panels::DEFAULT,
             theme: ThemePreference::System,
             lab: Laboratory::default(),
+            recent: Vec::new(),
+            recoverable: Vec::new(),
             renaming: None,
             gesture: Gesture::Whole,
         }

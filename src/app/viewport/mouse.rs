@@ -19,7 +19,7 @@ use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::gestures;
 use crate::base::image::Size;
-use crate::edit::{Gesture, Refusal, navigation};
+use crate::edit::{Gesture, Refusal, navigation, steps};
 use crate::render::Hit;
 use crate::scene::{CameraMode, Command, Projection};
 
@@ -343,12 +343,7 @@ fn notches(event: &Event) -> f64 {
 
 /// The length of a step of translation.
 fn step(state: &State) -> f64 {
-    let steps = &state.view.steps;
-    let object = state.view.object.and_then(|id| state.scene.objects.get(id));
-    match object {
-        Some(object) if steps.by_size => object.largest_extent() / 20.0,
-        _ => steps.translation,
-    }
+    steps::length(&state.scene, &state.view)
 }
 
 /// How far before the camera lies what has this depth in the picture: the projection's depth

@@ -15,6 +15,7 @@ use crate::app::theme;
 use crate::app::widgets::controls::{self, Switch, row, section};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::Number;
+use crate::edit;
 use crate::scene::{ItemId, Transformation};
 
 /// Shows the panel; its requests are added to `requests`.
@@ -61,7 +62,8 @@ fn title(ui: &mut Ui, state: &State, item: ItemId) {
 
 /// How far one press of x, y or z goes.
 fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bool) {
-    section(ui, "Step sizes", false, |ui| {
+    // Steps that go by size are shown, since the program has chosen them.
+    section(ui, "Step sizes", state.view.steps.by_size, |ui| {
         let steps = state.view.steps;
         let does = |to| match to {
             Transformation::Translation => ("Move", "Units that a press of x, y or z moves"),
@@ -89,14 +91,15 @@ fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bo
             }
         };
         ui.add_enabled_ui(!steps.by_size, |ui| {
-            field(ui, Transformation::Translation, steps.translation);
+            let length = edit::steps::length(&state.scene, &state.view);
+            field(ui, Transformation::Translation, length);
         });
         field(ui, Transformation::Rotation, steps.rotation);
         if scaling {
             field(ui, Transformation::Scaling, steps.scaling);
         }
         let by_size = Switch::new("Move by size", steps.by_size).ui(ui);
-        let hint = "A press moves by 1/20 of the selected object's largest extent";
+        let hint = "A press moves by a hundredth of the scene's extent, rounded to 1, 2 or 5";
         if by_size.on_hover_text(hint).clicked() {
             change_view(requests, state, |view| view.steps.by_size ^= true);
         }
@@ -109,7 +112,7 @@ fn number_row(
     label: &str,
     number: Number<'_>,
     value: f64,
-) -> Option<(f64, crate::edit::Gesture)> {
+) -> Option<(f64, edit::Gesture)> {
     row(ui, label, |ui| {
         let width = ui.available_width();
         number.ui(ui, width, value)

@@ -1,0 +1,198 @@
+//! Models that open alone: those of the command line, and those dropped on the untouched first
+//! scene.
+//!
+//! They are shown as `render` shows them: without the first scene's objects, framed and lit. The
+//! key `f` and the menu add a model to the scene as it is, also to the first one.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use super::App;
+use crate::app::documents::loading::{Arrival, Arrived, Fetched, Wish, is_scene};
+use crate::app::documents::material_dialog::{own_or_silver, summary};
+use crate::app::state::{Notice, State};
+use crate::app::widgets::text::file_name;
+use crate::base::Shared;
+use crate::edit::{Gesture, Refusal, items, presenting};
+use crate::io::{self, LoadError, Loaded, Progress};
+use crate::scene::{LoadOptions, MaterialChoice, Object, Steps};
+
+impl App {
+    /// Loads the files of the command line: models alone, or put into the scene among them. They do
+    /// not count as unsaved changes.
+    pub fn load_at_start(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        let (scenes, models): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| is_scene(path));
+        if scenes.is_empty() && !models.is_empty() {
+            // The first scene's objects would only be seen to vanish.
+            let (scene, mut view) = io::empty_scene();
+            view.steps.by_size = true;
+            self.replace(State::new(scene, view));
+            return self.load_alone(ctx, models, Arrival::Start);
+        }
+        for path in scenes {
+            self.open_scene(ctx, path);
+        }
+        for path in models {
+            let material = Some(MaterialChoice::File);
+            let wish = Wish { material, keeps_saved: true, ..Wish::default() };
+            self.load_model(ctx, path, wish);
+        }
+    }
+
+    /// Loads files that were dropped onto the window. On the untouched first scene, models take its
+    /// place.
+    pub(crate) fn take_dropped(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
+        if paths.is_empty() {
+            return;
+        }
+        if self.is_untouched() && !paths.iter().any(|path| is_scene(path)) {
+            self.load_alone(ctx, paths, Arrival::Dropped);
+        } else {
+            self.load_files(ctx, paths);
+        }
+    }
+
+    /// Whether this is the first scene, or none at all, and nothing was ever done to it.
+    pub(crate) fn is_untouched(&self) -> bool {
+        let State { scene, history, path, .. } = &self.state;
+        path.is_none()
+            && history.steps().len() == 0
+            && (scene.objects.is_empty() || *scene == io::default_scene().0)
+    }
+
+    /// Reads these models together, to show them together.
+    fn load_alone(&mut self, ctx: &Context, paths: Vec<PathBuf>, arrival: Arrival) {
+        let label = match &paths[..] {
+            [one] => format!("Loading {}", file_name(one)),
+            more => format!("Loading {} models", more.len()),
+        };
+        self.begin_loading(ctx, label, false, move |progress| {
+            Fetched::Alone(read_all(&paths, progress), arrival)
+        });
+    }
+
+    /// Takes models that were read together: alone if the scene is untouched, else beside what is
+    /// there.
+    pub(crate) fn take_alone(
+        &mut self,
+        ctx: &Context,
+        read: Vec<Result<Arrived, LoadError>>,
+        arrival: Arrival,
+    ) {
+        let mut arrived = Vec::new();
+        for result in read {
+            match result {
+                Ok(model) => arrived.push(model),
+                Err(error) => self.tell_load_error(&error),
+            }
+        }
+        if arrived.is_empty() {
+            if arrival == Arrival::Start && self.is_untouched() {
+                let (scene, view) = io::default_scene();
+                self.replace(State::new(scene, view));
+            }
+            return;
+        }
+        let objects: Vec<Object> = arrived.iter().map(|model| model.object.clone()).collect();
+        let label = match &objects[..] {
+            [one] => format!("Load {}", one.name),
+            more => format!("Load {} models", more.len()),
+        };
+        let shown = self.show_alone(objects, arrival, &label);
+        if let Err(refusal) = shown {
+            return self.refuse(refusal.to_string());
+        }
+        for Arrived { object, found, findings } in arrived {
+            if let Some(path) = &object.model.source {
+                self.note_recent(path);
+            }
+            self.state.tell(Some(format!("Loaded {}: {found}", object.name)));
+            if !findings.is_empty() {
+                let text = format!("{}: {found}", object.name);
+                self.state.notices.push(Notice { text, details: findings, offer: None });
+            }
+        }
+        let ids = self.state.scene.objects.ids().collect();
+        self.look_for_unseen(ctx, ids);
+    }
+
+    fn show_alone(
+        &mut self,
+        objects: Vec<Object>,
+        arrival: Arrival,
+        label: &str,
+    ) -> Result<(), Refusal> {
+        if !self.is_untouched() {
+            let keeps_saved = arrival == Arrival::Start && self.state.history.is_saved();
+            let command = items::insert_objects(&self.state.scene, objects);
+            self.change(command, Gesture::Whole, label);
+            if keeps_saved {
+                self.state.history.mark_saved();
+            }
+            return Ok(());
+        }
+        let (command, view) = presenting::alone(&self.state.scene, &self.state.view, objects)?;
+        match arrival {
+            Arrival::Start => {
+                let mut scene = self.state.scene.clone();
+                command.apply(&mut scene)?;
+                self.replace(State::new(scene, view));
+            }
+            Arrival::Dropped => {
+                self.first_steps = Some(self.state.view.steps);
+                self.change(command, Gesture::Whole, label);
+                self.state.view = view;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives the first scene its steps back when it comes back by Undo, and its successor those
+    /// that go by size by Redo.
+    pub(crate) fn follow_steps(&mut self) {
+        let Some(Steps { translation, by_size, .. }) = self.first_steps else { return };
+        let is_first = self.state.history.position() == 0;
+        let steps = &mut self.state.view.steps;
+        (steps.translation, steps.by_size) =
+            if is_first { (translation, by_size) } else { (steps.translation, true) };
+    }
+}
+
+/// Reads models with their own materials; a file that is named twice is read once.
+fn read_all(paths: &[PathBuf], progress: &Progress) -> Vec<Result<Arrived, LoadError>> {
+    let mut known: BTreeMap<PathBuf, Object> = BTreeMap::new();
+    let count = paths.len().max(1);
+    let mut read = |(i, path): (usize, &PathBuf)| {
+        let place = std::path::absolute(path).unwrap_or_else(|_empty| path.clone());
+        if let Some(object) = known.get(&place) {
+            return Ok(Arrived {
+                object: object.clone(),
+                found: "read before".to_owned(),
+                findings: Vec::new(),
+            });
+        }
+        let part = progress.part(share(i, count), share(i + 1, count));
+        let arrived = arrived(path, &part)?;
+        known.insert(place, arrived.object.clone());
+        Ok(arrived)
+    };
+    paths.iter().enumerate().map(&mut read).collect()
+}
+
+fn arrived(path: &Path, progress: &Progress) -> Result<Arrived, LoadError> {
+    let loaded = io::load(path, &LoadOptions::default(), progress)?;
+    let found = summary(&loaded);
+    let material = own_or_silver(&loaded);
+    let Loaded { model, findings } = loaded;
+    let object = Object::new(Shared::new(model), material);
+    Ok(Arrived { object, found, findings: findings.iter().map(ToString::to_string).collect() })
+}
+
+#[expect(clippy::cast_precision_loss, reason = "the number of files on a command line")]
+fn share(i: usize, of: usize) -> f64 {
+    i as f64 / of as f64
+}

@@ -1,0 +1,295 @@
+//! Keeps unsaved work and preferences in the program's own files.
+//!
+//! The scene goes to the journal as soon as it changes, and the journal's thread brings it to the
+//! disk; the window never waits for that. Work that another program has left behind is offered in a
+//! notice that blocks nothing.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::{Duration, SystemTime};
+
+use egui::{Context, ThemePreference};
+
+use super::App;
+use crate::app::documents::loading::{Fetched, Opening};
+use crate::app::state::{Notice, State};
+use crate::app::widgets::text::file_name;
+use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Theme, Unsaved};
+use crate::scene::{Panels, Scene};
+
+/// The seconds without a change after which preferences are written.
+const QUIET: f64 = 1.0;
+
+/// The program's own files.
+#[derive(Debug)]
+pub(crate) struct Keeping {
+    folders: OwnFolders,
+    journal: Option<Journal>,
+    /// The unsaved scene that the journal has.
+    kept: Option<Scene>,
+    /// Work that other programs have left behind, in the order of [`State::recoverable`].
+    offered: Vec<Abandoned>,
+    /// As they were written last.
+    preferences: Preferences,
+    /// The preferences now, and since when they differ.
+    changed: Option<(Preferences, f64)>,
+}
+
+impl App {
+    /// Keeps unsaved work and preferences in these folders from now on, and offers the work that
+    /// was left there. `said` is shown in a notice.
+    pub fn keep_in(
+        &mut self,
+        ctx: &Context,
+        folders: OwnFolders,
+        preferences: Preferences,
+        said: Option<String>,
+    ) {
+        let theme = match preferences.theme {
+            Theme::System => ThemePreference::System,
+            Theme::Light => ThemePreference::Light,
+            Theme::Dark => ThemePreference::Dark,
+        };
+        ctx.set_theme(theme);
+        ctx.set_zoom_factor(preferences.scale);
+        self.state.theme = theme;
+        self.state.panels = preferences.panels;
+        self.state.recent.clone_from(&preferences.recent);
+        self.state.notices.extend(said.map(notice));
+        let offered = Abandoned::all(&folders);
+        let now = SystemTime::now();
+        self.state.recoverable = offered.iter().map(|work| described(work, now)).collect();
+        let journal = match Journal::begin(&folders) {
+            Ok(journal) => Some(journal),
+            Err(why) => {
+                let text = format!("Unsaved work cannot be kept for recovery: {why}.");
+                self.state.notices.push(notice(text));
+                None
+            }
+        };
+        let (kept, changed) = (None, None);
+        self.keeping = Some(Keeping { folders, journal, kept, offered, preferences, changed });
+    }
+
+    /// Hands what has changed to the journal, and writes preferences once they have settled.
+    pub(crate) fn keep(&mut self, ctx: &Context) {
+        let Some(keeping) = &mut self.keeping else { return };
+        let State { scene, view, settings, history, path, .. } = &self.state;
+        if let Some(journal) = &keeping.journal {
+            if history.is_saved() {
+                if keeping.kept.take().is_some() {
+                    journal.all_saved();
+                }
+            } else if keeping.kept.as_ref() != Some(scene) {
+                keeping.kept = Some(scene.clone());
+                let (scene, view, file) = (scene.clone(), view.clone(), path.clone());
+                journal.keep(Unsaved { scene, view, settings: *settings, file });
+            }
+            if let Some(fault) = journal.fault() {
+                self.state.notices.retain(|notice| !notice.text.starts_with(NOT_KEPT));
+                self.state.notices.push(notice(format!("{NOT_KEPT}{fault}.")));
+            }
+        }
+        let Some(keeping) = &mut self.keeping else { return };
+        let now = preferences_now(ctx, &self.state, &keeping.preferences);
+        let time = ctx.input(|input| input.time);
+        if now == keeping.preferences {
+            keeping.changed = None;
+            return;
+        }
+        match &keeping.changed {
+            Some((before, since)) if *before == now => {
+                if time - since >= QUIET {
+                    keeping.preferences = now;
+                    keeping.changed = None;
+                    keeping.write_preferences();
+                }
+            }
+            Some(_) | None => {
+                keeping.changed = Some((now, time));
+                ctx.request_repaint_after(Duration::from_secs_f64(QUIET + 0.05));
+            }
+        }
+    }
+
+    /// The program is left: preferences are written, and nothing is left to recover if the user
+    /// has saved or discarded everything.
+    pub fn end_keeping(&mut self) {
+        let Some(mut keeping) = self.keeping.take() else { return };
+        if let Some((changed, _)) = keeping.changed.take() {
+            keeping.preferences = changed;
+        }
+        // If that fails, the window that could say so is gone.
+        let _ = keeping.preferences.save(&keeping.folders);
+        if (self.leaving || self.state.history.is_saved())
+            && let Some(journal) = keeping.journal
+        {
+            journal.end();
+        }
+    }
+
+    /// Waits until the journal is on the disk.
+    pub fn wait_for_journal(&self) {
+        if let Some(journal) = self.keeping.as_ref().and_then(|keeping| keeping.journal.as_ref()) {
+            journal.wait();
+        }
+    }
+
+    /// Reads the work that is offered at this place, to show it instead of the scene.
+    pub(crate) fn recover(&mut self, ctx: &Context, at: usize) {
+        let Some(work) = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at)) else {
+            return;
+        };
+        let path = work.path().to_owned();
+        let relocated = BTreeMap::new();
+        self.begin_loading(ctx, "Recovering unsaved work".to_owned(), false, move |progress| {
+            let result = io::open_with(&path, &relocated, progress);
+            Fetched::Scene(Box::new(Opening { path, relocated, result }))
+        });
+    }
+
+    /// Removes the work that is offered at this place.
+    pub(crate) fn discard_work(&mut self, at: usize) {
+        if let Some(work) = self.take_offered(at) {
+            work.discard();
+            self.state.tell(Some("Discarded the unsaved work".to_owned()));
+        }
+    }
+
+    fn take_offered(&mut self, at: usize) -> Option<Abandoned> {
+        let keeping = self.keeping.as_mut()?;
+        if at >= keeping.offered.len() {
+            return None;
+        }
+        self.state.recoverable.remove(at);
+        Some(keeping.offered.remove(at))
+    }
+
+    /// If the scene that was opened is offered work: it counts as unsaved, and as a scene of the
+    /// file that it once was saved to. Returns whether it is.
+    pub(crate) fn settle_recovered(&mut self, opened: &Path) -> bool {
+        let at = self
+            .keeping
+            .as_ref()
+            .and_then(|keeping| keeping.offered.iter().position(|work| work.path() == opened));
+        let Some(work) = at.and_then(|at| self.take_offered(at)) else { return false };
+        self.state.path.clone_from(&work.scene_file);
+        self.state.history.mark_unsaved();
+        self.state.tell(Some(format!("Recovered {}", name_of(&work))));
+        // The file of the work is none that the user knows.
+        let own_name = file_name(opened);
+        for notice in &mut self.state.notices {
+            if let Some(rest) = notice.text.strip_prefix(&own_name) {
+                notice.text = format!("Recovered work{rest}");
+            }
+        }
+        if let Some(keeping) = &mut self.keeping {
+            keeping.kept = None;
+            match &keeping.journal {
+                Some(journal) => journal.replace(work),
+                // Without a journal it is offered again by the next program.
+                None => drop(work),
+            }
+        }
+        true
+    }
+
+    /// Remembers a file among the recent ones.
+    pub(crate) fn note_recent(&mut self, path: &Path) {
+        if io::is_example(path) {
+            return;
+        }
+        let recent = std::mem::take(&mut self.state.recent);
+        let mut preferences = Preferences { recent, ..Preferences::default() };
+        preferences.note_recent(path);
+        self.state.recent = preferences.recent;
+    }
+}
+
+impl Keeping {
+    /// Writes the preferences without letting the window wait.
+    fn write_preferences(&self) {
+        let (preferences, folders) = (self.preferences.clone(), self.folders.clone());
+        let write = move || {
+            // They are written again when the program is left.
+            let _ = preferences.save(&folders);
+        };
+        // Without a thread, too, they are written then.
+        let _ = std::thread::Builder::new().name("preferences".to_owned()).spawn(write);
+    }
+}
+
+const NOT_KEPT: &str = "Unsaved changes could not be kept for recovery: ";
+
+fn notice(text: String) -> Notice {
+    Notice { text, details: Vec::new(), offer: None }
+}
+
+/// What is to be remembered now. What the window does not say stays as it was.
+fn preferences_now(ctx: &Context, state: &State, before: &Preferences) -> Preferences {
+    let scale = ctx.zoom_factor();
+    let (rect, maximized, minimized) = ctx.input(|input| {
+        let viewport = input.viewport();
+        (viewport.inner_rect, viewport.maximized, viewport.minimized)
+    });
+    let maximized = maximized.unwrap_or(false);
+    let size = rect.map(|rect| (rect.size() * scale).round());
+    let size = size.filter(|_| !maximized && minimized != Some(true));
+    let whole = |size: egui::Vec2| [size.x, size.y];
+    Preferences {
+        theme: match state.theme {
+            ThemePreference::System => Theme::System,
+            ThemePreference::Light => Theme::Light,
+            ThemePreference::Dark => Theme::Dark,
+        },
+        panels: Panels { cheat_sheet: false, ..state.panels },
+        scale,
+        window: size.map(whole).or(before.window),
+        maximized,
+        recent: state.recent.clone(),
+    }
+}
+
+/// "harbour.marraztu", or "a new scene".
+fn name_of(work: &Abandoned) -> String {
+    let file = work.scene_file.as_deref().map(file_name);
+    format!("unsaved changes of {}", file.unwrap_or_else(|| "a new scene".to_owned()))
+}
+
+/// "Unsaved changes of harbour.marraztu from 3 minutes ago".
+fn described(work: &Abandoned, now: SystemTime) -> String {
+    let minutes = now.duration_since(work.written).unwrap_or_default().as_secs() / 60;
+    let ago = match minutes {
+        0 => "less than a minute ago".to_owned(),
+        1 => "a minute ago".to_owned(),
+        2..120 => format!("{minutes} minutes ago"),
+        120..2880 => format!("{} hours ago", minutes / 60),
+        _ => format!("{} days ago", minutes / 1440),
+    };
+    format!("The program ended with {}, from {ago}.", name_of(work))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+
+    #[test]
+    fn work_is_described_by_its_file_and_its_age() {
+        let folder = tempfile::tempdir().unwrap();
+        let folders = OwnFolders::within(folder.path());
+        let (scene, view) = io::default_scene();
+        let file = Some(PathBuf::from("/somewhere/harbour.marraztu"));
+        let journal = Journal::begin(&folders).unwrap();
+        journal.keep(Unsaved { scene, view, settings: crate::accuracy::Settings::default(), file });
+        journal.wait();
+        drop(journal);
+        let all = Abandoned::all(&folders);
+        let at = |seconds| described(&all[0], all[0].written + Duration::from_secs(seconds));
+        let start = "The program ended with unsaved changes of harbour.marraztu, from ";
+        assert_eq!(at(5), format!("{start}less than a minute ago."));
+        assert_eq!(at(400), format!("{start}6 minutes ago."));
+        assert_eq!(at(8000), format!("{start}2 hours ago."));
+    }
+}

@@ -1,0 +1,178 @@
+//! Lights models that come without a scene.
+//!
+//! The lights are those of the first scene, placed and fading as if the models had the size for
+//! which they were made. Their brightness is balanced to the models' materials: whatever the normal
+//! of a surface, its ambient and diffuse light stays below white, so that only highlights can reach
+//! it.
+//!
+//! ```text
+//! s = distance of the camera that frames the models / 400          (the first camera's distance)
+//! I = f (Ka Ia + Kd D) <= 0.97
+//! D = max over points p and sets of lights S of |sum over S of I_l(p) L_l(p)|
+//! ```
+//!
+//! The diffuse light that a normal N receives is the sum of the positive N.L, which is N times the
+//! sum of some of the lights, so that D is an upper bound for every N.
+
+use glam::DVec3;
+
+use super::items::change_light;
+use super::{Refusal, framing};
+use crate::base::color::Color;
+use crate::scene::{
+    Attenuation, Command, Light, LightKind, Object, ObjectId, Scene, SpotOwner, Tracked, View,
+};
+
+/// The distance of the first scene's camera, for which its lights are made.
+const FIRST_DISTANCE: f64 = 400.0;
+
+/// The position of the first scene's bulb, relative to the centre.
+const BULB: DVec3 = DVec3::new(0.0, 0.0, -200.0);
+
+/// The direction towards the sun: to the left of the front and up.
+const KEY_FROM: DVec3 = DVec3::new(-0.25, 0.75, 0.612_372_435_695_794_5);
+
+/// The most ambient and diffuse light, as a fraction of white.
+const BRIGHTEST: f64 = 0.97;
+
+/// The lights that are balanced at most; more are taken to shine from one direction.
+const MOST_SUBSETS: usize = 8;
+
+/// Places and balances the first scene's lights for the models of a scene, which its camera frames.
+///
+/// The bulb and the spot of the selected object are switched off: one stands in the picture, the
+/// other inside a model.
+///
+/// # Errors
+/// If there is nothing to light.
+pub fn models(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    let ids: Vec<ObjectId> = scene.objects.ids().collect();
+    let sphere = framing::sphere(scene, view, &ids).ok_or(Refusal::NothingToFrame)?;
+    let (centre, radius) = (sphere.centre, if sphere.radius > 0.0 { sphere.radius } else { 1.0 });
+    let scale =
+        framing::models_distance(&scene.selected_camera(view).lens, radius) / FIRST_DISTANCE;
+    let mut lit = scene.clone();
+    let mut commands = Vec::new();
+    let mut change = |lit: &mut Scene, change: &dyn Fn(&mut Light)| {
+        for (id, _) in scene.lights.iter() {
+            let command = change_light(lit, id, change)?;
+            command.clone().apply(lit)?;
+            commands.push(command);
+        }
+        Ok::<(), Refusal>(())
+    };
+    change(&mut lit, &|light| place(light, centre, scale))?;
+    let factor = balance(&lit, view, centre, radius);
+    change(&mut lit, &|light| light.color = dimmed(light.color, factor))?;
+    Ok(Command::Batch(commands))
+}
+
+/// A light of the first scene, placed for models `scale` times as large.
+fn place(light: &mut Light, centre: DVec3, scale: f64) {
+    let Attenuation { constant, linear, quadratic } = light.attenuation;
+    let scaled =
+        Attenuation { constant, linear: linear / scale, quadratic: quadratic / (scale * scale) };
+    if scaled.is_valid() {
+        light.attenuation = scaled;
+    }
+    match &mut light.kind {
+        LightKind::Ambient => {}
+        LightKind::Sun { direction } => *direction = Tracked::new(-KEY_FROM),
+        LightKind::Bulb { position, .. } => {
+            *position = Tracked::new(centre + BULB * scale);
+            light.on = false;
+        }
+        LightKind::Spot { owner: SpotOwner::SelectedObject, .. } => light.on = false,
+        LightKind::Spot { .. } => {}
+    }
+}
+
+/// The factor of all lights with which no surface in the sphere is brighter than [`BRIGHTEST`]; at
+/// most 1.
+fn balance(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
+    let ambient: f64 = scene
+        .lights
+        .iter()
+        .filter(|(_, light)| light.on && matches!(light.kind, LightKind::Ambient))
+        .map(|(_, light)| strength(light))
+        .fold(0.0, f64::max);
+    let diffuse = most_diffuse(scene, view, centre, radius);
+    let brightest = scene
+        .objects
+        .iter()
+        .flat_map(|(_, object)| coefficients(object))
+        .map(|[ka, kd]| ka * ambient + kd * diffuse)
+        .fold(0.0, f64::max);
+    if brightest > BRIGHTEST { BRIGHTEST / brightest } else { 1.0 }
+}
+
+/// Ka and Kd of each part and channel of an object.
+fn coefficients(object: &Object) -> impl Iterator<Item = [f64; 2]> {
+    let parts = u32::try_from(object.model.mesh.parts().len().max(1)).unwrap_or(u32::MAX);
+    (0..parts).flat_map(|part| {
+        let material = object.part_look(part).material;
+        (0..3).map(move |channel| [material.ambient[channel], material.diffuse[channel]])
+    })
+}
+
+/// The largest length of a sum of lights that reach a point of the sphere.
+fn most_diffuse(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
+    let lights: Vec<&Light> =
+        scene.lights.iter().map(|(_, light)| light).filter(|light| light.on).collect();
+    let at = |p: DVec3| {
+        let reaching: Vec<DVec3> =
+            lights.iter().filter_map(|light| light_at(light, scene, view, p)).collect();
+        let (few, others) = reaching.split_at(reaching.len().min(MOST_SUBSETS));
+        let sum_of = |set: usize| {
+            let of_set = few.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1);
+            of_set.map(|(_, light)| *light).sum::<DVec3>().length()
+        };
+        let most = (0..1_usize << few.len()).map(sum_of).fold(0.0, f64::max);
+        most + others.iter().map(|light| light.length()).sum::<f64>()
+    };
+    // A lattice through the sphere; what lies between its points is within the margin to white.
+    let lattice = |i: i32| f64::from(i) / 8.0;
+    let mut most: f64 = 0.0;
+    for (x, y, z) in
+        (-8..=8).flat_map(|x| (-8..=8).flat_map(move |y| (-8..=8).map(move |z| (x, y, z))))
+    {
+        let p = DVec3::new(lattice(x), lattice(y), lattice(z));
+        // The surface of the sphere is where lights are nearest.
+        let p = if p.length() > 1.0 { p / p.length() } else { p };
+        most = most.max(at(centre + p * radius));
+    }
+    most
+}
+
+/// The light that arrives at `p`, as the direction towards it times its strength. `None` if it has
+/// no direction.
+fn light_at(light: &Light, scene: &Scene, view: &View, p: DVec3) -> Option<DVec3> {
+    let lamp = |position: DVec3| {
+        let to = position - p;
+        let d = to.length();
+        let Attenuation { constant, linear, quadratic } = light.attenuation;
+        (d > 0.0).then(|| to / d * strength(light) / (constant + linear * d + quadratic * d * d))
+    };
+    match &light.kind {
+        LightKind::Ambient => None,
+        LightKind::Sun { direction } => Some(-*direction.now() * strength(light)),
+        LightKind::Bulb { position, .. } => lamp(*position.now()),
+        // In the middle of its cone a spot is as bright as a bulb.
+        LightKind::Spot { owner, .. } => lamp(scene.aim(view, owner)?.position),
+    }
+}
+
+/// The brightest channel of a light, 0 to 1.
+fn strength(light: &Light) -> f64 {
+    f64::from(light.color.0.into_iter().max().unwrap_or(0)) / 255.0
+}
+
+/// A colour times a factor of at most 1, rounded down.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a byte times a factor of 0 to 1"
+)]
+fn dimmed(Color(channels): Color, factor: f64) -> Color {
+    Color(channels.map(|channel| libm::floor(f64::from(channel) * factor) as u8))
+}

@@ -1,0 +1,48 @@
+//! Adds simple shapes, in a size that fits the scene.
+
+use glam::{DMat4, DVec3};
+
+use super::items::insert_object;
+use super::steps::{extent, rounded};
+use crate::scene::{
+    Command, MaterialChoice, Object, PresetId, Scene, Shape, Sides, Tracked, View, dvec3,
+};
+
+/// The size of a shape in a scene without objects, whose camera is made for ships of this size.
+const ALONE: f64 = 100.0;
+
+/// Adds a shape: about a fifth as large as the scene, at the centre of the world. A plane is twice
+/// as large as the scene, and touches its lowest point as the ground does.
+#[must_use]
+pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
+    let of_scene = match shape {
+        Shape::Plane => 2.0,
+        Shape::Cube | Shape::Sphere | Shape::Cylinder | Shape::Torus => 0.2,
+    };
+    let extent = Some(extent(scene)).filter(|extent| *extent > 0.0).unwrap_or(ALONE / 0.2);
+    let size = rounded(extent * of_scene).unwrap_or(ALONE);
+    let place = match shape {
+        Shape::Plane => ground(scene, view.time),
+        Shape::Cube | Shape::Sphere | Shape::Cylinder | Shape::Torus => DVec3::ZERO,
+    };
+    let mut object = Object::new(shape.model(), MaterialChoice::Preset(PresetId::SILVER));
+    object.sides = Sides::Auto;
+    object.placement =
+        Tracked::new(DMat4::from_translation(place) * DMat4::from_scale(DVec3::splat(size)));
+    insert_object(scene, object)
+}
+
+/// The middle of the box around all objects, at the height of its floor.
+fn ground(scene: &Scene, time: f64) -> DVec3 {
+    let vertices = scene.objects.iter().flat_map(|(_, object)| {
+        let m = object.world_from_object(time);
+        object.model.mesh.positions().iter().map(move |p| m.transform_point3(dvec3(*p)))
+    });
+    let around = vertices.fold(None, |around: Option<(DVec3, DVec3)>, p| {
+        Some(around.map_or((p, p), |(min, max)| (min.min(p), max.max(p))))
+    });
+    around.map_or(DVec3::ZERO, |(min, max)| {
+        let middle = (min + max) * 0.5;
+        DVec3::new(middle.x, min.y, middle.z)
+    })
+}

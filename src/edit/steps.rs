@@ -1,0 +1,88 @@
+//! How far a press of x, y or z moves.
+//!
+//! By size, a step is a hundredth of the scene's extent, rounded to 1, 2 or 5 times a power of 10,
+//! so that it has few digits and stays the same while objects are moved about.
+
+use glam::DVec3;
+
+use crate::scene::{Object, Scene, Shape, View};
+
+/// The extent of the scene is this number of steps, before rounding.
+const STEPS_ACROSS: f64 = 100.0;
+
+/// The length of a step of translation, in units of the world.
+#[must_use]
+pub fn length(scene: &Scene, view: &View) -> f64 {
+    let by_size = || rounded(extent(scene) / STEPS_ACROSS);
+    view.steps.by_size.then(by_size).flatten().unwrap_or(view.steps.translation)
+}
+
+/// The extent of a scene: of one object its largest, of several the largest side of the box around
+/// them. 0 if there are none.
+///
+/// Each object counts as a cube as wide as its largest extent, so that turning it, or moving it if
+/// it is the only one, leaves the extent as it is. The plane of the menu of shapes does not count
+/// beside other objects: it is the ground, and larger than what stands on it.
+#[must_use]
+pub fn extent(scene: &Scene) -> f64 {
+    let cube = |object: &Object| {
+        let middle = object.model.mesh.bounds()?.centre();
+        let half = DVec3::splat(object.largest_extent() / 2.0);
+        let centre = object.placement.now().transform_point3(middle);
+        Some((centre - half, centre + half))
+    };
+    let is_ground = |object: &Object| {
+        object.model.source.is_none() && Shape::named(&object.model.name) == Some(Shape::Plane)
+    };
+    let around = |with_ground: bool| {
+        let objects = scene.objects.iter().map(|(_, object)| object);
+        let cubes = objects.filter(|object| with_ground || !is_ground(object)).filter_map(cube);
+        cubes.reduce(|(min, max), (low, high)| (min.min(low), max.max(high)))
+    };
+    around(false).or_else(|| around(true)).map_or(0.0, |(min, max)| (max - min).max_element())
+}
+
+/// The nearest of 1, 2 and 5 times the powers of 10, by ratio; `None` if `length` is not a positive
+/// finite number.
+pub(super) fn rounded(length: f64) -> Option<f64> {
+    if !(length.is_finite() && length > 0.0) {
+        return None;
+    }
+    let power = libm::floor(libm::log10(length));
+    let candidates = [(1, 0.0), (2, 0.0), (5, 0.0), (1, 1.0)];
+    let steps = candidates.map(|(digit, more)| decimal(digit, power + more));
+    let ratio = |step: f64| libm::fabs(libm::log(step / length));
+    steps.into_iter().filter(|step| *step > 0.0).min_by(|a, b| ratio(*a).total_cmp(&ratio(*b)))
+}
+
+/// The number nearest to `digit` times a power of 10, as if it had been typed.
+#[expect(clippy::cast_possible_truncation, reason = "the exponent of a double has three digits")]
+fn decimal(digit: u8, power: f64) -> f64 {
+    format!("{digit}e{}", power as i32).parse().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_length_is_rounded_to_the_nearest_of_1_2_and_5_by_ratio() {
+        for (length, step) in [
+            (1.0, 1.0),
+            (1.4, 1.0),
+            (1.42, 2.0),
+            (3.1, 2.0),
+            (3.2, 5.0),
+            (7.0, 5.0),
+            (7.1, 10.0),
+            (0.0173, 0.02),
+            (1e-9, 1e-9),
+            (4.4e12, 5e12),
+        ] {
+            assert_eq!(rounded(length), Some(step), "{length}");
+        }
+        for none in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(rounded(none), None, "{none}");
+        }
+    }
+}

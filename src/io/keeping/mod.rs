@@ -1,0 +1,112 @@
+//! The program's own files: unsaved work, so that a crash loses nothing, and preferences.
+//!
+//! ```text
+//! state folder    work-<process>-<number>.marraztu   the unsaved scene of a running program
+//!                 work-<process>-<number>.lock       locked while that program runs
+//!                 lock                               locked while a program looks for others
+//! config folder   preferences.ron                    theme, panels, scale, window, recent files
+//! ```
+//!
+//! The system drops a lock when its process ends, in whatever way; so a file whose lock can be
+//! taken was left by a program that crashed or was killed.
+
+mod abandoned;
+mod journal;
+mod preferences;
+
+pub use abandoned::Abandoned;
+pub use journal::{Journal, Unsaved};
+pub use preferences::{MOST_RECENT, Preferences, Theme};
+
+use std::fs::{self, File, OpenOptions};
+use std::path::{Path, PathBuf};
+
+use super::error::reason;
+
+/// Where the program keeps its own files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OwnFolders {
+    /// Unsaved work.
+    pub state: PathBuf,
+    /// Preferences.
+    pub config: PathBuf,
+}
+
+impl OwnFolders {
+    /// The folders of this user; `None` if the system names none.
+    #[must_use]
+    pub fn of_user() -> Option<Self> {
+        let folders = directories::ProjectDirs::from("", "", "marraztu")?;
+        let state = folders.state_dir().unwrap_or_else(|| folders.data_local_dir());
+        Some(Self { state: state.to_owned(), config: folders.config_dir().to_owned() })
+    }
+
+    /// Both in one folder.
+    #[must_use]
+    pub fn within(folder: &Path) -> Self {
+        Self { state: folder.join("state"), config: folder.join("config") }
+    }
+}
+
+/// The lock of a file, which one program at a time has until it drops this or ends.
+#[derive(Debug)]
+struct Lock(File);
+
+impl Lock {
+    fn open(path: &Path) -> std::io::Result<File> {
+        OpenOptions::new().write(true).create(true).truncate(false).open(path)
+    }
+
+    /// Waits for the lock.
+    fn take(path: &Path) -> std::io::Result<Self> {
+        let file = Self::open(path)?;
+        file.lock()?;
+        Ok(Self(file))
+    }
+
+    /// Takes the lock if no other program has it.
+    fn try_take(path: &Path) -> Option<Self> {
+        let file = Self::open(path).ok()?;
+        file.try_lock().ok()?;
+        Some(Self(file))
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Closing the file unlocks it too.
+        let _ = self.0.unlock();
+    }
+}
+
+/// A folder of the program's own, made if it is missing.
+fn made(folder: &Path) -> Result<(), String> {
+    let fail = |error: &std::io::Error| format!("{}: {}", folder.display(), reason(error));
+    fs::create_dir_all(folder).map_err(|error| fail(&error))
+}
+
+/// A file of unsaved work and its lock.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Slot {
+    work: PathBuf,
+    lock: PathBuf,
+}
+
+impl Slot {
+    fn named(folder: &Path, name: &str) -> Self {
+        let at = |ending: &str| folder.join(format!("{name}.{ending}"));
+        Self { work: at(super::SCENE_ENDING), lock: at("lock") }
+    }
+
+    /// Removes both files; the lock last, so that no work is ever without one.
+    fn remove(&self) {
+        // What cannot be removed is found again by the next program.
+        let _ = fs::remove_file(&self.work);
+        let _ = fs::remove_file(&self.lock);
+    }
+}
+
+/// The lock of the list of slots.
+fn list_lock(folder: &Path) -> std::io::Result<Lock> {
+    Lock::take(&folder.join("lock"))
+}

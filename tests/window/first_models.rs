@@ -1,0 +1,222 @@
+//! Models that open alone: from the command line, and dropped on the untouched first scene.
+//!
+//! Catches: ships beside the model, a model that is too small or too large in the picture or burnt
+//! out, steps that do not fit it, a window that shows something else than `render`, a drop that
+//! cannot be undone, a key `f` that replaces the scene.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::Key;
+use marraztu::accuracy::{Settings, Shot};
+use marraztu::app::actions::Chord::{Command, Lower};
+use marraztu::app::actions::Request;
+use marraztu::base::Shared;
+use marraztu::base::image::Size;
+use marraztu::edit::{presenting, steps};
+use marraztu::io::{self, Progress};
+use marraztu::render::{Renderer, plan_frame};
+use marraztu::scene::{LoadOptions, Material, MaterialChoice, Object, Scene, Sides, Steps, View};
+
+use crate::dialogs::{CUBE, folder_with};
+use crate::editor::Editor;
+
+/// A file dropped onto the window.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+impl Editor {
+    fn open_at_start(&mut self, paths: &[&Path]) {
+        let ctx = self.harness.ctx.clone();
+        let paths = paths.iter().map(|path| path.to_path_buf()).collect();
+        self.harness.state_mut().load_at_start(&ctx, paths);
+    }
+
+    fn drop_files(&mut self, paths: &[&Path]) {
+        for path in paths {
+            let file = Arc::new(Dropped(path.to_path_buf()));
+            self.harness.input_mut().dropped_files.push(file);
+        }
+        self.settle();
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.scene().objects.iter().map(|(_, object)| object.name.clone()).collect()
+    }
+}
+
+fn model(path: &Path) -> Object {
+    let loaded = io::load(path, &LoadOptions::default(), &Progress::new()).unwrap();
+    Object::new(Shared::new(loaded.model), MaterialChoice::File)
+}
+
+fn picture(scene: &Scene, view: &View, size: Size) -> marraztu::base::image::Picture {
+    let shot = Shot::new(scene, view, &Settings::default(), size);
+    Renderer::default().render(&plan_frame(&shot)).clone()
+}
+
+/// The first scene's cameras and lights with these objects, as they open.
+fn alone(objects: Vec<Object>) -> (Scene, View) {
+    let (mut scene, view) = io::empty_scene();
+    let (command, view) = presenting::alone(&scene, &view, objects).unwrap();
+    command.apply(&mut scene).unwrap();
+    (scene, view)
+}
+
+#[test]
+fn a_model_of_the_command_line_opens_alone_framed_and_with_steps_that_fit() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::new();
+    editor.open_at_start(&[&path]);
+    editor.wait_until(|editor| editor.names() == ["cube"]);
+    editor.settle();
+    let (scene, view) = (editor.scene(), editor.view());
+    let (wanted, wanted_view) = alone(vec![model(&path)]);
+    let pose = |scene: &Scene, view: &View| *scene.selected_camera(view).pose.now();
+    assert_eq!(pose(&scene, &view), pose(&wanted, &wanted_view));
+    assert_eq!(scene.lights, wanted.lights, "it is lit as render lights it");
+    assert_eq!(steps::length(&scene, &view), 0.01, "a hundredth of the cube");
+    assert!(editor.shows("step 0.01 by size"));
+    assert!(editor.state().history.is_saved());
+    assert_eq!(editor.steps(), 0);
+    let before = pose(&scene, &view).eye;
+    editor.press(Lower(Key::Z));
+    let moved = (pose(&editor.scene(), &editor.view()).eye - before).length();
+    assert!((moved - 0.01).abs() < 1e-12, "{moved}");
+}
+
+#[test]
+fn a_model_that_cannot_be_read_leaves_the_first_scene() {
+    let (_folder, path) = folder_with("bad.obj", "v 0 zero 0\n");
+    let mut editor = Editor::new();
+    let before = editor.scene();
+    editor.open_at_start(&[&path]);
+    editor.wait_until(|editor| editor.shows("Something went wrong"));
+    assert!(editor.scene() == before);
+}
+
+#[test]
+fn a_scene_of_the_command_line_keeps_its_objects_beside_models() {
+    let (folder, path) = folder_with("cube.obj", CUBE);
+    let file = folder.path().join("my.marraztu");
+    let (scene, view) = io::default_scene();
+    io::save(&file, &scene, &view, &Settings::default()).unwrap();
+    let mut editor = Editor::new();
+    // The scene comes first, in whichever order they are named.
+    editor.open_at_start(&[&path, &file]);
+    editor.wait_until(|editor| editor.names().len() == 4);
+    assert_eq!(editor.names()[0], "cube");
+    assert!(editor.state().history.is_saved());
+}
+
+#[test]
+fn a_drop_on_the_untouched_first_scene_takes_its_place_and_one_undo_brings_it_back() {
+    let (folder, path) = folder_with("cube.obj", CUBE);
+    let second = folder.path().join("second.obj");
+    std::fs::write(&second, CUBE).unwrap();
+    let mut editor = Editor::new();
+    let (first, first_view) = (editor.scene(), editor.view());
+    editor.drop_files(&[&path, &second]);
+    editor.wait_until(|editor| editor.names() == ["second", "cube"]);
+    assert_eq!(editor.steps(), 1);
+    assert!(editor.view().steps.by_size);
+    editor.press(Command(Key::Z));
+    assert!(editor.scene() == first);
+    assert_eq!(editor.view().steps, Steps::DEFAULT, "the first scene has steps of 10");
+    assert_eq!(editor.view().object, first_view.object);
+    editor.perform(marraztu::app::actions::Action::Redo);
+    assert_eq!(editor.names(), ["second", "cube"]);
+    assert!(editor.view().steps.by_size);
+}
+
+#[test]
+fn a_drop_on_a_scene_that_was_changed_asks_for_a_material_and_joins_it() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::new();
+    editor.press(Lower(Key::Z));
+    editor.drop_files(&[&path]);
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.click_label("Load");
+    assert_eq!(editor.names(), ["cube", "r_falke", "x_wing", "cam"]);
+}
+
+#[test]
+fn the_key_f_adds_to_the_first_scene() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::new();
+    editor.ask(Request::LoadFiles(vec![path]));
+    editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    editor.click_label("Load");
+    assert_eq!(editor.names(), ["cube", "r_falke", "x_wing", "cam"]);
+    assert_eq!(editor.view().steps, Steps::DEFAULT);
+}
+
+#[test]
+fn only_highlights_reach_white_from_wherever_models_are_seen() {
+    let white =
+        Material { ambient: [0.2; 3], diffuse: [1.0; 3], specular: [0.0; 3], exponent: 1.0 };
+    let bright = Material { ambient: [0.9; 3], ..white };
+    let grey = Material { diffuse: [0.5; 3], ..white };
+    for (name, factor) in [("x_wing", 1.0), ("r_falke", 1e-4), ("ball", 1e6)] {
+        for material in [white, bright, grey] {
+            let ball = io::own_model(name).unwrap();
+            let mut object = Object::new(ball, MaterialChoice::Own(material));
+            object.sides = Sides::Two;
+            let scale = glam::DMat4::from_scale(glam::DVec3::splat(factor));
+            object.placement = marraztu::scene::Tracked::new(scale);
+            let (scene, view) = alone(vec![object]);
+            let picture = picture(&scene, &view, Size::new(160, 120));
+            let background = scene.background.opaque();
+            let shown: Vec<u8> = picture
+                .pixels()
+                .iter()
+                .filter(|pixel| **pixel != background)
+                .map(|pixel| pixel[0])
+                .collect();
+            let most = shown.iter().copied().max().unwrap();
+            assert!(most < 255, "{name} is burnt out: {most}");
+            // And it is not dark either: what is balanced comes near to white somewhere.
+            assert!(most > 120, "{name} is dark: {most}");
+            let share = shown.len() as f64 / picture.pixels().len() as f64;
+            assert!(share > 0.05, "{name} fills {share} of the picture");
+        }
+    }
+}
+
+#[test]
+fn steps_by_size_stay_while_a_lone_object_is_moved_and_turned() {
+    let (mut scene, mut view) = alone(vec![model_of("x_wing")]);
+    let before = steps::length(&scene, &view);
+    view.subject = marraztu::scene::Subject::Object;
+    for axis in marraztu::base::math::Axis::ALL {
+        for kind in [
+            marraztu::scene::Transformation::Translation,
+            marraztu::scene::Transformation::Rotation,
+        ] {
+            view.transformation = kind;
+            let command = marraztu::edit::transform::step(
+                &scene,
+                &view,
+                axis,
+                marraztu::edit::transform::Sign::Positive,
+                marraztu::edit::GesturePhase::First,
+            );
+            command.unwrap().apply(&mut scene).unwrap();
+            assert_eq!(steps::length(&scene, &view), before);
+        }
+    }
+}
+
+fn model_of(name: &str) -> Object {
+    Object::new(io::own_model(name).unwrap(), MaterialChoice::File)
+}
