@@ -12,6 +12,7 @@
 //! ```text
 //! theme      colours, fonts, spacing
 //! tasks      work on threads of its own
+//! painter    paints what egui shows into memory, without a graphics card
 //! widgets    controls that know nothing of scenes being edited: numbers, switches, colours, icons
 //! drawing    the thread that draws the viewport's pictures, and how it keeps up with the user
 //! state      everything that panels read
@@ -29,6 +30,8 @@ mod documents;
 mod drawing;
 mod editor;
 mod input;
+#[cfg_attr(not(test), expect(dead_code, reason = "the shell that uses it comes next"))]
+mod painter;
 mod panels;
 mod start;
 pub mod state;

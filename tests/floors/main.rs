@@ -101,6 +101,7 @@ const ROOMS: &[(&str, &[&str])] = &[
         &[
             "theme",
             "tasks",
+            "painter",
             "widgets",
             "drawing",
             "state",
