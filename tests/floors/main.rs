@@ -102,6 +102,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "theme",
             "tasks",
             "painter",
+            "shell",
             "widgets",
             "drawing",
             "state",
@@ -120,6 +121,9 @@ const ROOMS: &[(&str, &[&str])] = &[
 const GUESTS: &[(&str, &str)] = &[
     ("egui", "app"),
     ("eframe", "app"),
+    ("egui_winit", "app"),
+    ("winit", "app"),
+    ("softbuffer", "app"),
     ("egui_material_icons", "app"),
     ("rfd", "app"),
     ("tobj", "io"),

@@ -26,6 +26,7 @@ use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{self, notices};
+use crate::app::shell::Editor;
 use crate::app::state::State;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
@@ -260,8 +261,8 @@ impl App {
     }
 }
 
-impl eframe::App for App {
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+impl Editor for App {
+    fn frame(&mut self, ui: &mut egui::Ui) {
         self.lab.rest();
         // A panic costs one frame, not the user's work, unless it comes in every frame.
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
@@ -273,6 +274,11 @@ impl eframe::App for App {
                 ui.ctx().request_repaint();
             }
         }
+    }
+
+    fn left(&mut self) {
+        // Waits for the thread, so that it does not work while the program ends.
+        self.worker = None;
     }
 }
 

@@ -105,7 +105,8 @@ impl Painter {
         Ok(Self { pool: pool.build()?, textures, layers, bands, setting: None })
     }
 
-    /// Paints a frame. Returns what has changed since the frame before it.
+    /// Paints a frame. Returns what has changed since the frame before it; if that is nothing,
+    /// nothing is painted, unless the canvas is new.
     pub(crate) fn paint(
         &mut self,
         canvas: Canvas<'_>,
@@ -126,10 +127,15 @@ impl Painter {
         }
         self.layer(frame.primitives, frame.scale, canvas.size);
         self.list();
-        for band in &mut self.bands {
-            let is_new = band.changes.is_empty();
-            let changed = if is_new { 0..size[0] } else { band.changed() };
-            band.changes.push_front(changed);
+        let is_new = |band: &Band| band.changes.is_empty();
+        let changed = |band: &Band| if is_new(band) { 0..size[0] } else { band.changed() };
+        let changes: Vec<_> = self.bands.iter().map(changed).collect();
+        if canvas.age > 0 && changes.iter().all(Range::is_empty) {
+            self.textures.free(textures);
+            return Vec::new();
+        }
+        for (band, change) in self.bands.iter_mut().zip(changes) {
+            band.changes.push_front(change);
             band.changes.truncate(REMEMBERED);
         }
         let Self { pool, textures: known, layers, bands, .. } = self;
@@ -146,7 +152,7 @@ impl Painter {
         self.textures.free(textures);
         let since = canvas.age.min(1);
         let changed = |(i, band): (usize, &Band)| area_of(i, size, band.since(since, size[0]));
-        self.bands.iter().enumerate().map(changed).filter(|area| !area.is_empty()).collect()
+        joined(self.bands.iter().enumerate().map(changed).filter(|area| !area.is_empty()))
     }
 
     /// Takes new meshes apart, and keeps the items of those that are as they were.
@@ -254,6 +260,22 @@ impl Band {
             fill::paint(&mut strip, item, texture, area);
         }
     }
+}
+
+/// Areas from above to below, those with the same columns joined if they touch.
+fn joined(areas: impl Iterator<Item = PixelBox>) -> Vec<PixelBox> {
+    let mut joined: Vec<PixelBox> = Vec::new();
+    for area in areas {
+        match joined.last_mut() {
+            Some(last)
+                if (last.left, last.right, last.bottom) == (area.left, area.right, area.top) =>
+            {
+                last.bottom = area.bottom;
+            }
+            _ => joined.push(area),
+        }
+    }
+    joined
 }
 
 /// The smallest range that holds both; empty ranges hold nothing.
