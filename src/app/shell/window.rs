@@ -52,6 +52,7 @@ pub(super) struct Window {
     /// Whether the display says when frames are shown.
     is_paced: bool,
     opened_at: Instant,
+    has_been_shown: bool,
     /// When the last frame began.
     last: Option<Instant>,
     /// When a frame is wanted.
@@ -112,6 +113,7 @@ impl Window {
             scale,
             is_paced,
             opened_at: now,
+            has_been_shown: false,
             last: None,
             due: Some(now),
             asked_at: None,
@@ -258,7 +260,7 @@ impl Window {
             let frame = Frame { primitives, scale: pixels_per_point, ground };
             let size = self.size.into();
             copy = self.surface.show(size, frame, &mut self.textures, wants_copy)?;
-            if self.window.is_visible() != Some(true) {
+            if !std::mem::replace(&mut self.has_been_shown, true) {
                 self.window.set_visible(true);
             }
         }
