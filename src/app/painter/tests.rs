@@ -90,7 +90,7 @@ fn place(rng: &mut Rng, most: usize) -> f32 {
     if rng.percent(50) { at } else { at + rng.below(1000) as f32 / 1000.0 }
 }
 
-/// Some shape, of which most are what egui makes.
+/// Some shape; most are what egui makes.
 fn shape(rng: &mut Rng) -> Mesh {
     let (x, y) = (place(rng, WIDTH), place(rng, HEIGHT));
     let to = pos2(x + rng.below(600) as f32 / 7.0, y + rng.below(400) as f32 / 8.0);

@@ -100,7 +100,7 @@ impl Texture {
         &self.image.pixels[y * width..(y + 1) * width]
     }
 
-    /// The filter if a step of a pixel moves by so many texels.
+    /// The filter if a step of one pixel moves by this number of texels.
     pub(super) fn filter(&self, texels: f64) -> Filter {
         let chosen = match texels > 1.0 {
             true => self.options.minification,

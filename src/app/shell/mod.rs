@@ -53,7 +53,7 @@ pub enum StartError {
     /// No OpenGL, not even in software.
     #[error("OpenGL was not found: install a graphics driver, or use --shell software")]
     NoGl,
-    /// The window is gone, though nobody closed it.
+    /// The window is gone, though it was not closed.
     #[error("the window was lost: {0}")]
     Lost(String),
     /// Something else.

@@ -3,32 +3,14 @@
 //! It does what eframe does with the same libraries, winit and egui-winit, for the one window that
 //! the editor has. It sleeps until something happens or the editor wants to be shown again.
 
-use std::time::Instant;
-
 use egui::ViewportBuilder;
-use egui_winit::accesskit_winit;
 use winit::application::ApplicationHandler;
 use winit::event::{DeviceEvent, DeviceId, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
 
-use super::window::{Flow, Window};
+use super::window::{Flow, Wake, Window};
 use super::{Make, StartError, display_error};
-
-/// What wakes the loop, besides events of the window.
-#[derive(Debug)]
-pub(super) enum Wake {
-    /// A frame is wanted at a time; asked for in this pass of egui.
-    Repaint { at: Instant, pass: u64 },
-    /// A screen reader asks for something.
-    Access(accesskit_winit::Event),
-}
-
-impl From<accesskit_winit::Event> for Wake {
-    fn from(event: accesskit_winit::Event) -> Self {
-        Self::Access(event)
-    }
-}
 
 pub(super) fn run(builder: ViewportBuilder, make: Make) -> Result<(), StartError> {
     let event_loop = EventLoop::with_user_event().build().map_err(|error| display_error(&error))?;

@@ -5,21 +5,20 @@ use std::time::{Duration, Instant};
 
 use egui::{Context, Event, FullOutput, RawInput, Rect, ViewportBuilder, ViewportCommand};
 use egui::{TexturesDelta, ViewportEvent, ViewportId, ViewportInfo, pos2, vec2};
-use egui_winit::accesskit_winit::WindowEvent as ScreenReader;
+use egui_winit::accesskit_winit::{self, WindowEvent as ScreenReader};
 use egui_winit::{ActionRequested, State};
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::raw_window_handle::{HasDisplayHandle, RawDisplayHandle};
 
-use super::software::Wake;
 use super::surface::Surface;
 use super::{Editor, Make, StartError, display_error};
 use crate::app::painter::Frame;
 
 /// Frames follow each other no faster.
 const FASTEST: Duration = Duration::from_micros(1_000_000 / 144);
-/// Those of a window that nobody sees.
+/// Those of a window that is not seen.
 const UNSEEN: Duration = Duration::from_millis(100);
 /// How long the display may take to say when a frame can be shown, before the editor goes on
 /// without showing it: some never do for a window that is covered.
@@ -28,6 +27,21 @@ const PATIENCE: Duration = Duration::from_millis(250);
 const BELIEVED: Duration = Duration::from_secs(1);
 /// The longest side of a texture; windows and pictures have none so long.
 const LONGEST_SIDE: usize = 1 << 14;
+
+/// What wakes the loop, besides events of the window.
+#[derive(Debug)]
+pub(super) enum Wake {
+    /// A frame is wanted at a time; asked for in this pass of egui.
+    Repaint { at: Instant, pass: u64 },
+    /// A screen reader asks for something.
+    Access(accesskit_winit::Event),
+}
+
+impl From<accesskit_winit::Event> for Wake {
+    fn from(event: accesskit_winit::Event) -> Self {
+        Self::Access(event)
+    }
+}
 
 /// Whether to go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
