@@ -225,7 +225,7 @@ fn shapes_that_share_edges_cover_every_pixel_once() {
     let mut textures = delta(&[(ATLAS, &white, TextureOptions::LINEAR)]);
     let far = pos2(WIDTH as f32, HEIGHT as f32);
     for round in 0..300 {
-        // Upright rectangles about a cross, of which one is a fan of triangles.
+        // Upright rectangles about a cross; one of the four is a fan of triangles.
         let at = |rng: &mut Rng, most: usize| {
             let at = rng.below(4 * most as u64) as f32 / 4.0;
             if rng.percent(50) { at } else { at + rng.below(999) as f32 / 999.0 }
