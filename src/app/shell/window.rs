@@ -103,9 +103,10 @@ impl Window {
         repaint_through(&ctx, proxy);
         let mut info = ViewportInfo::default();
         egui_winit::update_viewport_info(&mut info, &ctx, &window, true);
+        let pixels_per_point = egui_winit::pixels_per_point(&ctx, &window);
         ctx.input_mut(|input| {
             input.raw.viewports.insert(ViewportId::ROOT, info.clone());
-            input.pixels_per_point = egui_winit::pixels_per_point(&ctx, &window);
+            input.pixels_per_point = pixels_per_point;
         });
         let handle = event_loop.display_handle().ok().map(|handle| handle.as_raw());
         let is_paced =
