@@ -12,6 +12,8 @@
 //! ```text
 //! theme      colours, fonts, spacing
 //! tasks      work on threads of its own
+//! painter    paints what egui shows into memory, without a graphics card
+//! shell      windows of the system: what the editor is shown in, with OpenGL or without
 //! widgets    controls that know nothing of scenes being edited: numbers, switches, colours, icons
 //! drawing    the thread that draws the viewport's pictures, and how it keeps up with the user
 //! state      everything that panels read
@@ -29,7 +31,9 @@ mod documents;
 mod drawing;
 mod editor;
 mod input;
+mod painter;
 mod panels;
+mod shell;
 mod start;
 pub mod state;
 mod tasks;
@@ -38,4 +42,5 @@ mod viewport;
 pub mod widgets;
 
 pub use editor::App;
-pub use start::{StartError, run};
+pub use shell::{Shell, StartError};
+pub use start::run;

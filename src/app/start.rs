@@ -1,119 +1,75 @@
 //! Opens the window, or reports in one sentence why it cannot.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
+use std::process::Command;
 
-use eframe::NativeOptions;
 use egui::ViewportBuilder;
 
 use crate::app::editor::App;
+use crate::app::shell::{self, Editor, Shell, StartError};
 use crate::app::theme;
 use crate::io::{self, OwnFolders, Preferences};
-
-/// Why no window could be opened.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum StartError {
-    /// Nothing to show a window on.
-    #[error("no display to open a window on: neither DISPLAY nor WAYLAND_DISPLAY is set")]
-    NoDisplay,
-    /// The display does not answer.
-    #[error("the display cannot be reached: {0}")]
-    Display(String),
-    /// A library of the system is missing.
-    #[error("the system lacks a library that windows need: {0}")]
-    Library(String),
-    /// No OpenGL, not even in software.
-    #[error("OpenGL was not found: install a graphics driver, or libgl1 for software rendering")]
-    NoGl,
-    /// Something else.
-    #[error("the window could not be opened: {0}")]
-    Other(String),
-}
 
 /// Opens the editor with these files, and comes back when it is left: models are shown
 /// alone, framed and lit; a scene is opened in place of the first one.
 ///
 /// # Errors
-/// If no window can be opened.
-pub fn run(files: Vec<PathBuf>) -> Result<(), StartError> {
-    if cfg!(target_os = "linux") && !has_display() {
-        return Err(StartError::NoDisplay);
-    }
-    // Until the window stands, the system's libraries tell of their absence by panics. They are
-    // told in one sentence instead of being printed.
+/// If no window can be opened, or if it is lost.
+pub fn run(files: Vec<PathBuf>, shell: Shell) -> Result<(), StartError> {
+    shell::find_display()?;
+    let named = files.clone();
     let own = OwnFolders::of_user().map(|folders| (Preferences::load(&folders), folders));
-    let options = options(own.as_ref().map(|((preferences, _), _)| preferences));
-    let earlier = std::panic::take_hook();
-    std::panic::set_hook(Box::new(|_| {}));
-    let started = catch_unwind(AssertUnwindSafe(|| {
-        eframe::run_native(
-            "Marraztu",
-            options,
-            Box::new(move |creation| {
-                std::panic::set_hook(earlier);
-                theme::install(&creation.egui_ctx);
-                let (scene, view) = io::default_scene();
-                let mut app = App::new(scene, view);
-                app.use_system_dialogs();
-                if let Some(((preferences, said), folders)) = own {
-                    app.keep_in(&creation.egui_ctx, folders, preferences, said);
-                }
-                app.load_at_start(&creation.egui_ctx, files);
-                Ok(Box::new(app))
-            }),
-        )
-    }));
-    match started {
-        Ok(Ok(())) => Ok(()),
-        Ok(Err(error)) => Err(explained(&error)),
-        Err(panic) => {
-            let text = panic.downcast_ref::<String>().map(String::as_str);
-            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-            let text = text.unwrap_or("for a reason it did not tell").to_owned();
-            // "Library libxkbcommon-x11.so could not be loaded."
-            Err(match text.contains("could not be loaded") || text.contains(".so") {
-                true => StartError::Library(text),
-                false => StartError::Other(text),
-            })
-        }
+    let window = window(own.as_ref().map(|((preferences, _), _)| preferences));
+    let opened = shell::run(
+        shell,
+        window,
+        Box::new(move |ctx| -> Box<dyn Editor> {
+            theme::install(ctx);
+            let (scene, view) = io::default_scene();
+            let mut app = App::new(scene, view);
+            app.use_system_dialogs();
+            if let Some(((preferences, said), folders)) = own {
+                app.keep_in(ctx, folders, preferences, said);
+            }
+            app.load_at_start(ctx, named);
+            Box::new(app)
+        }),
+    );
+    match opened {
+        Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(&files),
+        opened => opened,
     }
 }
 
-fn has_display() -> bool {
-    ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"]
-        .into_iter()
-        .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
+/// Runs the program again, without OpenGL: a process can enter the loop of its window only once.
+fn again_without_gl(files: &[PathBuf]) -> Result<(), StartError> {
+    let failed = |error: std::io::Error| StartError::Other(error.to_string());
+    let mut program = Command::new(std::env::current_exe().map_err(failed)?);
+    program.args(["--shell", "software", "--"]).args(files);
+    become_it(program).map_err(failed)
 }
 
 /// The window, as large as it was last time.
-fn options(preferences: Option<&Preferences>) -> NativeOptions {
+fn window(preferences: Option<&Preferences>) -> ViewportBuilder {
     let size = preferences.and_then(|preferences| preferences.window);
-    NativeOptions {
-        viewport: ViewportBuilder::default()
-            .with_title("Marraztu")
-            .with_app_id("marraztu")
-            .with_inner_size(size.unwrap_or([1280.0, 800.0]))
-            .with_maximized(preferences.is_some_and(|preferences| preferences.maximized))
-            .with_min_inner_size([640.0, 400.0])
-            .with_drag_and_drop(true),
-        ..NativeOptions::default()
-    }
+    ViewportBuilder::default()
+        .with_title("Marraztu")
+        .with_app_id("marraztu")
+        .with_inner_size(size.unwrap_or([1280.0, 800.0]))
+        .with_maximized(preferences.is_some_and(|preferences| preferences.maximized))
+        .with_min_inner_size([640.0, 400.0])
+        .with_drag_and_drop(true)
 }
 
-fn explained(error: &eframe::Error) -> StartError {
-    match error {
-        eframe::Error::WinitEventLoop(error) => {
-            // "os error at <a file of the library>:<line>: <what happened>"
-            let text = error.to_string();
-            let reason = text.rsplit(": ").next().unwrap_or(&text).to_owned();
-            match reason.contains("shared librar") {
-                true => StartError::Library(reason),
-                false => StartError::Display(reason),
-            }
-        }
-        eframe::Error::Glutin(_)
-        | eframe::Error::NoGlutinConfigs(..)
-        | eframe::Error::OpenGL(_) => StartError::NoGl,
-        _ => StartError::Other(error.to_string()),
-    }
+/// Goes on as another program. Comes back only if that cannot be started.
+#[cfg(unix)]
+fn become_it(mut program: Command) -> std::io::Result<()> {
+    use std::os::unix::process::CommandExt;
+    Err(program.exec())
+}
+
+/// Runs another program in place of this one.
+#[cfg(not(unix))]
+fn become_it(mut program: Command) -> std::io::Result<()> {
+    std::process::exit(program.status()?.code().unwrap_or(1))
 }

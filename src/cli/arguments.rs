@@ -14,6 +14,7 @@ use super::stage::is_standard;
 use super::talk::Talk;
 use super::values::{color, size, threads};
 use super::verify::Verify;
+use marraztu::app::Shell;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 use marraztu::io::{self, PICTURE_FORMATS, PictureFormat};
@@ -47,6 +48,13 @@ pub(crate) struct Arguments {
     pub(crate) command: Option<Headless>,
     /// Models (.obj) and a scene (.marraztu) to open in the editor
     pub(crate) files: Vec<PathBuf>,
+    /// What paints the window: automatic*, gl (OpenGL), software (the processor, without OpenGL)
+    #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
+        ("automatic", Shell::Automatic),
+        ("gl", Shell::Gl),
+        ("software", Shell::Software),
+    ]))]
+    pub(crate) shell: Option<Shell>,
 }
 
 /// The commands that run without a window.

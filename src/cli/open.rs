@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
 use clap::error::ErrorKind;
+use marraztu::app::Shell;
 use marraztu::io;
 
 use super::arguments::Arguments;
@@ -12,7 +13,7 @@ use super::failure::Failure;
 use super::stage::{is_standard, usage};
 
 /// Opens the editor with these files, which have to exist.
-pub(crate) fn open(files: Vec<PathBuf>) -> Result<(), Failure> {
+pub(crate) fn open(files: Vec<PathBuf>, shell: Option<Shell>) -> Result<(), Failure> {
     if let Some(wrong) = misspelt() {
         return Err(Failure::Usage(Box::new(wrong)));
     }
@@ -22,7 +23,7 @@ pub(crate) fn open(files: Vec<PathBuf>) -> Result<(), Failure> {
     for file in &files {
         io::check_file(file)?;
     }
-    Ok(marraztu::app::run(files)?)
+    Ok(marraztu::app::run(files, shell.unwrap_or_default())?)
 }
 
 /// The error if the first argument is not a file, but nearly the name of a command.

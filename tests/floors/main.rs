@@ -105,6 +105,8 @@ const ROOMS: &[(&str, &[&str])] = &[
         &[
             "theme",
             "tasks",
+            "painter",
+            "shell",
             "widgets",
             "drawing",
             "state",
@@ -123,6 +125,9 @@ const ROOMS: &[(&str, &[&str])] = &[
 const GUESTS: &[(&str, &str)] = &[
     ("egui", "app"),
     ("eframe", "app"),
+    ("egui_winit", "app"),
+    ("winit", "app"),
+    ("softbuffer", "app"),
     ("egui_material_icons", "app"),
     ("rfd", "app"),
     ("tobj", "io"),

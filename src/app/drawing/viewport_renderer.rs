@@ -55,8 +55,9 @@ pub(crate) struct ViewportRenderer {
     gave_up: bool,
     /// The last explanation.
     explained: Option<Arc<Explained>>,
-    /// One is shown while the other is drawn.
-    images: [Arc<ColorImage>; 2],
+    /// The last was drawn last. One may be held by the window, one by what paints it, and one is
+    /// drawn into: no picture is copied while it is shown.
+    images: [Arc<ColorImage>; 3],
 }
 
 impl ViewportRenderer {
@@ -68,7 +69,7 @@ impl ViewportRenderer {
             shown: None,
             gave_up: false,
             explained: None,
-            images: <[Arc<ColorImage>; 2]>::default(),
+            images: <[Arc<ColorImage>; 3]>::default(),
         }
     }
 
@@ -104,14 +105,18 @@ impl ViewportRenderer {
             self.quality.record_given_up(share, clock().duration_since(begun));
             return None;
         }
-        let image = Arc::make_mut(&mut self.images[0]);
-        show(self.renderer.picture(), image);
-        self.images.swap(0, 1);
+        let [first, second, _] = &mut self.images;
+        let free = if Arc::get_mut(first).is_some() { 0 } else { 1 };
+        if free == 1 && Arc::get_mut(second).is_none() {
+            *second = Arc::default();
+        }
+        show(self.renderer.picture(), Arc::make_mut(&mut self.images[free]));
+        self.images.swap(free, 2);
         self.shown = Some(reduction);
         let time = clock().duration_since(begun);
         self.quality.record(reduction, share, time);
         Some(Drawn {
-            image: Arc::clone(&self.images[1]),
+            image: Arc::clone(&self.images[2]),
             time,
             triangles: self.renderer.triangles_drawn(),
             reduction,
@@ -169,7 +174,7 @@ impl ViewportRenderer {
     /// The border of the visible part of an item.
     pub(crate) fn border(&mut self, item: ItemId) -> Option<Border> {
         self.shown?;
-        let [width, height] = self.images[1].size;
+        let [width, height] = self.images[2].size;
         let own = self.renderer.pixels_of(item);
         Some(Border::of(item, Size::new(width, height), &own))
     }

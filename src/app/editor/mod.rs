@@ -28,6 +28,7 @@ use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{self, notices};
+use crate::app::shell::Editor;
 use crate::app::state::State;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
@@ -270,8 +271,8 @@ impl App {
     }
 }
 
-impl eframe::App for App {
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+impl Editor for App {
+    fn frame(&mut self, ui: &mut egui::Ui) {
         self.lab.rest();
         // A panic costs one frame, not the user's work, unless it comes in every frame.
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
@@ -285,8 +286,10 @@ impl eframe::App for App {
         }
     }
 
-    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+    fn left(&mut self) {
         self.end_keeping();
+        // Waits for the thread, so that it does not work while the program ends.
+        self.worker = None;
     }
 }
 

@@ -1,0 +1,78 @@
+//! The arithmetic of colours.
+//!
+//! A colour is multiplied by a texel and laid over the pixel below it, all in the values that are
+//! stored (gamma), premultiplied by alpha, as egui wants it:
+//!
+//!   c = s t / 255,   p' = c + p (255 - c_alpha) / 255     s colour, t texel, p pixel; 0 to 255
+
+use egui::Color32;
+
+/// Lays one colour over all pixels of a row.
+pub(super) fn lay(row: &mut [u32], source: [f32; 4]) {
+    let whole = source.map(f32::round);
+    if is_opaque(source) {
+        let [r, g, b, _] = whole.map(byte);
+        row.fill(packed(Color32::from_rgb(r, g, b)));
+    } else if whole == source && source[..3].iter().all(|value| *value <= source[3]) {
+        lay_premultiplied(row, whole.map(byte));
+    } else {
+        row.iter_mut().for_each(|pixel| *pixel = over(*pixel, source));
+    }
+}
+
+/// The same in whole numbers, two channels at a time: x / 255 rounded is (y + (y >> 8)) >> 8 with
+/// y = x + 128, for every x up to 255 * 255.
+fn lay_premultiplied(row: &mut [u32], [r, g, b, a]: [u8; 4]) {
+    let source = packed(Color32::from_rgb(r, g, b));
+    let rest = 255 - u32::from(a);
+    const TWO: u32 = 0x00ff_00ff;
+    for pixel in row {
+        let part = |two: u32| {
+            let y = two * rest + 0x0080_0080;
+            ((y + ((y >> 8) & TWO)) >> 8) & TWO
+        };
+        // No sum exceeds 255, since no channel of the source exceeds its alpha.
+        *pixel = source + (part(*pixel & TWO) | (part((*pixel >> 8) & 0xff) << 8));
+    }
+}
+
+pub(super) fn tint(pixel: &mut u32, color: [u8; 4], texel: Color32) {
+    if texel != Color32::TRANSPARENT {
+        *pixel = over(*pixel, product(color.map(f32::from), texel.to_array().map(f32::from)));
+    }
+}
+
+pub(super) fn product(color: [f32; 4], texel: [f32; 4]) -> [f32; 4] {
+    std::array::from_fn(|i| color[i] * texel[i] / 255.0)
+}
+
+pub(super) fn is_opaque(source: [f32; 4]) -> bool {
+    source[3] >= 255.0
+}
+
+/// A colour over a pixel.
+#[inline(always)]
+pub(super) fn over(below: u32, [r, g, b, a]: [f32; 4]) -> u32 {
+    let rest = 1.0 - a / 255.0;
+    let [blue, green, red, _] = below.to_le_bytes().map(f32::from);
+    let channel = |source: f32, below: f32| u32::from(byte(source + below * rest + 0.5));
+    channel(r, red) << 16 | channel(g, green) << 8 | channel(b, blue)
+}
+
+pub(super) fn all_opaque(texels: &[Color32]) -> bool {
+    let all = texels.iter().fold(u32::MAX, |all, texel| all & u32::from_le_bytes(texel.to_array()));
+    all >> 24 == 0xff
+}
+
+/// As it stands in memory: blue in the lowest byte, green, red, nothing.
+#[inline(always)]
+pub(super) fn packed(color: Color32) -> u32 {
+    let color = u32::from_le_bytes(color.to_array());
+    (color & 0xff) << 16 | (color & 0xff00) | (color >> 16 & 0xff)
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+#[inline(always)]
+fn byte(value: f32) -> u8 {
+    value as u8
+}

@@ -1,0 +1,337 @@
+//! Paints items into rows of pixels.
+//!
+//! What an item gives a pixel does not depend on the part of it that is painted, so that a window
+//! that was painted in parts is the one painted at once.
+
+use std::ops::Range;
+
+use egui::Color32;
+
+use super::blend::{all_opaque, is_opaque, lay, over, packed, product, tint};
+use super::items::{Corner, Item, Ramp, Shape};
+use super::textures::{Filter, Texture};
+use crate::render::screen::coverage::{PixelBox, Triangle};
+
+/// Adjacent rows of pixels: blue in the lowest byte, green, red, nothing.
+#[derive(Debug)]
+pub(super) struct Strip<'a> {
+    pub(super) pixels: &'a mut [u32],
+    pub(super) width: usize,
+    /// The first row.
+    pub(super) top: i32,
+}
+
+impl Strip<'_> {
+    /// The place of pixels of a row.
+    fn place(&self, y: i32, left: i32, right: i32) -> Range<usize> {
+        let start = index(y - self.top) * self.width;
+        start + index(left)..start + index(right)
+    }
+
+    fn row(&mut self, y: i32, left: i32, right: i32) -> &mut [u32] {
+        let place = self.place(y, left, right);
+        &mut self.pixels[place]
+    }
+
+    /// Gives all pixels of an area one colour.
+    pub(super) fn clear(&mut self, area: PixelBox, color: Color32) {
+        for y in area.top..area.bottom {
+            self.row(y, area.left, area.right).fill(packed(color));
+        }
+    }
+}
+
+/// Paints the part of an item that lies in `within`, which lies in the strip.
+pub(super) fn paint(strip: &mut Strip<'_>, item: &Item, texture: &Texture, within: PixelBox) {
+    let area = item.area.intersection(within);
+    if area.is_empty() {
+        return;
+    }
+    match &item.shape {
+        Shape::Plain { color, uv } => {
+            let source = plain_source(*color, *uv, texture);
+            for y in area.top..area.bottom {
+                lay(strip.row(y, area.left, area.right), source);
+            }
+        }
+        Shape::Picture { color, u, v } => {
+            let map = Map::new(item.area, area, texture, (*u, *v));
+            match map.is_texel_for_pixel {
+                true => paint_texels(strip, area, texture, (*color, &map)),
+                false => paint_between_texels(strip, area, texture, (*color, *u, *v)),
+            }
+        }
+        Shape::Triangle(corners) => {
+            paint_triangle(strip, (item.area.left, area), texture, corners);
+        }
+    }
+}
+
+/// Whether an item leaves nothing to be seen of what was painted in an area before it.
+pub(super) fn hides(item: &Item, texture: &Texture, area: PixelBox) -> bool {
+    if item.area.intersection(area) != area {
+        return false;
+    }
+    match &item.shape {
+        Shape::Plain { color, uv } => is_opaque(plain_source(*color, *uv, texture)),
+        Shape::Picture { color, u, v } => {
+            let map = Map::new(item.area, area, texture, (*u, *v));
+            map.is_texel_for_pixel && *color == [255; 4] && map.is_opaque(texture)
+        }
+        Shape::Triangle(_) => false,
+    }
+}
+
+/// Where the texels of a picture lie.
+#[derive(Debug)]
+struct Map {
+    /// Whether every pixel shows one texel as it is.
+    is_texel_for_pixel: bool,
+    columns: Columns,
+    rows: Vec<usize>,
+}
+
+#[derive(Debug)]
+enum Columns {
+    /// One after the other.
+    Run(Range<usize>),
+    Table(Vec<usize>),
+}
+
+impl Map {
+    /// For a part of the pixels of a picture. The choice is made for the whole, so that each part
+    /// is painted alike.
+    fn new(whole: PixelBox, area: PixelBox, texture: &Texture, (u, v): (Ramp, Ramp)) -> Self {
+        let [width, height] = texture.size();
+        let (across, down) = (length(width), length(height));
+        let filter = texture.filter((u.step * across).abs().max((v.step * down).abs()));
+        let run = run(u, whole.left..whole.right, width, filter);
+        let column = run.is_some();
+        let row = self::run(v, whole.top..whole.bottom, height, filter);
+        let is_texel_for_pixel = filter == Filter::Nearest || (column && row.is_some());
+        let part = |run: Range<usize>| {
+            let first = run.start + index(area.left - whole.left);
+            Columns::Run(first..first + index(area.width()))
+        };
+        let texel = |ramp: Ramp, i: i32, count: usize| {
+            texture.wrapped(floor(ramp.at(i) * length(count)), count)
+        };
+        Self {
+            is_texel_for_pixel,
+            columns: run.map_or_else(
+                || Columns::Table((area.left..area.right).map(|x| texel(u, x, width)).collect()),
+                part,
+            ),
+            rows: (area.top..area.bottom).map(|y| texel(v, y, height)).collect(),
+        }
+    }
+
+    /// Whether all texels are opaque.
+    fn is_opaque(&self, texture: &Texture) -> bool {
+        let columns = match &self.columns {
+            Columns::Run(run) => run.clone(),
+            Columns::Table(table) => {
+                let (Some(least), Some(most)) = (table.iter().min(), table.iter().max()) else {
+                    return false;
+                };
+                *least..*most + 1
+            }
+        };
+        let mut last = None;
+        self.rows.iter().all(|y| {
+            // Enlarged pictures show a row of texels several times.
+            last.replace(*y) == Some(*y) || all_opaque(&texture.row(*y)[columns.clone()])
+        })
+    }
+}
+
+/// The texels of these pixels, if each pixel shows the one after that of the pixel before.
+fn run(ramp: Ramp, pixels: Range<i32>, count: usize, filter: Filter) -> Option<Range<usize>> {
+    // How far from the centre of its texel the centre of a pixel may lie.
+    let most = match filter {
+        Filter::Nearest => 0.25,
+        Filter::Linear => 1.0 / 512.0,
+    };
+    let texel = |pixel: i32| {
+        let at = ramp.at(pixel) * length(count);
+        let whole = floor(at);
+        ((at - at.floor() - 0.5).abs() <= most).then_some(whole)
+    };
+    let (first, last) = (texel(pixels.start)?, texel(pixels.end - 1)?);
+    let many = i64::from(pixels.end - 1 - pixels.start);
+    let (first, last) = (usize::try_from(first).ok()?, usize::try_from(last - many).ok()?);
+    let end = first + index(pixels.end - pixels.start);
+    (first == last && end <= count).then_some(first..end)
+}
+
+/// Paints a picture whose pixels are texels.
+fn paint_texels(
+    strip: &mut Strip<'_>,
+    area: PixelBox,
+    texture: &Texture,
+    (color, map): ([u8; 4], &Map),
+) {
+    let unchanged = color == [255; 4];
+    // The row of texels that the row above shows, if that hides what is below it.
+    let mut above = None;
+    for (y, row) in (area.top..area.bottom).zip(&map.rows) {
+        let place = strip.place(y, area.left, area.right);
+        if above == Some(*row) {
+            let last = place.start - strip.width..place.end - strip.width;
+            strip.pixels.copy_within(last, place.start);
+            continue;
+        }
+        let texels = texture.row(*row);
+        let into = &mut strip.pixels[place];
+        above = match &map.columns {
+            Columns::Run(run) if unchanged && all_opaque(&texels[run.clone()]) => {
+                into.iter_mut().zip(&texels[run.clone()]).for_each(|(to, it)| *to = packed(*it));
+                Some(*row)
+            }
+            Columns::Table(table) if unchanged && all_opaque(texels) => {
+                into.iter_mut().zip(table).for_each(|(to, x)| *to = packed(texels[*x]));
+                Some(*row)
+            }
+            Columns::Run(run) => {
+                into.iter_mut().zip(&texels[run.clone()]).for_each(|(to, it)| tint(to, color, *it));
+                None
+            }
+            Columns::Table(table) => {
+                into.iter_mut().zip(table).for_each(|(to, x)| tint(to, color, texels[*x]));
+                None
+            }
+        };
+    }
+}
+
+/// Paints a picture whose pixels lie between texels.
+fn paint_between_texels(
+    strip: &mut Strip<'_>,
+    area: PixelBox,
+    texture: &Texture,
+    (color, u, v): ([u8; 4], Ramp, Ramp),
+) {
+    let [width, height] = texture.size().map(length);
+    let color = color.map(f32::from);
+    for y in area.top..area.bottom {
+        let down = single(v.at(y) * height);
+        let row = strip.row(y, area.left, area.right);
+        for (x, pixel) in (area.left..).zip(row) {
+            let texel = texture.at(Filter::Linear, single(u.at(x) * width), down);
+            *pixel = over(*pixel, product(color, texel));
+        }
+    }
+}
+
+/// What changes from pixel to pixel of a row of a triangle: its value at pixel 0, and its step.
+#[derive(Clone, Copy)]
+struct Slope<const N: usize> {
+    start: [f32; N],
+    step: [f32; N],
+}
+
+/// Paints the part of a triangle in `area`. Pixels are counted from the column `left`, whatever the
+/// part, so that each part is painted alike.
+fn paint_triangle(
+    strip: &mut Strip<'_>,
+    (left, area): (i32, PixelBox),
+    texture: &Texture,
+    corners: &[Corner; 3],
+) {
+    let Some(triangle) = Triangle::new(corners.map(|corner| corner.at)) else { return };
+    let [first, others @ ..] = corners;
+    let one_color = others.iter().all(|corner| corner.color == first.color);
+    let one_place = others.iter().all(|corner| corner.uv == first.uv);
+    let [width, height] = texture.size().map(length);
+    let colors = corners.map(|corner| corner.color.map(f64::from));
+    let places =
+        corners.map(|corner| [f64::from(corner.uv[0]) * width, f64::from(corner.uv[1]) * height]);
+    let ([step, _], whole) = (triangle.steps(), triangle.doubled_area());
+    let [across, down] = at_edges(step, whole, &places).map(f64::abs);
+    let filter = texture.filter(across.max(down));
+    let texel = texture.at(filter, single(places[0][0]), single(places[0][1]));
+    for y in area.top..area.bottom {
+        let edges = triangle.edges_at(left, y);
+        let part = area.left - left..area.right - left;
+        let Some(part) = span(edges, step, triangle.least(), part) else { continue };
+        let row = strip.row(y, left + part.start, left + part.end);
+        if one_place && one_color {
+            lay(row, product(first.color.map(f32::from), texel));
+            continue;
+        }
+        let color = Slope::new(edges, step, whole, &colors);
+        let place = Slope::new(edges, step, whole, &places);
+        for (i, pixel) in part.zip(row) {
+            let texel = if one_place {
+                texel
+            } else {
+                let [u, v] = place.at(i);
+                texture.at(filter, u, v)
+            };
+            *pixel = over(*pixel, product(color.at(i), texel));
+        }
+    }
+}
+
+/// The value where the edge functions are these: their weighted mean.
+fn at_edges<const N: usize>(edges: [i64; 3], whole: i64, values: &[[f64; N]; 3]) -> [f64; N] {
+    #[expect(clippy::cast_precision_loss, reason = "weights need no more than 53 bits")]
+    let weight = edges.map(|edge| edge as f64 / whole as f64);
+    std::array::from_fn(|i| (0..3).map(|corner| values[corner][i] * weight[corner]).sum())
+}
+
+impl<const N: usize> Slope<N> {
+    fn new(edges: [i64; 3], step: [i64; 3], whole: i64, values: &[[f64; N]; 3]) -> Self {
+        let [start, step] = [edges, step].map(|edges| at_edges(edges, whole, values).map(single));
+        Self { start, step }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a row has fewer than 2^24 pixels")]
+    #[inline(always)]
+    fn at(&self, i: i32) -> [f32; N] {
+        std::array::from_fn(|n| self.start[n] + self.step[n] * i as f32)
+    }
+}
+
+/// The pixels of a part of a row whose edge functions are nowhere below `least`; those of pixel 0
+/// are `edges`.
+fn span(edges: [i64; 3], step: [i64; 3], least: [i64; 3], part: Range<i32>) -> Option<Range<i32>> {
+    let (mut start, mut end) = (i64::from(part.start), i64::from(part.end));
+    for ((edge, step), least) in edges.into_iter().zip(step).zip(least) {
+        let room = edge - least;
+        match step {
+            0 if room < 0 => return None,
+            0 => {}
+            1.. => start = start.max(-room.div_euclid(step)),
+            _ => end = end.min(room.div_euclid(-step) + 1),
+        }
+    }
+    let within = |i: i64| i32::try_from(i).ok();
+    if start < end { Some(within(start)?..within(end)?) } else { None }
+}
+
+fn plain_source(color: [u8; 4], uv: [f32; 2], texture: &Texture) -> [f32; 4] {
+    let [width, height] = texture.size().map(length);
+    let (u, v) = (f64::from(uv[0]) * width, f64::from(uv[1]) * height);
+    product(color.map(f32::from), texture.at(texture.filter(0.0), single(u), single(v)))
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "colours and texels need no more")]
+fn single(value: f64) -> f32 {
+    value as f32
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "saturates far beyond every texture")]
+fn floor(x: f64) -> i64 {
+    x.floor() as i64
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a picture has fewer than 2^53 columns")]
+fn length(count: usize) -> f64 {
+    count as f64
+}
+
+/// An index of a pixel; pixels left of the picture or above it are never painted.
+fn index(i: i32) -> usize {
+    usize::try_from(i).unwrap_or(0)
+}

@@ -1,0 +1,296 @@
+//! Paints what egui shows into memory, where there is no graphics card to do it.
+//!
+//! The picture is divided into bands of 32 rows, painted in parallel. Each band remembers what was
+//! painted in it last time, and only the columns are painted again in which that differs: while a
+//! user looks around in the viewport, its picture is all that is written.
+//!
+//! `textures` holds the atlas of glyphs and pictures; `items` takes egui's meshes apart; `fill`
+//! paints them, with the arithmetic of `blend`.
+
+mod blend;
+mod fill;
+mod items;
+#[cfg(test)]
+mod tests;
+mod textures;
+
+use std::collections::VecDeque;
+use std::ops::Range;
+
+use egui::epaint::{ClippedPrimitive, Mesh, Primitive};
+use egui::{Color32, Rect, TexturesDelta};
+use rayon::prelude::*;
+
+use crate::render::screen::coverage::PixelBox;
+use fill::Strip;
+use items::Item;
+use textures::Textures;
+
+/// The rows of a band.
+const ROWS: usize = 32;
+
+/// The frames whose changes are remembered, for windows that use several buffers in turn.
+const REMEMBERED: usize = 4;
+
+/// What to paint.
+#[derive(Debug)]
+pub(crate) struct Frame {
+    /// egui's meshes, from the lowest to the uppermost.
+    pub(crate) primitives: Vec<ClippedPrimitive>,
+    /// Pixels per point.
+    pub(crate) scale: f32,
+    /// The colour below everything.
+    pub(crate) ground: Color32,
+}
+
+/// Where to paint it.
+#[derive(Debug)]
+pub(crate) struct Canvas<'a> {
+    /// Row by row: blue in the lowest byte, green, red, nothing.
+    pub(crate) pixels: &'a mut [u32],
+    /// The number of columns and of rows.
+    pub(crate) size: [usize; 2],
+    /// How many frames ago these pixels were painted; 0 if they never were.
+    pub(crate) age: usize,
+}
+
+/// Paints frame after frame.
+#[derive(Debug)]
+pub(crate) struct Painter {
+    pool: rayon::ThreadPool,
+    textures: Textures,
+    layers: Vec<Layer>,
+    bands: Vec<Band>,
+    /// The size, the scale, and the ground of the last frame.
+    setting: Option<([usize; 2], f32, Color32)>,
+}
+
+/// A mesh and its items.
+#[derive(Debug)]
+struct Layer {
+    clip: Rect,
+    mesh: Mesh,
+    items: Vec<Item>,
+}
+
+/// An item in a band: a number that is another one if anything of it is, and its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Listed {
+    key: u64,
+    layer: usize,
+    item: usize,
+    columns: (i32, i32),
+}
+
+#[derive(Debug, Default)]
+struct Band {
+    /// What was painted last, and what is to be painted.
+    last: Vec<Listed>,
+    now: Vec<Listed>,
+    /// The columns that changed in each of the last frames, the newest first.
+    changes: VecDeque<Range<i32>>,
+}
+
+impl Painter {
+    /// A painter that has painted nothing.
+    ///
+    /// # Errors
+    /// If no threads can be started.
+    pub(crate) fn new() -> Result<Self, rayon::ThreadPoolBuildError> {
+        // Threads of their own: those that draw the viewport may be busy for long.
+        let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
+        let name = |i| format!("window {i}");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(name);
+        let (textures, layers, bands) = (Textures::default(), Vec::new(), Vec::new());
+        Ok(Self { pool: pool.build()?, textures, layers, bands, setting: None })
+    }
+
+    /// Paints a frame. Returns what has changed since the frame before it; if that is nothing,
+    /// nothing is painted, unless the canvas is new.
+    pub(crate) fn paint(
+        &mut self,
+        canvas: Canvas<'_>,
+        frame: Frame,
+        textures: &mut TexturesDelta,
+    ) -> Vec<PixelBox> {
+        self.textures.set(textures);
+        let setting = (canvas.size, frame.scale, frame.ground);
+        if self.setting.replace(setting) != Some(setting) {
+            self.layers.clear();
+            self.bands.clear();
+        }
+        let [width, height] = canvas.size;
+        let size = [width, height].map(|count| i32::try_from(count).unwrap_or(i32::MAX));
+        let bands = height.div_ceil(ROWS);
+        if self.bands.len() != bands {
+            self.bands.resize_with(bands, Band::default);
+        }
+        self.layer(frame.primitives, frame.scale, canvas.size);
+        self.list();
+        let is_new = |band: &Band| band.changes.is_empty();
+        let changed = |band: &Band| if is_new(band) { 0..size[0] } else { band.changed() };
+        let changes: Vec<_> = self.bands.iter().map(changed).collect();
+        if canvas.age > 0 && changes.iter().all(Range::is_empty) {
+            self.textures.free(textures);
+            return Vec::new();
+        }
+        for (band, change) in self.bands.iter_mut().zip(changes) {
+            band.changes.push_front(change);
+            band.changes.truncate(REMEMBERED);
+        }
+        let Self { pool, textures: known, layers, bands, .. } = self;
+        if width > 0 {
+            let strips = canvas.pixels.par_chunks_mut(width * ROWS).zip(&*bands).enumerate();
+            pool.install(|| {
+                strips.for_each(|(i, (pixels, band))| {
+                    let area = area_of(i, size, band.since(canvas.age, size[0]));
+                    let strip = Strip { pixels, width, top: area.top };
+                    band.paint(strip, area, (layers, known), frame.ground);
+                });
+            });
+        }
+        self.textures.free(textures);
+        let since = canvas.age.min(1);
+        let changed = |(i, band): (usize, &Band)| area_of(i, size, band.since(since, size[0]));
+        joined(self.bands.iter().enumerate().map(changed).filter(|area| !area.is_empty()))
+    }
+
+    /// Takes new meshes apart, and keeps the items of those that are as they were.
+    fn layer(&mut self, primitives: Vec<ClippedPrimitive>, scale: f32, size: [usize; 2]) {
+        let mut count = 0;
+        for ClippedPrimitive { clip_rect: clip, primitive } in primitives {
+            // Callbacks would paint by OpenGL; nothing in the window has any.
+            let Primitive::Mesh(mesh) = primitive else { continue };
+            match self.layers.get_mut(count) {
+                Some(layer) if layer.clip == clip && layer.mesh == mesh => {}
+                Some(layer) => layer.change(clip, mesh, scale, size),
+                None => {
+                    let items = Vec::new();
+                    let mut layer = Layer { clip, mesh: Mesh::default(), items };
+                    layer.change(clip, mesh, scale, size);
+                    self.layers.push(layer);
+                }
+            }
+            count += 1;
+        }
+        self.layers.truncate(count);
+    }
+
+    /// Lists in each band what is to be painted in it.
+    fn list(&mut self) {
+        for band in &mut self.bands {
+            std::mem::swap(&mut band.last, &mut band.now);
+            band.now.clear();
+        }
+        for (i, layer) in self.layers.iter().enumerate() {
+            let Some(texture) = self.textures.get(layer.mesh.texture_id) else { continue };
+            let version = texture.version.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            for (j, Item { area, key, .. }) in layer.items.iter().enumerate() {
+                let columns = (area.left, area.right);
+                let listed = Listed { key: key ^ version, layer: i, item: j, columns };
+                let row = |y: i32| usize::try_from(y).unwrap_or(0);
+                let (first, last) = (row(area.top) / ROWS, row(area.bottom - 1) / ROWS);
+                for band in self.bands.iter_mut().take(last + 1).skip(first) {
+                    band.now.push(listed);
+                }
+            }
+        }
+    }
+}
+
+impl Layer {
+    fn change(&mut self, clip: Rect, mesh: Mesh, scale: f32, size: [usize; 2]) {
+        self.items.clear();
+        items::items_of(&mesh, items::clip_area(clip, scale, size), scale, &mut self.items);
+        (self.clip, self.mesh) = (clip, mesh);
+    }
+}
+
+impl Band {
+    /// The columns in which what is to be painted differs from what was painted last.
+    fn changed(&self) -> Range<i32> {
+        let (last, now) = (&self.last[..], &self.now[..]);
+        let alike = |(a, b): &(&Listed, &Listed)| a.key == b.key;
+        let before = last.iter().zip(now).take_while(alike).count();
+        let (last, now) = (&last[before..], &now[before..]);
+        let after = last.iter().rev().zip(now.iter().rev()).take_while(alike).count();
+        let (last, now) = (&last[..last.len() - after], &now[..now.len() - after]);
+        // Items that stand where they stood are the same, whatever differs beside them.
+        let same = |i: usize| last.len() == now.len() && last[i].key == now[i].key;
+        let others = |list: &'_ [Listed]| -> Option<Range<i32>> {
+            let those = || list.iter().enumerate().filter(|(i, _)| !same(*i));
+            let left = those().map(|(_, listed)| listed.columns.0).min()?;
+            Some(left..those().map(|(_, listed)| listed.columns.1).max()?)
+        };
+        union(others(last).unwrap_or(0..0), others(now).unwrap_or(0..0))
+    }
+
+    /// The columns that have changed since a number of frames; all if that is not known.
+    fn since(&self, age: usize, width: i32) -> Range<i32> {
+        if age == 0 || age > self.changes.len() {
+            return 0..width;
+        }
+        self.changes.iter().take(age).cloned().fold(0..0, union)
+    }
+
+    fn paint(
+        &self,
+        mut strip: Strip<'_>,
+        area: PixelBox,
+        (layers, textures): (&[Layer], &Textures),
+        ground: Color32,
+    ) {
+        if area.is_empty() {
+            return;
+        }
+        let items: Vec<_> = self
+            .now
+            .iter()
+            .filter(|listed| listed.columns.0 < area.right && listed.columns.1 > area.left)
+            .filter_map(|listed| {
+                let layer = layers.get(listed.layer)?;
+                Some((layer.items.get(listed.item)?, textures.get(layer.mesh.texture_id)?))
+            })
+            .collect();
+        let hiding = items.iter().rposition(|(item, texture)| fill::hides(item, texture, area));
+        if hiding.is_none() {
+            strip.clear(area, ground);
+        }
+        for (item, texture) in &items[hiding.unwrap_or(0)..] {
+            fill::paint(&mut strip, item, texture, area);
+        }
+    }
+}
+
+/// Areas from above to below, those with the same columns joined if they touch.
+fn joined(areas: impl Iterator<Item = PixelBox>) -> Vec<PixelBox> {
+    let mut joined: Vec<PixelBox> = Vec::new();
+    for area in areas {
+        match joined.last_mut() {
+            Some(last)
+                if (last.left, last.right, last.bottom) == (area.left, area.right, area.top) =>
+            {
+                last.bottom = area.bottom;
+            }
+            _ => joined.push(area),
+        }
+    }
+    joined
+}
+
+/// The smallest range that holds both; empty ranges hold nothing.
+fn union(a: Range<i32>, b: Range<i32>) -> Range<i32> {
+    match (a.is_empty(), b.is_empty()) {
+        (true, _) => b,
+        (_, true) => a,
+        _ => a.start.min(b.start)..a.end.max(b.end),
+    }
+}
+
+/// These columns of band `i` of a picture.
+fn area_of(i: usize, [width, height]: [i32; 2], columns: Range<i32>) -> PixelBox {
+    let top = i32::try_from(i * ROWS).unwrap_or(i32::MAX);
+    let rows = i32::try_from(ROWS).unwrap_or(i32::MAX);
+    let bottom = top.saturating_add(rows).min(height);
+    PixelBox { left: columns.start.max(0), top, right: columns.end.min(width), bottom }
+}

@@ -1,0 +1,51 @@
+//! The window painted by OpenGL: eframe.
+
+use eframe::NativeOptions;
+use egui::{Ui, ViewportBuilder, Visuals};
+
+use super::{Editor, Make, StartError, display_error};
+
+pub(super) fn run(viewport: ViewportBuilder, make: Make) -> Result<(), StartError> {
+    // Without dithering, so that colours are those of the other shell.
+    let options = NativeOptions { viewport, dithering: false, ..NativeOptions::default() };
+    let make: eframe::AppCreator<'static> =
+        Box::new(|creation| Ok(Box::new(Guest { editor: make(&creation.egui_ctx), left: false })));
+    eframe::run_native("Marraztu", options, make).map_err(|error| explained(&error))
+}
+
+/// The editor as an app of eframe.
+struct Guest {
+    editor: Box<dyn Editor>,
+    /// Whether the window was asked to close, and the editor did not object.
+    left: bool,
+}
+
+impl eframe::App for Guest {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        let asked = ui.input(|input| input.viewport().close_requested());
+        self.editor.frame(ui);
+        self.left = asked;
+    }
+
+    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        // eframe also ends when the window is lost, without the frame that asks about closing. If
+        // the editor objects to closing, there is another frame before the end.
+        if self.left {
+            self.editor.left();
+        }
+    }
+}
+
+fn explained(error: &eframe::Error) -> StartError {
+    match error {
+        eframe::Error::WinitEventLoop(error) => display_error(error),
+        eframe::Error::Glutin(_)
+        | eframe::Error::NoGlutinConfigs(..)
+        | eframe::Error::OpenGL(_) => StartError::NoGl,
+        _ => StartError::Other(error.to_string()),
+    }
+}
