@@ -10,10 +10,10 @@ use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::attribution::attribute;
 use marraztu::lab::candidates::{Thoroughness, all_axes};
-use marraztu::lab::error::{Measure, amplified};
+use marraztu::lab::error::{Measure, Region, amplified};
 use marraztu::lab::pairs::Watch;
 use marraztu::lab::picture_source::{PictureSource, Studio};
-use marraztu::lab::report::{self, Budgets, Report};
+use marraztu::lab::report::{self, Budgets, Look, Report};
 use marraztu::lab::sweep::{Question, sweep};
 use marraztu::lab::timing::WallClock;
 
@@ -30,7 +30,7 @@ use super::values::{size, threads};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Times each choice of each axis in turn with the default, and compares its picture with the most
-exact one. The folder of --out gets table.txt, table.csv, report.json, scatter.svg, scatter.png,
+exact one. The folder of --out gets table.txt, table.csv, report.json, the plots (light and dark),
 the exact picture, and pictures of the error of the chosen settings, amplified 1, 16 and 256 times.
 
 Examples:
@@ -58,6 +58,9 @@ pub(crate) struct Lab {
     #[arg(long, value_name = "MEASURE", default_value = "rmse", hide_default_value = true)]
     #[arg(hide_possible_values = true, value_parser = measure_words())]
     measure: String,
+    /// Take errors over the pixels alone whose coverage does not differ
+    #[arg(long)]
+    inside: bool,
     /// Name the fastest choice whose error is at most this
     #[arg(long, value_name = "ERROR", value_parser = above_zero)]
     max_error: Option<f64>,
@@ -124,6 +127,7 @@ fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<R
         scene: scene_name(&arguments.files),
         command: command(),
         measure: measure.unwrap_or_default(),
+        region: if arguments.inside { Region::Inside } else { Region::Whole },
         budgets: Budgets { error: arguments.max_error, ms: arguments.budget_ms },
         findings,
     })
@@ -196,8 +200,10 @@ fn save(
     write("table.txt", report::text(report))?;
     write("table.csv", report::csv(report))?;
     write("report.json", report.json())?;
-    write("scatter.svg", report::svg(report)?)?;
-    io::save_picture(&folder.join("scatter.png"), &report::png(report)?)?;
+    for (look, word) in [(Look::Light, "light"), (Look::Dark, "dark")] {
+        write(&format!("plots-{word}.svg"), report::svg(report, look)?)?;
+        io::save_picture(&folder.join(format!("plots-{word}.png")), &report::png(report, look)?)?;
+    }
     studio.draw(&settings.reference());
     let exact = studio.picture().clone();
     io::save_picture(&folder.join("exact.png"), &exact)?;

@@ -1,5 +1,7 @@
 //! Draws the pictures that the laboratory times and judges.
 
+use rayon::prelude::*;
+
 use super::error::Rendering;
 use super::hash::fnv1a;
 use crate::accuracy::Shot;
@@ -17,6 +19,17 @@ pub trait PictureSource {
     /// The primitive that each of its pixels shows.
     fn primitives(&mut self) -> Vec<u32>;
 
+    /// Draws the mean of 256 samples per pixel, each drawn with these settings as if it were the
+    /// centre of its pixel.
+    fn draw_sampled(&mut self, settings: &Settings) -> Picture;
+
+    /// The reference of samples per pixel: [`Settings::sampled`] with 256 samples, each lit.
+    fn sampled(&mut self, settings: &Settings) -> Rendering {
+        let picture = self.draw_sampled(&settings.sampled());
+        let primitives = vec![0; picture.pixels().len()];
+        Rendering::new(picture, primitives).mixed()
+    }
+
     /// Draws the picture of these settings, to be judged.
     fn rendering(&mut self, settings: &Settings) -> Rendering {
         self.draw(settings);
@@ -24,6 +37,14 @@ pub trait PictureSource {
         let rendering = Rendering::new(self.picture().clone(), primitives);
         if settings.samples == Samples::One { rendering } else { rendering.mixed() }
     }
+}
+
+/// The samples per pixel of the reference of sampling.
+const SAMPLED: u16 = 256;
+
+/// The positions of these samples, in 1/256 pixel from the centre: the centres of 16 x 16 squares.
+fn sample_shifts() -> impl Iterator<Item = [i32; 2]> {
+    (0..256).map(|i| [i % 16, i / 16].map(|i| 16 * i + 8 - 128))
 }
 
 /// The renderer with a scene.
@@ -64,6 +85,23 @@ impl PictureSource for Studio {
     fn draw(&mut self, settings: &Settings) {
         let plan = plan_frame(&self.shot.with(*settings));
         self.renderer.render(&plan);
+    }
+
+    fn draw_sampled(&mut self, settings: &Settings) -> Picture {
+        let plan = plan_frame(&self.shot.with(Settings { samples: Samples::One, ..*settings }));
+        let mut sums = vec![[0_u16; 4]; self.shot.size.area()];
+        for shift in sample_shifts() {
+            let picture = self.renderer.render(&plan.seen_from(shift));
+            sums.par_iter_mut().zip(picture.pixels()).for_each(|(sum, pixel)| {
+                for (sum, byte) in sum.iter_mut().zip(pixel) {
+                    *sum += u16::from(*byte);
+                }
+            });
+        }
+        // 256 bytes fit into 16 bits, and so does the half that rounds their mean.
+        let mean = |sum: u16| ((sum + SAMPLED / 2) / SAMPLED) as u8;
+        let pixels = sums.into_iter().map(|sum| sum.map(mean)).collect();
+        Picture::from_pixels(self.shot.size, pixels).expect("a sum for each pixel")
     }
 
     fn picture(&self) -> &Picture {

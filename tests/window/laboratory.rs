@@ -129,7 +129,7 @@ fn the_picture_is_compared_with_the_exact_one_of_the_same_moment() {
     click(&mut editor, Role::RadioButton, "Compare: Split");
     until(&mut editor, "the comparison", |e| lab(e).judged.is_some());
     let judged = lab(&editor).judged.unwrap();
-    assert!(judged.error.largest <= 1 && judged.error.coverage < 20, "{judged:?}");
+    assert!(judged.error.inside.largest <= 1 && judged.error.coverage < 20, "{judged:?}");
     let at = control(&editor, Role::Slider, "Split between exact and drawn").rect().center();
     editor.drag(PointerButton::Primary, &[at, at + egui::vec2(-60.0, 0.0)]);
     let Compare::Split(part) = lab(&editor).compare else { panic!("it is no split any more") };
@@ -140,7 +140,7 @@ fn the_picture_is_compared_with_the_exact_one_of_the_same_moment() {
     until(&mut editor, "another comparison", |e| {
         lab(e).judged.is_some_and(|judged| judged.settings.light == LightAt::Face)
     });
-    assert!(lab(&editor).judged.unwrap().error.largest > 1);
+    assert!(lab(&editor).judged.unwrap().error.whole.largest > 1);
     click(&mut editor, Role::RadioButton, "Compare: x16");
     assert!(editor.shows("Error: largest"));
     click(&mut editor, Role::RadioButton, "Compare: Off");
@@ -166,7 +166,7 @@ fn every_lesson_is_read_and_shown_in_a_scene_in_which_it_can_be_seen() {
     let mut editor = editor();
     click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
     for axis in AXES {
-        click(&mut editor, Role::Button, axis.name);
+        click(&mut editor, Role::Button, axis.label);
         for sentence in [axis.lesson.what, axis.lesson.coarse, axis.lesson.shows] {
             assert!(editor.shows(sentence), "{sentence}");
         }
@@ -218,7 +218,7 @@ fn the_help_menu_leads_to_every_lesson() {
 fn the_bright_spot_of_the_first_lesson_lies_on_the_compare_line() {
     let mut editor = editor();
     click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
-    click(&mut editor, Role::Button, "shading");
+    click(&mut editor, Role::Button, "Shading");
     click(&mut editor, Role::Button, "Take me there");
     assert_eq!(editor.state().settings.light, LightAt::Vertex);
     assert_eq!(lab(&editor).compare, Compare::Split(0.5));
@@ -246,7 +246,7 @@ fn the_scene_of_a_lesson_takes_no_unsaved_work_with_it() {
     editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
     let before = editor.scene();
     click(&mut editor, Role::RadioButton, "Laboratory: Lessons");
-    click(&mut editor, Role::Button, "texture filter");
+    click(&mut editor, Role::Button, "Texture filter");
     click(&mut editor, Role::Button, "Take me there");
     assert!(editor.scene() == before);
     click(&mut editor, Role::Button, "Cancel");

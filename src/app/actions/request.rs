@@ -8,7 +8,7 @@ use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
-use crate::lab::error::Measure;
+use crate::lab::error::{Measure, Region};
 use crate::lab::report::Budgets;
 use crate::scene::{Command, ItemId, ObjectId, View};
 
@@ -73,10 +73,16 @@ pub enum LabRequest {
     Cancel,
     /// Use this error metric.
     Judge(Measure),
+    /// Take it over these pixels.
+    Over(Region),
+    /// Show the plot of this axis, by its key; `None` for the overview.
+    Panel(Option<&'static str>),
     /// Keep to these budgets.
     Budgets(Budgets),
     /// Compare the picture with the exact one in this way.
     Compare(Compare),
+    /// Compare with 256 samples per pixel, or with one.
+    Sampled(bool),
     /// The next click picks a pixel, or does not.
     Pick(bool),
     /// Explain this pixel.

@@ -10,7 +10,7 @@ use egui::Context;
 
 use super::App;
 use crate::accuracy::Shot;
-use crate::accuracy::{AXES, Axis, Settings};
+use crate::accuracy::{AXES, Axis, AxisKind, Settings};
 use crate::app::actions::LabRequest;
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
@@ -114,11 +114,17 @@ impl App {
                 lab.budgets.error = None;
                 self.tell_report();
             }
+            LabRequest::Over(region) => {
+                lab.region = region;
+                self.tell_report();
+            }
+            LabRequest::Panel(key) => lab.panel = key,
             LabRequest::Budgets(budgets) => {
                 lab.budgets = budgets;
                 self.tell_report();
             }
             LabRequest::Compare(compare) => lab.compare = compare,
+            LabRequest::Sampled(sampled) => lab.sampled = sampled,
             LabRequest::Pick(picking) => lab.picking = picking,
             LabRequest::Attribute(at) => self.explain(ctx, at),
             LabRequest::Side(side) => lab.side = side,
@@ -241,6 +247,7 @@ impl App {
             scene,
             command: self.lab.command.clone(),
             measure: lab.measure,
+            region: lab.region,
             budgets: lab.budgets,
             findings,
         });
@@ -250,7 +257,8 @@ impl App {
     fn tell_report(&mut self) {
         let lab = &mut self.state.lab;
         if let Some(report) = &mut lab.report {
-            (report.measure, report.budgets) = (lab.measure, lab.budgets);
+            report.measure = lab.measure;
+            (report.region, report.budgets) = (lab.region, lab.budgets);
         }
     }
 
@@ -264,6 +272,7 @@ impl App {
                 selection::settle(&state.scene, &mut state.view);
                 (state.lab.lesson, state.lab.side) = (axis, Side::Lessons);
                 state.lab.compare = Compare::Split(0.5);
+                state.lab.sampled = axis.kind == AxisKind::ScoredApart;
                 state.tell(Some(format!("Lesson: {}", axis.lesson.title)));
                 self.replace(state);
             }

@@ -1,9 +1,9 @@
 //! The state of the laboratory panel and of the comparison with the exact picture.
 
 use super::State;
-use crate::accuracy::{AXES, Axis, Settings};
+use crate::accuracy::{AXES, Axis, Samples, Settings};
 use crate::base::image::Size;
-use crate::lab::error::{Error, Measure};
+use crate::lab::error::{Error, Measure, Region};
 use crate::lab::report::{Budgets, Report, brief};
 use crate::scene::{Scene, View};
 
@@ -18,10 +18,16 @@ pub struct Laboratory {
     pub failed: Option<String>,
     /// The error metric.
     pub measure: Measure,
+    /// The pixels that it is taken over.
+    pub region: Region,
+    /// The axis whose plot is shown, by its key; `None` for the overview.
+    pub panel: Option<&'static str>,
     /// The budgets of time and error.
     pub budgets: Budgets,
     /// How the picture is compared with the exact one.
     pub compare: Compare,
+    /// Whether it is compared with 256 samples per pixel even if it has one itself.
+    pub sampled: bool,
     /// The error of the picture at the last comparison.
     pub judged: Option<Judged>,
     /// Whether the next click on the picture picks a pixel for attribution.
@@ -30,7 +36,7 @@ pub struct Laboratory {
     pub attribution: Option<Vec<String>>,
     /// The axis whose lesson is shown.
     pub lesson: &'static Axis,
-    /// The panel beside the scatter.
+    /// The panel beside the plots.
     pub side: Side,
     /// The scene, the view and the size that were measured.
     pub(crate) measured: Option<(Scene, View, Size)>,
@@ -43,8 +49,11 @@ impl Default for Laboratory {
             running: None,
             failed: None,
             measure: Measure::default(),
+            region: Region::default(),
+            panel: None,
             budgets: Budgets::default(),
             compare: Compare::Off,
+            sampled: false,
             judged: None,
             picking: false,
             attribution: None,
@@ -55,7 +64,7 @@ impl Default for Laboratory {
     }
 }
 
-/// The panel beside the scatter.
+/// The panel beside the plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// Every choice with its figures.
@@ -66,6 +75,18 @@ pub enum Side {
 }
 
 impl Laboratory {
+    /// The report that is shown.
+    #[must_use]
+    pub const fn shown(&self) -> Option<&Report> {
+        self.report.as_ref()
+    }
+
+    /// What the picture is compared with: several samples per pixel with 256.
+    pub(crate) fn against(&self, settings: &Settings) -> Reference {
+        let one = settings.samples == Samples::One;
+        if one && !self.sampled { Reference::Exact } else { Reference::Sampled }
+    }
+
     /// Whether the measurement is not of the picture in the viewport any more.
     #[must_use]
     pub fn is_stale(&self, state: &State) -> bool {
@@ -75,6 +96,15 @@ impl Laboratory {
             !same_view || !same_size || *scene != state.scene
         })
     }
+}
+
+/// What a picture is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Reference {
+    /// Every axis at its most exact, one sample per pixel.
+    Exact,
+    /// 256 samples per pixel, each lit.
+    Sampled,
 }
 
 /// How the picture is compared with the exact one.
@@ -98,17 +128,18 @@ pub struct Judged {
     pub settings: Settings,
 }
 
-/// An error in words: "largest 3 steps, RMSE 0.02, 1.2 % of the bytes differ".
+/// An error in words: "largest 3 steps, RMSE 0.02, 1.2% of the bytes differ".
 pub(crate) fn in_words(error: &Error) -> String {
-    if error.largest == 0 && error.coverage == 0 {
+    let figures = &error.whole;
+    if figures.largest == 0 && error.coverage == 0 {
         return "none, every byte is exact".to_owned();
     }
-    let steps = if error.largest == 1 { "step" } else { "steps" };
+    let steps = if figures.largest == 1 { "step" } else { "steps" };
     let mut text = format!(
-        "largest {} {steps}, RMSE {}, {} % of the bytes differ",
-        error.largest,
-        brief(error.rmse),
-        brief(error.differing * 100.0)
+        "largest {} {steps}, RMSE {}, {}% of the bytes differ",
+        figures.largest,
+        brief(figures.rmse),
+        brief(figures.differing * 100.0)
     );
     if error.coverage > 0 {
         text += &format!(", {} pixels show another triangle", error.coverage);

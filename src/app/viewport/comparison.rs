@@ -12,7 +12,7 @@ use crate::accuracy::Settings;
 use crate::accuracy::Shot;
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
-use crate::app::state::laboratory::{Compare, in_words};
+use crate::app::state::laboratory::{Compare, Reference, in_words};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
@@ -28,6 +28,7 @@ pub(crate) struct Compared {
     pub(crate) view: View,
     pub(crate) settings: Settings,
     pub(crate) size: Size,
+    pub(crate) against: Reference,
 }
 
 /// The picture and the exact one, with the error between them.
@@ -41,7 +42,10 @@ pub(crate) struct Pair {
 /// Draws both.
 pub(crate) fn draw(of: Compared) -> Pair {
     let mut studio = Studio::new(Shot::new(&of.scene, &of.view, &of.settings, of.size));
-    let exact = studio.rendering(&of.settings.reference());
+    let exact = match of.against {
+        Reference::Exact => studio.rendering(&of.settings.reference()),
+        Reference::Sampled => studio.sampled(&of.settings),
+    };
     let ours = studio.rendering(&of.settings);
     let error = ours.error(&exact);
     Pair { of, exact: exact.picture().clone(), ours: ours.picture().clone(), error }

@@ -15,7 +15,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         let axis = state.lab.lesson;
         ui.horizontal_wrapped(|ui| {
             for other in AXES {
-                let button = egui::Button::selectable(other.key == axis.key, other.name);
+                let button = egui::Button::selectable(other.key == axis.key, other.label);
                 if ui.add(button).on_hover_text(other.lesson.title).clicked() {
                     requests.push(Request::Lab(LabRequest::Lesson(other.key)));
                 }
