@@ -5,10 +5,34 @@ use rayon::prelude::*;
 use super::error::Rendering;
 use super::hash::fnv1a;
 use crate::accuracy::Shot;
-use crate::accuracy::{Samples, Settings};
+use crate::accuracy::{Axis, AxisKind, Samples, Settings};
 use crate::base::image::Picture;
 use crate::render::Renderer;
 use crate::render::plan_frame;
+
+/// The picture that another is judged against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reference {
+    /// Every axis at its most exact, one sample per pixel; models as they are chosen.
+    #[default]
+    Exact,
+    /// 256 samples per pixel, each lit.
+    Sampled,
+    /// As [`Self::Exact`], with the models of the default.
+    DefaultModel,
+}
+
+impl Reference {
+    /// The reference that shows what the choices of an axis do.
+    #[must_use]
+    pub const fn of(axis: &Axis) -> Self {
+        match axis.kind {
+            AxisKind::Scored => Self::Exact,
+            AxisKind::ScoredApart => Self::Sampled,
+            AxisKind::Model => Self::DefaultModel,
+        }
+    }
+}
 
 /// Draws one scene, from one view and in one size, with any settings.
 pub trait PictureSource {
@@ -28,6 +52,15 @@ pub trait PictureSource {
         let picture = self.draw_sampled(&settings.sampled());
         let primitives = vec![0; picture.pixels().len()];
         Rendering::new(picture, primitives).mixed()
+    }
+
+    /// The picture that these settings are judged against.
+    fn reference(&mut self, settings: &Settings, reference: Reference) -> Rendering {
+        match reference {
+            Reference::Exact => self.rendering(&settings.reference()),
+            Reference::Sampled => self.sampled(settings),
+            Reference::DefaultModel => self.rendering(&Settings::default().reference()),
+        }
     }
 
     /// Draws the picture of these settings, to be judged.

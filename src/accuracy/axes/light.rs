@@ -57,10 +57,12 @@ pub(super) const ARITHMETIC: Axis = Axis {
     lesson: Lesson {
         title: "What 64 bits add to light",
         what: "Every number is rounded when it is stored: 32 bits keep 7 digits, 64 bits 16.",
-        coarse: "The lost digits are almost never visible: a byte changes only if the exact value \
-            is very close to the border between two steps.",
-        shows: "Only in the picture of the error, amplified 256 times.",
-        scene: "ball",
+        coarse: "The lost digits are almost never visible. They are if a large distance swallows \
+            the digits of a small one: 500,000 units from the camera, positions are known to 1/32 \
+            of a unit alone.",
+        shows: "On a plate seen through a telescope, where a lamp hangs one unit above it: its \
+            light falls into stripes.",
+        scene: "telescope",
         choice: None,
     },
 };
@@ -132,8 +134,8 @@ pub(super) const NORMALISING: Axis = Axis {
         coarse: "With the instruction alone, vectors are a little too long or too short, and the \
             power of a highlight magnifies that: highlights become grainy, differently on each \
             kind of CPU.",
-        shows: "On the bright spot of the ball, in the picture of the error, amplified 16 times.",
-        scene: "ball",
+        shows: "On the bright spot of the polished ball, whose exponent is 500.",
+        scene: "shiny",
         choice: None,
     },
 };
@@ -184,9 +186,9 @@ pub(super) const SPECULAR: Axis = Axis {
         what: "A highlight can be measured by the angle from the mirrored light to the eye (R.V), \
             or from the normal to the half-way vector between light and eye (N.H).",
         coarse: "Neither is an error of the other: with the same exponent N.H is about twice as \
-            wide, and it stretches where light grazes.",
+            wide, and it stretches where light grazes. The exact picture here is that of R.V.",
         shows: "On the rim of a shiny ball lit from behind, and in the size of every highlight.",
         scene: "ball",
-        choice: None,
+        choice: Some("half-vector"),
     },
 };

@@ -10,6 +10,7 @@ use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
 use crate::lab::report::Budgets;
+use crate::lab::suite::SuiteDetail;
 use crate::scene::{Command, ItemId, ObjectId, View};
 
 /// A request to the app.
@@ -69,6 +70,12 @@ impl From<Action> for Request {
 pub enum LabRequest {
     /// Measure the picture in the viewport.
     Measure(Thoroughness),
+    /// Measure this axis alone, by its key.
+    MeasureAxis(&'static str),
+    /// Measure the suite.
+    Suite(SuiteDetail),
+    /// Show this report of the suite; `None` for that of the scene on screen.
+    ShowSuite(Option<usize>),
     /// Cancel measuring.
     Cancel,
     /// Use this error metric.
@@ -87,12 +94,14 @@ pub enum LabRequest {
     Pick(bool),
     /// Explain this pixel.
     Attribute([usize; 2]),
-    /// Show this beside the scatter.
+    /// Show this beside the plots.
     Side(Side),
     /// Show the lesson of this axis, by its key; opens the laboratory if needed.
     Lesson(&'static str),
     /// Open the scene of this lesson.
     ShowLesson(&'static str),
+    /// Go back from the scene of a lesson to the user's own.
+    Back,
 }
 
 /// Asks for a change of the scene, or says why it is refused.

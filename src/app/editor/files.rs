@@ -317,7 +317,6 @@ impl App {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
             }
-            After::Lesson(key) => self.show_lesson(key),
             After::Open(Some(path)) => self.open_scene(ctx, path),
             After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
         }
@@ -325,10 +324,15 @@ impl App {
 
     /// Replaces the edited scene; the open panels stay.
     pub(crate) fn replace(&mut self, state: State) {
+        self.swap(state);
+    }
+
+    /// As [`Self::replace`]; gives what was there.
+    pub(crate) fn swap(&mut self, state: State) -> State {
         let State { panels, theme, .. } = self.state;
         let statistics = self.state.statistics.clone();
         self.end_measuring();
-        self.state = State { panels, theme, statistics, ..state };
+        std::mem::replace(&mut self.state, State { panels, theme, statistics, ..state })
     }
 }
 

@@ -1,9 +1,12 @@
 //! The state of the laboratory panel and of the comparison with the exact picture.
 
+use std::collections::BTreeMap;
+
 use super::State;
 use crate::accuracy::{AXES, Axis, Samples, Settings};
 use crate::base::image::Size;
 use crate::lab::error::{Error, Measure, Region};
+use crate::lab::picture_source::Reference;
 use crate::lab::report::{Budgets, Report, brief};
 use crate::scene::{Scene, View};
 
@@ -12,6 +15,10 @@ use crate::scene::{Scene, View};
 pub struct Laboratory {
     /// The last measurement, or the one so far.
     pub report: Option<Report>,
+    /// The reports of the suite, once it was measured.
+    pub suite: Vec<Report>,
+    /// Which of them is shown; `None` if that of the scene on screen is.
+    pub shown_suite: Option<usize>,
     /// The progress of the running measurement, from 0 to 1.
     pub running: Option<f64>,
     /// Why measuring failed, if it did.
@@ -26,8 +33,8 @@ pub struct Laboratory {
     pub budgets: Budgets,
     /// How the picture is compared with the exact one.
     pub compare: Compare,
-    /// Whether it is compared with 256 samples per pixel even if it has one itself.
-    pub sampled: bool,
+    /// What it is compared with; several samples per pixel are always compared with 256.
+    pub reference: Reference,
     /// The error of the picture at the last comparison.
     pub judged: Option<Judged>,
     /// Whether the next click on the picture picks a pixel for attribution.
@@ -36,6 +43,10 @@ pub struct Laboratory {
     pub attribution: Option<Vec<String>>,
     /// The axis whose lesson is shown.
     pub lesson: &'static Axis,
+    /// Whether this is the scene of a lesson, and there is another to go back to.
+    pub away: bool,
+    /// What was measured of each axis, by its key, in a sentence.
+    pub costs: BTreeMap<&'static str, String>,
     /// The panel beside the plots.
     pub side: Side,
     /// The scene, the view and the size that were measured.
@@ -46,6 +57,8 @@ impl Default for Laboratory {
     fn default() -> Self {
         Self {
             report: None,
+            suite: Vec::new(),
+            shown_suite: None,
             running: None,
             failed: None,
             measure: Measure::default(),
@@ -53,7 +66,9 @@ impl Default for Laboratory {
             panel: None,
             budgets: Budgets::default(),
             compare: Compare::Off,
-            sampled: false,
+            reference: Reference::default(),
+            away: false,
+            costs: BTreeMap::new(),
             judged: None,
             picking: false,
             attribution: None,
@@ -77,14 +92,23 @@ pub enum Side {
 impl Laboratory {
     /// The report that is shown.
     #[must_use]
-    pub const fn shown(&self) -> Option<&Report> {
-        self.report.as_ref()
+    pub fn shown(&self) -> Option<&Report> {
+        match self.shown_suite {
+            Some(i) => self.suite.get(i),
+            None => self.report.as_ref(),
+        }
+    }
+
+    /// Keeps in a sentence what was measured of each axis.
+    pub(crate) fn note_costs(&mut self, report: &Report) {
+        for axis in AXES.iter().filter(|axis| report.findings.rows_of(axis).count() > 1) {
+            self.costs.insert(axis.key, report.verdict_on(axis));
+        }
     }
 
     /// What the picture is compared with: several samples per pixel with 256.
     pub(crate) fn against(&self, settings: &Settings) -> Reference {
-        let one = settings.samples == Samples::One;
-        if one && !self.sampled { Reference::Exact } else { Reference::Sampled }
+        if settings.samples == Samples::One { self.reference } else { Reference::Sampled }
     }
 
     /// Whether the measurement is not of the picture in the viewport any more.
@@ -96,15 +120,6 @@ impl Laboratory {
             !same_view || !same_size || *scene != state.scene
         })
     }
-}
-
-/// What a picture is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Reference {
-    /// Every axis at its most exact, one sample per pixel.
-    Exact,
-    /// 256 samples per pixel, each lit.
-    Sampled,
 }
 
 /// How the picture is compared with the exact one.

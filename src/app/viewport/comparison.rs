@@ -12,13 +12,13 @@ use crate::accuracy::Settings;
 use crate::accuracy::Shot;
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
-use crate::app::state::laboratory::{Compare, Reference, in_words};
+use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
 use crate::base::image::{Picture, Size};
 use crate::lab::error::{Error, amplified};
-use crate::lab::picture_source::{PictureSource as _, Studio};
+use crate::lab::picture_source::{PictureSource as _, Reference, Studio};
 use crate::scene::{Scene, View};
 
 /// Everything that the two pictures depend on.
@@ -42,10 +42,7 @@ pub(crate) struct Pair {
 /// Draws both.
 pub(crate) fn draw(of: Compared) -> Pair {
     let mut studio = Studio::new(Shot::new(&of.scene, &of.view, &of.settings, of.size));
-    let exact = match of.against {
-        Reference::Exact => studio.rendering(&of.settings.reference()),
-        Reference::Sampled => studio.sampled(&of.settings),
-    };
+    let exact = studio.reference(&of.settings, of.against);
     let ours = studio.rendering(&of.settings);
     let error = ours.error(&exact);
     Pair { of, exact: exact.picture().clone(), ours: ours.picture().clone(), error }

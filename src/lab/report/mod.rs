@@ -1,6 +1,7 @@
 //! Reports the results of a sweep in words, as a table, as data and as plots.
 
 mod labels;
+mod page;
 mod panels;
 mod plot;
 mod table;
@@ -9,6 +10,7 @@ mod verdict;
 use serde::Serialize;
 
 pub use self::labels::{TextBox, place};
+pub use self::page::{page_html, page_markdown, sections};
 pub use self::panels::{Panel, PanelMark, Panels, Scale};
 pub use self::plot::{Look, PlotError, overview_names, panel_svg, png, svg};
 pub use self::table::{brief, csv, heading, markdown, tabs, text};
@@ -16,6 +18,7 @@ use super::candidates::Group;
 use super::error::{Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};
 use super::sweep::{Findings, Measured, Row, Verdict};
+use crate::accuracy::Axis;
 
 /// The results of a sweep, with how they are to be reported.
 #[derive(Clone, Debug, Serialize)]
@@ -145,6 +148,12 @@ impl Report {
     #[must_use]
     pub fn verdict(&self) -> Vec<String> {
         verdict::verdict(self)
+    }
+
+    /// What the figures say about one axis, in a paragraph.
+    #[must_use]
+    pub fn verdict_on(&self, axis: &Axis) -> String {
+        verdict::verdict_on(self, axis)
     }
 
     /// The report as JSON.

@@ -43,9 +43,43 @@ enum Kind {
     Worse,
 }
 
+/// A paragraph on one axis.
+pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
+    if axis.kind == AxisKind::Model {
+        return "A model: none of its choices is an error of another.".to_owned();
+    }
+    let said: Vec<Said<'_>> =
+        said(report).into_iter().filter(|it| it.axis.key == axis.key).collect();
+    let noise = digits((report.findings.floor * 100.0).max(0.1));
+    let mut sentences = told(&said);
+    if sentences.is_empty() {
+        sentences.push("No choice differs from the default beyond the noise here.".to_owned());
+    }
+    let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
+    let [width, height] = report.findings.size;
+    format!("{} (At {width}x{height} on {}; noise {noise}%.)", capital.join(" "), report.scene)
+}
+
 /// The sentences on a report.
 pub(super) fn verdict(report: &Report) -> Vec<String> {
     let said = said(report);
+    let mut sentences = told(&said);
+    let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
+    let nothing = if said.iter().any(is_faster) { "Nothing else" } else { "Nothing" };
+    let noise = digits((report.findings.floor * 100.0).max(0.1));
+    sentences.push(format!("{nothing} saves more than the noise ({noise}%)."));
+    let [width, height] = report.findings.size;
+    if let Some(first) = sentences.first_mut() {
+        let rest = first.replacen("Nothing", "nothing", usize::from(first.starts_with("Nothing")));
+        *first = format!("At {width}x{height} on {}: {rest}", report.scene);
+    }
+    // The first goes on after a colon.
+    sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
+    sentences
+}
+
+/// The sentences on some choices.
+fn told(said: &[Said<'_>]) -> Vec<String> {
     let of = |kind: Kind| -> Vec<&Said<'_>> { said.iter().filter(|it| it.kind == kind).collect() };
     let mut sentences = Vec::new();
     sentences.extend(bought(&of(Kind::Buys)));
@@ -61,21 +95,6 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
         .map(|it| format!("{} ({})", it.name(), digits(it.error)))
         .collect();
     sentences.extend(listed("Less exact and no faster here, with the error in brackets", &worse));
-    let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
-    let nothing = if said.iter().any(is_faster) { "Nothing else" } else { "Nothing" };
-    let noise = digits((report.findings.floor * 100.0).max(0.1));
-    sentences.push(format!("{nothing} saves more than the noise ({noise}%)."));
-    let [width, height] = report.findings.size;
-    if let Some(first) = sentences.first_mut() {
-        let rest = match first.starts_with("Nothing") {
-            true => format!("n{}", &first[1..]),
-            false => first.clone(),
-        };
-        *first = format!("At {width}x{height} on {}: {rest}", report.scene);
-    }
-    // A first sentence after the colon goes on in lower case.
-    let after = sentences.iter_mut().skip(1);
-    after.for_each(|sentence| *sentence = capitalized(sentence));
     sentences
 }
 

@@ -11,7 +11,9 @@ use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, ro
 use crate::app::widgets::number::Number;
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
+use crate::lab::picture_source::Reference;
 use crate::lab::report::{Budgets, Report, brief, tabs};
+use crate::lab::suite::SuiteDetail;
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
@@ -49,6 +51,12 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             let whole = ui.button("Thoroughly").on_hover_text(
                 "The same with more pairs of pictures and more combinations: some minutes",
             );
+            let suite = ui.button("Suite").on_hover_text(
+                "Measures each axis on a scene in which it matters: at most ten minutes",
+            );
+            if suite.clicked() {
+                requests.push(Request::Lab(LabRequest::Suite(SuiteDetail::WHOLE)));
+            }
             for (clicked, thoroughness) in
                 [(quick.clicked(), Thoroughness::QUICK), (whole.clicked(), Thoroughness::WHOLE)]
             {
@@ -187,10 +195,11 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
     let one = state.settings.samples == Samples::One;
     if now != Compare::Off && one {
-        let switch = Switch::new("With 256 samples per pixel", state.lab.sampled).ui(ui);
+        let sampled = state.lab.reference == Reference::Sampled;
+        let switch = Switch::new("With 256 samples per pixel", sampled).ui(ui);
         let hint = "Compares with the mean of 256 samples per pixel, each lit, instead of one";
         if switch.on_hover_text(hint).clicked() {
-            requests.push(Request::Lab(LabRequest::Sampled(!state.lab.sampled)));
+            requests.push(Request::Lab(LabRequest::Sampled(!sampled)));
         }
     }
     if let (Some(judged), true) = (&state.lab.judged, now != Compare::Off) {

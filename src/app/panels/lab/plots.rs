@@ -24,6 +24,7 @@ const fn default_color(visuals: &Visuals) -> Color32 {
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    suite_ui(ui, state, requests);
     let Some(report) = state.lab.shown() else {
         return empty_ui(ui, state);
     };
@@ -56,19 +57,39 @@ fn empty_ui(ui: &mut Ui, state: &State) {
     ui.vertical_centered(|ui| ui.add(egui::Label::new(text).wrap()));
 }
 
+/// The choice between the scene on screen and those of the suite.
+fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    if state.lab.suite.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
+        let scenes = state.lab.suite.iter().map(|report| report.scene.as_str()).enumerate();
+        let scenes = scenes.map(|(i, name)| (Some(i), name.trim_start_matches("suite scene ")));
+        for (place, name) in std::iter::once((None, "This scene")).chain(scenes) {
+            let chosen = state.lab.shown_suite == place;
+            if chip_ui(ui, "Measured", name, chosen).clicked() {
+                requests.push(Request::Lab(LabRequest::ShowSuite(place)));
+            }
+        }
+    });
+}
+
+/// A small button of a row of which one is chosen.
+fn chip_ui(ui: &mut Ui, row: &str, label: &str, chosen: bool) -> Response {
+    let response = ui.add(egui::Button::selectable(chosen, RichText::new(label).small()).small());
+    let name = format!("{row}: {label}");
+    response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, chosen, &name));
+    response
+}
+
 /// The choice of a panel.
 fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Vec<Request>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
         for panel in std::iter::once(&panels.overview).chain(&panels.axes) {
             let label = panel.axis.map_or("Overview", |axis| axis.label);
-            let chosen = panel.title == shown.title;
-            let text = RichText::new(label).small();
-            let response = ui.add(egui::Button::selectable(chosen, text).small());
-            let name = format!("Plot: {label}");
-            response
-                .widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, chosen, &name));
-            if response.clicked() {
+            if chip_ui(ui, "Plot", label, panel.title == shown.title).clicked() {
                 let key = panel.axis.map(|axis| axis.key);
                 requests.push(Request::Lab(LabRequest::Panel(key)));
             }
