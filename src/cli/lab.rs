@@ -144,13 +144,14 @@ fn measure_suite(arguments: &Lab, word: &str) -> Result<(), Failure> {
 /// Writes the page as Markdown and HTML, its plots, and the tables into the folder.
 fn save_suite(folder: &Path, reports: &[Report]) -> Result<(), Failure> {
     let write = |name: &str, text: String| write(folder, name, text);
-    for (axis, report) in report::sections(reports) {
-        for (look, word) in [(Look::Light, "light"), (Look::Dark, "dark")] {
+    for (axis, reports) in report::sections(reports) {
+        for (report, look) in reports.iter().flat_map(|it| [(it, Look::Light), (it, Look::Dark)]) {
+            let word = if look == Look::Light { "light" } else { "dark" };
             let plot = report::panel_svg(report, Some(axis.key), look)?;
-            write(&format!("{}-{word}.svg", axis.key), plot)?;
+            write(&format!("{}-{word}.svg", report::plot_name(axis, report)), plot)?;
         }
     }
-    write("page.md", report::page_markdown(reports, &|key| format!("{key}-light.svg")))?;
+    write("page.md", report::page_markdown(reports, &|name| format!("{name}-light.svg")))?;
     write("page.html", report::page_html(reports)?)?;
     write("table.csv", reports.iter().map(report::csv).collect())?;
     let json: Vec<String> = reports.iter().map(Report::json).collect();

@@ -107,3 +107,17 @@ fn a_preset_is_drawn_as_its_points_and_gives_way_to_single_axes() {
     assert!(draft != drawn(&[]));
     assert!(drawn(&["--preset", "draft", "--shading", "pixel"]) == drawn(&[]));
 }
+
+#[test]
+fn one_scene_of_the_suite_is_measured_by_its_word() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["lab", "--suite=depth", "--size", "48x27", "--out", "found"];
+    let (out, _) = lab(0, folder.path(), &arguments);
+    assert!(out.contains("At 48x27 on suite scene depth: "), "{out}");
+    assert!(out.contains("again: marraztu lab --suite=depth"), "{out}");
+    let found = folder.path().join("found");
+    for name in ["page.md", "page.html", "table.csv", "report.json", "depth-depth-light.svg"] {
+        assert!(found.join(name).exists(), "{name}");
+    }
+    lab(2, folder.path(), &["lab", "--suite=beauty"]);
+}

@@ -10,7 +10,7 @@ mod verdict;
 use serde::Serialize;
 
 pub use self::labels::{TextBox, place};
-pub use self::page::{page_html, page_markdown, sections};
+pub use self::page::{page_html, page_markdown, plot_name, sections};
 pub use self::panels::{Panel, PanelMark, Panels, Scale};
 pub use self::plot::{Look, PlotError, overview_names, panel_svg, png, svg};
 pub use self::table::{brief, csv, heading, markdown, tabs, text};

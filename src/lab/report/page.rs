@@ -6,12 +6,20 @@ use std::fmt::Write as _;
 use super::{Look, PlotError, Report, markdown, panel_svg};
 use crate::accuracy::{AXES, Axis};
 
-/// The axes of some reports, each with the first report that measured it.
-pub fn sections(reports: &[Report]) -> impl Iterator<Item = (&'static Axis, &Report)> {
-    AXES.iter().filter_map(|axis| {
+/// The axes of some reports, each with the reports that measured it.
+pub fn sections(reports: &[Report]) -> impl Iterator<Item = (&'static Axis, Vec<&Report>)> {
+    let all = AXES.iter().map(|axis| {
         let measured = |report: &&Report| report.findings.rows_of(axis).count() > 1;
-        Some((axis, reports.iter().find(measured)?))
-    })
+        (axis, reports.iter().filter(measured).collect::<Vec<_>>())
+    });
+    all.filter(|(_, reports)| !reports.is_empty())
+}
+
+/// The name of the plot of an axis on a scene of the suite: "depth-first".
+#[must_use]
+pub fn plot_name(axis: &Axis, report: &Report) -> String {
+    let scene = report.scene.split_whitespace().last().unwrap_or_default();
+    format!("{}-{scene}", axis.key)
 }
 
 /// What the figures rest on, in a paragraph.
@@ -36,17 +44,19 @@ pub fn page_markdown(reports: &[Report], picture: &dyn Fn(&str) -> String) -> St
     for report in reports {
         let _ = writeln!(text, "\n- {}", report.verdict().join(" "));
     }
-    for (axis, report) in sections(reports) {
-        let _ = write!(
-            text,
-            "\n### {}\n\n{}\n\n![{}: time against error]({})\n\n{}\n```sh\n{}\n```\n",
-            axis.label,
-            report.verdict_on(axis),
-            axis.label,
-            picture(axis.key),
-            markdown(report, axis),
-            report.command
-        );
+    for (axis, reports) in sections(reports) {
+        let _ = writeln!(text, "\n### {}", axis.label);
+        for report in reports {
+            let _ = write!(
+                text,
+                "\n{}\n\n![{}: time against error]({})\n\n{}\n```sh\n{}\n```\n",
+                report.verdict_on(axis),
+                axis.label,
+                picture(&plot_name(axis, report)),
+                markdown(report, axis),
+                report.command
+            );
+        }
     }
     text
 }
@@ -72,20 +82,22 @@ pub fn page_html(reports: &[Report]) -> Result<String, PlotError> {
         let _ = writeln!(text, "<li>{}</li>", escaped(&report.verdict().join(" ")));
     }
     text += "</ul>\n";
-    for (axis, report) in sections(reports) {
-        let [light, dark] =
-            [Look::Light, Look::Dark].map(|it| panel_svg(report, Some(axis.key), it));
-        let _ = write!(
-            text,
-            "<h2>{}</h2>\n<p>{}</p>\n<div class=\"light\">{}</div><div class=\"dark\">{}</div>\n\
-             {}<pre>{}</pre>\n",
-            axis.label,
-            escaped(&report.verdict_on(axis)),
-            light?,
-            dark?,
-            html_table(&markdown(report, axis)),
-            escaped(&report.command)
-        );
+    for (axis, reports) in sections(reports) {
+        let _ = writeln!(text, "<h2>{}</h2>", axis.label);
+        for report in reports {
+            let [light, dark] =
+                [Look::Light, Look::Dark].map(|look| panel_svg(report, Some(axis.key), look));
+            let _ = write!(
+                text,
+                "<p>{}</p>\n<div class=\"light\">{}</div><div class=\"dark\">{}</div>\n\
+                 {}<pre>{}</pre>\n",
+                escaped(&report.verdict_on(axis)),
+                light?,
+                dark?,
+                html_table(&markdown(report, axis)),
+                escaped(&report.command)
+            );
+        }
     }
     Ok(text + "</body></html>\n")
 }
