@@ -1,8 +1,8 @@
 //! Each lesson shows what it teaches: its scene, drawn with the choice that it opens with, differs
 //! visibly from the reference that it is compared with.
 //!
-//! Catches: a scene in which the choice makes no difference, and a reference that has the same fault
-//! as the picture.
+//! Catches: a scene in which the choice makes no difference, and a reference that has the same
+//! fault as the picture.
 
 use marraztu::accuracy::{AXES, Settings, Shot};
 use marraztu::base::image::Size;

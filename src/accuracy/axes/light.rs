@@ -103,7 +103,8 @@ pub(super) const POWER: Axis = Axis {
             that, so it is computed or looked up in a table.",
         coarse: "A table of 256 has steps where the power is steep, and they show as rings. \
             Schlick's approximation gives a highlight that fades out more slowly.",
-        shows: "On the bright spot of the ball: compare Table 256 with Polynomial, then with Schlick.",
+        shows: "On the bright spot of the ball: compare Table 256 with Polynomial, then with \
+            Schlick.",
         scene: "ball",
         choice: None,
     },
@@ -186,7 +187,8 @@ pub(super) const SPECULAR: Axis = Axis {
         what: "A highlight can be measured by the angle from the mirrored light to the eye (R.V), \
             or from the normal to the half-way vector between light and eye (N.H).",
         coarse: "Neither is an error of the other: with the same exponent N.H is about twice as \
-            wide, and it stretches where light grazes. The exact picture here is that of R.V.",
+            wide, and it stretches where light grazes. The exact picture here is that of \
+            R.V.",
         shows: "On the rim of a shiny ball lit from behind, and in the size of every highlight.",
         scene: "ball",
         choice: Some("half-vector"),

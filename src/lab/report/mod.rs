@@ -117,10 +117,11 @@ impl Report {
                 let ms = |i: &usize| self.findings.points[*i].ms;
                 found.sort_by(|a, b| ms(a).total_cmp(&ms(b)));
             }
-            if found.len() <= NAMES {
+            if found.len() <= NAMES || least > 0.9 {
+                found.truncate(NAMES);
                 return found;
             }
-            least = f64::midpoint(least, 1.0);
+            least *= 1.3;
         }
     }
 

@@ -49,7 +49,7 @@ pub fn page_markdown(reports: &[Report], picture: &dyn Fn(&str) -> String) -> St
         for report in reports {
             let _ = write!(
                 text,
-                "\n{}\n\n![{}: time against error]({})\n\n{}\n```sh\n{}\n```\n",
+                "\n{}\n\n![{}: time against error]({})\n\n{}\nAgain: `{}`\n",
                 report.verdict_on(axis),
                 axis.label,
                 picture(&plot_name(axis, report)),

@@ -120,7 +120,7 @@ fn said(report: &Report) -> Vec<Said<'_>> {
 fn kind(point: &Measured, [error, before]: [f64; 2], is_finer: bool) -> Option<Kind> {
     let cut = error < before * (1.0 - MARGIN);
     let raised = error > before * (1.0 + MARGIN);
-    // A step in a few bytes is seen by nobody.
+    // One step is below what an eye sees.
     let seen = point.change.largest > 1;
     Some(match (point.verdict, cut, raised) {
         (Verdict::Slower, true, _) if seen => Kind::Buys,

@@ -75,7 +75,7 @@ fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-/// A small button of a row of which one is chosen.
+/// A small button of a row; one of them is chosen.
 fn chip_ui(ui: &mut Ui, row: &str, label: &str, chosen: bool) -> Response {
     let response = ui.add(egui::Button::selectable(chosen, RichText::new(label).small()).small());
     let name = format!("{row}: {label}");
