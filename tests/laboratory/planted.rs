@@ -177,7 +177,7 @@ fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
     assert!(
         text.starts_with(
             "At 8x8 on this scene: 4 samples per pixel cost 2.1x and cut the error from 2.3 to \
-             0.78 of 255 (16 samples 7.5x, 0.42)."
+             0.78 of 255 (16: 7.5x, 0.42)."
         ),
         "{text}"
     );

@@ -177,7 +177,7 @@ fn figures_are_of_all_pixels_or_on_request_of_those_covered_alike() {
     let mut report = Report { findings, ..report() };
     let of = |report: &Report| {
         let mut rows = report.findings.rows.iter();
-        let row = rows.find(|row| row.group == Group::Axis("subpixels") && row.name == "0 bits");
+        let row = rows.find(|row| row.group == Group::Axis("subpixels") && row.name == "0");
         report.error(row.unwrap())
     };
     assert!((of(&report) - libm::sqrt(81.0 / 192.0)).abs() < 1e-12);

@@ -38,8 +38,9 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         Panel::bottom("laboratory")
             .frame(side)
             .resizable(true)
-            // Room for a plot of 420 points.
-            .default_size(500.0_f32.min(most))
+            // The picture keeps two fifths of the height; on a large screen a plot and the verdict
+            // are seen as a whole.
+            .default_size((ui.available_height() * 0.6).round().clamp(180.0, 620.0))
             .size_range(160.0..=most)
             .show(ui, |ui| lab::show(ui, state, requests));
     }

@@ -167,7 +167,7 @@ fn bought(all: &[&Said<'_>]) -> Vec<String> {
         let mut text =
             format!("{} {cost} {times_first} and {cut} {}", first.name(), first.from_to());
         let more = |it: &&Said<'_>| {
-            format!("{} {}, {}", it.row.name.to_lowercase(), times(it.ratio()), digits(it.error))
+            format!("{}: {}, {}", it.row.name, times(it.ratio()), digits(it.error))
         };
         let others: Vec<String> = own.map(more).collect();
         if !others.is_empty() {

@@ -25,7 +25,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let gap = f32::from(theme::MARGIN);
     let asked = all.with_max_x(all.left() + ASKED);
     let rest = all.with_min_x(asked.right() + gap);
-    let middle = rest.with_max_x(rest.left() + (rest.width() * 0.42).round());
+    let middle = rest.with_max_x(rest.left() + (rest.width() * 0.47).round());
     let right = rest.with_min_x(middle.right() + gap);
     within(ui, asked, |ui| controls_ui::show(ui, state, requests));
     within(ui, middle, |ui| plots::show(ui, state, requests));

@@ -11,8 +11,11 @@ use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 
-/// The least height of a plot.
-const LEAST: f32 = 420.0;
+/// The least height of a plot with its title: 420 points and a line.
+const LEAST: f32 = 444.0;
+
+/// The height that the verdict gets under the plot, if there is room.
+const VERDICT: f32 = 84.0;
 
 /// The radius of a mark.
 const MARK: f32 = 5.0;
@@ -31,9 +34,9 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let panels = Panels::new(report);
     let panel = panels.of(state.lab.panel);
     panels_ui(ui, &panels, panel, requests);
+    let height = LEAST.max(ui.available_height() - VERDICT);
     let area = ScrollArea::vertical().id_salt("plots").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
-        let height = LEAST.max(ui.available_height() - 60.0);
         let size = vec2(ui.available_width(), height);
         ui.allocate_ui(size, |ui| panel_ui(ui, (&panels, panel), (state, report), requests));
         for sentence in report.verdict() {
