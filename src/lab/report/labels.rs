@@ -28,8 +28,8 @@ impl TextBox {
 }
 
 /// Places a text of each size near its mark, inside of `frame`: beside it if there is room, else at
-/// the nearest free place. No two texts overlap, and none covers a mark if it can be helped; a text
-/// without any room is left out.
+/// the nearest free place. No two texts overlap, and none covers a mark, or the line that joins the
+/// marks, if it can be helped; a text without any room is left out.
 #[must_use]
 pub fn place(
     marks: &[[f32; 2]],
@@ -41,6 +41,8 @@ pub fn place(
         .iter()
         .map(|[x, y]| TextBox::new([x - radius, y - radius], [2.0 * radius; 2]))
         .collect();
+    let line: Vec<TextBox> = marks.windows(2).flat_map(|ends| along(ends[0], ends[1])).collect();
+    let both = [squares.as_slice(), line.as_slice()].concat();
     let mut taken: Vec<TextBox> = Vec::new();
     let mut placed = Vec::new();
     for (mark, size) in marks.iter().zip(sizes) {
@@ -49,12 +51,23 @@ pub fn place(
             text.is_inside(frame) && clear(&taken) && clear(marks)
         };
         let found = around(*mark, *size, radius)
-            .find(|text| free(text, &squares))
+            .find(|text| free(text, &both))
+            .or_else(|| around(*mark, *size, radius).find(|text| free(text, &squares)))
             .or_else(|| around(*mark, *size, radius).find(|text| free(text, &[])));
         taken.extend(found);
         placed.push(found);
     }
     placed
+}
+
+/// Small squares along the line from one mark to the next.
+fn along(from: [f32; 2], to: [f32; 2]) -> impl Iterator<Item = TextBox> {
+    const PARTS: u16 = 64;
+    (0..=PARTS).map(move |i| {
+        let part = f32::from(i) / f32::from(PARTS);
+        let [x, y] = [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
+        TextBox::new([x - 2.0, y - 2.0], [4.0; 2])
+    })
 }
 
 /// Boxes around a mark, the nearest first.
@@ -97,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_stands_beside_its_mark_and_covers_no_other() {
+    fn a_name_stands_beside_its_mark_and_covers_neither_another_nor_the_line() {
         let frame = TextBox::new([0.0; 2], [200.0, 100.0]);
         let marks = [[50.0, 50.0], [70.0, 50.0]];
         let placed = place(&marks, &[[40.0, 12.0]; 2], &frame, 4.0);

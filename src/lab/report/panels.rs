@@ -77,7 +77,9 @@ impl Panels {
         let overview = report.overview();
         let time = |point: usize| libm::log10(ratio(report, point));
         let shown = of_axes().map(|row| row.point).chain(overview.iter().copied());
-        let x = time_scale(shown.map(time).chain(noise));
+        // Much noise is no reason for a wide scale.
+        let near = noise.map(|x| x.clamp(-0.2, 0.2));
+        let x = time_scale(shown.map(time).chain(near));
         let errors = of_axes().map(|row| report.error(row));
         let errors = errors.chain(overview.iter().map(|point| points[*point].error));
         let (y, zero) = error_scale(report, errors);
@@ -96,7 +98,7 @@ impl Panels {
             note: match axis.kind {
                 AxisKind::Scored => "",
                 AxisKind::ScoredApart => "against 256 samples per pixel",
-                AxisKind::Model => "a model: each against its own reference",
+                AxisKind::Model => "a model, not scored",
             },
             marks: findings.rows_of(axis).map(of_row).collect(),
         };

@@ -276,7 +276,8 @@ impl Sheet {
             panel.marks.iter().map(|mark| size_of(&mark.label, 13)).collect();
         let [left, top, right, bottom] = frame.map(|edge| edge as f32);
         let frame = TextBox { min: [left, top], max: [right, bottom] };
-        place(&marks, &sizes, &frame, MARK as f32)
+        // The ring around the current choice is clear, too.
+        place(&marks, &sizes, &frame, MARK as f32 + 4.0)
     }
 
     /// The pixel of a position on the scales.

@@ -78,7 +78,7 @@ pub const SUITE: &[SuiteScene] = &[
     SuiteScene {
         word: "first",
         what: "the first scene of the editor",
-        axes: &["samples", "shading", "arithmetic", "filter"],
+        axes: &["samples", "shading", "arithmetic"],
         make: |_| io::default_scene(),
     },
 ];

@@ -195,7 +195,7 @@ fn names_ui(ui: &Ui, panel: &Panel, at: &[Pos2], frame: &Rect) {
     let sizes: Vec<[f32; 2]> =
         galleys.iter().map(|galley| [galley.size().x + 2.0, galley.size().y]).collect();
     let frame = TextBox { min: [frame.left(), frame.top()], max: [frame.right(), frame.bottom()] };
-    for (text, galley) in place(&marks, &sizes, &frame, MARK).into_iter().zip(galleys) {
+    for (text, galley) in place(&marks, &sizes, &frame, MARK + 4.0).into_iter().zip(galleys) {
         if let Some(TextBox { min: [x, y], .. }) = text {
             ui.painter().galley(pos2(x + 1.0, y), galley, visuals.text_color());
         }
