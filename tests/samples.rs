@@ -553,7 +553,7 @@ fn the_more_samples_the_nearer_to_the_reference() {
 #[test]
 fn the_reference_of_samples_is_the_mean_of_256_positions() {
     let triangles = scattered(60, 256);
-    let (mut scene, view) = flat::scene(&[triangles.clone()], SIDE);
+    let (mut scene, view) = flat::scene(std::slice::from_ref(&triangles), SIDE);
     scene.background = Color([9, 99, 199]);
     let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
     let mut studio = Studio::new(shot);

@@ -151,7 +151,7 @@ impl Said<'_> {
         if several { verb.to_owned() } else { format!("{verb}s") }
     }
 
-    fn from_to(&self) -> String {
+    fn error_change(&self) -> String {
         format!("the error from {} to {} of 255", digits(self.before), digits(self.error))
     }
 }
@@ -165,7 +165,7 @@ fn bought(all: &[&Said<'_>]) -> Vec<String> {
         let (cost, cut) = (first.verb("cost"), first.verb("cut"));
         let times_first = times(first.ratio());
         let mut text =
-            format!("{} {cost} {times_first} and {cut} {}", first.name(), first.from_to());
+            format!("{} {cost} {times_first} and {cut} {}", first.name(), first.error_change());
         let more = |it: &&Said<'_>| {
             format!("{}: {}, {}", it.row.name, times(it.ratio()), digits(it.error))
         };
@@ -203,14 +203,14 @@ fn free(it: &Said<'_>) -> String {
         }
         Verdict::Slower | Verdict::Alike => {
             let (cut, finer) = (it.verb("cut"), if it.is_finer { "" } else { ", though coarser," });
-            format!("{name}{finer} {cut} {} in the same time.", it.from_to())
+            format!("{name}{finer} {cut} {} in the same time.", it.error_change())
         }
     }
 }
 
 fn saved(it: &Said<'_>) -> String {
     let (saves, raises) = (it.verb("save"), it.verb("raise"));
-    format!("{} {saves} {}% and {raises} {}.", it.name(), less(it), it.from_to())
+    format!("{} {saves} {}% and {raises} {}.", it.name(), less(it), it.error_change())
 }
 
 /// The part of the time that is saved, in per cent.
