@@ -14,6 +14,7 @@ use marraztu::base::Shared;
 use marraztu::base::color::Color;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
+use marraztu::lab::picture_source::{PictureSource as _, Studio};
 use marraztu::lab::pictures::flat::{self, Flat};
 use marraztu::render::Renderer;
 use marraztu::render::plan_frame;
@@ -545,6 +546,27 @@ fn the_more_samples_the_nearer_to_the_reference() {
     };
     let [one, four, sixteen] = [Samples::One, Samples::Four, Samples::Sixteen].map(error);
     assert!(one > 1.8 * four && four > 1.8 * sixteen, "{one} {four} {sixteen}");
+}
+
+/// Sum by sum against one picture for each of the 256 positions, drawn with all corners moved the
+/// other way: in whole subpixels, so that the mean is exact.
+#[test]
+fn the_reference_of_samples_is_the_mean_of_256_positions() {
+    let triangles = scattered(60, 256);
+    let (mut scene, view) = flat::scene(std::slice::from_ref(&triangles), SIDE);
+    scene.background = Color([9, 99, 199]);
+    let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(SIDE, SIDE));
+    let mut studio = Studio::new(shot);
+    let picture = studio.sampled(&Settings { samples: Samples::Four, ..Settings::default() });
+    let mut pixels = vec![Vec::new(); SIDE * SIDE];
+    for i in 0..256 {
+        let place = [i % 16, i / 16].map(|i| (f64::from(i) + 0.5) / 16.0);
+        let one = drawn(&seen_from(&triangles, place), |view| view, &Settings::default());
+        pixels.iter_mut().zip(one.pixels()).for_each(|(all, pixel)| all.push(*pixel));
+    }
+    let mixed = pixels.iter().filter(|all| all.iter().any(|pixel| *pixel != all[0])).count();
+    assert!(mixed > 1000, "{mixed}");
+    wants_means(picture.picture(), &pixels, "256 samples");
 }
 
 #[test]

@@ -5,7 +5,7 @@ mod presets;
 mod settings;
 mod shot;
 
-pub use axes::{AXES, Axis, AxisKind, Choice, Lesson};
+pub use axes::{AXES, Axis, AxisKind, Choice, Lesson, uncapitalized};
 pub use presets::{ACCURACY_PRESETS, AccuracyPreset};
 pub use settings::{
     Arithmetic, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt, NormalMatrix,

@@ -118,24 +118,26 @@ impl AccuracyPreset {
 }
 
 impl Settings {
-    /// The reference: every axis at its most exact choice. Axes that are models keep their choices,
-    /// and so does an axis that is scored apart if it is at its default. Pictures with several
-    /// samples are judged against the one with the most of them, each lit.
+    /// The reference: every axis at its most exact choice, one sample at the centre of each pixel.
+    /// Axes that are models keep their choices. Samples per pixel are judged against
+    /// [`Self::sampled`].
     #[must_use]
     pub fn reference(&self) -> Self {
-        AXES.iter().fold(*self, |settings, axis| match axis.kind {
-            AxisKind::ScoredApart if axis.default_choice().is(&settings) => settings,
-            _ => axis.most_exact(&settings).of(&settings),
-        })
+        // The most exact choices of other axes may depend on those that are scored apart.
+        let apart = |axis: &&Axis| axis.kind == AxisKind::ScoredApart;
+        let base = AXES
+            .iter()
+            .filter(apart)
+            .fold(*self, |settings, axis| axis.default_choice().of(&settings));
+        let others = AXES.iter().filter(|axis| !apart(axis));
+        others.fold(base, |settings, axis| axis.most_exact(&settings).of(&settings))
     }
 
-    /// The reference for the choices of one axis: [`Self::reference`] with that axis at its most
-    /// exact choice in any case.
+    /// The settings of each of the 256 pictures whose mean samples per pixel are judged against:
+    /// the default, with the models of these settings. It does not depend on any other choice.
     #[must_use]
-    pub fn reference_on(&self, key: &str) -> Self {
-        // This axis comes first, since the most exact choices of others may depend on it.
-        let exact = Axis::named(key).map_or(*self, |axis| axis.most_exact(self).of(self));
-        exact.reference()
+    pub fn sampled(&self) -> Self {
+        Self::default().modelled_as(self)
     }
 
     /// These settings with the models of `others`.
@@ -145,7 +147,7 @@ impl Settings {
         models.fold(*self, |settings, axis| axis.chosen(others).of(&settings))
     }
 
-    /// What differs from the default, in words: "shading vertex, filter nearest".
+    /// What differs from the default, in words: "Gouraud shading, nearest texture filter".
     #[must_use]
     pub fn in_words(&self) -> String {
         let preset = ACCURACY_PRESETS.iter().find(|preset| preset.of(self) == *self);
@@ -154,7 +156,7 @@ impl Settings {
             .iter()
             .filter(differs)
             .filter(|axis| preset.is_none() || axis.kind == AxisKind::Model)
-            .map(|axis| format!("{} {}", axis.key, axis.chosen(self).word))
+            .map(|axis| axis.in_words(axis.chosen(self)))
             .collect();
         match (preset, words.is_empty()) {
             (Some(preset), true) => preset.label.to_owned(),

@@ -10,10 +10,11 @@ use marraztu::base::image::Size;
 use marraztu::io;
 use marraztu::lab::attribution::attribute;
 use marraztu::lab::candidates::{Thoroughness, all_axes};
-use marraztu::lab::error::{Measure, amplified};
+use marraztu::lab::error::{Measure, Region, amplified};
 use marraztu::lab::pairs::Watch;
 use marraztu::lab::picture_source::{PictureSource, Studio};
-use marraztu::lab::report::{self, Budgets, Report};
+use marraztu::lab::report::{self, Budgets, Look, Report};
+use marraztu::lab::suite::{self, SUITE, SuiteDetail, SuiteScene};
 use marraztu::lab::sweep::{Question, sweep};
 use marraztu::lab::timing::WallClock;
 
@@ -30,13 +31,14 @@ use super::values::{size, threads};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Times each choice of each axis in turn with the default, and compares its picture with the most
-exact one. The folder of --out gets table.txt, table.csv, report.json, scatter.svg, scatter.png,
+exact one. The folder of --out gets table.txt, table.csv, report.json, the plots (light and dark),
 the exact picture, and pictures of the error of the chosen settings, amplified 1, 16 and 256 times.
 
 Examples:
   marraztu lab --quick
   marraztu lab bunny.obj --out bunny-lab --size 1920x1080
   marraztu lab shelf.marraztu --axes shading,filter --max-error 1
+  marraztu lab --suite --out suite
   marraztu lab --shading vertex --pixel 215,430")]
 pub(crate) struct Lab {
     /// Models (.obj), and at most one scene (.marraztu) that they are put into
@@ -45,9 +47,15 @@ pub(crate) struct Lab {
     /// The folder for tables, plots and pictures; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Width and height in pixels; one number for a square
-    #[arg(long, value_name = "WxH", default_value = "800x800", value_parser = size)]
-    size: Size,
+    /// Width and height in pixels; one number for a square [default: 800x800; suite: 1280x720]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<Size>,
+    /// Measure scenes in which each axis matters instead, or one of them: pixels, vertices,
+    /// highlights, textures, edges, far, depth, first; at most 10 minutes at 1280x720
+    #[arg(long, value_name = "SCENE", num_args = 0..=1, require_equals = true)]
+    #[arg(default_missing_value = "all", value_parser = suite_words(), hide_possible_values = true)]
+    #[arg(conflicts_with_all = ["files", "quick", "axes", "max_error", "budget_ms", "pixel"])]
+    suite: Option<String>,
     /// The axes to measure [default: all]
     #[arg(long, value_name = "AXIS,...", value_delimiter = ',', value_parser = axis_words())]
     axes: Vec<String>,
@@ -58,6 +66,9 @@ pub(crate) struct Lab {
     #[arg(long, value_name = "MEASURE", default_value = "rmse", hide_default_value = true)]
     #[arg(hide_possible_values = true, value_parser = measure_words())]
     measure: String,
+    /// Take errors over the pixels alone whose coverage does not differ
+    #[arg(long)]
+    inside: bool,
     /// Name the fastest choice whose error is at most this
     #[arg(long, value_name = "ERROR", value_parser = above_zero)]
     max_error: Option<f64>,
@@ -92,10 +103,13 @@ struct Pixel([usize; 2]);
 pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     arguments.talk.apply();
     draw_along(arguments.threads);
+    if let Some(word) = &arguments.suite {
+        return measure_suite(arguments, word);
+    }
     let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
     let stage = staged(files, reading, surfaces, seeing, accuracy)?;
     let settings = stage.settings;
-    let mut studio = Studio::new(stage.shot(*size));
+    let mut studio = Studio::new(stage.shot(size.unwrap_or(Size::new(800, 800))));
     if let Some(Pixel(at)) = arguments.pixel {
         return explain_pixel(&mut studio, &settings, at);
     }
@@ -105,6 +119,54 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
         Some(folder) => save(folder, &report, &mut studio, &settings),
         None => Ok(()),
     }
+}
+
+/// Measures the suite, prints the tables, and writes the page into the folder.
+fn measure_suite(arguments: &Lab, word: &str) -> Result<(), Failure> {
+    let scenes: Vec<&SuiteScene> =
+        SUITE.iter().filter(|scene| word == "all" || scene.word == word).collect();
+    let tiny = word == "tiny";
+    let scenes = if tiny { SUITE.iter().collect() } else { scenes };
+    let detail = if tiny { SuiteDetail::TINY } else { SuiteDetail::WHOLE };
+    let detail = SuiteDetail { size: arguments.size.unwrap_or(detail.size), ..detail };
+    let watch = Watch::default();
+    let bar = Bar::of("measuring", &watch.progress);
+    let reports = suite::run(&scenes, &detail, &mut WallClock::default(), &watch, &mut |_| {})?;
+    drop(bar);
+    let texts: Vec<String> = reports.iter().map(report::text).collect();
+    print(&texts.join("\n"))?;
+    match &arguments.out {
+        Some(folder) => save_suite(folder, &reports),
+        None => Ok(()),
+    }
+}
+
+/// Writes the page as Markdown and HTML, its plots, and the tables into the folder.
+fn save_suite(folder: &Path, reports: &[Report]) -> Result<(), Failure> {
+    let write = |name: &str, text: String| write(folder, name, text);
+    for (axis, reports) in report::sections(reports) {
+        for (report, look) in reports.iter().flat_map(|it| [(it, Look::Light), (it, Look::Dark)]) {
+            let word = if look == Look::Light { "light" } else { "dark" };
+            let plot = report::panel_svg(report, Some(axis.key), look)?;
+            write(&format!("{}-{word}.svg", report::plot_name(axis, report)), plot)?;
+        }
+    }
+    write("page.md", report::page_markdown(reports, &|name| format!("{name}-light.svg")))?;
+    write("page.html", report::page_html(reports)?)?;
+    write("table.csv", reports.iter().map(report::csv).collect())?;
+    let json: Vec<String> = reports.iter().map(Report::json).collect();
+    write("report.json", format!("[{}]\n", json.join(",\n")))
+}
+
+/// Writes a text into a folder, which is created if it does not exist.
+fn write(folder: &Path, name: &str, text: String) -> Result<(), Failure> {
+    let fail = |path: &Path| {
+        let path = path.to_owned();
+        |error| Failure::Write(path, error)
+    };
+    std::fs::create_dir_all(folder).map_err(fail(folder))?;
+    let path = folder.join(name);
+    std::fs::write(&path, text).map_err(fail(&path))
 }
 
 fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<Report, Failure> {
@@ -124,6 +186,7 @@ fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<R
         scene: scene_name(&arguments.files),
         command: command(),
         measure: measure.unwrap_or_default(),
+        region: if arguments.inside { Region::Inside } else { Region::Whole },
         budgets: Budgets { error: arguments.max_error, ms: arguments.budget_ms },
         findings,
     })
@@ -184,20 +247,14 @@ fn save(
     studio: &mut Studio,
     settings: &Settings,
 ) -> Result<(), Failure> {
-    let fail = |path: &Path| {
-        let path = path.to_owned();
-        |error| Failure::Write(path, error)
-    };
-    std::fs::create_dir_all(folder).map_err(fail(folder))?;
-    let write = |name: &str, text: String| {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(fail(&path))
-    };
+    let write = |name: &str, text: String| write(folder, name, text);
     write("table.txt", report::text(report))?;
     write("table.csv", report::csv(report))?;
     write("report.json", report.json())?;
-    write("scatter.svg", report::svg(report)?)?;
-    io::save_picture(&folder.join("scatter.png"), &report::png(report)?)?;
+    for (look, word) in [(Look::Light, "light"), (Look::Dark, "dark")] {
+        write(&format!("plots-{word}.svg"), report::svg(report, look)?)?;
+        io::save_picture(&folder.join(format!("plots-{word}.png")), &report::png(report, look)?)?;
+    }
     studio.draw(&settings.reference());
     let exact = studio.picture().clone();
     io::save_picture(&folder.join("exact.png"), &exact)?;
@@ -211,6 +268,11 @@ fn save(
 
 fn axis_words() -> PossibleValuesParser {
     PossibleValuesParser::new(AXES.iter().map(|axis| axis.key))
+}
+
+fn suite_words() -> PossibleValuesParser {
+    let scenes = SUITE.iter().map(|scene| scene.word);
+    PossibleValuesParser::new(scenes.chain(["all", "tiny"]))
 }
 
 fn measure_words() -> PossibleValuesParser {

@@ -19,6 +19,8 @@ const LESSONS: &[(&str, &str)] = &[
     ("near", include_str!("../../assets/lessons/near.marraztu")),
     ("plate", include_str!("../../assets/lessons/plate.marraztu")),
     ("pressed", include_str!("../../assets/lessons/pressed.marraztu")),
+    ("shiny", include_str!("../../assets/lessons/shiny.marraztu")),
+    ("telescope", include_str!("../../assets/lessons/telescope.marraztu")),
     ("wheel", include_str!("../../assets/lessons/wheel.marraztu")),
 ];
 

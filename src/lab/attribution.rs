@@ -55,13 +55,16 @@ pub fn attribute(
         let [r, g, b, _] = source.picture().pixel(at[0], at[1]);
         Some(([r, g, b], source.primitives()[at[1] * size.width + at[0]]))
     };
-    let (exact, exact_primitive) = look(&settings.reference())?;
+    // A pixel of several samples is judged against as many, each lit.
+    let reference = Settings { samples: settings.samples, ..settings.reference() };
+    let lit = AXES.iter().filter(|axis| axis.kind == AxisKind::Scored);
+    let reference = lit.fold(reference, |now, axis| axis.most_exact(&now).of(&now));
+    let (exact, exact_primitive) = look(&reference)?;
     let (ours, primitive) = look(settings)?;
     let mut shares = Vec::new();
     let judged = |axis: &&Axis| match axis.kind {
         AxisKind::Scored => true,
-        AxisKind::ScoredApart => !axis.default_choice().is(settings),
-        AxisKind::Model => false,
+        AxisKind::ScoredApart | AxisKind::Model => false,
     };
     for axis in AXES.iter().filter(judged) {
         let (chosen, best) = (axis.chosen(settings), axis.most_exact(settings));

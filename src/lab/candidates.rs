@@ -114,12 +114,12 @@ pub fn candidates(
     }
     for axis in senseless {
         let reason = (axis.sense)(scene, view).err().unwrap_or_default().to_owned();
-        found.left_out.push(LeftOut { what: axis.name.to_owned(), reason });
+        found.left_out.push(LeftOut { what: axis.label.to_owned(), reason });
     }
     for axis in &sensible {
         for choice in axis.choices {
             if let Err(reason) = choice.is_of_its_own(scene, view, &base) {
-                let (what, reason) = (format!("{} {}", axis.key, choice.word), reason.to_owned());
+                let (what, reason) = (axis.in_words(choice), reason.to_owned());
                 found.left_out.push(LeftOut { what, reason });
             }
         }

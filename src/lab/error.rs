@@ -1,9 +1,9 @@
 //! The error of a picture against its reference.
 //!
-//! Colours are compared at pixels that show the same primitive in both pictures. At the others,
-//! colours say nothing about how light was computed: these pixels are counted as coverage. If the
-//! reference has several samples per pixel, a pixel may show several primitives, and every pixel is
-//! compared.
+//! All pixels count: a pixel that shows another triangle is an error like any other, and is counted
+//! besides. The same figures over the pixels alone that show the same primitive in both pictures
+//! say how light was computed, apart from where edges lie. Against the mean of several samples a
+//! pixel may show several primitives, and both are the same.
 
 use serde::Serialize;
 
@@ -24,6 +24,20 @@ pub struct Rendering {
 /// The error of a picture against its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Error {
+    /// The differences of bytes over all pixels.
+    #[serde(flatten)]
+    pub whole: Figures,
+    /// The same over the pixels whose coverage does not differ.
+    pub inside: Figures,
+    /// The number of pixels whose coverage differs: they show another triangle, line or background.
+    pub coverage: usize,
+    /// How different the pictures look, from 0 to 1, over all pixels.
+    pub flip: f64,
+}
+
+/// The differences of the bytes of two pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Figures {
     /// The largest difference of a byte.
     pub largest: u8,
     /// The root of the mean square of the differences of bytes.
@@ -32,10 +46,39 @@ pub struct Error {
     pub psnr: Option<f64>,
     /// The part of the bytes that differ.
     pub differing: f64,
-    /// The number of pixels whose coverage differs: they show another triangle, line or background.
-    pub coverage: usize,
-    /// How different the pictures look, from 0 to 1, over all pixels.
-    pub flip: f64,
+}
+
+/// The pixels that figures are taken over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Region {
+    /// All of them.
+    #[default]
+    Whole,
+    /// Those whose coverage does not differ.
+    Inside,
+}
+
+impl Region {
+    /// What it adds to the label of a metric.
+    #[must_use]
+    pub const fn note(self) -> &'static str {
+        match self {
+            Self::Whole => "",
+            Self::Inside => ", pixels covered alike",
+        }
+    }
+}
+
+impl Error {
+    /// The figures over these pixels.
+    #[must_use]
+    pub const fn over(&self, region: Region) -> &Figures {
+        match region {
+            Region::Whole => &self.whole,
+            Region::Inside => &self.inside,
+        }
+    }
 }
 
 /// An error metric: one number for an error.
@@ -79,13 +122,14 @@ impl Measure {
         }
     }
 
-    /// The metric's value for an error.
+    /// The metric's value for an error. FLIP is always that of all pixels.
     #[must_use]
-    pub fn of(self, error: &Error) -> f64 {
+    pub fn of(self, error: &Error, region: Region) -> f64 {
+        let figures = error.over(region);
         match self {
-            Self::Rmse => error.rmse,
-            Self::Largest => f64::from(error.largest),
-            Self::Differing => error.differing,
+            Self::Rmse => figures.rmse,
+            Self::Largest => f64::from(figures.largest),
+            Self::Differing => figures.differing,
             Self::Flip => error.flip,
         }
     }
@@ -114,28 +158,64 @@ impl Rendering {
 
     /// The error of this picture against a reference.
     #[must_use]
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 bytes")]
     pub fn error(&self, reference: &Self) -> Error {
-        let (mut largest, mut squares, mut differing, mut alike) = (0, 0_u64, 0_usize, 0_usize);
+        let (mut whole, mut inside) = (Sum::default(), Sum::default());
         let pixels = self.picture.pixels().iter().zip(reference.picture.pixels());
         let primitives = self.primitives.iter().zip(&reference.primitives);
-        let judged = |a: &u32, b: &u32| reference.mixed || a == b;
-        for ((a, b), _) in pixels.zip(primitives).filter(|(_, (a, b))| judged(a, b)) {
-            alike += 3;
-            for step in (0..3).map(|i| a[i].abs_diff(b[i])) {
-                largest = largest.max(step);
-                squares += u64::from(step) * u64::from(step);
-                differing += usize::from(step != 0);
+        for ((a, b), (shown, exact)) in pixels.zip(primitives) {
+            let steps = [0, 1, 2].map(|i| a[i].abs_diff(b[i]));
+            whole.add(steps);
+            if reference.mixed || shown == exact {
+                inside.add(steps);
             }
         }
-        let rmse = libm::sqrt(squares as f64 / alike.max(1) as f64);
         Error {
-            largest,
-            rmse,
-            psnr: (squares != 0).then(|| 20.0 * libm::log10(255.0 / rmse)),
-            differing: differing as f64 / alike.max(1) as f64,
-            coverage: self.primitives.len() - alike / 3,
+            whole: whole.figures(),
+            inside: inside.figures(),
+            coverage: whole.pixels - inside.pixels,
             flip: self.seen.difference(&reference.seen),
+        }
+    }
+
+    /// The differences of the bytes of this picture and another.
+    #[must_use]
+    pub fn change(&self, other: &Self) -> Figures {
+        let mut sum = Sum::default();
+        for (a, b) in self.picture.pixels().iter().zip(other.picture.pixels()) {
+            sum.add([0, 1, 2].map(|i| a[i].abs_diff(b[i])));
+        }
+        sum.figures()
+    }
+}
+
+/// What figures are made of.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    pixels: usize,
+    largest: u8,
+    squares: u64,
+    differing: usize,
+}
+
+impl Sum {
+    fn add(&mut self, steps: [u8; 3]) {
+        self.pixels += 1;
+        for step in steps {
+            self.largest = self.largest.max(step);
+            self.squares += u64::from(step) * u64::from(step);
+            self.differing += usize::from(step != 0);
+        }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 bytes")]
+    fn figures(&self) -> Figures {
+        let bytes = (3 * self.pixels).max(1) as f64;
+        let rmse = libm::sqrt(self.squares as f64 / bytes);
+        Figures {
+            largest: self.largest,
+            rmse,
+            psnr: (self.squares != 0).then(|| 20.0 * libm::log10(255.0 / rmse)),
+            differing: self.differing as f64 / bytes,
         }
     }
 }
@@ -165,41 +245,47 @@ mod tests {
     const PIXELS: [[u8; 4]; 4] =
         [[10, 20, 30, 255], [0, 0, 0, 255], [255, 255, 255, 255], [7, 7, 7, 255]];
 
-    /// By hand: of the three pixels that show the same primitive, two bytes of nine differ, by 3
-    /// and by 4, so the mean square is 25/9.
+    /// By hand: of twelve bytes three differ, by 3, 4 and 193; of the nine in pixels that show the
+    /// same primitive, two.
     #[test]
-    fn an_error_is_counted_by_hand_and_coverage_apart_from_it() {
+    fn an_error_is_counted_by_hand_over_all_pixels_and_inside() {
         let reference = rendering(PIXELS, [1, 0, 2, 2]);
         let mut pixels = PIXELS;
         pixels[0][1] = 23;
         pixels[2][2] = 251;
-        pixels[3] = [200, 0, 0, 255];
+        pixels[3] = [200, 7, 7, 255];
         let error = rendering(pixels, [1, 0, 2, 1]).error(&reference);
-        assert_eq!((error.largest, error.coverage), (4, 1));
-        assert!((error.rmse - 5.0 / 3.0).abs() < 1e-12);
-        assert!((error.differing - 2.0 / 9.0).abs() < 1e-12);
+        assert_eq!((error.whole.largest, error.inside.largest, error.coverage), (193, 4, 1));
+        assert!((error.whole.rmse - libm::sqrt((9.0 + 16.0 + 193.0 * 193.0) / 12.0)).abs() < 1e-12);
+        assert!((error.inside.rmse - 5.0 / 3.0).abs() < 1e-12);
+        assert!((error.whole.differing - 0.25).abs() < 1e-12);
+        assert!((error.inside.differing - 2.0 / 9.0).abs() < 1e-12);
         // 20 log10(255 / (5/3)) = 20 log10(153)
-        assert!((error.psnr.unwrap() - 43.693_828_6).abs() < 1e-6);
+        assert!((error.inside.psnr.unwrap() - 43.693_828_6).abs() < 1e-6);
         assert!(error.flip > 0.0);
+        let values = |region| Measure::ALL.map(|measure| measure.of(&error, region));
+        assert!(values(Region::Whole)[0] > values(Region::Inside)[0]);
+        assert_eq!(values(Region::Whole)[3], values(Region::Inside)[3]);
     }
 
     #[test]
-    fn against_several_samples_every_pixel_is_judged() {
+    fn against_several_samples_every_pixel_is_inside() {
         let reference = rendering(PIXELS, [1, 0, 2, 2]).mixed();
         let mut pixels = PIXELS;
         pixels[3] = [7, 7, 8, 255];
         let error = rendering(pixels, [1, 0, 2, 1]).error(&reference);
-        assert_eq!((error.largest, error.coverage), (1, 0));
-        assert!((error.differing - 1.0 / 12.0).abs() < 1e-12);
+        assert_eq!((error.whole.largest, error.coverage), (1, 0));
+        assert_eq!(error.whole, error.inside);
+        assert!((error.whole.differing - 1.0 / 12.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_picture_has_no_error_against_itself() {
         let reference = rendering(PIXELS, [1, 0, 2, 2]);
         let error = reference.error(&reference);
-        let none =
-            Error { largest: 0, rmse: 0.0, psnr: None, differing: 0.0, coverage: 0, flip: 0.0 };
-        assert_eq!(error, none);
+        let none = Figures { largest: 0, rmse: 0.0, psnr: None, differing: 0.0 };
+        assert_eq!(error, Error { whole: none, inside: none, coverage: 0, flip: 0.0 });
+        assert_eq!(reference.change(&reference), none);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The Pareto front: the points that no other beats in both time and error.
 //!
-//! A point is on the front if no other is at least as good in both and better in one.
+//! Differences that mean nothing are no reason for a place on it: a slower point has to cut the
+//! error by a stated part.
 
 /// A choice as time and error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,18 +12,21 @@ pub struct Point {
     pub error: f64,
 }
 
-/// The indices of the points on the front, from the fastest to the most exact. Points that are
-/// equal in both are all on it.
+/// The indices of the points on the front, from the fastest to the most exact. Each cuts the error
+/// of the one before by at least `least`, as a part of it.
 #[must_use]
-pub fn front(points: &[Point]) -> Vec<usize> {
-    let beats = |a: &Point, b: &Point| {
-        a.time <= b.time && a.error <= b.error && (a.time < b.time || a.error < b.error)
-    };
-    let mut best: Vec<usize> = (0..points.len())
-        .filter(|i| !points.iter().any(|other| beats(other, &points[*i])))
-        .collect();
-    best.sort_by(|a, b| points[*a].time.total_cmp(&points[*b].time).then(a.cmp(b)));
-    best
+pub fn front(points: &[Point], least: f64) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    let by = |a: &Point, b: &Point| a.time.total_cmp(&b.time).then(a.error.total_cmp(&b.error));
+    order.sort_by(|a, b| by(&points[*a], &points[*b]).then(a.cmp(b)));
+    let mut best = f64::INFINITY;
+    order.retain(|i| {
+        let error = points[*i].error;
+        let cuts = error < best && error <= best * (1.0 - least);
+        best = if cuts { error } else { best };
+        cuts
+    });
+    order
 }
 
 /// The fastest of the points whose error is at most `most`.
@@ -56,9 +60,16 @@ mod tests {
     #[test]
     fn the_front_leaves_out_what_another_beats_in_both() {
         let all = points(&[(1.0, 9.0), (2.0, 4.0), (3.0, 4.0), (2.5, 5.0), (9.0, 0.0), (1.0, 9.5)]);
-        assert_eq!(front(&all), [0, 1, 4]);
-        assert_eq!(front(&points(&[(1.0, 1.0), (1.0, 1.0)])), [0, 1]);
-        assert_eq!(front(&[]), [0; 0]);
+        assert_eq!(front(&all, 0.0), [0, 1, 4]);
+        assert_eq!(front(&points(&[(1.0, 1.0), (1.0, 1.0)]), 0.0), [0]);
+        assert_eq!(front(&[], 0.0), [0; 0]);
+    }
+
+    #[test]
+    fn a_slower_point_has_to_cut_the_error_by_a_stated_part() {
+        let all = points(&[(1.0, 1.0), (2.0, 0.96), (3.0, 0.94), (4.0, 0.0), (5.0, 0.0)]);
+        assert_eq!(front(&all, 0.05), [0, 2, 3]);
+        assert_eq!(front(&all, 0.5), [0, 3]);
     }
 
     #[test]

@@ -15,5 +15,6 @@ pub mod picture_source;
 pub mod pictures;
 pub mod report;
 pub mod statistics;
+pub mod suite;
 pub mod sweep;
 pub mod timing;

@@ -1,12 +1,38 @@
 //! Draws the pictures that the laboratory times and judges.
 
+use rayon::prelude::*;
+
 use super::error::Rendering;
 use super::hash::fnv1a;
 use crate::accuracy::Shot;
-use crate::accuracy::{Samples, Settings};
+use crate::accuracy::{Axis, AxisKind, Samples, Settings};
 use crate::base::image::Picture;
 use crate::render::Renderer;
 use crate::render::plan_frame;
+
+/// The picture that another is judged against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reference {
+    /// Every axis at its most exact, one sample per pixel; models as they are chosen.
+    #[default]
+    Exact,
+    /// 256 samples per pixel, each lit.
+    Sampled,
+    /// As [`Self::Exact`], with the models of the default.
+    DefaultModel,
+}
+
+impl Reference {
+    /// The reference that shows what the choices of an axis do.
+    #[must_use]
+    pub const fn of(axis: &Axis) -> Self {
+        match axis.kind {
+            AxisKind::Scored => Self::Exact,
+            AxisKind::ScoredApart => Self::Sampled,
+            AxisKind::Model => Self::DefaultModel,
+        }
+    }
+}
 
 /// Draws one scene, from one view and in one size, with any settings.
 pub trait PictureSource {
@@ -17,6 +43,26 @@ pub trait PictureSource {
     /// The primitive that each of its pixels shows.
     fn primitives(&mut self) -> Vec<u32>;
 
+    /// Draws the mean of 256 samples per pixel, each drawn with these settings as if it were the
+    /// centre of its pixel.
+    fn draw_sampled(&mut self, settings: &Settings) -> Picture;
+
+    /// The reference of samples per pixel: [`Settings::sampled`] with 256 samples, each lit.
+    fn sampled(&mut self, settings: &Settings) -> Rendering {
+        let picture = self.draw_sampled(&settings.sampled());
+        let primitives = vec![0; picture.pixels().len()];
+        Rendering::new(picture, primitives).mixed()
+    }
+
+    /// The picture that these settings are judged against.
+    fn reference(&mut self, settings: &Settings, reference: Reference) -> Rendering {
+        match reference {
+            Reference::Exact => self.rendering(&settings.reference()),
+            Reference::Sampled => self.sampled(settings),
+            Reference::DefaultModel => self.rendering(&Settings::default().reference()),
+        }
+    }
+
     /// Draws the picture of these settings, to be judged.
     fn rendering(&mut self, settings: &Settings) -> Rendering {
         self.draw(settings);
@@ -24,6 +70,14 @@ pub trait PictureSource {
         let rendering = Rendering::new(self.picture().clone(), primitives);
         if settings.samples == Samples::One { rendering } else { rendering.mixed() }
     }
+}
+
+/// The samples per pixel of the reference of sampling.
+const SAMPLED: u16 = 256;
+
+/// The positions of these samples, in 1/256 pixel from the centre: the centres of 16 x 16 squares.
+fn sample_shifts() -> impl Iterator<Item = [i32; 2]> {
+    (0..256).map(|i| [i % 16, i / 16].map(|i| 16 * i + 8 - 128))
 }
 
 /// The renderer with a scene.
@@ -64,6 +118,23 @@ impl PictureSource for Studio {
     fn draw(&mut self, settings: &Settings) {
         let plan = plan_frame(&self.shot.with(*settings));
         self.renderer.render(&plan);
+    }
+
+    fn draw_sampled(&mut self, settings: &Settings) -> Picture {
+        let plan = plan_frame(&self.shot.with(Settings { samples: Samples::One, ..*settings }));
+        let mut sums = vec![[0_u16; 4]; self.shot.size.area()];
+        for shift in sample_shifts() {
+            let picture = self.renderer.render(&plan.seen_from(shift));
+            sums.par_iter_mut().zip(picture.pixels()).for_each(|(sum, pixel)| {
+                for (sum, byte) in sum.iter_mut().zip(pixel) {
+                    *sum += u16::from(*byte);
+                }
+            });
+        }
+        // 256 bytes fit into 16 bits, and so does the half that rounds their mean.
+        let mean = |sum: u16| ((sum + SAMPLED / 2) / SAMPLED) as u8;
+        let pixels = sums.into_iter().map(|sum| sum.map(mean)).collect();
+        Picture::from_pixels(self.shot.size, pixels).expect("a sum for each pixel")
     }
 
     fn picture(&self) -> &Picture {

@@ -1,15 +1,16 @@
 //! Measures what accuracy costs: every choice of every axis against the default.
 //!
-//! The reference is drawn once and all errors are taken against it. The default is first measured
-//! against itself; the spread of that control is the floor under which no difference means
-//! anything. Then every candidate is measured against the default, in the same process, in turn
-//! with it.
+//! Two pictures are drawn first, whatever is on screen: the reference, with every axis at its most
+//! exact choice, and the mean of 256 samples per pixel, each lit. All choices are judged against
+//! the first, samples per pixel against the second. The default is measured against itself; the
+//! spread of that control is the floor under which no difference means anything. Then every
+//! candidate is measured against the default, in the same process, in turn with it.
 
 use fearless_simd::Level;
 use serde::Serialize;
 
 use super::candidates::{Candidate, Candidates, Group, LeftOut, Thoroughness, candidates};
-use super::error::{Error, Rendering};
+use super::error::{Error, Figures, Rendering};
 use super::instructions;
 use super::kernels::{self, Kernel};
 use super::pairs::{Ratio, Unmeasured, Watch, measure};
@@ -17,7 +18,7 @@ use super::picture_source::{PictureSource, Studio, hash};
 use super::statistics::Quartiles;
 use super::timing::Clock;
 use crate::accuracy::Shot;
-use crate::accuracy::{Axis, Settings};
+use crate::accuracy::{AXES, Axis, AxisKind, Settings};
 use crate::base::image::Size;
 
 /// What to measure.
@@ -71,25 +72,25 @@ pub struct Measured {
     pub ratio: Ratio,
     /// Whether the ratio means anything.
     pub verdict: Verdict,
-    /// What the picture is judged against; only points with the same judge compare.
-    pub against: Against,
-    /// The error against that.
+    /// The error against the reference: every axis at its most exact, one sample per pixel.
     pub error: Error,
-    /// The settings of that reference.
-    #[serde(skip)]
-    pub reference: Settings,
+    /// The error against 256 samples per pixel, each lit; `None` for another model than the one
+    /// that is drawn now.
+    pub sampled: Option<Error>,
+    /// The difference from the default's picture.
+    pub change: Figures,
     /// The picture's hash, as 16 hexadecimal digits.
     pub hash: String,
 }
 
-/// What a picture is judged against.
+/// What a row's picture is judged against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Against {
-    /// The reference of the default.
-    Default,
-    /// The reference of an axis that is scored apart: the most samples per pixel, each lit.
-    Apart,
+    /// Every axis at its most exact choice, one sample per pixel.
+    Exact,
+    /// 256 samples per pixel, each lit.
+    Sampled,
     /// The reference of another model than the one that is drawn now.
     Model,
 }
@@ -99,20 +100,25 @@ impl Against {
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
-            Self::Default => "default",
-            Self::Apart => "apart",
+            Self::Exact => "exact",
+            Self::Sampled => "256 samples",
             Self::Model => "model",
         }
     }
 
-    /// The kind of a reference, given the default's.
-    fn of(reference: &Settings, default: &Settings) -> Self {
-        if reference == default {
-            Self::Default
-        } else if reference.modelled_as(default) == *reference {
-            Self::Apart
-        } else {
+    /// What a candidate is judged against.
+    fn of(candidate: &Candidate, base: &Settings) -> Self {
+        let Candidate { group, settings, .. } = candidate;
+        let apart = |axis: &Axis| axis.kind == AxisKind::ScoredApart;
+        let differs = |axis: &&Axis| apart(axis) && !axis.default_choice().is(settings);
+        if settings.modelled_as(base) != *settings {
             Self::Model
+        } else if AXES.iter().any(|axis| differs(&axis))
+            || matches!(group, Group::Axis(key) if Axis::named(key).is_some_and(apart))
+        {
+            Self::Sampled
+        } else {
+            Self::Exact
         }
     }
 }
@@ -139,6 +145,25 @@ pub struct Row {
     pub name: String,
     /// The index of its point.
     pub point: usize,
+    /// What it is judged against.
+    pub against: Against,
+}
+
+impl Findings {
+    /// The error of a row against its own reference.
+    #[must_use]
+    pub fn error_of(&self, row: &Row) -> &Error {
+        let point = &self.points[row.point];
+        match row.against {
+            Against::Exact | Against::Model => &point.error,
+            Against::Sampled => point.sampled.as_ref().unwrap_or(&point.error),
+        }
+    }
+
+    /// The rows of an axis, from coarse to exact.
+    pub fn rows_of<'a>(&'a self, axis: &'a Axis) -> impl Iterator<Item = &'a Row> {
+        self.rows.iter().filter(move |row| row.group == Group::Axis(axis.key))
+    }
 }
 
 impl Verdict {
@@ -218,7 +243,12 @@ impl Bench<'_> {
         let thoroughness = self.question.thoroughness;
         let Candidates { all, left_out } = candidates;
         let base = all.first().expect("the default is always measured").settings;
-        let mut references = vec![(base.reference(), self.source.rendering(&base.reference()))];
+        let mut references = References {
+            exact: vec![(base.reference(), self.source.rendering(&base.reference()))],
+            sampled: self.source.sampled(&base),
+            default: self.source.rendering(&base),
+        };
+        self.watch.progress.reached(0, all.len())?;
         let control = self.measured(&base, &base)?;
         let mut findings = self.begin(control, left_out);
         // Each piece of arithmetic counts as a choice.
@@ -277,34 +307,22 @@ impl Bench<'_> {
         findings: &mut Findings,
         base: &Settings,
         candidate: Candidate,
-        references: &mut Vec<(Settings, Rendering)>,
+        references: &mut References,
     ) -> Result<(), Unmeasured> {
+        let against = Against::of(&candidate, base);
         let Candidate { group, name, settings } = candidate;
-        let reference = match group {
-            Group::Axis(key) => settings.reference_on(key),
-            Group::Preset | Group::Current | Group::Combination => settings.reference(),
-        };
-        let known = findings
-            .points
-            .iter()
-            .position(|point| point.settings == settings && point.reference == reference);
+        let known = findings.points.iter().position(|point| point.settings == settings);
         let point = match known {
             Some(point) => point,
             None => {
-                let mut point = self.point(findings, base, (settings, reference), references)?;
-                if let Group::Axis(key) = group
-                    && reference != settings.reference()
-                {
-                    // The same settings may have another row, judged against another picture.
-                    point.name = format!("{key} {}", name.to_lowercase());
-                }
+                let point = self.point(findings, base, settings, references)?;
                 findings.points.push(point);
                 findings.points.len() - 1
             }
         };
         // The current settings have a row of their own only if no other row shows them.
         if group != Group::Current || known.is_none() {
-            findings.rows.push(Row { group, name, point });
+            findings.rows.push(Row { group, name, point, against });
         }
         Ok(())
     }
@@ -313,8 +331,8 @@ impl Bench<'_> {
         &mut self,
         findings: &Findings,
         base: &Settings,
-        (settings, reference): (Settings, Settings),
-        references: &mut Vec<(Settings, Rendering)>,
+        settings: Settings,
+        references: &mut References,
     ) -> Result<Measured, Unmeasured> {
         let a_ms = findings.control.a_ms;
         // All times are relative to the default, and its ratio is the control's.
@@ -325,24 +343,34 @@ impl Bench<'_> {
             let ms = a_ms * ratio.quartiles.median;
             (ratio, ms)
         };
-        if references.iter().all(|(settings, _)| *settings != reference) {
-            references.push((reference, self.source.rendering(&reference)));
+        let reference = settings.reference();
+        if references.exact.iter().all(|(settings, _)| *settings != reference) {
+            references.exact.push((reference, self.source.rendering(&reference)));
         }
-        let exact = references.iter().find(|(settings, _)| *settings == reference);
+        let exact = references.exact.iter().find(|(settings, _)| *settings == reference);
         let (_, exact) = exact.expect("it was drawn if it was not there");
         let rendering = self.source.rendering(&settings);
-        let error = rendering.error(exact);
+        let is_model = settings.modelled_as(base) != settings;
         Ok(Measured {
             name: settings.in_words(),
             settings,
             ms,
             verdict: Verdict::of(&ratio.quartiles, findings.floor),
             ratio,
-            // The first is the reference of the default.
-            against: Against::of(&reference, &references[0].0),
-            error,
-            reference,
+            error: rendering.error(exact),
+            sampled: (!is_model).then(|| rendering.error(&references.sampled)),
+            change: rendering.change(&references.default),
             hash: format!("{:016x}", hash(rendering.picture())),
         })
     }
+}
+
+/// The pictures that errors are taken against.
+struct References {
+    /// Every axis at its most exact, for each model, with the settings; the default's is the first.
+    exact: Vec<(Settings, Rendering)>,
+    /// 256 samples per pixel.
+    sampled: Rendering,
+    /// The default's picture.
+    default: Rendering,
 }

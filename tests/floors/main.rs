@@ -76,6 +76,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "pictures",
             "sweep",
             "report",
+            "suite",
         ],
     ),
     (

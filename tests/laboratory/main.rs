@@ -7,10 +7,12 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 
 mod bench;
+mod lessons;
 mod planted;
 mod program;
 mod promise;
 #[path = "../random_scenes/mod.rs"]
 mod random_scenes;
+mod suite;
 mod told;
 mod words;

@@ -3,6 +3,9 @@
 use marraztu::accuracy::{Axis, AxisKind, Choice, LightAt, Settings};
 use marraztu::lab::attribution::attribute;
 use marraztu::lab::candidates::Group;
+use marraztu::lab::error::{Measure, Region};
+use marraztu::lab::report::{Budgets, Report};
+use marraztu::lab::statistics::Quartiles;
 use marraztu::lab::sweep::{Findings, Measured, Verdict};
 
 use crate::bench::{FakeClock, FakeSource, Planted, found, plantable};
@@ -37,7 +40,7 @@ fn a_planted_slowdown_shows_in_its_own_row_and_in_no_other() {
         for point in &findings.points {
             let slow = planted.1.is(&point.settings);
             assert_eq!(point.verdict == Verdict::Slower, slow, "{}", point.name);
-            assert_eq!(point.error.largest, 0, "{}", point.name);
+            assert_eq!(point.error.whole.largest, 0, "{}", point.name);
         }
     }
 }
@@ -52,10 +55,11 @@ fn a_planted_error_shows_in_its_own_row_and_in_no_other() {
         let findings = found(&mut FakeClock::new(None), &mut source);
         for (name, point, here) in rows(&findings, &planted) {
             let error = &point.error;
-            assert_eq!(error.largest, if here { 9 } else { 0 }, "{name}");
+            assert_eq!(error.whole.largest, if here { 9 } else { 0 }, "{name}");
             // One byte of 192 is off by 9.
             let rmse = if here { libm::sqrt(81.0 / 192.0) } else { 0.0 };
-            assert!((error.rmse - rmse).abs() < 1e-12, "{name}");
+            assert!((error.whole.rmse - rmse).abs() < 1e-12, "{name}");
+            assert_eq!((error.inside, point.change), (error.whole, error.whole), "{name}");
             assert_eq!((error.coverage, error.flip > 0.0), (0, here), "{name}");
             assert_eq!(point.verdict, Verdict::Alike, "{name}");
         }
@@ -63,7 +67,7 @@ fn a_planted_error_shows_in_its_own_row_and_in_no_other() {
         let findings = found(&mut FakeClock::new(None), &mut source);
         for (name, point, here) in rows(&findings, &planted) {
             assert_eq!(
-                (point.error.coverage, point.error.largest),
+                (point.error.coverage, point.error.whole.largest),
                 (usize::from(here), 0),
                 "{name}"
             );
@@ -84,4 +88,101 @@ fn the_error_of_a_pixel_is_attributed_to_the_axis_that_causes_it() {
     assert!(steps[1..].iter().all(|(_, steps)| *steps == 0), "{steps:?}");
     assert_eq!(attribution_at([4, 3]).steps(), 0);
     assert_eq!(attribute(&mut FakeSource::new(face, None), &coarse, [8, 0]), None);
+}
+
+/// The verdict on a scene with something planted, in one string.
+fn verdict(slow: Planted, wrong: Planted) -> String {
+    let findings = found(&mut FakeClock::new(slow), &mut FakeSource::new(wrong, None));
+    let report = Report {
+        scene: "a scene".to_owned(),
+        command: String::new(),
+        measure: Measure::Rmse,
+        region: Region::Whole,
+        budgets: Budgets::default(),
+        findings,
+    };
+    report.verdict().join(" ")
+}
+
+#[test]
+fn the_verdict_names_a_planted_slowdown_and_no_other_choice() {
+    let choices: Vec<_> = plantable().filter(|(axis, _)| axis.kind != AxisKind::Model).collect();
+    for planted in &choices {
+        let text = verdict(Some(*planted), None);
+        let name = planted.0.in_words(planted.1);
+        assert!(text.to_lowercase().contains(&name.to_lowercase()), "{name}: {text}");
+        assert!(text.contains("3.0x"), "{name}: {text}");
+        assert!(text.ends_with("Nothing saves more than the noise (0.1%)."), "{text}");
+        assert_eq!(text.matches("3.0x").count(), 1, "{text}");
+    }
+    assert_eq!(verdict(None, None), "At 8x8 on a scene: nothing saves more than the noise (0.1%).");
+}
+
+#[test]
+fn the_verdict_names_a_planted_error_and_what_it_costs() {
+    let scored = |(axis, _): &(&Axis, &Choice)| axis.kind != AxisKind::Model;
+    for planted in plantable().filter(scored) {
+        let text = verdict(None, Some(planted));
+        let name = planted.0.in_words(planted.1).to_lowercase();
+        let exact = planted.1.word == planted.0.most_exact(&Settings::default()).word;
+        // The most exact choice is part of the reference, and every other choice is then wrong.
+        let named = text.to_lowercase().contains(&name);
+        assert!(named || (exact && planted.0.kind == AxisKind::Scored), "{name}: {text}");
+        if !exact {
+            let only = format!("with the error in brackets: {name} (0.65).");
+            assert!(text.to_lowercase().contains(&only), "{text}");
+        }
+    }
+}
+
+/// The figures of a page that everybody may read: what is told of them is told by rule.
+#[test]
+fn the_verdict_tells_what_samples_buy_and_that_64_bits_are_not_worth_it() {
+    let choice = |key: &str, word: &str| {
+        let axis = Axis::named(key).unwrap();
+        (axis, axis.choice(word).unwrap())
+    };
+    let mut findings = found(&mut FakeClock::new(None), &mut FakeSource::new(None, None));
+    let mut edit = |(_, chosen): (&Axis, &Choice), ratio: f64, rmse: f64, largest: u8| {
+        let default = chosen.is(&Settings::default());
+        let points = findings.points.iter_mut();
+        let settings = chosen.of(&Settings::default());
+        for point in points.filter(|point| point.settings == settings || default) {
+            if point.settings == settings {
+                point.ratio.quartiles = Quartiles { lower: ratio, median: ratio, upper: ratio };
+                point.verdict = Verdict::of(&point.ratio.quartiles, 0.06);
+                point.change.largest = largest;
+                point.change.differing = 4e-5;
+            }
+            let sampled = point.sampled.as_mut().filter(|_| point.settings == settings || default);
+            if let Some(sampled) = sampled {
+                sampled.whole.rmse = rmse;
+            }
+        }
+    };
+    edit(choice("samples", "1"), 1.0, 2.3, 0);
+    edit(choice("samples", "4"), 2.1, 0.78, 90);
+    edit(choice("samples", "16"), 7.5, 0.42, 90);
+    edit(choice("arithmetic", "f64"), 2.1, 2.3, 1);
+    findings.floor = 0.06;
+    let report = Report {
+        scene: "this scene".to_owned(),
+        command: String::new(),
+        measure: Measure::Rmse,
+        region: Region::Whole,
+        budgets: Budgets::default(),
+        findings,
+    };
+    let text = report.verdict().join(" ");
+    assert!(
+        text.starts_with(
+            "At 8x8 on this scene: 4 samples per pixel cost 2.1x and cut the error from 2.3 to \
+             0.78 of 255 (16: 7.5x, 0.42)."
+        ),
+        "{text}"
+    );
+    let bits = "Light in 64 bits costs 2.1x and changes 0.004% of the bytes by one step: not \
+                worth it here.";
+    assert!(text.contains(bits), "{text}");
+    assert!(text.ends_with("Nothing saves more than the noise (6%)."), "{text}");
 }

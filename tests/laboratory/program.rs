@@ -39,9 +39,11 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
     for part in [
         "the first scene: 48 x 36 pixels",
         "presets",
+        "At 48x36 on the first scene: ",
+        "saves more than the noise",
         "means nothing",
         "combinations",
-        "not measured: texture filter: nothing that is shown has a texture",
+        "not measured: Texture filter: nothing that is shown has a texture",
         "the fastest with RMSE in byte steps at most 255: ",
         "the most exact within",
         "equal results",
@@ -56,8 +58,10 @@ fn a_sweep_prints_its_table_and_leaves_everything_in_its_folder() {
     assert_eq!(read("table.txt"), out);
     assert!(read("table.csv").starts_with("group,name,"));
     assert!(read("report.json").contains("\"floor\""));
-    assert!(read("scatter.svg").contains("<svg"));
-    assert!(io::load_picture(&found.join("scatter.png")).is_ok());
+    for look in ["light", "dark"] {
+        assert!(read(&format!("plots-{look}.svg")).contains("<svg"));
+        assert!(io::load_picture(&found.join(format!("plots-{look}.png"))).is_ok());
+    }
     let [exact, x1, x256] = ["exact", "error-x1", "error-x256"]
         .map(|name| io::load_picture(&found.join(format!("{name}.png"))).unwrap());
     assert_eq!((exact.size().width, exact.size().height), (48, 36));
@@ -72,7 +76,7 @@ fn axes_are_chosen_by_their_keys() {
     let folder = tempfile::tempdir().unwrap();
     let (out, _) =
         lab(0, folder.path(), &["lab", "--quick", "--size", "32x24", "--axes", "arithmetic"]);
-    assert!(out.contains("arithmetic of light, --arithmetic"), "{out}");
+    assert!(out.contains("Light arithmetic, --arithmetic"), "{out}");
     assert!(!out.contains("--shading"), "{out}");
     let (_, err) = lab(2, folder.path(), &["lab", "--axes", "beauty"]);
     assert!(AXES.iter().all(|axis| err.contains(axis.key)), "{err}");
@@ -102,4 +106,18 @@ fn a_preset_is_drawn_as_its_points_and_gives_way_to_single_axes() {
     assert!(draft == drawn(&["--shading", "vertex", "--filter", "nearest"]));
     assert!(draft != drawn(&[]));
     assert!(drawn(&["--preset", "draft", "--shading", "pixel"]) == drawn(&[]));
+}
+
+#[test]
+fn one_scene_of_the_suite_is_measured_by_its_word() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["lab", "--suite=depth", "--size", "48x27", "--out", "found"];
+    let (out, _) = lab(0, folder.path(), &arguments);
+    assert!(out.contains("At 48x27 on suite scene depth: "), "{out}");
+    assert!(out.contains("again: marraztu lab --suite=depth"), "{out}");
+    let found = folder.path().join("found");
+    for name in ["page.md", "page.html", "table.csv", "report.json", "depth-depth-light.svg"] {
+        assert!(found.join(name).exists(), "{name}");
+    }
+    lab(2, folder.path(), &["lab", "--suite=beauty"]);
 }

@@ -1,11 +1,11 @@
 //! Tables, data and plots hold every choice.
 
-use marraztu::accuracy::{AXES, Axis, Choice, LightAt, Samples, Settings};
+use marraztu::accuracy::{AXES, Axis, Choice, Samples, Settings};
 use marraztu::lab::candidates::Group;
-use marraztu::lab::error::Measure;
-use marraztu::lab::report::{Budgets, Chart, MarkKind, Report, csv, png, svg, tabs, text};
-use marraztu::lab::sweep::Against;
-use marraztu::lab::sweep::Row;
+use marraztu::lab::error::{Measure, Region};
+use marraztu::lab::report::{Budgets, Look, Panels, Report, csv, overview_names, png, svg};
+use marraztu::lab::report::{markdown, panel_svg, tabs, text};
+use marraztu::lab::sweep::{Against, Verdict};
 
 use crate::bench::{FakeClock, FakeSource, found};
 
@@ -19,6 +19,7 @@ fn report() -> Report {
         scene: "a scene".to_owned(),
         command: "marraztu lab".to_owned(),
         measure: Measure::Rmse,
+        region: Region::Whole,
         budgets: Budgets { error: Some(0.0), ms: Some(0.5) },
         findings,
     }
@@ -69,99 +70,149 @@ fn json_holds_what_the_table_holds() {
 fn budgets_are_answered_or_said_to_be_too_small() {
     let mut report = report();
     // Nothing takes half a millisecond, and 64 bits are exact.
-    let exact = report.findings.points.iter().position(|point| point.name == "arithmetic f64");
+    let exact = report.findings.points.iter().position(|point| point.name == "light in 64 bits");
     assert_eq!((report.fastest().flatten(), report.most_exact()), (exact, Some(None)));
     let answers = report.answers();
-    assert!(answers[0].contains("at most 0: arithmetic f64: 3 ms, 0"), "{answers:?}");
+    assert!(answers[0].contains("at most 0: light in 64 bits: 3 ms, 0"), "{answers:?}");
     assert!(answers[1].contains("none that was measured"), "{answers:?}");
     report.budgets = Budgets::default();
     assert_eq!(report.answers(), [""; 0]);
 }
 
 #[test]
-fn a_chart_puts_an_error_of_0_under_all_others_and_slow_right_of_fast() {
-    let chart = Chart::new(&report());
-    let mark = |name: &str| chart.marks.iter().find(|mark| mark.name == name).unwrap();
-    let (default, slow, model) =
-        (mark("Default"), mark("Exact"), mark("Default, specular half-vector"));
-    assert_eq!((default.kind, slow.kind), (MarkKind::Default, MarkKind::Preset));
-    assert!(default.on_front && default.current && slow.on_front && !slow.current);
-    // A model takes no part.
-    assert!(model.kind == MarkKind::Model && !model.on_front);
-    assert!(default.at[1] > slow.at[1] + 0.9);
-    assert!((slow.at[0] - default.at[0] - libm::log10(3.0)).abs() < 1e-9);
-    let zero = chart.y.ticks.iter().find(|(_, label)| label == "0").unwrap();
-    assert_eq!(zero.0, slow.at[1]);
-    for mark in &chart.marks {
-        for (scale, at) in [(&chart.x, mark.at[0]), (&chart.y, mark.at[1])] {
-            assert!(scale.range[0] < at && at < scale.range[1], "{}", mark.name);
+fn a_panel_puts_an_error_of_0_under_all_others_and_slow_right_of_fast() {
+    let report = report();
+    let panels = Panels::new(&report);
+    let panel = panels.of(Some("arithmetic"));
+    let [fast, slow] = &panel.marks[..] else { panic!("{panel:?}") };
+    assert_eq!([&fast.label, &slow.label], ["32 bits", "64 bits"]);
+    assert_eq!([fast.is_default, slow.is_default], [true, false]);
+    assert_eq!([fast.current, slow.current], [true, false]);
+    assert!(fast.at[1] > slow.at[1] + 0.9);
+    assert!((slow.at[0] - fast.at[0] - libm::log10(3.0)).abs() < 1e-9);
+    assert_eq!(slow.at[1], panels.zero);
+    let zero = panels.y.ticks.iter().find(|(_, label)| label == "0").unwrap();
+    assert_eq!(zero.0, panels.zero);
+    for panel in panels.axes.iter().chain([&panels.overview]) {
+        for mark in &panel.marks {
+            for (scale, at) in [(&panels.x, mark.at[0]), (&panels.y, mark.at[1])] {
+                assert!(scale.range[0] < at && at < scale.range[1], "{}", mark.label);
+            }
         }
     }
 }
 
-/// The point of a row.
-fn point(report: &Report, key: &'static str, name: &str) -> usize {
-    let is_it = |row: &&Row| row.group == Group::Axis(key) && row.name == name;
-    report.findings.rows.iter().find(is_it).unwrap().point
-}
-
 #[test]
-fn several_samples_are_judged_against_sixty_four_each_lit_and_have_a_front_of_their_own() {
+fn every_axis_has_a_panel_with_its_choices_from_coarse_to_exact() {
     let report = report();
-    let all = [Samples::One, Samples::Four, Samples::Sixteen, Samples::SixtyFour];
-    for (samples, name) in all.into_iter().zip(["1", "4", "16", "64"]) {
-        let i = point(&report, "samples", name);
-        let found = &report.findings.points[i];
-        assert_eq!((found.settings.samples, found.against), (samples, Against::Apart), "{name}");
-        let reference = found.reference;
-        assert_eq!((reference.samples, reference.light), (Samples::SixtyFour, LightAt::Sample));
-        assert!(!report.front().contains(&i), "{name}");
+    let panels = Panels::new(&report);
+    assert_eq!(panels.axes.len(), AXES.len());
+    for (axis, panel) in AXES.iter().zip(&panels.axes) {
+        let own = axis.choices.iter().filter(|choice| (choice.among)(&Settings::default()).is_ok());
+        let labels: Vec<&str> = own.map(|choice| choice.label).collect();
+        assert!(panel.marks.iter().map(|mark| &mark.label).eq(labels.iter()), "{panel:?}");
+        assert_eq!(panel.marks.iter().filter(|mark| mark.is_default).count(), 1, "{panel:?}");
     }
-    let apart = report.front_apart();
-    assert!(!apart.is_empty());
-    assert!(apart.iter().all(|i| report.findings.points[*i].against == Against::Apart));
-    let chart = Chart::new(&report);
-    let mark = &chart.marks[point(&report, "samples", "4")];
-    assert_eq!((mark.kind, mark.name.as_str()), (MarkKind::Apart, "samples 4"));
-    let (text, svg) = (text(&report), svg(&report).unwrap());
-    assert!(text.contains("samples per pixel (against 64 samples, each lit), --samples"), "{text}");
-    assert!(svg.contains("samples 4 ") || svg.contains("samples 4:"), "{svg}");
-    assert!(svg.contains("(against 64 samples)") && !svg.contains("samples 4 (a model"), "{svg}");
 }
 
 #[test]
-fn choices_with_different_coverage_are_on_no_front_but_that_of_flip() {
+fn samples_are_judged_against_256_and_everything_else_against_one_reference() {
+    let report = report();
+    for row in &report.findings.rows {
+        let settings = &report.findings.points[row.point].settings;
+        let several = settings.samples != Samples::One || row.group == Group::Axis("samples");
+        let expected = match row.group {
+            Group::Axis("specular") if row.name == "N.H" => Against::Model,
+            _ if several => Against::Sampled,
+            _ => Against::Exact,
+        };
+        assert_eq!(row.against, expected, "{row:?}");
+        assert_eq!(
+            report.findings.points[row.point].sampled.is_none(),
+            expected == Against::Model,
+            "{row:?}"
+        );
+    }
+    let text = text(&report);
+    assert!(
+        text.contains("Samples per pixel (against 256 samples, each lit), --samples"),
+        "{text}"
+    );
+}
+
+/// In a plot with as many choices on the front as there can be.
+#[test]
+fn the_overview_names_at_most_ten_and_no_two_names_overlap() {
+    let mut report = report();
+    // Each choice takes a little longer and errs a little less than the one before; the first ones
+    // stand in one place.
+    for (i, point) in report.findings.points.iter_mut().enumerate() {
+        let step = (i / 3) as f64;
+        point.ratio.quartiles.median = 1.0 + 0.02 * step;
+        point.ms = point.ratio.quartiles.median;
+        point.verdict = if i == 0 { Verdict::Alike } else { Verdict::Slower };
+        let mut error = point.error;
+        error.whole.rmse = 9.0 / (1.0 + 0.1 * step) - 1e-3 * i as f64;
+        point.sampled = Some(error);
+    }
+    let overview = report.overview();
+    assert!((5..=10).contains(&overview.len()) && overview.contains(&0), "{overview:?}");
+    let names = overview_names(&report);
+    assert_eq!(names.len(), overview.len());
+    for (i, (name, text)) in names.iter().enumerate() {
+        for (other, box_of_other) in &names[..i] {
+            assert!(!text.overlaps(box_of_other), "{name} and {other}");
+        }
+    }
+}
+
+#[test]
+fn figures_are_of_all_pixels_or_on_request_of_those_covered_alike() {
     let subpixels = Axis::named("subpixels").unwrap();
     let coarse = subpixels.choice("bits-0").map(|choice| (subpixels, choice));
-    // All take as long and look the same.
-    let findings = found(&mut FakeClock::new(None), &mut FakeSource::new(None, coarse));
+    // The pixel that is covered differently is wrong as well.
+    let mut source = FakeSource::new(coarse, coarse);
+    source.same_pixel = true;
+    let findings = found(&mut FakeClock::new(None), &mut source);
     let mut report = Report { findings, ..report() };
-    let coarse = point(&report, "subpixels", "0");
-    assert_eq!(report.findings.points[coarse].error.coverage, 1);
-    for measure in Measure::ALL {
-        report.measure = measure;
-        assert_eq!(report.is_scored(coarse), measure == Measure::Flip, "{measure:?}");
-        assert!(report.is_scored(0));
-        assert_eq!(report.front().contains(&coarse), measure == Measure::Flip, "{measure:?}");
-    }
-    report.measure = Measure::Rmse;
-    assert!(svg(&report).unwrap().contains("(other pixels)"));
+    let of = |report: &Report| {
+        let mut rows = report.findings.rows.iter();
+        let row = rows.find(|row| row.group == Group::Axis("subpixels") && row.name == "0");
+        report.error(row.unwrap())
+    };
+    assert!((of(&report) - libm::sqrt(81.0 / 192.0)).abs() < 1e-12);
+    assert!(text(&report).contains("all pixels"));
+    report.region = Region::Inside;
+    assert_eq!(of(&report), 0.0);
+    assert!(text(&report).contains("the pixels whose coverage does not differ"));
+    report.measure = Measure::Flip;
+    assert!(of(&report) > 0.0, "FLIP is always of all pixels");
 }
 
 #[test]
-fn the_plot_names_every_point_in_svg_and_draws_them_in_png() {
+fn the_plots_name_every_choice_in_svg_and_are_drawn_in_png_light_and_dark() {
     let report = report();
-    let svg = svg(&report).unwrap();
-    for point in &report.findings.points {
-        assert!(svg.contains(&point.name), "{} is not in the plot", point.name);
+    for (look, paper, data) in [
+        (Look::Light, [255, 255, 255, 255], [0, 114, 178, 255]),
+        (Look::Dark, [24, 24, 28, 255], [86, 180, 233, 255]),
+    ] {
+        let svg = svg(&report, look).unwrap();
+        for axis in AXES {
+            assert!(svg.contains(axis.label), "{} is not in the plot", axis.label);
+        }
+        for sentence in report.verdict() {
+            let start: String = sentence.chars().take(40).collect();
+            assert!(svg.replace('\n', "").contains(&start), "{start} is not in the plot");
+        }
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+        assert!(panel_svg(&report, Some("depth"), look).unwrap().contains("Reversed depth"));
+        let png = png(&report, look).unwrap();
+        let of = |color: [u8; 4]| png.pixels().iter().filter(|pixel| **pixel == color).count();
+        assert!(of(paper) > 100_000 && of(data) > 500, "{look:?}: {} {}", of(paper), of(data));
     }
-    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
-    let png = png(&report).unwrap();
-    let of = |color: [u8; 4]| png.pixels().iter().filter(|pixel| **pixel == color).count();
-    // The front's green, a preset's blue, and letters. The marks of the axes all lie under others
-    // here.
-    for color in [[0, 158, 115, 255], [0, 114, 178, 255], [34, 34, 40, 255]] {
-        assert!(of(color) > 10, "{color:?} is seen {} times", of(color));
+    for axis in AXES {
+        let rows = markdown(&report, axis).lines().count() - 2;
+        assert_eq!(rows, report.findings.rows_of(axis).count(), "{}", axis.key);
     }
 }
 

@@ -111,12 +111,12 @@ fn every_axis_of_accuracy_is_chosen_by_its_name() {
         ("Shading: Flat", Settings { light: LightAt::Face, ..first }),
         ("Shading: Gouraud", Settings { light: LightAt::Vertex, ..first }),
         ("Shading: Phong", first),
-        ("Highlight: N.H", Settings { specular: SpecularForm::HalfVector, ..first }),
-        ("Highlight: R.V", first),
-        ("Textures: Nearest", Settings { filter: Filter::Nearest, ..first }),
-        ("Textures: Bilinear", first),
-        ("Arithmetic: 64 bits", Settings { arithmetic: Arithmetic::F64, ..first }),
-        ("Arithmetic: 32 bits", first),
+        ("Specular form: N.H", Settings { specular: SpecularForm::HalfVector, ..first }),
+        ("Specular form: R.V", first),
+        ("Texture filter: Nearest", Settings { filter: Filter::Nearest, ..first }),
+        ("Texture filter: Bilinear", first),
+        ("Light arithmetic: 64 bits", Settings { arithmetic: Arithmetic::F64, ..first }),
+        ("Light arithmetic: 32 bits", first),
     ] {
         // Some of the panel is scrolled out of sight.
         control(&editor, Role::RadioButton, label).click_accesskit();

@@ -11,9 +11,9 @@ fn anything(scene: &Scene, view: &View) -> Result<(), &'static str> {
 }
 
 pub(super) const VERTICES: Axis = Axis {
-    name: "arithmetic of vertices",
     key: "vertices",
-    label: "Vertices",
+    label: "Vertex arithmetic",
+    phrase: "vertices in {}",
     what: "The precision in which vertices are transformed",
     kind: AxisKind::Scored,
     choices: &[
@@ -43,9 +43,9 @@ pub(super) const VERTICES: Axis = Axis {
 };
 
 pub(super) const SUBPIXELS: Axis = Axis {
-    name: "subpixel bits",
     key: "subpixels",
-    label: "Subpixels",
+    label: "Subpixel bits",
+    phrase: "{} subpixel bits",
     what: "The fraction of a pixel that vertices are snapped to",
     kind: AxisKind::Scored,
     choices: &[
@@ -77,9 +77,9 @@ pub(super) const SUBPIXELS: Axis = Axis {
 };
 
 pub(super) const COVERAGE: Axis = Axis {
-    name: "coverage",
     key: "coverage",
     label: "Coverage",
+    phrase: "coverage by {}",
     what: "Which pixels a triangle covers",
     kind: AxisKind::Scored,
     choices: &[
@@ -90,7 +90,7 @@ pub(super) const COVERAGE: Axis = Axis {
         choice!("scan-lines" "Scan lines" coverage = Coverage::ScanLines,
             "As ancestor B drew: rows between edges that are rounded to whole pixels.",
             "outlines a pixel too wide; every seam is drawn twice"),
-        choice!("f32-edges" "32 bits" coverage = Coverage::F32Edges,
+        choice!("f32-edges" "32-bit edges" coverage = Coverage::F32Edges,
             "Edge functions in 32-bit floating point, one pixel at a time.",
             "pixels whose centres lie on an edge are covered twice or, by rounding, not at all"),
         choice!("exact" "Exact" coverage = Coverage::Exact,
@@ -111,20 +111,20 @@ pub(super) const COVERAGE: Axis = Axis {
 };
 
 pub(super) const INTERPOLATION: Axis = Axis {
-    name: "interpolation",
     key: "interpolation",
     label: "Interpolation",
+    phrase: "interpolation {}",
     what: "How vertex attributes are interpolated across a triangle",
     kind: AxisKind::Scored,
     choices: &[
         choice!("affine" "Affine" interpolation = Interpolation::Affine,
             "Linearly on the screen, as ancestor B drew: one pixel at a time.",
             "557 texels on a wall from z 2.2 to 100"),
-        choice!("every-sixteen" "Every 16" interpolation = Interpolation::EverySixteen,
+        choice!("every-sixteen" "Every 16 pixels" interpolation = Interpolation::EverySixteen,
             "With perspective at every sixteenth pixel of a row, linearly between them, as in \
                 games of 1996.",
             "33 texels on the same wall"),
-        choice!("perspective" "Exact" interpolation = Interpolation::Perspective,
+        choice!("perspective" "Perspective" interpolation = Interpolation::Perspective,
             "With perspective at every pixel.",
             "none"),
     ],
@@ -141,16 +141,16 @@ pub(super) const INTERPOLATION: Axis = Axis {
             have to be divided by their distance before they are interpolated.",
         coarse: "Interpolated linearly, a texture bends along the diagonal of every square and \
             swims as the view moves.",
-        shows: "On a long floor covered with pictures: compare Affine with Exact.",
+        shows: "On a long floor covered with pictures: compare Affine with Perspective.",
         scene: "floor",
         choice: None,
     },
 };
 
 pub(super) const STRETCHED: Axis = Axis {
-    name: "normal transform",
     key: "stretched",
     label: "Normal transform",
+    phrase: "normals transformed {}",
     what: "How the normals of a stretched object are transformed",
     kind: AxisKind::Scored,
     choices: &[

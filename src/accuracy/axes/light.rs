@@ -5,9 +5,9 @@ use super::{Axis, AxisKind, Choice, Lesson};
 use crate::accuracy::{Arithmetic, LeaveOut, LightAt, Normalising, SpecularForm, SpecularPower};
 
 pub(super) const SHADING: Axis = Axis {
-    name: "shading",
     key: "shading",
     label: "Shading",
+    phrase: "{} shading",
     what: "Where light is evaluated",
     kind: AxisKind::Scored,
     choices: &[
@@ -40,9 +40,9 @@ pub(super) const SHADING: Axis = Axis {
 };
 
 pub(super) const ARITHMETIC: Axis = Axis {
-    name: "arithmetic of light",
     key: "arithmetic",
-    label: "Arithmetic",
+    label: "Light arithmetic",
+    phrase: "light in {}",
     what: "The precision in which light is computed",
     kind: AxisKind::Scored,
     choices: &[
@@ -57,35 +57,37 @@ pub(super) const ARITHMETIC: Axis = Axis {
     lesson: Lesson {
         title: "What 64 bits add to light",
         what: "Every number is rounded when it is stored: 32 bits keep 7 digits, 64 bits 16.",
-        coarse: "The lost digits are almost never visible: a byte changes only if the exact value \
-            is very close to the border between two steps.",
-        shows: "Only in the picture of the error, amplified 256 times.",
-        scene: "ball",
+        coarse: "The lost digits are almost never visible. They are if a large distance swallows \
+            the digits of a small one: 500,000 units from the camera, positions are known to 1/32 \
+            of a unit alone.",
+        shows: "On a plate seen through a telescope, where a lamp hangs one unit above it: its \
+            light falls into stripes.",
+        scene: "telescope",
         choice: None,
     },
 };
 
 pub(super) const POWER: Axis = Axis {
-    name: "specular power",
     key: "power",
-    label: "Power",
+    label: "Specular power",
+    phrase: "specular power by {}",
     what: "How the power of a highlight is computed",
     kind: AxisKind::Scored,
     choices: &[
         choice!("schlick" "Schlick" power = SpecularPower::Schlick,
             "Schlick's approximation x / (n - n x + x), which needs no power.",
             "51 byte steps at Ns 76.8: the curve has another shape"),
-        choice!("table-256" "256" power = SpecularPower::Table256,
+        choice!("table-256" "Table 256" power = SpecularPower::Table256,
             "The nearest of 256 powers in a table.",
             "35 byte steps at Ns 76.8"),
-        choice!("table-1024" "1024" power = SpecularPower::Table1024,
+        choice!("table-1024" "Table 1024" power = SpecularPower::Table1024,
             "Linear interpolation in a table of 1024 powers.",
             "0.17 of a byte step at Ns 76.8"),
         choice!("polynomial" "Polynomial" power = SpecularPower::Polynomial,
             "Squares for whole exponents up to 64, and uses a polynomial for others: sixteen at \
                 once.",
             "0.001 of a byte step"),
-        choice!("squaring" "2^k" power = SpecularPower::Squaring,
+        choice!("squaring" "Squaring 2^k" power = SpecularPower::Squaring,
             "Only squares if the exponent is a power of two.",
             "rounding alone; other exponents as Polynomial",
             |scene, view| if_any(scene, view, has_even_power,
@@ -101,16 +103,17 @@ pub(super) const POWER: Axis = Axis {
             that, so it is computed or looked up in a table.",
         coarse: "A table of 256 has steps where the power is steep, and they show as rings. \
             Schlick's approximation gives a highlight that fades out more slowly.",
-        shows: "On the bright spot of the ball: compare 256 with Polynomial, then with Schlick.",
+        shows: "On the bright spot of the ball: compare Table 256 with Polynomial, then with \
+            Schlick.",
         scene: "ball",
         choice: None,
     },
 };
 
 pub(super) const NORMALISING: Axis = Axis {
-    name: "normalisation",
     key: "normalising",
     label: "Normalisation",
+    phrase: "normalisation by {}",
     what: "How vectors are normalised",
     kind: AxisKind::Scored,
     choices: &[
@@ -132,16 +135,16 @@ pub(super) const NORMALISING: Axis = Axis {
         coarse: "With the instruction alone, vectors are a little too long or too short, and the \
             power of a highlight magnifies that: highlights become grainy, differently on each \
             kind of CPU.",
-        shows: "On the bright spot of the ball, in the picture of the error, amplified 16 times.",
-        scene: "ball",
+        shows: "On the bright spot of the polished ball, whose exponent is 500.",
+        scene: "shiny",
         choice: None,
     },
 };
 
 pub(super) const FAINT: Axis = Axis {
-    name: "faint light",
     key: "faint",
     label: "Faint light",
+    phrase: "faint light {}",
     what: "What happens to light that is too faint to see",
     kind: AxisKind::Scored,
     choices: &[
@@ -165,9 +168,9 @@ pub(super) const FAINT: Axis = Axis {
 };
 
 pub(super) const SPECULAR: Axis = Axis {
-    name: "specular form",
     key: "specular",
-    label: "Highlight",
+    label: "Specular form",
+    phrase: "highlights by {}",
     what: "The form of the highlight",
     kind: AxisKind::Model,
     choices: &[
@@ -184,9 +187,10 @@ pub(super) const SPECULAR: Axis = Axis {
         what: "A highlight can be measured by the angle from the mirrored light to the eye (R.V), \
             or from the normal to the half-way vector between light and eye (N.H).",
         coarse: "Neither is an error of the other: with the same exponent N.H is about twice as \
-            wide, and it stretches where light grazes.",
+            wide, and it stretches where light grazes. The exact picture here is that of \
+            R.V.",
         shows: "On the rim of a shiny ball lit from behind, and in the size of every highlight.",
         scene: "ball",
-        choice: None,
+        choice: Some("half-vector"),
     },
 };

@@ -47,12 +47,12 @@ use crate::scene::{Scene, View};
 /// A decision between exact and fast, or between two models.
 #[derive(Debug)]
 pub struct Axis {
-    /// Its name in text: "shading".
-    pub name: &'static str,
     /// Its option on the command line, and its field in a scene file.
     pub key: &'static str,
-    /// Its label in the interface: "Shading".
+    /// Its name: "Texture filter".
     pub label: &'static str,
+    /// A choice of it in a sentence, with {} for the choice: "{} texture filter".
+    pub phrase: &'static str,
     /// What it decides, as a phrase: "Where light is evaluated".
     pub what: &'static str,
     /// Whether some choices are more exact than others.
@@ -159,6 +159,12 @@ impl Axis {
         chosen.expect("every value of a setting is a choice of its axis")
     }
 
+    /// One of its choices in a sentence: "nearest texture filter", "depth in 16 bits".
+    #[must_use]
+    pub fn in_words(&self, choice: &Choice) -> String {
+        self.phrase.replace("{}", &uncapitalized(choice.label))
+    }
+
     /// The choice of the default settings.
     #[must_use]
     pub fn default_choice(&self) -> &'static Choice {
@@ -203,6 +209,19 @@ impl Choice {
     #[must_use]
     pub fn is(&self, settings: &Settings) -> bool {
         (self.is)(settings)
+    }
+}
+
+/// A label inside a sentence: only names keep their capitals.
+#[must_use]
+pub fn uncapitalized(label: &str) -> String {
+    const NAMES: [&str; 3] = ["Gouraud", "Phong", "Schlick"];
+    let mut letters = label.chars();
+    let (first, second) = (letters.next(), letters.next());
+    let is_word = first.zip(second).is_some_and(|(a, b)| a.is_uppercase() && !b.is_uppercase());
+    match first.filter(|_| is_word && !NAMES.contains(&label) && second != Some('.')) {
+        Some(first) => first.to_lowercase().chain(label.chars().skip(1)).collect(),
+        None => label.to_owned(),
     }
 }
 

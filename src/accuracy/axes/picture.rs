@@ -5,9 +5,9 @@ use super::{Axis, AxisKind, Choice, Lesson};
 use crate::accuracy::{DepthFormat, Rounding};
 
 pub(super) const DEPTH: Axis = Axis {
-    name: "depth",
     key: "depth",
     label: "Depth",
+    phrase: "depth in {}",
     what: "How depths are stored",
     kind: AxisKind::Scored,
     choices: &[
@@ -39,9 +39,9 @@ pub(super) const DEPTH: Axis = Axis {
 };
 
 pub(super) const ROUNDING: Axis = Axis {
-    name: "rounding",
     key: "rounding",
     label: "Rounding",
+    phrase: "rounding ({})",
     what: "How colours become bytes",
     kind: AxisKind::Scored,
     choices: &[

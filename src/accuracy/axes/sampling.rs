@@ -5,9 +5,9 @@ use super::{Axis, AxisKind, Choice, Lesson};
 use crate::accuracy::Samples;
 
 pub(super) const SAMPLES: Axis = Axis {
-    name: "samples per pixel",
     key: "samples",
-    label: "Samples",
+    label: "Samples per pixel",
+    phrase: "{} samples per pixel",
     what: "Samples per pixel",
     kind: AxisKind::ScoredApart,
     choices: &[
@@ -21,7 +21,7 @@ pub(super) const SAMPLES: Axis = Axis {
             "The mean of sixteen samples per pixel.",
             "on edges, about a thirtieth of the difference between the two sides"),
         choice!("64" "64" samples = Samples::SixtyFour,
-            "The mean of sixty-four samples per pixel: the reference, slow.",
+            "The mean of sixty-four samples per pixel: slow.",
             "on edges, about a hundredth of the difference between the two sides"),
     ],
     sense: |scene, view| if_any(scene, view, is_there, "nothing is shown"),

@@ -36,17 +36,21 @@ fn the_reference_has_every_axis_at_its_most_exact_and_keeps_the_models() {
 }
 
 #[test]
-fn several_samples_are_judged_against_64_samples_each_lit() {
+fn the_references_depend_on_no_choice_but_models() {
     let one = Settings::default();
-    for samples in [Samples::Four, Samples::Sixteen, Samples::SixtyFour] {
-        let reference = Settings { samples, ..one }.reference();
-        assert_eq!((reference.samples, reference.light), (Samples::SixtyFour, LightAt::Sample));
-        assert_eq!(reference, one.reference_on("samples"));
+    for axis in AXES.iter().filter(|axis| axis.kind != AxisKind::Model) {
+        for choice in axis.choices {
+            let chosen = choice.of(&one);
+            assert_eq!(chosen.reference(), one.reference(), "{} {}", axis.key, choice.word);
+            assert_eq!(chosen.sampled(), one, "{} {}", axis.key, choice.word);
+        }
     }
+    assert_eq!((one.reference().samples, one.reference().light), (Samples::One, LightAt::Pixel));
     let sample = Axis::named("shading").unwrap().choice("sample").unwrap();
     assert_eq!((sample.among)(&one), Err("a pixel has one sample"));
     assert_eq!((sample.among)(&Settings { samples: Samples::Four, ..one }), Ok(()));
-    assert_eq!(sample.of(&one).reference(), one.reference());
+    let half = Settings { specular: SpecularForm::HalfVector, ..one };
+    assert_eq!(half.sampled(), half);
 }
 
 #[test]
@@ -63,11 +67,11 @@ fn presets_have_the_settings_that_their_names_promise() {
     assert_eq!(of("exact"), exact);
     assert_eq!(draft.in_words(), "Draft");
     let other = Settings { specular: SpecularForm::HalfVector, ..of("exact") };
-    assert_eq!(other.in_words(), "Exact, specular half-vector");
+    assert_eq!(other.in_words(), "Exact, highlights by N.H");
     let other = Settings { light: LightAt::Face, ..other };
     assert_eq!(
         other.in_words(),
-        "shading face, arithmetic f64, power library, specular half-vector"
+        "flat shading, light in 64 bits, specular power by libm, highlights by N.H"
     );
 }
 

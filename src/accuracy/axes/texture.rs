@@ -5,9 +5,9 @@ use super::{Axis, AxisKind, Choice, Lesson};
 use crate::accuracy::Filter;
 
 pub(super) const FILTER: Axis = Axis {
-    name: "texture filter",
     key: "filter",
-    label: "Textures",
+    label: "Texture filter",
+    phrase: "{} texture filter",
     what: "How a texture is filtered between its texels",
     kind: AxisKind::Scored,
     choices: &[

@@ -8,8 +8,9 @@ use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
-use crate::lab::error::Measure;
+use crate::lab::error::{Measure, Region};
 use crate::lab::report::Budgets;
+use crate::lab::suite::SuiteDetail;
 use crate::scene::{Command, ItemId, ObjectId, View};
 
 /// A request to the app.
@@ -73,24 +74,38 @@ impl From<Action> for Request {
 pub enum LabRequest {
     /// Measure the picture in the viewport.
     Measure(Thoroughness),
+    /// Measure this axis alone, by its key.
+    MeasureAxis(&'static str),
+    /// Measure the suite.
+    Suite(SuiteDetail),
+    /// Show this report of the suite; `None` for that of the scene on screen.
+    ShowSuite(Option<usize>),
     /// Cancel measuring.
     Cancel,
     /// Use this error metric.
     Judge(Measure),
+    /// Take it over these pixels.
+    Over(Region),
+    /// Show the plot of this axis, by its key; `None` for the overview.
+    Panel(Option<&'static str>),
     /// Keep to these budgets.
     Budgets(Budgets),
     /// Compare the picture with the exact one in this way.
     Compare(Compare),
+    /// Compare with 256 samples per pixel, or with one.
+    Sampled(bool),
     /// The next click picks a pixel, or does not.
     Pick(bool),
     /// Explain this pixel.
     Attribute([usize; 2]),
-    /// Show this beside the scatter.
+    /// Show this beside the plots.
     Side(Side),
     /// Show the lesson of this axis, by its key; opens the laboratory if needed.
     Lesson(&'static str),
     /// Open the scene of this lesson.
     ShowLesson(&'static str),
+    /// Go back from the scene of a lesson to the user's own.
+    Back,
 }
 
 /// Asks for a change of the scene, or says why it is refused.

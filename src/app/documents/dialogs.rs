@@ -45,8 +45,6 @@ pub(crate) enum After {
     Open(Option<PathBuf>),
     /// Recover the unsaved work that is offered at this place.
     Recover(usize),
-    /// The scene of a lesson, by the key of its axis.
-    Lesson(&'static str),
 }
 
 /// What the user has answered.
@@ -326,9 +324,6 @@ fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
     ui.label(match after {
         After::Quit => "It has unsaved changes, which are lost unless you save them.",
         After::New => "A new scene will replace this one, which has unsaved changes.",
-        After::Lesson(_) => {
-            "The scene of the lesson will replace this one, which has unsaved changes."
-        }
         After::Recover(_) => "Recovered work will replace this scene, which has unsaved changes.",
         After::Open(_) => "Another scene will replace this one, which has unsaved changes.",
     });

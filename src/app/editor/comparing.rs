@@ -33,15 +33,16 @@ impl App {
             return;
         };
         let State { scene, view, settings, .. } = &self.state;
+        let against = self.state.lab.against(settings);
         let same = |pair: &Pair| {
-            let Compared { scene: s, view: v, settings: t, size: z } = &pair.of;
-            s == scene && v == view && t == settings && *z == size
+            let Compared { scene: s, view: v, settings: t, size: z, against: a } = &pair.of;
+            s == scene && v == view && t == settings && *z == size && *a == against
         };
         if self.comparison.drawn.as_deref().is_some_and(same) {
             return;
         }
         let (scene, view) = (scene.clone(), view.clone());
-        let of = Compared { scene, view, settings: *settings, size };
+        let of = Compared { scene, view, settings: *settings, size, against };
         let work = move |_: &io::Progress| Box::new(draw(of));
         // Without a thread there is no comparison.
         self.comparison.task = Task::start(ctx, "Comparing".to_owned(), work).ok();

@@ -310,7 +310,6 @@ impl App {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
             }
-            After::Lesson(key) => self.show_lesson(key),
             After::Recover(at) => self.recover(ctx, at),
             After::Open(Some(path)) => self.open_scene(ctx, path),
             After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
@@ -319,13 +318,19 @@ impl App {
 
     /// Replaces the edited scene; the open panels stay.
     pub(crate) fn replace(&mut self, state: State) {
+        self.swap(state);
+    }
+
+    /// As [`Self::replace`]; gives what was there.
+    pub(crate) fn swap(&mut self, state: State) -> State {
         let State { panels, theme, .. } = self.state;
         let statistics = self.state.statistics.clone();
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
         self.end_measuring();
         self.first_steps = None;
-        self.state = State { panels, theme, statistics, recent, recoverable, ..state };
+        let new = State { panels, theme, statistics, recent, recoverable, ..state };
+        std::mem::replace(&mut self.state, new)
     }
 }
 

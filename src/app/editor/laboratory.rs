@@ -21,8 +21,9 @@ use crate::io;
 use crate::lab::attribution::{Attribution, attribute};
 use crate::lab::candidates::{Thoroughness, all_axes};
 use crate::lab::pairs::{Touch, Unmeasured, Watch};
-use crate::lab::picture_source::{PictureSource as _, Studio};
+use crate::lab::picture_source::{PictureSource as _, Reference, Studio};
 use crate::lab::report::Report;
+use crate::lab::suite::{self, SUITE, SuiteDetail, SuiteScene};
 use crate::lab::sweep::{Findings, Question, sweep};
 use crate::lab::timing::WallClock;
 
@@ -31,6 +32,7 @@ use crate::lab::timing::WallClock;
 pub(crate) struct Work {
     watch: Watch,
     sweep: Option<Task<Result<Findings, Unmeasured>>>,
+    suite: Option<Task<Result<Vec<Report>, Unmeasured>>>,
     /// The findings so far.
     so_far: Arc<Mutex<Option<Findings>>>,
     blame: Option<Task<Option<Explained>>>,
@@ -56,6 +58,10 @@ impl Work {
         REST.max(PAIRS_BETWEEN * self.watch.pair())
     }
 
+    const fn is_measuring(&self) -> bool {
+        self.sweep.is_some() || self.suite.is_some()
+    }
+
     /// The window is being drawn as long as this lives.
     pub(crate) fn touch(&self) -> Touch {
         self.watch.touch()
@@ -68,7 +74,7 @@ impl Work {
 
     /// Waits until the window may be drawn again, so that it does not disturb a measurement.
     pub(crate) fn rest(&mut self) {
-        if self.sweep.is_some()
+        if self.is_measuring()
             && let Some(rest) = self.drawn_at.and_then(|at| REST.checked_sub(at.elapsed()))
         {
             std::thread::sleep(rest);
@@ -86,7 +92,7 @@ fn command(state: &State, size: Size, thoroughness: &Thoroughness) -> String {
         _ => " SCENE.marraztu".to_owned(),
     };
     let mut command = format!("marraztu lab{file} --size {}x{}", size.width, size.height);
-    if *thoroughness == Thoroughness::QUICK {
+    if thoroughness.word == Thoroughness::QUICK.word {
         command += " --quick";
     }
     for axis in AXES {
@@ -103,9 +109,18 @@ impl App {
     pub(crate) fn answer_lab(&mut self, ctx: &Context, ask: LabRequest) {
         let lab = &mut self.state.lab;
         match ask {
-            LabRequest::Measure(thoroughness) => self.sweep(ctx, thoroughness),
+            LabRequest::Measure(thoroughness) => self.sweep(ctx, thoroughness, all_axes()),
+            LabRequest::MeasureAxis(key) => {
+                let axes = Axis::named(key).into_iter().collect();
+                self.sweep(ctx, Thoroughness { combinations: 0, ..Thoroughness::QUICK }, axes);
+            }
+            LabRequest::Suite(detail) => self.measure_suite(ctx, detail),
+            LabRequest::ShowSuite(place) => lab.shown_suite = place,
             LabRequest::Cancel => {
                 if let Some(task) = &self.lab.sweep {
+                    task.progress.cancel();
+                }
+                if let Some(task) = &self.lab.suite {
                     task.progress.cancel();
                 }
             }
@@ -114,11 +129,19 @@ impl App {
                 lab.budgets.error = None;
                 self.tell_report();
             }
+            LabRequest::Over(region) => {
+                lab.region = region;
+                self.tell_report();
+            }
+            LabRequest::Panel(key) => lab.panel = key,
             LabRequest::Budgets(budgets) => {
                 lab.budgets = budgets;
                 self.tell_report();
             }
             LabRequest::Compare(compare) => lab.compare = compare,
+            LabRequest::Sampled(sampled) => {
+                lab.reference = if sampled { Reference::Sampled } else { Reference::Exact };
+            }
             LabRequest::Pick(picking) => lab.picking = picking,
             LabRequest::Attribute(at) => self.explain(ctx, at),
             LabRequest::Side(side) => lab.side = side,
@@ -127,19 +150,19 @@ impl App {
                 lab.side = Side::Lessons;
                 self.state.panels.laboratory = true;
             }
-            LabRequest::ShowLesson(key) => {
-                self.unless_unsaved(ctx, crate::app::documents::dialogs::After::Lesson(key));
-            }
+            LabRequest::ShowLesson(key) => self.show_lesson(key),
+            LabRequest::Back => self.back_to_scene(),
         }
     }
 
     /// Starts to measure the picture in the viewport.
-    fn sweep(&mut self, ctx: &Context, thoroughness: Thoroughness) {
-        let Some(size) = self.viewport.size().filter(|_| self.lab.sweep.is_none()) else { return };
+    fn sweep(&mut self, ctx: &Context, thoroughness: Thoroughness, axes: Vec<&'static Axis>) {
+        let Some(size) = self.viewport.size().filter(|_| !self.lab.is_measuring()) else { return };
         let State { scene, view, settings, .. } = &self.state;
         let shot = Shot::new(scene, view, settings, size);
         let measured = Some((scene.clone(), view.clone(), size));
-        let question = Question { current: *settings, axes: all_axes(), thoroughness };
+        let only = (axes.len() == 1).then(|| axes[0].key);
+        let question = Question { current: *settings, axes, thoroughness };
         // A cancelled sweep may still report findings: it has a cell of its own.
         self.lab.so_far = Arc::default();
         let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
@@ -154,9 +177,14 @@ impl App {
         match Task::start(ctx, "Measuring".to_owned(), work) {
             Ok(task) => {
                 self.lab.sweep = Some(task);
-                let command = command(&self.state, size, &thoroughness);
+                let mut command = command(&self.state, size, &thoroughness);
+                if let Some(key) = only {
+                    command += &format!(" --axes {key}");
+                    self.state.lab.panel = Some(key);
+                }
                 let lab = &mut self.state.lab;
                 (lab.running, lab.failed, lab.report) = (Some(0.0), None, None);
+                lab.shown_suite = None;
                 lab.measured = measured;
                 self.lab.command = command;
             }
@@ -164,9 +192,58 @@ impl App {
         }
     }
 
+    /// Starts to measure the suite.
+    fn measure_suite(&mut self, ctx: &Context, detail: SuiteDetail) {
+        if self.lab.is_measuring() {
+            return;
+        }
+        let watch = self.lab.watch();
+        let work = move |progress: &io::Progress| {
+            let scenes: Vec<&SuiteScene> = SUITE.iter().collect();
+            let watch = watch.with(progress);
+            suite::run(&scenes, &detail, &mut WallClock::default(), &watch, &mut |_| {})
+        };
+        match Task::start(ctx, "Measuring the suite".to_owned(), work) {
+            Ok(task) => {
+                self.lab.suite = Some(task);
+                let lab = &mut self.state.lab;
+                (lab.running, lab.failed) = (Some(0.0), None);
+            }
+            Err(error) => self.refuse(format!("cannot start a thread to measure: {error}")),
+        }
+    }
+
+    /// Takes the reports of the suite.
+    fn hear_suite(&mut self, ctx: &Context) {
+        let Some(task) = &self.lab.suite else { return };
+        self.state.lab.running = Some(task.progress.fraction());
+        match task.outcome() {
+            Outcome::Running => return ctx.request_repaint_after(self.lab.rest_now()),
+            Outcome::Done(Ok(reports)) => {
+                let lab = &mut self.state.lab;
+                reports.iter().for_each(|report| lab.note_costs(report));
+                lab.shown_suite = (!reports.is_empty()).then_some(0);
+                lab.suite = reports;
+                self.tell_report();
+            }
+            Outcome::Done(Err(Unmeasured::Cancelled)) => {
+                self.state.tell(Some("Measuring was cancelled".to_owned()));
+            }
+            Outcome::Done(Err(why)) => self.state.lab.failed = Some(why.to_string()),
+            Outcome::Lost => {
+                self.state.lab.failed = Some("this is a bug in the program".to_owned());
+            }
+        }
+        self.lab.suite = None;
+        self.state.lab.running = None;
+    }
+
     /// Cancels everything that is measured for a scene that is gone.
     pub(crate) fn end_measuring(&mut self) {
         if let Some(task) = self.lab.sweep.take() {
+            task.progress.cancel();
+        }
+        if let Some(task) = self.lab.suite.take() {
             task.progress.cancel();
         }
         self.lab.blame = None;
@@ -195,6 +272,7 @@ impl App {
     /// Takes the results of background work.
     pub(crate) fn hear_laboratory(&mut self, ctx: &Context) {
         self.hear_blame();
+        self.hear_suite(ctx);
         let Some(task) = &self.lab.sweep else { return };
         self.state.lab.running = Some(task.progress.fraction());
         let outcome = task.outcome();
@@ -237,24 +315,28 @@ impl App {
     fn show_findings(&mut self, findings: Findings) {
         let scene = self.state.file_name();
         let lab = &mut self.state.lab;
-        lab.report = Some(Report {
+        let report = Report {
             scene,
             command: self.lab.command.clone(),
             measure: lab.measure,
+            region: lab.region,
             budgets: lab.budgets,
             findings,
-        });
+        };
+        lab.note_costs(&report);
+        lab.report = Some(report);
     }
 
     /// Updates the report to the chosen error metric and budgets.
     fn tell_report(&mut self) {
         let lab = &mut self.state.lab;
         if let Some(report) = &mut lab.report {
-            (report.measure, report.budgets) = (lab.measure, lab.budgets);
+            report.measure = lab.measure;
+            (report.region, report.budgets) = (lab.region, lab.budgets);
         }
     }
 
-    /// Opens the scene of a lesson, with the most telling settings.
+    /// Opens the scene of a lesson, with the most telling settings. The user's scene waits.
     pub(crate) fn show_lesson(&mut self, key: &str) {
         let Some(axis) = Axis::named(key) else { return };
         match io::lesson_scene(axis.lesson.scene) {
@@ -263,11 +345,34 @@ impl App {
                 let mut state = State { settings, ..State::new(opened.scene, opened.view) };
                 selection::settle(&state.scene, &mut state.view);
                 (state.lab.lesson, state.lab.side) = (axis, Side::Lessons);
-                state.lab.compare = Compare::Split(0.5);
+                state.lab.compare = compare_of(axis);
+                state.lab.reference = Reference::of(axis);
+                state.lab.away = true;
+                state.lab.costs.clone_from(&self.state.lab.costs);
                 state.tell(Some(format!("Lesson: {}", axis.lesson.title)));
-                self.replace(state);
+                let own = self.swap(state);
+                if !own.lab.away {
+                    self.waiting_scene = Some(Box::new(own));
+                }
             }
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),
         }
+    }
+
+    /// Goes back from the scene of a lesson to that of the user, with all that belongs to it.
+    pub(crate) fn back_to_scene(&mut self) {
+        let Some(mut own) = self.waiting_scene.take() else { return };
+        (own.lab.lesson, own.lab.side) = (self.state.lab.lesson, self.state.lab.side);
+        own.lab.costs = std::mem::take(&mut self.state.lab.costs);
+        own.tell(Some("Back in your scene".to_owned()));
+        self.swap(*own);
+    }
+}
+
+/// How the scene of a lesson is compared: an error of one step is seen only if it is amplified.
+fn compare_of(axis: &Axis) -> Compare {
+    match axis.key {
+        "faint" | "rounding" => Compare::Error(256),
+        _ => Compare::Split(0.5),
     }
 }

@@ -50,6 +50,8 @@ pub struct App {
     /// A scene that waits for the user to locate its missing models.
     pub(crate) waiting: Option<Waiting>,
     pub(crate) viewport: Viewport,
+    /// The user's scene, while that of a lesson is shown.
+    pub(crate) waiting_scene: Option<Box<State>>,
     pub(crate) lab: Work,
     pub(crate) comparison: Comparison,
     worker: Option<Worker<Purpose>>,
@@ -84,6 +86,7 @@ impl App {
             queued: VecDeque::new(),
             waiting: None,
             viewport: Viewport::default(),
+            waiting_scene: None,
             lab: Work::default(),
             comparison: Comparison::default(),
             worker: None,
@@ -244,13 +247,21 @@ impl App {
         }
     }
 
-    /// Does `after`; asks first if there are unsaved changes.
+    /// Does `after`; asks first if there are unsaved changes. From the scene of a lesson, the
+    /// user's own comes back first.
     pub(crate) fn unless_unsaved(&mut self, ctx: &Context, after: After) {
+        self.back_to_scene();
         if self.state.history.is_saved() {
             self.after(ctx, after);
         } else {
             self.dialogs.ask_unsaved(after);
         }
+    }
+
+    /// Whether the user's scene is saved, even if that of a lesson is shown.
+    fn is_all_saved(&self) -> bool {
+        let own = self.waiting_scene.as_deref().unwrap_or(&self.state);
+        own.history.is_saved()
     }
 
     /// Closes the program.
@@ -263,8 +274,9 @@ impl App {
     fn close_requested(&mut self, ctx: &Context) {
         if ctx.input(|input| input.viewport().close_requested())
             && !self.leaving
-            && !self.state.history.is_saved()
+            && !self.is_all_saved()
         {
+            self.back_to_scene();
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.dialogs.ask_unsaved(After::Quit);
         }

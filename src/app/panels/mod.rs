@@ -34,11 +34,13 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, requests));
     Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, requests));
     if state.panels.laboratory {
-        let most = (ui.available_height() * 0.7).max(180.0);
+        let most = (ui.available_height() * 0.8).max(180.0);
         Panel::bottom("laboratory")
             .frame(side)
             .resizable(true)
-            .default_size(348.0_f32.min(most))
+            // The picture keeps two fifths of the height; on a large screen a plot and the verdict
+            // are seen as a whole.
+            .default_size((ui.available_height() * 0.6).round().clamp(180.0, 620.0))
             .size_range(160.0..=most)
             .show(ui, |ui| lab::show(ui, state, requests));
     }

@@ -1,9 +1,12 @@
 //! The state of the laboratory panel and of the comparison with the exact picture.
 
+use std::collections::BTreeMap;
+
 use super::State;
-use crate::accuracy::{AXES, Axis, Settings};
+use crate::accuracy::{AXES, Axis, Samples, Settings};
 use crate::base::image::Size;
-use crate::lab::error::{Error, Measure};
+use crate::lab::error::{Error, Measure, Region};
+use crate::lab::picture_source::Reference;
 use crate::lab::report::{Budgets, Report, brief};
 use crate::scene::{Scene, View};
 
@@ -12,16 +15,26 @@ use crate::scene::{Scene, View};
 pub struct Laboratory {
     /// The last measurement, or the one so far.
     pub report: Option<Report>,
+    /// The reports of the suite, once it was measured.
+    pub suite: Vec<Report>,
+    /// Which of them is shown; `None` if that of the scene on screen is.
+    pub shown_suite: Option<usize>,
     /// The progress of the running measurement, from 0 to 1.
     pub running: Option<f64>,
     /// Why measuring failed, if it did.
     pub failed: Option<String>,
     /// The error metric.
     pub measure: Measure,
+    /// The pixels that it is taken over.
+    pub region: Region,
+    /// The axis whose plot is shown, by its key; `None` for the overview.
+    pub panel: Option<&'static str>,
     /// The budgets of time and error.
     pub budgets: Budgets,
     /// How the picture is compared with the exact one.
     pub compare: Compare,
+    /// What it is compared with; several samples per pixel are always compared with 256.
+    pub reference: Reference,
     /// The error of the picture at the last comparison.
     pub judged: Option<Judged>,
     /// Whether the next click on the picture picks a pixel for attribution.
@@ -30,7 +43,11 @@ pub struct Laboratory {
     pub attribution: Option<Vec<String>>,
     /// The axis whose lesson is shown.
     pub lesson: &'static Axis,
-    /// The panel beside the scatter.
+    /// Whether this is the scene of a lesson, and there is another to go back to.
+    pub away: bool,
+    /// What was measured of each axis, by its key, in a sentence.
+    pub costs: BTreeMap<&'static str, String>,
+    /// The panel beside the plots.
     pub side: Side,
     /// The scene, the view and the size that were measured.
     pub(crate) measured: Option<(Scene, View, Size)>,
@@ -40,11 +57,18 @@ impl Default for Laboratory {
     fn default() -> Self {
         Self {
             report: None,
+            suite: Vec::new(),
+            shown_suite: None,
             running: None,
             failed: None,
             measure: Measure::default(),
+            region: Region::default(),
+            panel: None,
             budgets: Budgets::default(),
             compare: Compare::Off,
+            reference: Reference::default(),
+            away: false,
+            costs: BTreeMap::new(),
             judged: None,
             picking: false,
             attribution: None,
@@ -55,7 +79,7 @@ impl Default for Laboratory {
     }
 }
 
-/// The panel beside the scatter.
+/// The panel beside the plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// Every choice with its figures.
@@ -66,6 +90,27 @@ pub enum Side {
 }
 
 impl Laboratory {
+    /// The report that is shown.
+    #[must_use]
+    pub fn shown(&self) -> Option<&Report> {
+        match self.shown_suite {
+            Some(i) => self.suite.get(i),
+            None => self.report.as_ref(),
+        }
+    }
+
+    /// Keeps in a sentence what was measured of each axis.
+    pub(crate) fn note_costs(&mut self, report: &Report) {
+        for axis in AXES.iter().filter(|axis| report.findings.rows_of(axis).count() > 1) {
+            self.costs.insert(axis.key, report.verdict_on(axis));
+        }
+    }
+
+    /// What the picture is compared with: several samples per pixel with 256.
+    pub(crate) fn against(&self, settings: &Settings) -> Reference {
+        if settings.samples == Samples::One { self.reference } else { Reference::Sampled }
+    }
+
     /// Whether the measurement is not of the picture in the viewport any more.
     #[must_use]
     pub fn is_stale(&self, state: &State) -> bool {
@@ -98,17 +143,18 @@ pub struct Judged {
     pub settings: Settings,
 }
 
-/// An error in words: "largest 3 steps, RMSE 0.02, 1.2 % of the bytes differ".
+/// An error in words: "largest 3 steps, RMSE 0.02, 1.2% of the bytes differ".
 pub(crate) fn in_words(error: &Error) -> String {
-    if error.largest == 0 && error.coverage == 0 {
+    let figures = &error.whole;
+    if figures.largest == 0 && error.coverage == 0 {
         return "none, every byte is exact".to_owned();
     }
-    let steps = if error.largest == 1 { "step" } else { "steps" };
+    let steps = if figures.largest == 1 { "step" } else { "steps" };
     let mut text = format!(
-        "largest {} {steps}, RMSE {}, {} % of the bytes differ",
-        error.largest,
-        brief(error.rmse),
-        brief(error.differing * 100.0)
+        "largest {} {steps}, RMSE {}, {}% of the bytes differ",
+        figures.largest,
+        brief(figures.rmse),
+        brief(figures.differing * 100.0)
     );
     if error.coverage > 0 {
         text += &format!(", {} pixels show another triangle", error.coverage);

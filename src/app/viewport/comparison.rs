@@ -18,7 +18,7 @@ use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
 use crate::base::image::{Picture, Size};
 use crate::lab::error::{Error, amplified};
-use crate::lab::picture_source::{PictureSource as _, Studio};
+use crate::lab::picture_source::{PictureSource as _, Reference, Studio};
 use crate::scene::{Scene, View};
 
 /// Everything that the two pictures depend on.
@@ -28,6 +28,7 @@ pub(crate) struct Compared {
     pub(crate) view: View,
     pub(crate) settings: Settings,
     pub(crate) size: Size,
+    pub(crate) against: Reference,
 }
 
 /// The picture and the exact one, with the error between them.
@@ -41,7 +42,7 @@ pub(crate) struct Pair {
 /// Draws both.
 pub(crate) fn draw(of: Compared) -> Pair {
     let mut studio = Studio::new(Shot::new(&of.scene, &of.view, &of.settings, of.size));
-    let exact = studio.rendering(&of.settings.reference());
+    let exact = studio.reference(&of.settings, of.against);
     let ours = studio.rendering(&of.settings);
     let error = ours.error(&exact);
     Pair { of, exact: exact.picture().clone(), ours: ours.picture().clone(), error }

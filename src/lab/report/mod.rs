@@ -1,18 +1,24 @@
-//! Reports the results of a sweep as a table, as data and as a plot.
+//! Reports the results of a sweep in words, as a table, as data and as plots.
 
-mod chart;
+mod labels;
+mod page;
+mod panels;
 mod plot;
 mod table;
+mod verdict;
 
 use serde::Serialize;
 
-pub use self::chart::{Chart, Mark, MarkKind, Scale};
-pub use self::plot::{PlotError, png, svg};
-pub use self::table::{brief, csv, heading, tabs, text};
+pub use self::labels::{TextBox, place};
+pub use self::page::{page_html, page_markdown, plot_name, sections};
+pub use self::panels::{Panel, PanelMark, Panels, Scale};
+pub use self::plot::{Look, PlotError, overview_names, panel_svg, png, svg};
+pub use self::table::{brief, csv, heading, markdown, tabs, text};
 use super::candidates::Group;
-use super::error::Measure;
+use super::error::{Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};
-use super::sweep::{Against, Findings, Row};
+use super::sweep::{Findings, Measured, Row, Verdict};
+use crate::accuracy::Axis;
 
 /// The results of a sweep, with how they are to be reported.
 #[derive(Clone, Debug, Serialize)]
@@ -21,8 +27,10 @@ pub struct Report {
     pub scene: String,
     /// The command that measures it again.
     pub command: String,
-    /// The error metric of the plot, the front and the budgets.
+    /// The error metric of the plots, the front and the budgets.
     pub measure: Measure,
+    /// The pixels that it is taken over.
+    pub region: Region,
     /// The limits that the user has set.
     pub budgets: Budgets,
     /// The results.
@@ -39,6 +47,12 @@ pub struct Budgets {
     pub ms: Option<f64>,
 }
 
+/// The part of the error that a slower choice has to cut for a place on the front.
+const LEAST_CUT: f64 = 0.02;
+
+/// The largest number of names in the overview.
+const NAMES: usize = 10;
+
 impl Report {
     /// The rows of the table. Presets are measured first and last, but listed together.
     #[must_use]
@@ -48,67 +62,80 @@ impl Report {
         rows
     }
 
-    /// The points as time and error.
+    /// The error of a row against its own reference.
+    #[must_use]
+    pub fn error(&self, row: &Row) -> f64 {
+        self.measure.of(self.findings.error_of(row), self.region)
+    }
+
+    /// The points as time and error against 256 samples per pixel: one reference for all. Another
+    /// model is judged against its own reference.
     #[must_use]
     pub fn points(&self) -> Vec<Point> {
-        let points = self.findings.points.iter();
-        points.map(|p| Point { time: p.ms, error: self.measure.of(&p.error) }).collect()
+        let error =
+            |p: &Measured| self.measure.of(p.sampled.as_ref().unwrap_or(&p.error), self.region);
+        self.findings.points.iter().map(|p| Point { time: p.ms, error: error(p) }).collect()
     }
 
-    /// Whether the metric covers the whole error of a point. All metrics but FLIP ignore pixels
-    /// whose coverage differs, so a point with more of these than the default is not scored.
-    #[must_use]
-    pub fn is_scored(&self, point: usize) -> bool {
-        let points = &self.findings.points;
-        let passed_over = match points[point].against {
-            Against::Default => points[0].error.coverage,
-            Against::Apart | Against::Model => 0,
-        };
-        self.measure == Measure::Flip || points[point].error.coverage <= passed_over
-    }
-
-    /// The points that can be compared with one another, with their indices.
-    fn scored(&self, against: Against) -> (Vec<usize>, Vec<Point>) {
+    /// The points that can be compared with one another, with their indices: no other models.
+    fn comparable(&self) -> (Vec<usize>, Vec<Point>) {
         let all = self.points().into_iter().enumerate();
-        let is_one = |i: usize| self.findings.points[i].against == against && self.is_scored(i);
-        all.filter(|(i, _)| is_one(*i)).unzip()
+        all.filter(|(i, _)| self.findings.points[*i].sampled.is_some()).unzip()
     }
 
-    /// The indices of the front of the points with the same judge, the fastest first.
-    fn front_of(&self, against: Against) -> Vec<usize> {
-        let (places, points) = self.scored(against);
-        front(&points).into_iter().map(|i| places[i]).collect()
+    /// The front, each of whose points cuts the error by at least this part. A time within the
+    /// noise is the default's, and the default stands for all that is as fast and as exact.
+    fn front_by(&self, least: f64) -> Vec<usize> {
+        let (places, mut points) = self.comparable();
+        let Some(default) = points.first().copied() else { return Vec::new() };
+        for (place, point) in places.iter().zip(&mut points) {
+            if self.findings.points[*place].verdict == Verdict::Alike {
+                point.time = default.time;
+                if point.error > default.error * (1.0 - least) {
+                    point.error = point.error.max(default.error);
+                }
+            }
+        }
+        front(&points, least).into_iter().map(|i| places[i]).collect()
     }
 
     /// The indices of the points on the front, the fastest first.
     #[must_use]
     pub fn front(&self) -> Vec<usize> {
-        self.front_of(Against::Default)
+        self.front_by(LEAST_CUT)
     }
 
-    /// The same for the points that are judged against the most samples, each lit.
+    /// The default and the front, at most ten points, the fastest first: if there are more, those
+    /// that cut the error most.
     #[must_use]
-    pub fn front_apart(&self) -> Vec<usize> {
-        self.front_of(Against::Apart)
-    }
-
-    /// The indices of both.
-    #[must_use]
-    pub fn fronts(&self) -> Vec<usize> {
-        [self.front(), self.front_apart()].concat()
+    pub fn overview(&self) -> Vec<usize> {
+        let mut least = LEAST_CUT;
+        loop {
+            let mut found = self.front_by(least);
+            if !found.contains(&0) && !self.findings.points.is_empty() {
+                found.push(0);
+                let ms = |i: &usize| self.findings.points[*i].ms;
+                found.sort_by(|a, b| ms(a).total_cmp(&ms(b)));
+            }
+            if found.len() <= NAMES || least > 0.9 {
+                found.truncate(NAMES);
+                return found;
+            }
+            least *= 1.3;
+        }
     }
 
     /// The fastest point whose error is within the budget; `None` without such a budget.
     #[must_use]
     pub fn fastest(&self) -> Option<Option<usize>> {
-        let (places, points) = self.scored(Against::Default);
+        let (places, points) = self.comparable();
         self.budgets.error.map(|most| fastest_within(&points, most).map(|i| places[i]))
     }
 
     /// The most exact point within the budget of time; `None` without such a budget.
     #[must_use]
     pub fn most_exact(&self) -> Option<Option<usize>> {
-        let (places, points) = self.scored(Against::Default);
+        let (places, points) = self.comparable();
         self.budgets.ms.map(|most| most_exact_within(&points, most).map(|i| places[i]))
     }
 
@@ -116,6 +143,18 @@ impl Report {
     #[must_use]
     pub fn current(&self) -> Option<usize> {
         self.findings.points.iter().position(|point| point.settings == self.findings.current)
+    }
+
+    /// What the figures say, in sentences.
+    #[must_use]
+    pub fn verdict(&self) -> Vec<String> {
+        verdict::verdict(self)
+    }
+
+    /// What the figures say about one axis, in a paragraph.
+    #[must_use]
+    pub fn verdict_on(&self, axis: &Axis) -> String {
+        verdict::verdict_on(self, axis)
     }
 
     /// The report as JSON.
@@ -127,11 +166,11 @@ impl Report {
     /// The answer to each budget, as a sentence.
     #[must_use]
     pub fn answers(&self) -> Vec<String> {
+        let points = self.points();
         let named = |found: Option<usize>| match found {
             Some(i) => {
-                let point = &self.findings.points[i];
-                let error = brief(self.measure.of(&point.error));
-                format!("{}: {} ms, {error}", point.name, brief(point.ms))
+                let (name, Point { time, error }) = (&self.findings.points[i].name, points[i]);
+                format!("{name}: {} ms, {}", brief(time), brief(error))
             }
             None => "none that was measured".to_owned(),
         };
@@ -143,25 +182,5 @@ impl Report {
             format!("the most exact within {} ms: {}", brief(most), named(found))
         });
         fastest.into_iter().chain(exact).collect()
-    }
-
-    /// The kind of a point. Of several rows, a preset counts before a choice of an axis, and that
-    /// before a combination.
-    fn kind(&self, point: usize) -> MarkKind {
-        let rows = || self.findings.rows.iter().filter(|row| row.point == point);
-        let against = self.findings.points[point].against;
-        if point == 0 {
-            MarkKind::Default
-        } else if against == Against::Model {
-            MarkKind::Model
-        } else if against == Against::Apart {
-            MarkKind::Apart
-        } else if rows().any(|row| row.group == Group::Preset) {
-            MarkKind::Preset
-        } else if rows().any(|row| matches!(row.group, Group::Axis(_))) {
-            MarkKind::Axis
-        } else {
-            MarkKind::Combination
-        }
     }
 }

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use super::Report;
 use crate::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
 use crate::lab::candidates::Group;
-use crate::lab::sweep::{Measured, Row};
+use crate::lab::error::Region;
+use crate::lab::sweep::{Measured, Row, Verdict};
 
 /// A number with three significant digits: "0", "0.0123", "4.57", "137", "1.2e-5".
 #[must_use]
@@ -40,20 +41,23 @@ pub fn heading(row: &Row) -> String {
             let Some(axis) = Axis::named(key) else { return key.to_owned() };
             let scored = match axis.kind {
                 AxisKind::Scored => "",
-                AxisKind::ScoredApart => " (against 64 samples, each lit)",
+                AxisKind::ScoredApart => " (against 256 samples, each lit)",
                 AxisKind::Model => " (a model: not scored)",
             };
-            format!("{}{scored}, --{key}", axis.name)
+            format!("{}{scored}, --{key}", axis.label)
         }
         Group::Current => "now".to_owned(),
         Group::Combination => "combinations".to_owned(),
     }
 }
 
-/// The table as text, with a summary above it and the meaning of the marks below.
+/// The table as text, with the verdict above it and the meaning of the marks below.
 #[must_use]
 pub fn text(report: &Report) -> String {
     let mut text = head(report);
+    for sentence in report.verdict() {
+        let _ = writeln!(text, "{}", wrapped(&sentence, 92));
+    }
     let _ = writeln!(
         text,
         "\n  {:30} {:>8} {:>15} {:>8} {:>5} {:7} {:>7} {:>8} {:>7} {:>7} {:>8} {:>8}",
@@ -70,7 +74,7 @@ pub fn text(report: &Report) -> String {
         "coverage",
         "FLIP"
     );
-    let (front, current) = (report.fronts(), report.current());
+    let (front, current) = (report.front(), report.current());
     let mut last = String::new();
     for row in report.rows() {
         let heading = heading(row);
@@ -85,14 +89,17 @@ pub fn text(report: &Report) -> String {
         ];
         let marks: String = marks.iter().collect();
         let name = format!("{marks} {}", row.name);
-        let _ = writeln!(text, "  {name:30} {}", figures(&report.findings.points[row.point]));
+        let _ = writeln!(text, "  {name:30} {}", figures(report, row));
     }
     let _ = writeln!(
         text,
-        "\n* the default  > now  + no choice with the same reference is both faster and more\n\
-         exact. Several samples are compared with 64, each lit. Choices with more pixels whose\n\
-         coverage differs than the default are on no front but that of FLIP, which alone counts\n\
-         them."
+        "\n* the default  > now  + nothing is both faster and more exact against 256 samples.\n\
+         Errors are of {}, against every axis at its most exact with one sample\n\
+         per pixel; those of samples per pixel, against 256 samples, each lit.",
+        match report.region {
+            Region::Whole => "all pixels",
+            Region::Inside => "the pixels whose coverage does not differ",
+        }
     );
     foot(&mut text, report);
     text
@@ -122,10 +129,12 @@ fn head(report: &Report) -> String {
     text
 }
 
-fn figures(point: &Measured) -> String {
-    let (ratio, error) = (&point.ratio, &point.error);
+fn figures(report: &Report, row: &Row) -> String {
+    let point = &report.findings.points[row.point];
+    let (ratio, error) = (&point.ratio, report.findings.error_of(row));
+    let figures = error.over(report.region);
     let quartiles = &ratio.quartiles;
-    let psnr = error.psnr.map_or_else(|| "exact".to_owned(), |psnr| format!("{psnr:.1}"));
+    let psnr = figures.psnr.map_or_else(|| "exact".to_owned(), |psnr| format!("{psnr:.1}"));
     format!(
         "{:>7.3}x {:>15} {:>8} {:>5} {:7} {:>7} {:>8} {:>7} {:>6}% {:>8} {:>8}",
         quartiles.median,
@@ -133,10 +142,10 @@ fn figures(point: &Measured) -> String {
         brief(point.ms),
         ratio.pairs,
         point.verdict.word(),
-        error.largest,
-        brief(error.rmse),
+        figures.largest,
+        brief(figures.rmse),
         psnr,
-        brief(error.differing * 100.0),
+        brief(figures.differing * 100.0),
         error.coverage,
         brief(error.flip)
     )
@@ -175,6 +184,53 @@ fn foot(text: &mut String, report: &Report) {
     let _ = writeln!(text, "\nagain: {}", report.command);
 }
 
+/// A sentence in lines of at most `width` letters.
+fn wrapped(sentence: &str, width: usize) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in sentence.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                *line += &format!(" {word}");
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
+}
+
+/// The rows of one axis as a table in Markdown, with its figures over all pixels.
+#[must_use]
+pub fn markdown(report: &Report, axis: &Axis) -> String {
+    let mut text = "| choice | time | interquartile range | maximum | RMSE | PSNR | differing \
+                    bytes | pixels whose coverage differs | FLIP |\n\
+                    |---|--:|--:|--:|--:|--:|--:|--:|--:|\n"
+        .to_owned();
+    for row in report.findings.rows_of(axis) {
+        let (point, error) = (&report.findings.points[row.point], report.findings.error_of(row));
+        let quartiles = &point.ratio.quartiles;
+        let star = if row.point == 0 { " (default)" } else { "" };
+        let time = match (row.point, point.verdict) {
+            (0, _) => "1x".to_owned(),
+            (_, Verdict::Alike) => format!("{:.2}x (noise)", quartiles.median),
+            _ => format!("{:.2}x", quartiles.median),
+        };
+        let _ = writeln!(
+            text,
+            "| {}{star} | {time} | {:.2} to {:.2} | {} | {} | {} | {}% | {} | {} |",
+            row.name,
+            quartiles.lower,
+            quartiles.upper,
+            error.whole.largest,
+            brief(error.whole.rmse),
+            error.whole.psnr.map_or_else(|| "exact".to_owned(), |psnr| format!("{psnr:.1}")),
+            brief(error.whole.differing * 100.0),
+            error.coverage,
+            brief(error.flip)
+        );
+    }
+    text
+}
+
 /// The table as comma-separated values, with the choice of every axis in each row.
 #[must_use]
 pub fn csv(report: &Report) -> String {
@@ -197,7 +253,7 @@ fn joined(report: &Report, separator: &str, field: fn(&str) -> String) -> String
 
 /// The cells of the table; the first row has the names of the columns.
 fn cells(report: &Report) -> Vec<Vec<String>> {
-    const FIGURES: [&str; 17] = [
+    const FIGURES: [&str; 21] = [
         "ms",
         "ratio",
         "ratio_lower",
@@ -212,19 +268,25 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
         "differing",
         "coverage",
         "flip",
+        "inside_largest",
+        "inside_rmse",
+        "inside_differing",
+        "rmse_against_256_samples",
         "hash",
         "front",
         "current",
     ];
-    let (front, current) = (report.fronts(), report.current());
+    let (front, current) = (report.front(), report.current());
     let axes = AXES.iter().map(|axis| axis.key);
     let head = ["group", "name"].into_iter().chain(axes).chain(FIGURES);
     let mut cells = vec![head.map(str::to_owned).collect()];
     for row in &report.findings.rows {
-        let Measured { settings, ms, ratio, verdict, against, error, hash, .. } =
+        let Measured { settings, ms, ratio, verdict, sampled, hash, .. } =
             &report.findings.points[row.point];
+        let error = report.findings.error_of(row);
+        let (whole, inside) = (&error.whole, &error.inside);
         let quartiles = &ratio.quartiles;
-        let psnr = error.psnr.map_or_else(|| "inf".to_owned(), |psnr| psnr.to_string());
+        let psnr = whole.psnr.map_or_else(|| "inf".to_owned(), |psnr| psnr.to_string());
         let figures: [String; FIGURES.len()] = [
             ms.to_string(),
             quartiles.median.to_string(),
@@ -233,13 +295,17 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
             ratio.pairs.to_string(),
             ratio.thrown.to_string(),
             verdict.word().to_owned(),
-            against.word().to_owned(),
-            error.largest.to_string(),
-            error.rmse.to_string(),
+            row.against.word().to_owned(),
+            whole.largest.to_string(),
+            whole.rmse.to_string(),
             psnr,
-            error.differing.to_string(),
+            whole.differing.to_string(),
             error.coverage.to_string(),
             error.flip.to_string(),
+            inside.largest.to_string(),
+            inside.rmse.to_string(),
+            inside.differing.to_string(),
+            sampled.map(|error| error.whole.rmse.to_string()).unwrap_or_default(),
             hash.clone(),
             front.contains(&row.point).to_string(),
             (current == Some(row.point)).to_string(),

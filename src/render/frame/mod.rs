@@ -77,8 +77,9 @@ pub(crate) enum Rules {
 
 impl FramePlan {
     /// The plan of the picture that one sample of each pixel sees, `shift` subpixels from the
-    /// centre.
-    pub(super) fn seen_from(&self, shift: [i32; 2]) -> Self {
+    /// centre: right and down, in 1/256 pixel.
+    #[must_use]
+    pub fn seen_from(&self, shift: [i32; 2]) -> Self {
         Self { shift, ..self.clone() }
     }
 

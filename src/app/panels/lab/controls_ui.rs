@@ -2,6 +2,7 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui};
 
+use crate::accuracy::Samples;
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
@@ -9,8 +10,10 @@ use crate::app::theme;
 use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, row};
 use crate::app::widgets::number::Number;
 use crate::lab::candidates::Thoroughness;
-use crate::lab::error::Measure;
+use crate::lab::error::{Measure, Region};
+use crate::lab::picture_source::Reference;
 use crate::lab::report::{Budgets, Report, brief, tabs};
+use crate::lab::suite::SuiteDetail;
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
@@ -18,11 +21,12 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         measure_ui(ui, state, requests);
         judge_ui(ui, state, requests);
+        region_ui(ui, state, requests);
         budgets_ui(ui, state, requests);
         ui.add_space(theme::GAP);
         compare_ui(ui, state, requests);
         pixel_ui(ui, state, requests);
-        if let Some(report) = &state.lab.report {
+        if let Some(report) = state.lab.shown() {
             command_ui(ui, report);
         }
     });
@@ -47,6 +51,12 @@ fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             let whole = ui.button("Thoroughly").on_hover_text(
                 "The same with more pairs of pictures and more combinations: some minutes",
             );
+            let suite = ui.button("Suite").on_hover_text(
+                "Measures each axis on a scene in which it matters: at most ten minutes",
+            );
+            if suite.clicked() {
+                requests.push(Request::Lab(LabRequest::Suite(SuiteDetail::WHOLE)));
+            }
             for (clicked, thoroughness) in
                 [(quick.clicked(), Thoroughness::QUICK), (whole.clicked(), Thoroughness::WHOLE)]
             {
@@ -81,8 +91,23 @@ fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
+fn region_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let now = state.lab.region;
+    let all = [
+        ("All pixels", Region::Whole, "Errors over the whole picture, edges included"),
+        ("Covered alike", Region::Inside, "Errors over the pixels that show the same triangle"),
+    ];
+    let shown: Vec<Choice<'_>> = all
+        .iter()
+        .map(|(label, region, hint)| Choice::new("Error over", label, *region == now, hint))
+        .collect();
+    if let Some(clicked) = row(ui, "Error over", |ui| choices_in_rows(ui, &shown)) {
+        requests.push(Request::Lab(LabRequest::Over(all[clicked].1)));
+    }
+}
+
 fn budgets_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let (budgets, report) = (state.lab.budgets, state.lab.report.as_ref());
+    let (budgets, report) = (state.lab.budgets, state.lab.shown());
     let error = Budget {
         label: "Error up to",
         name: "Largest error that is borne",
@@ -167,6 +192,15 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         all.iter().map(|(label, on, hint, _)| Choice::new("Compare", label, *on, hint)).collect();
     if let Some(clicked) = row(ui, "Compare", |ui| choices(ui, &shown)) {
         requests.push(Request::Lab(LabRequest::Compare(all[clicked].3)));
+    }
+    let one = state.settings.samples == Samples::One;
+    if now != Compare::Off && one {
+        let sampled = state.lab.reference == Reference::Sampled;
+        let switch = Switch::new("With 256 samples per pixel", sampled).ui(ui);
+        let hint = "Compares with the mean of 256 samples per pixel, each lit, instead of one";
+        if switch.on_hover_text(hint).clicked() {
+            requests.push(Request::Lab(LabRequest::Sampled(!sampled)));
+        }
     }
     if let (Some(judged), true) = (&state.lab.judged, now != Compare::Off) {
         ui.label(RichText::new(format!("Error: {}", in_words(&judged.error))).small());

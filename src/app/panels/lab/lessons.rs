@@ -15,7 +15,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         let axis = state.lab.lesson;
         ui.horizontal_wrapped(|ui| {
             for other in AXES {
-                let button = egui::Button::selectable(other.key == axis.key, other.name);
+                let button = egui::Button::selectable(other.key == axis.key, other.label);
                 if ui.add(button).on_hover_text(other.lesson.title).clicked() {
                     requests.push(Request::Lab(LabRequest::Lesson(other.key)));
                 }
@@ -23,10 +23,15 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         ui.add_space(theme::GAP);
         ui.label(RichText::new(axis.lesson.title).strong());
+        cost_ui(ui, state, requests);
         ui.horizontal(|ui| {
             let hint = "Opens a small scene in which the difference is plain to see";
             if ui.button("Take me there").on_hover_text(hint).clicked() {
                 requests.push(Request::Lab(LabRequest::ShowLesson(axis.key)));
+            }
+            let hint = "Restores your scene, with its view, settings, selection and history";
+            if state.lab.away && ui.button("Back to my scene").on_hover_text(hint).clicked() {
+                requests.push(Request::Lab(LabRequest::Back));
             }
             axis_ui(ui, axis, state, requests);
         });
@@ -40,6 +45,24 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         {
             ui.label(RichText::new(title).small().strong());
             ui.add(egui::Label::new(sentence).wrap());
+        }
+    });
+}
+
+/// What the axis costs and buys, with the figures of this machine once they are measured.
+fn cost_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let axis = state.lab.lesson;
+    if let Some(cost) = state.lab.costs.get(axis.key) {
+        ui.add(egui::Label::new(cost).wrap());
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.label("What it costs on this machine is not measured yet.");
+        let button = egui::Button::new("Measure this axis").small();
+        let hint = "Times its choices for the picture that is shown, and compares their errors";
+        let free = state.lab.running.is_none();
+        if ui.add_enabled(free, button).on_hover_text(hint).clicked() {
+            requests.push(Request::Lab(LabRequest::MeasureAxis(axis.key)));
         }
     });
 }

@@ -1,11 +1,11 @@
 //! The laboratory: time against error, the table behind it, and the lesson of each axis.
 //!
-//! At the left what is asked, in the middle the scatter, at the right the table or the lessons. A
+//! At the left what is asked, in the middle the plots, at the right the table or the lessons. A
 //! click on a mark or on a row of the table draws the picture so.
 
 mod controls_ui;
 mod lessons;
-mod scatter;
+mod plots;
 mod table;
 
 use egui::{Layout, Rect, Ui, UiBuilder, vec2};
@@ -25,10 +25,10 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let gap = f32::from(theme::MARGIN);
     let asked = all.with_max_x(all.left() + ASKED);
     let rest = all.with_min_x(asked.right() + gap);
-    let middle = rest.with_max_x(rest.left() + (rest.width() * 0.42).round());
+    let middle = rest.with_max_x(rest.left() + (rest.width() * 0.47).round());
     let right = rest.with_min_x(middle.right() + gap);
     within(ui, asked, |ui| controls_ui::show(ui, state, requests));
-    within(ui, middle, |ui| scatter::show(ui, state, requests));
+    within(ui, middle, |ui| plots::show(ui, state, requests));
     within(ui, right, |ui| right_ui(ui, state, requests));
     // All of it, else the panel would shrink from frame to frame.
     ui.allocate_rect(whole, egui::Sense::hover());

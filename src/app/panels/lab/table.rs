@@ -6,6 +6,7 @@ use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, put_text, text};
+use crate::lab::error::{Error, Region};
 use crate::lab::report::{Report, brief, heading};
 use crate::lab::sweep::{Measured, Row, Verdict};
 
@@ -14,7 +15,7 @@ struct Column {
     heading: &'static str,
     hint: &'static str,
     share: f32,
-    value: fn(&Measured) -> String,
+    value: fn(&Measured, &Error, Region) -> String,
 }
 
 /// What of the width the names have.
@@ -25,13 +26,13 @@ const COLUMNS: [Column; 7] = [
         heading: "time",
         hint: "Times the default's: the median of the pairs' ratios",
         share: 0.11,
-        value: |point| format!("{:.2}", point.ratio.quartiles.median),
+        value: |point, _, _| format!("{:.2}", point.ratio.quartiles.median),
     },
     Column {
-        heading: "half of pairs",
-        hint: "The middle half of the pairs' ratios",
+        heading: "IQR",
+        hint: "The interquartile range of the pairs' ratios: the middle half of them",
         share: 0.17,
-        value: |point| {
+        value: |point, _, _| {
             let quartiles = &point.ratio.quartiles;
             format!("{:.2} - {:.2}", quartiles.lower, quartiles.upper)
         },
@@ -40,37 +41,37 @@ const COLUMNS: [Column; 7] = [
         heading: "ms",
         hint: "Milliseconds of a picture",
         share: 0.09,
-        value: |point| brief(point.ms),
+        value: |point, _, _| brief(point.ms),
     },
     Column {
-        heading: "largest",
-        hint: "The largest difference of a byte",
+        heading: "max",
+        hint: "The maximum error: the largest difference of a byte",
         share: 0.09,
-        value: |point| point.error.largest.to_string(),
+        value: |_, error, region| error.over(region).largest.to_string(),
     },
     Column {
         heading: "RMSE",
         hint: "The root of the mean square difference, in byte steps",
         share: 0.09,
-        value: |point| brief(point.error.rmse),
+        value: |_, error, region| brief(error.over(region).rmse),
     },
     Column {
         heading: "bytes",
         hint: "The part of the bytes that differ, in per cent",
         share: 0.08,
-        value: |point| format!("{} %", brief(point.error.differing * 100.0)),
+        value: |_, error, region| format!("{}%", brief(error.over(region).differing * 100.0)),
     },
     Column {
         heading: "FLIP",
         hint: "How different it looks, from 0 to 1",
         share: 0.07,
-        value: |point| brief(point.error.flip),
+        value: |_, error, _| brief(error.flip),
     },
 ];
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let Some(report) = &state.lab.report else {
+    let Some(report) = state.lab.shown() else {
         ui.weak("Nothing is measured yet.");
         return;
     };
@@ -79,7 +80,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut last = String::new();
-        let front = report.fronts();
+        let front = report.front();
         for row in report.rows() {
             let heading = heading(row);
             if heading != last {
@@ -122,7 +123,7 @@ fn row_ui(
     on_front: bool,
     requests: &mut Vec<Request>,
 ) {
-    let point = &report.findings.points[row.point];
+    let (point, error) = (&report.findings.points[row.point], report.findings.error_of(row));
     let now = point.settings == state.settings;
     let size = vec2(ui.available_width(), theme::ROW - 3.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -135,7 +136,7 @@ fn row_ui(
         (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
     };
     ui.painter().rect_filled(rect, 3.0, fill);
-    // Choices on the front have a bar, as they have a line in the scatter.
+    // Choices on the front have a bar.
     if on_front {
         let bar = Rect::from_min_size(rect.min + vec2(1.0, 3.0), vec2(2.0, rect.height() - 6.0));
         ui.painter().rect_filled(bar, 1.0, theme::accent(ui.visuals()));
@@ -147,7 +148,7 @@ fn row_ui(
     for (i, column) in COLUMNS.iter().enumerate() {
         let noise = i < 3 && point.verdict == Verdict::Alike && row.point != 0 && !now;
         let ink = if noise { ui.visuals().weak_text_color() } else { ink };
-        right_text(ui, cell(rect, i), &(column.value)(point), ink);
+        right_text(ui, cell(rect, i), &(column.value)(point, error, report.region), ink);
     }
     focus_ring(ui, rect, &response);
     let verdict = match point.verdict {
@@ -157,7 +158,7 @@ fn row_ui(
     };
     let hint = format!(
         "{verdict}, {} pairs, {} thrown away; {} pixels show another triangle",
-        point.ratio.pairs, point.ratio.thrown, point.error.coverage
+        point.ratio.pairs, point.ratio.thrown, error.coverage
     );
     if response.on_hover_text(hint).clicked() {
         requests.push(Request::Settings(point.settings));
@@ -183,8 +184,9 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
         ui,
         format!(
             "{width} x {height} pixels, {} threads, {}. The default takes {} ms; against itself \
-             it differed by {:.1} % in {} pairs, so smaller differences mean nothing. * is the \
-             default; a bar marks choices that no other beats in both.",
+             it differed by {:.1}% in {} pairs, so smaller differences mean nothing. * is the \
+             default; a bar marks choices that no other beats in both. Errors are against every \
+             axis at its most exact; those of samples per pixel, against 256 samples, each lit.",
             findings.threads,
             findings.instructions,
             brief(findings.control.a_ms),

@@ -1,0 +1,245 @@
+//! The plots of time against error: an overview, or the panel of an axis. Clicking a mark draws the
+//! picture with its settings.
+
+use egui::{Color32, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, Visuals};
+use egui::{WidgetInfo, pos2, vec2};
+use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
+
+use crate::app::actions::{LabRequest, Request};
+use crate::app::state::State;
+use crate::app::theme;
+use crate::app::widgets::controls;
+use crate::lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
+
+/// The least height of a plot with its title: 420 points and a line.
+const LEAST: f32 = 444.0;
+
+/// The height that the verdict gets under the plot, if there is room.
+const VERDICT: f32 = 84.0;
+
+/// The radius of a mark.
+const MARK: f32 = 5.0;
+
+/// The colour of the default, in every plot.
+const fn default_color(visuals: &Visuals) -> Color32 {
+    if visuals.dark_mode { Color32::from_rgb(230, 159, 0) } else { Color32::from_rgb(213, 94, 0) }
+}
+
+/// Shows the panel; its requests are added to `requests`.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    suite_ui(ui, state, requests);
+    let Some(report) = state.lab.shown() else {
+        return empty_ui(ui, state);
+    };
+    let panels = Panels::new(report);
+    let panel = panels.of(state.lab.panel);
+    panels_ui(ui, &panels, panel, requests);
+    let height = LEAST.max(ui.available_height() - VERDICT);
+    let area = ScrollArea::vertical().id_salt("plots").auto_shrink(false);
+    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
+        let size = vec2(ui.available_width(), height);
+        ui.allocate_ui(size, |ui| panel_ui(ui, (&panels, panel), (state, report), requests));
+        for sentence in report.verdict() {
+            ui.add(egui::Label::new(sentence).wrap());
+        }
+    });
+}
+
+fn empty_ui(ui: &mut Ui, state: &State) {
+    let text = match state.lab.running {
+        Some(_) => {
+            "The exact pictures are drawn first, then the default is measured against itself: how \
+             much it differs is the noise."
+        }
+        None => {
+            "What does accuracy cost? Measure draws this picture with every choice and shows \
+             here how long each takes and how far it is from the exact picture."
+        }
+    };
+    ui.add_space(ui.available_height() * 0.35);
+    ui.vertical_centered(|ui| ui.add(egui::Label::new(text).wrap()));
+}
+
+/// The choice between the scene on screen and those of the suite.
+fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    if state.lab.suite.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
+        let scenes = state.lab.suite.iter().map(|report| report.scene.as_str()).enumerate();
+        let scenes = scenes.map(|(i, name)| (Some(i), name.trim_start_matches("suite scene ")));
+        for (place, name) in std::iter::once((None, "This scene")).chain(scenes) {
+            let chosen = state.lab.shown_suite == place;
+            if chip_ui(ui, "Measured", name, chosen).clicked() {
+                requests.push(Request::Lab(LabRequest::ShowSuite(place)));
+            }
+        }
+    });
+}
+
+/// A small button of a row; one of them is chosen.
+fn chip_ui(ui: &mut Ui, row: &str, label: &str, chosen: bool) -> Response {
+    let response = ui.add(egui::Button::selectable(chosen, RichText::new(label).small()).small());
+    let name = format!("{row}: {label}");
+    response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, chosen, &name));
+    response
+}
+
+/// The choice of a panel.
+fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Vec<Request>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
+        for panel in std::iter::once(&panels.overview).chain(&panels.axes) {
+            let label = panel.axis.map_or("Overview", |axis| axis.label);
+            if chip_ui(ui, "Plot", label, panel.title == shown.title).clicked() {
+                let key = panel.axis.map(|axis| axis.key);
+                requests.push(Request::Lab(LabRequest::Panel(key)));
+            }
+        }
+    });
+}
+
+fn panel_ui(
+    ui: &mut Ui,
+    (panels, panel): (&Panels, &Panel),
+    (state, report): (&State, &Report),
+    requests: &mut Vec<Request>,
+) {
+    ui.horizontal(|ui| {
+        ui.strong(&panel.title);
+        ui.weak(RichText::new(panel.note).small());
+    });
+    let transform = plot_ui(ui, panels);
+    let at: Vec<Pos2> = panel.marks.iter().map(|mark| position(mark, &transform)).collect();
+    let line = Stroke::new(1.5, theme::accent(ui.visuals()));
+    let _ = ui.painter().with_clip_rect(*transform.frame()).line(at.clone(), line);
+    for (mark, at) in panel.marks.iter().zip(&at) {
+        let is_now = report.findings.points[mark.point].settings == state.settings;
+        if mark_ui(ui, *at, mark, is_now, report).clicked() {
+            requests.push(Request::Settings(report.findings.points[mark.point].settings));
+        }
+    }
+    names_ui(ui, panel, &at, transform.frame());
+}
+
+fn position(mark: &PanelMark, transform: &PlotTransform) -> Pos2 {
+    transform.position_from_point(&PlotPoint::new(mark.at[0], mark.at[1]))
+}
+
+/// The scales, the line of exact choices, and the noise.
+fn plot_ui(ui: &mut Ui, panels: &Panels) -> PlotTransform {
+    let marks = |ticks: &[(f64, String)]| -> Vec<GridMark> {
+        ticks.iter().map(|(value, _)| GridMark { value: *value, step_size: 1.0 }).collect()
+    };
+    let label = |ticks: &[(f64, String)], at: f64| {
+        let tick = ticks.iter().find(|(value, _)| (value - at).abs() < 1e-9);
+        tick.map(|(_, label)| label.clone()).unwrap_or_default()
+    };
+    let faint = ui.visuals().weak_text_color();
+    let [left, right] = panels.x.range;
+    let [low, high] = panels.y.range;
+    let plot = Plot::new("time against error")
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .show_crosshair(false)
+        // The data are stronger than the grid.
+        .show_grid(false)
+        .sense(Sense::hover())
+        .default_x_bounds(left, right)
+        .default_y_bounds(low, high)
+        .auto_bounds(false)
+        .set_margin_fraction(egui::Vec2::ZERO)
+        .x_axis_label(panels.x.label.clone())
+        .y_axis_label(panels.y.label.clone())
+        .label_formatter(|_| None)
+        .x_grid_spacer(|_| marks(&panels.x.ticks))
+        .y_grid_spacer(|_| marks(&panels.y.ticks))
+        .x_axis_formatter(|mark, _| label(&panels.x.ticks, mark.value))
+        .y_axis_formatter(|mark, _| label(&panels.y.ticks, mark.value));
+    let shown = plot.show(ui, |plot| {
+        plot.set_plot_bounds_x(left..=right);
+        plot.set_plot_bounds_y(low..=high);
+        let [from, to] = panels.noise;
+        let band = Span::new("", from..=to).fill(faint.gamma_multiply(0.2));
+        plot.span(band.border_width(0.0));
+    });
+    let (frame, painter) = (*shown.transform.frame(), ui.painter());
+    let y = shown.transform.position_from_point_y(panels.zero);
+    painter.hline(frame.x_range(), y, Stroke::new(1.0, faint.gamma_multiply(0.6)));
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let middle = shown.transform.position_from_point_x(panels.noise.iter().sum::<f64>() / 2.0);
+    let top = pos2(middle, frame.top() + 2.0);
+    painter.text(top, egui::Align2::CENTER_TOP, "noise", font.clone(), faint);
+    let exact = pos2(frame.right() - 3.0, y + 2.0);
+    painter.text(exact, egui::Align2::RIGHT_TOP, "no error", font, faint);
+    shown.transform
+}
+
+/// Names beside marks; no two overlap.
+fn names_ui(ui: &Ui, panel: &Panel, at: &[Pos2], frame: &Rect) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let visuals = ui.visuals();
+    let galleys: Vec<_> = panel
+        .marks
+        .iter()
+        .map(|mark| {
+            let ink = if mark.is_default { default_color(visuals) } else { visuals.text_color() };
+            ui.painter().layout_no_wrap(mark.label.clone(), font.clone(), ink)
+        })
+        .collect();
+    let marks: Vec<[f32; 2]> = at.iter().map(|at| [at.x, at.y]).collect();
+    let sizes: Vec<[f32; 2]> =
+        galleys.iter().map(|galley| [galley.size().x + 2.0, galley.size().y]).collect();
+    let frame = TextBox { min: [frame.left(), frame.top()], max: [frame.right(), frame.bottom()] };
+    for (text, galley) in place(&marks, &sizes, &frame, MARK + 4.0).into_iter().zip(galleys) {
+        if let Some(TextBox { min: [x, y], .. }) = text {
+            ui.painter().galley(pos2(x + 1.0, y), galley, visuals.text_color());
+        }
+    }
+}
+
+fn mark_ui(ui: &Ui, at: Pos2, mark: &PanelMark, is_now: bool, report: &Report) -> Response {
+    let rect = Rect::from_center_size(at, vec2(14.0, 14.0));
+    let id = ui.scope_id().with(("mark", mark.point));
+    let response = ui.interact(rect, id, Sense::click());
+    let name = format!("Draw with {}", report.findings.points[mark.point].name);
+    response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, is_now, &name));
+    let visuals = ui.visuals();
+    let ink = match (response.hovered(), mark.is_default) {
+        (true, _) => visuals.strong_text_color(),
+        (false, true) => default_color(visuals),
+        (false, false) => theme::accent(visuals),
+    };
+    ui.painter().circle_filled(at, MARK, ink);
+    if is_now {
+        ui.painter().circle_stroke(at, MARK + 4.0, Stroke::new(2.0, visuals.strong_text_color()));
+    }
+    controls::focus_ring(ui, rect.expand(3.0), &response);
+    response.on_hover_ui(|ui| tip_ui(ui, mark, report))
+}
+
+/// The figures of a choice, for its tooltip.
+fn tip_ui(ui: &mut Ui, mark: &PanelMark, report: &Report) {
+    let point = &report.findings.points[mark.point];
+    let quartiles = &point.ratio.quartiles;
+    ui.strong(&point.name);
+    ui.label(format!(
+        "{} ms: {:.3} times the default; interquartile range of {} pairs from {:.3} to {:.3}",
+        brief(point.ms),
+        quartiles.median,
+        point.ratio.pairs,
+        quartiles.lower,
+        quartiles.upper
+    ));
+    let in_words = crate::app::state::laboratory::in_words;
+    ui.label(format!("Error: {}; FLIP {}", in_words(&point.error), brief(point.error.flip)));
+    if let Some(sampled) = &point.sampled {
+        let rmse = brief(sampled.whole.rmse);
+        ui.label(format!("Against 256 samples per pixel, each lit: RMSE {rmse}"));
+    }
+    ui.weak("Click to draw the picture with these settings.");
+}

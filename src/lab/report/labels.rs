@@ -1,0 +1,122 @@
+//! Places names beside marks so that no two overlap.
+
+/// A rectangle of text: left, top, right, bottom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextBox {
+    /// The left and the upper edge.
+    pub min: [f32; 2],
+    /// The right and the lower edge.
+    pub max: [f32; 2],
+}
+
+impl TextBox {
+    /// A box of some size.
+    #[must_use]
+    pub fn new([left, top]: [f32; 2], [width, height]: [f32; 2]) -> Self {
+        Self { min: [left, top], max: [left + width, top + height] }
+    }
+
+    /// Whether two boxes share more than an edge.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.min[i] < other.max[i] && other.min[i] < self.max[i])
+    }
+
+    fn is_inside(&self, other: &Self) -> bool {
+        (0..2).all(|i| other.min[i] <= self.min[i] && self.max[i] <= other.max[i])
+    }
+}
+
+/// Places a text of each size near its mark, inside of `frame`: beside it if there is room, else at
+/// the nearest free place. No two texts overlap, and none covers a mark, or the line that joins the
+/// marks, if it can be helped; a text without any room is left out.
+#[must_use]
+pub fn place(
+    marks: &[[f32; 2]],
+    sizes: &[[f32; 2]],
+    frame: &TextBox,
+    radius: f32,
+) -> Vec<Option<TextBox>> {
+    let squares: Vec<TextBox> = marks
+        .iter()
+        .map(|[x, y]| TextBox::new([x - radius, y - radius], [2.0 * radius; 2]))
+        .collect();
+    let line: Vec<TextBox> = marks.windows(2).flat_map(|ends| along(ends[0], ends[1])).collect();
+    let both = [squares.as_slice(), line.as_slice()].concat();
+    let mut taken: Vec<TextBox> = Vec::new();
+    let mut placed = Vec::new();
+    for (mark, size) in marks.iter().zip(sizes) {
+        let free = |text: &TextBox, marks: &[TextBox]| {
+            let clear = |others: &[TextBox]| others.iter().all(|other| !other.overlaps(text));
+            text.is_inside(frame) && clear(&taken) && clear(marks)
+        };
+        let found = around(*mark, *size, radius)
+            .find(|text| free(text, &both))
+            .or_else(|| around(*mark, *size, radius).find(|text| free(text, &squares)))
+            .or_else(|| around(*mark, *size, radius).find(|text| free(text, &[])));
+        taken.extend(found);
+        placed.push(found);
+    }
+    placed
+}
+
+/// Small squares along the line from one mark to the next.
+fn along(from: [f32; 2], to: [f32; 2]) -> impl Iterator<Item = TextBox> {
+    const PARTS: u16 = 64;
+    (0..=PARTS).map(move |i| {
+        let part = f32::from(i) / f32::from(PARTS);
+        let [x, y] = [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
+        TextBox::new([x - 2.0, y - 2.0], [4.0; 2])
+    })
+}
+
+/// Boxes around a mark, the nearest first.
+fn around([x, y]: [f32; 2], [w, h]: [f32; 2], radius: f32) -> impl Iterator<Item = TextBox> {
+    const STEPS: u16 = 60;
+    (0..STEPS).flat_map(move |step| {
+        let gap = radius + 2.0 + f32::from(step) * 4.0;
+        let near = gap - radius;
+        [
+            [x + gap, y - h / 2.0],
+            [x - gap - w, y - h / 2.0],
+            [x + near, y - gap - h],
+            [x + near, y + gap],
+            [x - near - w, y - gap - h],
+            [x - near - w, y + gap],
+            [x - w / 2.0, y - gap - h],
+            [x - w / 2.0, y + gap],
+        ]
+        .map(|corner| TextBox::new(corner, [w, h]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ten_names_at_one_place_do_not_overlap_and_stay_inside() {
+        let frame = TextBox::new([0.0; 2], [600.0, 300.0]);
+        let sizes: Vec<[f32; 2]> = (0..10u8).map(|i| [60.0 + 8.0 * f32::from(i), 16.0]).collect();
+        for at in [[300.0, 150.0], [2.0, 2.0], [598.0, 298.0]] {
+            let placed: Vec<TextBox> =
+                place(&[at; 10], &sizes, &frame, 5.0).into_iter().flatten().collect();
+            assert_eq!(placed.len(), 10, "{at:?}");
+            for (i, a) in placed.iter().enumerate() {
+                assert!(a.is_inside(&frame));
+                assert!(placed[..i].iter().all(|b| !a.overlaps(b)), "{at:?} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_name_stands_beside_its_mark_and_covers_neither_another_nor_the_line() {
+        let frame = TextBox::new([0.0; 2], [200.0, 100.0]);
+        let marks = [[50.0, 50.0], [70.0, 50.0]];
+        let placed = place(&marks, &[[40.0, 12.0]; 2], &frame, 4.0);
+        let first = placed[0].unwrap();
+        assert!(first.max[0] <= 46.0, "the right side is taken by the other mark: {first:?}");
+        assert_eq!(placed[1].unwrap(), TextBox::new([76.0, 44.0], [40.0, 12.0]));
+        assert_eq!(place(&marks[..1], &[[400.0, 12.0]], &frame, 4.0), [None]);
+    }
+}

@@ -1,0 +1,31 @@
+//! Each lesson shows what it teaches: its scene, drawn with the choice that it opens with, differs
+//! visibly from the reference that it is compared with.
+//!
+//! Catches: a scene in which the choice makes no difference, and a reference that has the same
+//! fault as the picture.
+
+use marraztu::accuracy::{AXES, Settings, Shot};
+use marraztu::base::image::Size;
+use marraztu::io;
+use marraztu::lab::picture_source::{PictureSource as _, Reference, Studio};
+
+#[test]
+fn every_lesson_opens_on_an_error_that_can_be_seen() {
+    for axis in AXES {
+        let opened = io::lesson_scene(axis.lesson.scene).unwrap();
+        let settings = axis.lesson_choice().of(&Settings::default());
+        let size = Size::new(240, 150);
+        let mut studio = Studio::new(Shot::new(&opened.scene, &opened.view, &settings, size));
+        let exact = studio.reference(&settings, Reference::of(axis));
+        let error = studio.rendering(&settings).error(&exact);
+        // Light that is left out as too faint, and rounding, are a step off at most by what they
+        // promise: there the error is shown amplified, and has to be in many bytes.
+        let (largest, differing) = match axis.key {
+            "faint" | "rounding" => (1, 0.0005),
+            _ => (4, 0.0002),
+        };
+        let whole = &error.whole;
+        assert!(whole.largest >= largest, "{}: {error:?}", axis.key);
+        assert!(whole.differing >= differing, "{}: {error:?}", axis.key);
+    }
+}
