@@ -9,6 +9,7 @@ mod editor;
 mod examples;
 mod keys_and_clicks;
 mod laboratory;
+mod layout;
 mod mouse;
 mod panels;
 mod plan;

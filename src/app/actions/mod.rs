@@ -3,6 +3,7 @@
 mod chord;
 mod request;
 mod resolve;
+pub mod search;
 mod table;
 
 pub use chord::Chord;

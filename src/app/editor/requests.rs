@@ -4,6 +4,7 @@
 //! writes the scene.
 
 use egui::{Context, Key};
+use glam::DVec3;
 
 use super::App;
 use crate::app::actions::{Action, Chord, FileIntent, Intent, Request, resolve};
@@ -12,8 +13,8 @@ use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
-use crate::edit::{Gesture, items};
-use crate::scene::{Command, Subject, View};
+use crate::edit::{Gesture, GesturePhase, aiming, items};
+use crate::scene::{Command, ItemId, Subject, View};
 
 impl App {
     /// Performs the action of a key. Esc first closes whatever is open.
@@ -23,7 +24,9 @@ impl App {
             if self.viewport.cancel_drag(&mut requests) {
                 return requests.into_iter().for_each(|request| self.answer(ctx, request));
             }
-            if std::mem::take(&mut self.state.panels.cheat_sheet)
+            if std::mem::take(&mut self.state.aiming)
+                || std::mem::take(&mut self.state.lab.picking)
+                || std::mem::take(&mut self.state.panels.cheat_sheet)
                 || self.state.renaming.take().is_some()
             {
                 return;
@@ -45,6 +48,7 @@ impl App {
                 Ok(selection) => self.select(selection, Gesture::Whole),
                 Err(refusal) => self.refuse(refusal.to_string()),
             },
+            Request::AimAt(point) => self.aim_at(point),
             Request::SelectPolygon(polygon) => {
                 let mut view = state.view.clone();
                 match selection::go_to_polygon(&state.scene, &mut view, polygon) {
@@ -79,6 +83,7 @@ impl App {
                     loading.task.progress.cancel();
                 }
             }
+            Request::Layout(layout) => state.layout = layout,
             Request::Refuse(why) => self.refuse(why),
         }
     }
@@ -99,6 +104,7 @@ impl App {
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
             Ok(Intent::Settings(settings)) => self.state.settings = settings,
             Ok(Intent::Panels(panels)) => self.state.panels = panels,
+            Ok(Intent::Layout(layout)) => self.state.layout = layout,
             Ok(Intent::Theme(theme)) => {
                 self.state.theme = theme;
                 ctx.set_theme(theme);
@@ -118,7 +124,27 @@ impl App {
             Ok(Intent::File(intent)) => self.file(ctx, intent),
             Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
             Ok(Intent::Measure) => self.measure(ctx),
+            Ok(Intent::Palette) => self.state.palette ^= true,
+            Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
+            Ok(Intent::Overlays) => self.state.overlays ^= true,
+            Ok(Intent::AimByClick) => self.state.aiming ^= true,
             Ok(Intent::ChangeKeyboardOwner) => Keyboard::change_owner(ctx),
+        }
+    }
+
+    /// Aims the selected light, as a click into the picture asks for.
+    fn aim_at(&mut self, point: DVec3) {
+        let State { scene, view, .. } = &self.state;
+        let command = aiming::can_aim(scene, view)
+            .and_then(|id| aiming::aim(scene, view, id, point, GesturePhase::First));
+        match command {
+            Ok(command) => {
+                let name = view.light.and_then(|id| self.state.name(ItemId::Light(id)));
+                let label = format!("Aim {}", name.unwrap_or("a light"));
+                self.state.aiming = false;
+                self.change(command, Gesture::Whole, &label);
+            }
+            Err(refusal) => self.refuse(refusal.to_string()),
         }
     }
 

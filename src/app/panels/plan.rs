@@ -7,8 +7,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{
-    Align2, Color32, Frame, Id, Margin, Panel, Rect, RichText, ScrollArea, Sense, TextStyle, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
 use crate::app::actions::{Action, Request};
@@ -22,23 +21,16 @@ use crate::render::{Effect, EffectUse};
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
-    let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
-    let height = ui.available_height();
-    Panel::bottom("plan")
-        .frame(frame)
-        .resizable(true)
-        .default_size((height * 0.34).round())
-        .size_range(90.0..=(height * 0.7).max(90.0))
-        .show(ui, |ui| {
-            let Some(explained) = state.plan.explained.clone() else {
-                ui.weak("The next picture says what it is made of.");
-                return;
-            };
-            header_ui(ui, state, requests, &explained);
-            table_ui(ui, state, &explained);
-        });
+    let Some(explained) = state.plan.explained.clone() else {
+        ui.add(egui::Label::new("The next picture says what it is made of.").wrap());
+        return;
+    };
+    header_ui(ui, state, requests, &explained);
+    controls::no_narrower(ui, LEAST, |ui| table_ui(ui, state, &explained));
 }
+
+/// In less width the table is scrolled sideways.
+const LEAST: f32 = 540.0;
 
 /// The summary, and the button that measures.
 fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {

@@ -1,6 +1,7 @@
 //! Everything that panels read. Only the app writes it.
 
 pub mod laboratory;
+pub mod layout;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,6 +20,7 @@ use crate::scene::{
     Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Sides, View,
 };
 use laboratory::Laboratory;
+use layout::Layout;
 
 /// The scene being edited, and everything shown about it.
 #[derive(Debug)]
@@ -43,6 +45,18 @@ pub struct State {
     pub plan: Plan,
     /// Which panels are shown.
     pub panels: Panels,
+    /// How the window is divided among them.
+    pub layout: Layout,
+    /// Whether the palette is open.
+    pub palette: bool,
+    /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
+    pub overlays: bool,
+    /// Whether the next click into the picture aims the selected light.
+    pub aiming: bool,
+    /// How large the interface is; 1 is the system's size.
+    pub zoom: f32,
+    /// Whether the window is so narrow that panels are folded.
+    pub narrow: bool,
     /// Whether the window is light or dark.
     pub theme: ThemePreference,
     /// The state of the laboratory.
@@ -206,6 +220,12 @@ impl State {
             statistics: Statistics::default(),
             plan: Plan::default(),
             panels: Panels::DEFAULT,
+            layout: Layout::default(),
+            palette: false,
+            overlays: true,
+            aiming: false,
+            zoom: 1.0,
+            narrow: false,
             theme: ThemePreference::System,
             lab: Laboratory::default(),
             renaming: None,
@@ -217,6 +237,17 @@ impl State {
     #[must_use]
     pub fn selected(&self) -> Option<ItemId> {
         selection::selected(&self.view)
+    }
+
+    /// Whether anything is drawn over the picture now: a comparison shows the pictures alone.
+    #[must_use]
+    pub fn shows_overlays(&self) -> bool {
+        self.overlays && self.lab.compare == laboratory::Compare::Off
+    }
+
+    /// The item whose outline is drawn over the picture: the one that the keys act on.
+    pub(crate) fn outlined(&self) -> Option<ItemId> {
+        self.selected().filter(|_| self.shows_overlays())
     }
 
     /// Its name; empty if nothing is selected.

@@ -3,7 +3,9 @@
 //! The picture is aligned to the pixels of the screen and shown unfiltered, so that each pixel of
 //! the renderer is a pixel of the screen.
 
+mod axes;
 pub(crate) mod comparison;
+mod marks;
 mod mouse;
 mod overlay;
 mod picking;
@@ -21,10 +23,12 @@ use crate::app::drawing::worker::{News, Pick, Worker};
 use crate::app::drawing::{border::Border, viewport_renderer::Drawn};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::state::State;
+use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
 use crate::base::image::Size;
 use crate::render::Hit;
 use crate::scene::ItemId;
+use marks::Projection;
 use mouse::{Mouse, Under};
 
 /// The purpose of a pick.
@@ -38,6 +42,8 @@ pub(crate) enum Purpose {
     Frame,
     /// Opens the menu of the item that was right-clicked.
     Menu(Pos2),
+    /// Aims the selected light at this point of the window.
+    Aim(Pos2),
 }
 
 /// The picture, and the state of input over it.
@@ -53,12 +59,20 @@ pub(crate) struct Viewport {
     menu: Option<Menu>,
     /// The border of the item under the pointer.
     border: Option<Border>,
+    /// The border of the selected item.
+    outline: Option<Border>,
     /// Whether the picture has changed since the last pick under the pointer.
     stale: bool,
     /// The item whose border was requested for this picture.
     asked: Option<ItemId>,
     /// The pixel and the observer of the last click: a second click there selects what is behind.
     clicked: Option<([usize; 2], DMat4)>,
+}
+
+/// What lies over the picture and can be clicked.
+struct Over {
+    ends: Vec<axes::End>,
+    marks: Vec<marks::Mark>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -108,6 +122,9 @@ impl Viewport {
         for (pick, hit) in news.picked {
             self.answer(ctx, state, pick, hit, requests);
         }
+        if let Some(outline) = news.outline {
+            self.outline = outline;
+        }
         if let Some(drawn) = news.drawn {
             self.take(ctx, drawn);
         }
@@ -135,7 +152,17 @@ impl Viewport {
         let under = Under { rect, size, hit };
         let picks = self.mouse.ui(ui, &response, state, under, requests);
         Keyboard::set_viewport(ui.ctx(), id, self.mouse.is_flying());
+        let projection = Projection::new(state, rect, size);
+        let over = Over { ends: axes::ends(state, rect), marks: marks::marks(state, &projection) };
         for (at, purpose) in picks {
+            if let Some(request) = self.over_click(state, &over, at, purpose) {
+                requests.extend(request);
+                continue;
+            }
+            let purpose = match purpose {
+                Purpose::Select if state.aiming => Purpose::Aim(at),
+                purpose => purpose,
+            };
             let at = self.pixel(at);
             if state.lab.picking && purpose == Purpose::Select {
                 requests.push(Request::Lab(LabRequest::Attribute(at)));
@@ -145,11 +172,82 @@ impl Viewport {
         }
         self.hover(&response, worker);
         self.border_ui(ui, worker);
+        self.over_ui(ui, state, &response, &projection, &over);
         self.overlay(ui, state);
         if state.panels.statistics {
             overlay::statistics_ui(ui, state, rect);
         }
         self.menu_ui(ui, state, requests);
+    }
+
+    /// What a click on something over the picture asks for; `None` if it is for the picture.
+    fn over_click(
+        &mut self,
+        state: &State,
+        over: &Over,
+        at: Pos2,
+        purpose: Purpose,
+    ) -> Option<Option<Request>> {
+        let is_end = axes::end_at(&over.ends, at);
+        match (purpose, is_end) {
+            (Purpose::Select, Some(end)) => Some(Some(Request::Do(end.action))),
+            // The two clicks of a double click have turned the view already.
+            (Purpose::Frame, Some(_)) => Some(None),
+            (Purpose::Select, None) if !state.aiming && !state.lab.picking => {
+                let [free, _] = marks::lights_at(&over.marks, at);
+                let first = *free.first()?;
+                let pixel = self.pixel(at);
+                let click = (pixel, state.scene.observer_frame(&state.view));
+                let again = self.clicked.replace(click) == Some(click);
+                Some(Some(Request::Select(self.deeper(state, over, at, again, first))))
+            }
+            _ => None,
+        }
+    }
+
+    /// The first of what lies here, or the next after the selected one if it was clicked before.
+    fn deeper(&self, state: &State, over: &Over, at: Pos2, again: bool, first: ItemId) -> ItemId {
+        if !again {
+            return first;
+        }
+        let [mut all, following] = marks::lights_at(&over.marks, at);
+        let pixel = self.pixel(at);
+        let objects = self.size().map(|size| picking::objects_at(state, pixel, size));
+        all.extend(objects.unwrap_or_default().into_iter().map(ItemId::Object));
+        all.extend(following);
+        let here = all.iter().position(|item| state.selected() == Some(*item));
+        here.and_then(|here| all.get((here + 1) % all.len())).copied().unwrap_or(first)
+    }
+
+    /// Draws what lies over the picture: outline, marks of lights, axes.
+    fn over_ui(
+        &self,
+        ui: &Ui,
+        state: &State,
+        response: &Response,
+        projection: &Projection,
+        over: &Over,
+    ) {
+        let Some((rect, _)) = self.place else { return };
+        if let Some(outline) = self.outline.as_ref().filter(|it| Some(it.item) == state.outlined())
+        {
+            overlay::border_ui(ui, rect, outline, theme::accent(ui.visuals()));
+        }
+        marks::show(ui, state, projection, &over.marks);
+        let pointer = response.hover_pos().filter(|_| !self.mouse.is_dragging());
+        let end = pointer.and_then(|at| axes::end_at(&over.ends, at));
+        axes::show(ui, rect, &over.ends, end);
+        let light = pointer.and_then(|at| marks::lights_at(&over.marks, at)[0].first().copied());
+        if let Some(end) = end {
+            plate_ui(ui, rect, egui::Align2::RIGHT_BOTTOM, end.action.info().label.to_owned());
+        } else if let Some(name) = light.and_then(|light| state.name(light)) {
+            plate_ui(ui, rect, egui::Align2::RIGHT_BOTTOM, name.to_owned());
+        }
+        if state.aiming {
+            let text = "Click where the light shall shine; Esc cancels".to_owned();
+            plate_ui(ui, rect, egui::Align2::CENTER_TOP, text);
+            ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
+        }
     }
 
     /// Picks the pixel under the pointer, once for each pixel it enters.
@@ -184,7 +282,17 @@ impl Viewport {
                 }
             }
             Purpose::Select => requests.extend(hit.map(|hit| self.selecting(state, pick.at, hit))),
-            Purpose::Frame => match item {
+            Purpose::Aim(at) => requests.push(match (hit, self.place) {
+                (Some(hit), Some((rect, size))) => {
+                    match Projection::new(state, rect, size).world(at, hit.depth) {
+                        Some(point) => Request::AimAt(point),
+                        None => Request::Refuse("there is no point here".to_owned()),
+                    }
+                }
+                _ => Request::Refuse("nothing is here to aim at: click on an object".to_owned()),
+            }),
+            // What lies under a light's mark is meant.
+            Purpose::Frame => match self.framed(state, pick.at, item) {
                 Some(item) => {
                     requests.extend([Request::Select(item), Request::Do(Action::FrameSelection)]);
                 }
@@ -198,12 +306,22 @@ impl Viewport {
         }
     }
 
+    /// What a double click frames: the object there, also if the mark of a light lies over it.
+    fn framed(&self, state: &State, at: [usize; 2], item: Option<ItemId>) -> Option<ItemId> {
+        match item {
+            Some(ItemId::Light(_)) => {
+                let objects = picking::objects_at(state, at, self.size()?);
+                objects.first().copied().map(ItemId::Object)
+            }
+            item => item,
+        }
+    }
+
     /// The request of a click on `hit`: selects the polygon in polygon mode, otherwise the item; a
     /// second click on the same pixel selects the object behind the selected one.
     fn selecting(&mut self, state: &State, at: [usize; 2], hit: Hit) -> Request {
         let click = (at, state.scene.observer_frame(&state.view));
         let again = self.clicked.replace(click) == Some(click);
-        let selected = state.selected();
         match hit.item {
             ItemId::Object(id)
                 if state.view.polygons.is_some() && state.view.object == Some(id) =>
@@ -211,11 +329,11 @@ impl Viewport {
                 Request::SelectPolygon(hit.polygon)
             }
             ItemId::Object(_) if again && state.view.polygons.is_none() => {
-                let all = self.size().map(|size| picking::objects_at(state, at, size));
-                let all = all.unwrap_or_default();
-                let here = all.iter().position(|id| selected == Some(ItemId::Object(*id)));
-                let next = here.and_then(|here| all.get((here + 1) % all.len()));
-                Request::Select(next.map_or(hit.item, |id| ItemId::Object(*id)))
+                let Some((rect, size)) = self.place else { return Request::Select(hit.item) };
+                let projection = Projection::new(state, rect, size);
+                let (ends, marks) = (Vec::new(), marks::marks(state, &projection));
+                let place = self.point(at);
+                Request::Select(self.deeper(state, &Over { ends, marks }, place, true, hit.item))
             }
             item => Request::Select(item),
         }
@@ -231,7 +349,7 @@ impl Viewport {
         if let (Some(border), Some((rect, _))) = (&self.border, self.place)
             && Some(border.item) == over
         {
-            overlay::border_ui(ui, rect, border);
+            overlay::border_ui(ui, rect, border, egui::Color32::WHITE);
         }
     }
 
@@ -267,6 +385,17 @@ impl Viewport {
             ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
         };
         [along(part.x, size.width), along(part.y, size.height)]
+    }
+
+    /// The middle of a pixel in the window.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
+    fn point(&self, [x, y]: [usize; 2]) -> Pos2 {
+        let Some((rect, size)) = self.place else { return Pos2::ZERO };
+        let part = vec2(
+            (x as f32 + 0.5) / size.width.max(1) as f32,
+            (y as f32 + 0.5) / size.height.max(1) as f32,
+        );
+        rect.min + part * rect.size()
     }
 
     /// Shows the name of the item under the pointer, or the speed of flight.
@@ -341,6 +470,8 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
             Action::Delete,
         ],
         ItemId::Light(_) => &[
+            Action::AimAtSelection,
+            Action::AimByClick,
             Action::ToggleVisible,
             Action::Rename,
             Action::Duplicate,

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use egui::collapsing_header::CollapsingState;
 use egui::{
-    Color32, Galley, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, TextWrapMode,
-    Ui, WidgetInfo, WidgetText, pos2, vec2,
+    Color32, Galley, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle,
+    TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
 };
 
 use super::icons::Icon;
@@ -54,6 +54,18 @@ pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
     folding.show_body_unindented(ui, |ui| {
         add(ui);
         ui.add_space(theme::GAP);
+    });
+}
+
+/// Shows what needs `least` points of width; in less it is scrolled sideways.
+pub(crate) fn no_narrower(ui: &mut Ui, least: f32, add: impl FnOnce(&mut Ui)) {
+    if ui.available_width() >= least {
+        return add(ui);
+    }
+    let area = ScrollArea::horizontal().id_salt("sideways").auto_shrink(false);
+    area.show(ui, |ui| {
+        ui.set_width(least);
+        add(ui);
     });
 }
 

@@ -8,7 +8,9 @@ mod row;
 
 use std::collections::BTreeSet;
 
-use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
 
 use crate::app::actions::{Action, Request};
 use crate::app::input::buttons::action_icon;
@@ -32,10 +34,18 @@ enum Line {
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    egui::Panel::bottom("outline tools")
-        .show_separator_line(false)
-        .frame(egui::Frame::NONE.inner_margin(theme::SCROLL_MARGIN))
-        .show(ui, |ui| tools_ui(ui, state, requests));
+    let all = ui.available_rect_before_wrap();
+    let tools = all.with_min_y((all.bottom() - theme::ROW).max(all.top()));
+    let tools = tools.with_max_x(all.right() - f32::from(theme::MARGIN));
+    let list = all.with_max_y((tools.top() - theme::GAP).max(all.top()));
+    let mut child = ui.new_child(UiBuilder::new().id_salt("list").max_rect(list));
+    child.set_clip_rect(list.intersect(ui.clip_rect()));
+    list_ui(&mut child, state, requests);
+    let mut child = ui.new_child(UiBuilder::new().id_salt("tools").max_rect(tools));
+    tools_ui(&mut child, state, requests);
+}
+
+fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if state.renaming.is_none() {
         row::forget_new_name(ui);
     }
@@ -157,7 +167,7 @@ fn header_ui(
         requests.push(action.into());
     }
     let button = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
-    ui.scope_builder(egui::UiBuilder::new().max_rect(button), |ui| {
+    ui.scope_builder(UiBuilder::new().max_rect(button), |ui| {
         add_ui(ui, state, requests, subject);
     });
 }
@@ -188,7 +198,6 @@ fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subj
 
 /// What can be done with the selected item, at the foot of the list.
 fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    ui.add_space(theme::GAP);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         move_ui(ui, state, requests, Icon::Up, "Move up the list");
