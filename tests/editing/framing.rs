@@ -113,7 +113,13 @@ fn analysis_from_above_does_not_turn_the_picture() {
             desk.perform(framing::side(&desk.scene, &desk.view, side));
             let id = desk.view.camera;
             let eye = desk.pose().eye + aside;
-            desk.perform(placement::camera_eye(&desk.scene, id, eye, GesturePhase::First));
+            desk.perform(placement::camera_eye(
+                &desk.scene,
+                &desk.view,
+                id,
+                eye,
+                GesturePhase::First,
+            ));
             let before = desk.pose().axes;
             desk.analyse();
             assert!(desk.pose().axes.x_axis.dot(before.x_axis) > 0.99, "{side:?} {aside}");

@@ -11,6 +11,8 @@ mod keys_and_clicks;
 mod laboratory;
 mod layout;
 mod mouse;
+mod palette;
 mod panels;
 mod plan;
 mod properties;
+mod regions;

@@ -1,6 +1,7 @@
 //! Actions: everything a user can ask for by a key, a menu or a button.
 
 mod chord;
+mod labels;
 mod request;
 mod resolve;
 pub mod search;

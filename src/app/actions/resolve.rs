@@ -334,32 +334,6 @@ impl Action {
         u32::try_from(at).ok()
     }
 
-    /// The name of what the action does now, as the history shows it: "Rotate teapot".
-    #[must_use]
-    pub fn step_label(self, state: &State) -> String {
-        let name = state.selected_name();
-        let steps = [
-            Self::StepXUp,
-            Self::StepXDown,
-            Self::StepYUp,
-            Self::StepYDown,
-            Self::StepZUp,
-            Self::StepZDown,
-        ];
-        if steps.contains(&self) {
-            let verb = match state.view.transformation {
-                Transformation::Translation => "Move",
-                Transformation::Rotation => "Rotate",
-                Transformation::Scaling => "Scale",
-            };
-            format!("{verb} {name}")
-        } else if matches!(self, Self::Delete | Self::Duplicate) {
-            format!("{} {name}", self.info().label)
-        } else {
-            self.info().label.to_owned()
-        }
-    }
-
     /// Whether the action's switch is on; `None` if the action is not a switch.
     #[must_use]
     pub fn is_on(self, state: &State) -> Option<bool> {

@@ -383,7 +383,7 @@ actions! {
         "shortcuts help hotkeys keyboard bindings";
     ToPanels Window ONCE [Named(Key::F6)]
         "Keyboard to the panels"
-        "Moves keyboard focus to the panels; Esc returns it to the viewport."
+        "Moves keyboard focus from region to region; Esc returns it to the viewport."
         "focus next region tab";
     ToggleOutline Window ONCE []
         "Outline" "Shows or hides the list of objects, cameras and lights."

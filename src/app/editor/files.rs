@@ -74,7 +74,7 @@ impl App {
             Answer::Save(after) => self.save(ctx, Some(after)),
             Answer::Discard(after) => self.after(ctx, after),
             Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
-            Answer::ChooseTexture => self.dialogs.ask_file(ctx, Wanted::TextureOfModel, ""),
+            Answer::ChooseTexture => self.ask_file(ctx, Wanted::TextureOfModel, ""),
         }
     }
 
@@ -319,7 +319,7 @@ impl App {
             }
             After::Lesson(key) => self.show_lesson(key),
             After::Open(Some(path)) => self.open_scene(ctx, path),
-            After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
+            After::Open(None) => self.ask_file(ctx, Wanted::Scene, ""),
         }
     }
 

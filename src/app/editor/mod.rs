@@ -30,6 +30,7 @@ use crate::app::state::State;
 use crate::app::state::layout::NARROW;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
+use crate::app::widgets::number::take_bad_text;
 use crate::scene::{Scene, View};
 use laboratory::Work;
 use measuring::Measuring;
@@ -106,7 +107,6 @@ impl App {
         let ctx = ui.ctx().clone();
         let mut requests = Vec::new();
         let _touch = self.lab.touch();
-        Keyboard::begin(&ctx);
         self.begin(&ctx, &mut requests);
         self.state.zoom = ctx.zoom_factor();
         self.state.narrow = ui.available_width() < NARROW;
@@ -128,6 +128,12 @@ impl App {
         // Last, so that everything that is shown in a frame shows the same scene.
         if !requests.is_empty() || !pressed.is_empty() || answer.is_some() {
             ctx.request_repaint();
+        }
+        if let Some(text) = take_bad_text(&ctx) {
+            self.refuse(format!("\"{text}\" is no number: the field keeps its value"));
+        }
+        if Keyboard::take_held_escape(&ctx) {
+            self.state.tell(Some("Esc once more leaves the program".to_owned()));
         }
         for press in pressed {
             self.press(&ctx, press);

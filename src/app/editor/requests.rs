@@ -66,7 +66,7 @@ impl App {
             }
             Request::BeginRename(id) => state.renaming = Some(id),
             Request::EndRename(name) => self.end_rename(name),
-            Request::ChooseTexture(id) => self.dialogs.ask_file(ctx, Wanted::Texture(id), ""),
+            Request::ChooseTexture(id) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
@@ -90,7 +90,7 @@ impl App {
 
     /// Performs an action. Every key, menu entry and button ends here.
     pub fn perform(&mut self, ctx: &Context, action: Action, gesture: Gesture) {
-        let label = action.step_label(&self.state);
+        let label = action.step_label(&self.state, self.state.next_repeat(gesture));
         // Framing the object by any key or button dismisses the notice that offers it.
         if action == Action::FrameSelection {
             let framed = self.state.view.object.map(Offer::Frame);
@@ -153,10 +153,18 @@ impl App {
             FileIntent::New => self.unless_unsaved(ctx, After::New),
             FileIntent::Open => self.unless_unsaved(ctx, After::Open(None)),
             FileIntent::Quit => self.unless_unsaved(ctx, After::Quit),
-            FileIntent::Load => self.dialogs.ask_file(ctx, Wanted::Model, ""),
+            FileIntent::Load => self.ask_file(ctx, Wanted::Model, ""),
             FileIntent::Save => self.save(ctx, None),
             FileIntent::SaveAs => self.save_as(ctx, None),
-            FileIntent::SavePicture => self.dialogs.ask_file(ctx, Wanted::PictureTo, "picture.png"),
+            FileIntent::SavePicture => self.ask_file(ctx, Wanted::PictureTo, "picture.png"),
+        }
+    }
+
+    /// Asks for a file, unless the system's dialog is asking for one already: it may be lost behind
+    /// the window.
+    pub(crate) fn ask_file(&mut self, ctx: &Context, wanted: Wanted, name: &str) {
+        if let Err(open) = self.dialogs.ask_file(ctx, wanted, name) {
+            self.refuse(format!("the dialog \"{open}\" is open already: answer it first"));
         }
     }
 
@@ -196,9 +204,10 @@ impl App {
     pub(crate) fn change(&mut self, command: Command, gesture: Gesture, label: &str) {
         let state = &mut self.state;
         let before = state.scene.clone();
+        let repeats = state.next_repeat(gesture);
         match state.history.perform(&mut state.scene, command, gesture, label) {
             Ok(()) => {
-                state.gesture = gesture;
+                (state.gesture, state.repeats) = (gesture, repeats);
                 state.message = None;
                 selection::follow(&before, &state.scene, &mut state.view);
             }

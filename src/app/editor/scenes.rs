@@ -32,7 +32,7 @@ impl App {
             Some(path) => file_name(path),
             None => format!("scene.{SCENE_ENDING}"),
         };
-        self.dialogs.ask_file(ctx, Wanted::SceneTo(after), &name);
+        self.ask_file(ctx, Wanted::SceneTo(after), &name);
     }
 
     /// Saves the scene to `path`.
@@ -100,7 +100,7 @@ impl App {
         self.state.tell(Some(format!("{} is missing", first.display())));
         self.waiting = Some(waiting);
         let name = file_name(&first);
-        self.dialogs.ask_file(ctx, Wanted::Missing(first), &name);
+        self.ask_file(ctx, Wanted::Missing(first), &name);
     }
 
     /// Opens the waiting scene with a missing model found at `path`.

@@ -18,6 +18,7 @@ use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::state::layout::{Places, Side};
 use crate::app::theme;
+use crate::app::widgets::regions;
 
 /// Where everything stands in a frame.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +44,10 @@ impl Arrangement {
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> Arrangement {
     let fill = ui.visuals().panel_fill;
     let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
-    Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, requests));
+    Panel::top("menu bar").frame(bar).show(ui, |ui| {
+        regions::begin(ui, "menus");
+        menu_bar::show(ui, state, requests);
+    });
     Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, requests));
     let area = ui.available_rect_before_wrap();
     let mut layout = state.layout;
@@ -56,6 +60,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> A
     let places = layout.divide(area, panels);
     if let Some(rect) = places.strip {
         ui.painter().rect_filled(rect, 0.0, fill);
+        regions::begin(ui, "strip");
         splitters::strip_ui(ui, rect, state, requests);
     }
     within(ui, "outline", places.outline, |ui| outline::show(ui, state, requests));
@@ -82,5 +87,7 @@ fn within(ui: &mut Ui, name: &str, place: Option<Rect>, add: impl FnOnce(&mut Ui
     let builder = UiBuilder::new().id_salt(name).max_rect(rect - margin).layout(layout);
     let mut child = ui.new_child(builder);
     child.set_clip_rect(rect.intersect(ui.clip_rect()));
+    regions::begin(&child, name);
     add(&mut child);
+    regions::follow_focus(&child);
 }

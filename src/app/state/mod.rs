@@ -65,6 +65,8 @@ pub struct State {
     pub renaming: Option<ItemId>,
     /// The gesture of the last change.
     pub(crate) gesture: Gesture,
+    /// How many changes it has had.
+    pub(crate) repeats: u32,
 }
 
 /// A message to the user.
@@ -115,12 +117,19 @@ impl Offer {
         }
     }
 
+    /// The object that it is about.
+    #[must_use]
+    pub const fn object(self) -> ObjectId {
+        let (Self::Frame(id) | Self::TwoSides(id)) = self;
+        id
+    }
+
     /// The change of the scene, and its label in the history.
     ///
     /// # Errors
     /// If the object is gone, or the observer is an object.
     pub fn command(self, scene: &Scene, view: &View) -> Result<(Command, String), Refusal> {
-        let (Self::Frame(id) | Self::TwoSides(id)) = self;
+        let id = self.object();
         let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
         Ok(match self {
             Self::Frame(_) => (framing::objects(scene, view, &[id])?, format!("Frame {name}")),
@@ -230,6 +239,7 @@ impl State {
             lab: Laboratory::default(),
             renaming: None,
             gesture: Gesture::Whole,
+            repeats: 0,
         }
     }
 
@@ -286,6 +296,14 @@ impl State {
             |light: &Light| matches!(&light.kind, LightKind::Bulb { orbit, .. } if orbit.on);
         self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
             || self.scene.lights.iter().any(|(_, light)| circles(light))
+    }
+
+    /// How many changes `gesture` will have had after the next one.
+    pub(crate) fn next_repeat(&self, gesture: Gesture) -> u32 {
+        match self.phase(gesture) {
+            GesturePhase::First => 1,
+            GesturePhase::Continued => self.repeats.saturating_add(1),
+        }
     }
 
     /// The phase of the next change in `gesture`: the first one pushes the old transform.

@@ -508,7 +508,6 @@ fn keep_focus(ctx: &Context, response: &Response) {
     let pressed = ctx.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
     let free =
         ctx.memory(|memory| memory.focused().is_none() && memory.top_modal_layer().is_none());
-    let free = free && !Keyboard::is_leaving(ctx);
     if (pressed || free) && !response.has_focus() && !egui::Popup::is_any_open(ctx) {
         response.request_focus();
     }

@@ -18,6 +18,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_button};
 use crate::app::widgets::icons::Icon;
+use crate::app::widgets::regions;
 use crate::scene::{ItemId, ObjectId, Subject};
 use order::{place, reorder};
 
@@ -60,17 +61,33 @@ fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         let (all, _) = ui.allocate_exact_size(size, Sense::hover());
         // Other lines come to the same places when the list is scrolled or unfolded.
         ui.ctx().allow_widget_id_changes_in(all);
+        let items: Vec<ItemId> = lines.iter().filter_map(|line| line.item()).collect();
+        let ids: Vec<Id> = items.iter().map(|item| row::id(ui, *item)).collect();
+        let chosen = items.iter().position(|item| state.selected() == Some(*item));
+        let chosen = row::busy(ui, &items).or(chosen);
+        let stop = items.get(regions::stop(ui, &ids, chosen, 1)).copied();
         for (i, line) in (0..count).zip(&lines) {
             let top = all.top() + f32::from(i) * theme::ROW;
             let rect = Rect::from_min_size(pos2(all.left(), top), vec2(all.width(), theme::ROW));
             follow_selection(ui, state, *line, rect);
             let (y, bottom) = (rect.top() - all.top(), rect.bottom() - all.top());
-            if bottom >= seen.top() && y <= seen.bottom() {
-                line_ui(ui, state, requests, *line, rect, &mut unfolded);
+            let is_stop = stop.is_some() && line.item() == stop;
+            if is_stop || (bottom >= seen.top() && y <= seen.bottom()) {
+                line_ui(ui, state, requests, *line, rect, (&mut unfolded, is_stop));
             }
         }
+        regions::follow_focus(ui);
     });
     ui.data_mut(|data| data.insert_temp(id, unfolded));
+}
+
+impl Line {
+    fn item(&self) -> Option<ItemId> {
+        match self {
+            Self::Item(item) => Some(*item),
+            Self::Header(_) | Self::Part(..) => None,
+        }
+    }
 }
 
 /// The lines, from the top.
@@ -110,12 +127,13 @@ fn line_ui(
     requests: &mut Vec<Request>,
     line: Line,
     rect: Rect,
-    unfolded: &mut BTreeSet<ObjectId>,
+    (unfolded, is_stop): (&mut BTreeSet<ObjectId>, bool),
 ) {
     match line {
         Line::Header(subject) => header_ui(ui, state, requests, subject, rect),
         Line::Item(item) => {
-            if row::item_ui(ui, state, requests, item, rect, unfolded_of(unfolded, item))
+            let row = row::Row { item, rect, is_stop, unfolded: unfolded_of(unfolded, item) };
+            if row::item_ui(ui, state, requests, &row)
                 && let ItemId::Object(id) = item
                 && !unfolded.remove(&id)
             {
