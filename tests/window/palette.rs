@@ -119,7 +119,7 @@ fn a_spot_is_aimed_at_the_selection_and_by_a_click() {
     assert!(direction(&editor).x < -0.99);
     // The other ship stands at the right.
     editor.perform(Action::AimByClick);
-    assert!(editor.shows("Click where the light shall shine"));
+    assert!(editor.state().aiming);
     let nothing = editor.at(0.5, 0.95);
     editor.click(nothing, PointerButton::Primary);
     assert!(editor.state().aiming, "there is nothing to aim at");
@@ -203,7 +203,7 @@ fn text_that_is_no_number_is_said_and_changes_nothing() {
     type_text(&mut editor, "ten");
     editor.press(Named(Key::Enter));
     let told = editor.harness.get_by_role(Role::Alert).accesskit_node().label();
-    assert_eq!(told.as_deref(), Some("\"ten\" is no number: the field keeps its value"));
+    assert_eq!(told.as_deref(), Some("\"ten\" means nothing here: the field keeps its value"));
     assert_eq!(editor.steps(), 0);
 }
 
@@ -217,6 +217,67 @@ fn esc_in_a_menu_and_esc_again_does_not_leave_the_program() {
     editor.press(Named(Key::Escape));
     let told = editor.harness.get_by_role(Role::Alert).accesskit_node().label();
     assert_eq!(told.as_deref(), Some("Esc once more leaves the program"));
+}
+
+#[test]
+fn why_an_object_is_not_seen_is_said_with_what_mends_it() {
+    let mut editor = Editor::new();
+    editor.perform_all(&[Action::SubjectObject, Action::WhyUnseen]);
+    let until = |editor: &mut Editor, text: &str| {
+        for _ in 0..200 {
+            if editor.shows(text) {
+                return;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            editor.settle();
+        }
+        panic!("nobody says {text:?}");
+    };
+    until(&mut editor, "r_falke is in the picture");
+    editor.perform_all(&[Action::ToggleVisible, Action::WhyUnseen]);
+    until(&mut editor, "r_falke is hidden");
+    control(&editor, Role::Button, "Show").click();
+    editor.settle();
+    assert_eq!(Action::ToggleVisible.is_on(editor.state()), Some(true));
+    assert!(!editor.shows("r_falke is hidden"));
+}
+
+#[test]
+fn each_of_two_notices_frames_its_own_object() {
+    let mut editor = Editor::new();
+    let ids: Vec<_> = editor.scene().objects.ids().collect();
+    let far = glam::DMat4::from_translation(glam::DVec3::X * 4000.0);
+    for id in &ids[..2] {
+        let mut object = editor.scene().objects.get(*id).unwrap().clone();
+        object.placement = marraztu::scene::Tracked::new(far * *object.placement.now());
+        let item = marraztu::scene::Item::Object(*id, Box::new(object));
+        let (gesture, label) = (marraztu::edit::Gesture::Whole, "Move".to_owned());
+        let command = marraztu::scene::Command::Replace(item);
+        editor.ask(Request::Change { command, gesture, label });
+        let mut view = editor.view();
+        view.object = Some(*id);
+        editor.ask(Request::View(Box::new(view)));
+        editor.perform(Action::WhyUnseen);
+        for _ in 0..200 {
+            let name = editor.scene().objects.get(*id).unwrap().name.clone();
+            if editor.shows(&format!("{name} is out of view")) {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            editor.settle();
+        }
+    }
+    let names = |editor: &Editor| -> Vec<String> {
+        let buttons = editor.harness.query_all(By::new().role(Role::Button).label("Frame"));
+        buttons.map(|button| format!("{:?}", button.rect())).collect()
+    };
+    assert_eq!(names(&editor).len(), 2);
+    let first = editor.scene().objects.get(ids[0]).unwrap().name.clone();
+    let top = editor.harness.query_all(By::new().role(Role::Button).label("Frame")).next();
+    top.unwrap().click();
+    editor.settle();
+    assert_eq!(editor.state().history.steps().last(), Some(format!("Frame {first}").as_str()));
+    assert_eq!(names(&editor).len(), 1, "the other notice stays");
 }
 
 #[test]

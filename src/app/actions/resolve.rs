@@ -52,6 +52,8 @@ pub(crate) enum Intent {
     AskCamera,
     /// The effects of the picture are measured, or no longer.
     Measure,
+    /// The reason why nothing of an object is seen is looked for.
+    WhyUnseen(ObjectId),
     /// The list of everything that can be asked for opens or closes.
     Palette,
     /// The interface becomes this large.
@@ -199,6 +201,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::LookFront => look_from(LookSide::Front),
         Action::LookRight => look_from(LookSide::Right),
         Action::LookTop => look_from(LookSide::Top),
+        Action::WhyUnseen => object(state).map(Intent::WhyUnseen),
         Action::LookBack => look_from(LookSide::Back),
         Action::LookLeft => look_from(LookSide::Left),
         Action::LookBottom => look_from(LookSide::Bottom),
@@ -414,7 +417,7 @@ impl Action {
             Self::ApertureUp | Self::ApertureDown | Self::RedUp | Self::RedDown => return None,
             Self::GreenUp | Self::GreenDown | Self::BlueUp | Self::BlueDown => return None,
             Self::LargerText | Self::SmallerText | Self::NormalText => return None,
-            Self::AimAtSelection => return None,
+            Self::AimAtSelection | Self::WhyUnseen => return None,
             Self::ToPanels | Self::Light0 | Self::Light1 | Self::Light2 | Self::Light3 => {
                 return None;
             }

@@ -304,6 +304,9 @@ actions! {
     LookTop Camera ONCE [Command(Key::Num7)]
         "Top view" "Looks from above, along -Y."
         "camera above bird plan down";
+    WhyUnseen Camera ONCE []
+        "Why can't I see it?" "Says why nothing of the selected object is seen, and offers to mend it."
+        "invisible missing gone lost hidden vanished black find";
     LookBack Camera ONCE []
         "Back view" "Looks from behind, along +Z."
         "camera behind rear";

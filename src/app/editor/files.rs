@@ -25,7 +25,7 @@ use crate::edit::{Gesture, items};
 use crate::io::{self, Finding, LoadError, Loaded};
 use crate::render::Renderer;
 use crate::render::plan_frame;
-use crate::scene::{MaterialChoice, Object, ObjectId, Texture};
+use crate::scene::{MaterialChoice, Object, ObjectId, Subject, Texture};
 
 /// The maximum number of files read at the same time.
 const MOST_LOADING: usize = 8;
@@ -120,7 +120,7 @@ impl App {
         let Some((path, loaded)) = dialog.loaded else {
             let model = io::cam_model();
             let command = items::insert_camera(&self.state.scene, model, material);
-            self.change(command, Gesture::Whole, "Add a camera");
+            self.add(command, Subject::Camera, "Add a camera");
             return;
         };
         if loaded.model.options == options && texture.is_none() {

@@ -130,7 +130,7 @@ impl App {
             ctx.request_repaint();
         }
         if let Some(text) = take_bad_text(&ctx) {
-            self.refuse(format!("\"{text}\" is no number: the field keeps its value"));
+            self.refuse(format!("\"{text}\" means nothing here: the field keeps its value"));
         }
         if Keyboard::take_held_escape(&ctx) {
             self.state.tell(Some("Esc once more leaves the program".to_owned()));

@@ -156,7 +156,7 @@ impl Layout {
             Side::Outline | Side::Switches => self.left,
             Side::Properties => self.right,
         };
-        let width = share(rest.width(), wish.unwrap_or(250.0) / rest.width(), 220.0, 60.0);
+        let width = share(rest.width(), wish.unwrap_or(250.0) / rest.width(), 220.0, 40.0);
         let place = Some(rest.with_max_x(rest.left() + width));
         match side {
             Side::Outline => places.outline = place,

@@ -105,6 +105,8 @@ pub enum Offer {
     Frame(ObjectId),
     /// To draw both sides of an object's faces.
     TwoSides(ObjectId),
+    /// To show an object that is hidden.
+    Show(ObjectId),
 }
 
 impl Offer {
@@ -114,13 +116,14 @@ impl Offer {
         match self {
             Self::Frame(_) => "Frame",
             Self::TwoSides(_) => "Draw both sides",
+            Self::Show(_) => "Show",
         }
     }
 
     /// The object that it is about.
     #[must_use]
     pub const fn object(self) -> ObjectId {
-        let (Self::Frame(id) | Self::TwoSides(id)) = self;
+        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id)) = self;
         id
     }
 
@@ -136,6 +139,10 @@ impl Offer {
             Self::TwoSides(_) => {
                 let two = |object: &mut Object| object.sides = Sides::Two;
                 (items::change_object(scene, id, two)?, format!("Draw both sides of {name}"))
+            }
+            Self::Show(_) => {
+                let show = |object: &mut Object| object.visible = true;
+                (items::change_object(scene, id, show)?, format!("Show {name}"))
             }
         })
     }

@@ -90,26 +90,32 @@ const SHADE: Color32 = Color32::from_black_alpha(110);
 pub(super) struct Mark {
     pub(super) id: LightId,
     at: Pos2,
+    /// From the observer.
+    distance: f64,
     /// Whether it stands where an object or a camera is, which a click selects first.
     follows: bool,
 }
 
-/// The marks of all lights that stand within the picture.
+/// The marks of all lights that stand within the picture, the nearest first.
 pub(super) fn marks(state: &State, projection: &Projection) -> Vec<Mark> {
     let (scene, view) = (&state.scene, &state.view);
+    let eye = scene.observer_frame(view).w_axis.truncate();
     let mark = |id: LightId| {
         let light = scene.lights.get(id)?;
         let follows = match &light.kind {
             LightKind::Spot { owner, .. } => !matches!(owner, SpotOwner::Fixed(_)),
             LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => false,
         };
-        let at = projection.place(aiming::stands(scene, view, id)?.position)?;
-        projection.rect.shrink(2.0).contains(at).then_some(Mark { id, at, follows })
+        let position = aiming::stands(scene, view, id)?.position;
+        let (at, distance) = (projection.place(position)?, position.distance(eye));
+        projection.rect.shrink(2.0).contains(at).then_some(Mark { id, at, distance, follows })
     };
     if !state.shows_overlays() {
         return Vec::new();
     }
-    scene.lights.ids().filter_map(mark).collect()
+    let mut marks: Vec<Mark> = scene.lights.ids().filter_map(mark).collect();
+    marks.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    marks
 }
 
 /// The lights whose marks are at a place of the window: those that stand free, then those that
@@ -128,7 +134,7 @@ pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mar
     if let Some(ItemId::Light(id)) = state.outlined() {
         cone_ui(&painter, state, projection, id, Stroke::new(1.5, accent));
     }
-    for mark in marks {
+    for mark in marks.iter().rev() {
         let Some(light) = state.scene.lights.get(mark.id) else { continue };
         let selected = state.selected() == Some(ItemId::Light(mark.id));
         if mark.follows && !selected {

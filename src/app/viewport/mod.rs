@@ -451,6 +451,7 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
     match item {
         ItemId::Object(_) => &[
             Action::FrameSelection,
+            Action::WhyUnseen,
             Action::TogglePolygons,
             Action::ToggleOthers,
             Action::ToggleVisible,

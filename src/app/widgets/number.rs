@@ -116,7 +116,7 @@ impl<'a> Number<'a> {
             .custom_parser(move |text| {
                 let value = expression::value(text);
                 if value.is_none() {
-                    parsed.data_mut(|data| data.insert_temp(bad_text(), text.to_owned()));
+                    say_bad_text(&parsed, text);
                 }
                 value
             });
@@ -158,7 +158,12 @@ fn bad_text() -> Id {
     Id::unique("text that is no number")
 }
 
-/// The text that was typed into a field since this was last asked, if it is no number.
+/// Notes that a field could make nothing of its text.
+pub(super) fn say_bad_text(ctx: &Context, text: &str) {
+    ctx.data_mut(|data| data.insert_temp(bad_text(), text.to_owned()));
+}
+
+/// The text that was typed into a field since this was last asked, if it means nothing there.
 pub(crate) fn take_bad_text(ctx: &Context) -> Option<String> {
     ctx.data_mut(|data| data.remove_temp(bad_text()))
 }

@@ -13,6 +13,7 @@ use egui::{Id, Layout, Rect, Ui, UiBuilder, vec2};
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::controls::{self, Choice, choices};
+use crate::app::widgets::regions;
 use crate::app::{actions::LabRequest, state::laboratory::Side, theme};
 
 /// The width of the controls.
@@ -37,8 +38,14 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let middle = rest.with_max_x(rest.left() + (rest.width() * 0.42).round());
     let right = rest.with_min_x(middle.right() + gap);
     within(ui, asked, |ui| controls_ui::show(ui, state, requests));
-    within(ui, middle, |ui| scatter::show(ui, state, requests));
-    within(ui, right, |ui| right_ui(ui, state, requests));
+    within(ui, middle, |ui| {
+        regions::begin(ui, "chart");
+        scatter::show(ui, state, requests);
+    });
+    within(ui, right, |ui| {
+        regions::begin(ui, "table");
+        right_ui(ui, state, requests);
+    });
 }
 
 /// One part at a time, for there is no room beside it.

@@ -1,12 +1,12 @@
 //! The scatter plot of time against error; clicking a mark draws the picture with its settings.
 
-use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Color32, Id, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls;
+use crate::app::widgets::{controls, regions};
 use crate::lab::report::{Chart, Mark, MarkKind, Report, brief};
 
 /// Shows the panel; its requests are added to `requests`.
@@ -22,13 +22,26 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let mut marks: Vec<&Mark> = chart.marks.iter().collect();
     let is_now = |mark: &Mark| report.findings.points[mark.point].settings == state.settings;
     marks.sort_by_key(|mark| (is_now(mark), mark.on_front));
-    for mark in &marks {
-        if mark_ui(ui, place(mark, &transform), mark, is_now(mark), report).clicked() {
+    let ids: Vec<Id> = marks.iter().map(|mark| mark_id(ui, mark)).collect();
+    let chosen = marks.iter().position(|mark| is_now(mark));
+    let stop = regions::stop(ui, &ids, chosen, 1);
+    for (i, mark) in marks.iter().enumerate() {
+        let sense = regions::sense(Sense::click(), i == stop);
+        let response = ui.interact(mark_rect(mark, &transform), ids[i], sense);
+        if mark_ui(ui, response, mark, is_now(mark), report).clicked() {
             requests.push(Request::Settings(report.findings.points[mark.point].settings));
         }
     }
     marks.reverse();
     names_ui(ui, &marks, &transform);
+}
+
+fn mark_id(ui: &Ui, mark: &Mark) -> Id {
+    ui.scope_id().with(("mark", mark.point))
+}
+
+fn mark_rect(mark: &Mark, transform: &PlotTransform) -> Rect {
+    Rect::from_center_size(place(mark, transform), vec2(14.0, 14.0))
 }
 
 fn place(mark: &Mark, transform: &PlotTransform) -> Pos2 {
@@ -137,10 +150,8 @@ fn names_ui(ui: &Ui, marks: &[&Mark], transform: &PlotTransform) {
     }
 }
 
-fn mark_ui(ui: &Ui, at: Pos2, mark: &Mark, is_now: bool, report: &Report) -> Response {
-    let rect = Rect::from_center_size(at, vec2(14.0, 14.0));
-    let id = ui.scope_id().with(("mark", mark.point));
-    let response = ui.interact(rect, id, Sense::click());
+fn mark_ui(ui: &Ui, response: Response, mark: &Mark, is_now: bool, report: &Report) -> Response {
+    let at = response.rect.center();
     let name = format!("Draw with {}", mark.name);
     response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, is_now, &name));
     let visuals = ui.visuals();
@@ -171,7 +182,7 @@ fn mark_ui(ui: &Ui, at: Pos2, mark: &Mark, is_now: bool, report: &Report) -> Res
     if is_now {
         painter.circle_stroke(at, 10.0, Stroke::new(2.0, visuals.strong_text_color()));
     }
-    controls::focus_ring(ui, rect.expand(3.0), &response);
+    controls::focus_ring(ui, response.rect.expand(3.0), &response);
     response.on_hover_ui(|ui| tip_ui(ui, mark, report))
 }
 

@@ -200,8 +200,11 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
         if !matches!(item, ItemId::Light(_)) {
             actions.push(Action::ToggleVisible);
         }
+        if matches!(item, ItemId::Light(_)) {
+            actions.extend([Action::AimAtSelection, Action::AimByClick]);
+        }
         if matches!(item, ItemId::Object(_)) {
-            actions.extend([Action::FrameSelection, Action::Split]);
+            actions.extend([Action::FrameSelection, Action::WhyUnseen, Action::Split]);
         }
         for action in actions {
             requests.extend(action.menu_item(ui, state).map(Request::from));
