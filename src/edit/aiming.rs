@@ -21,8 +21,10 @@ pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
     }
 }
 
-/// Where a light stands, for its mark and to aim it. A sun, which is infinitely far away, stands
-/// beside the scene, on the side that it shines from; ambient light stands nowhere.
+/// The position and the direction of a light, for its mark and to aim it.
+///
+/// A sun, which is infinitely far away, stands beside the scene, on the side that it shines from;
+/// ambient light stands nowhere.
 #[must_use]
 pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
     match &scene.lights.get(id)?.kind {

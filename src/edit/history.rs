@@ -39,7 +39,8 @@ impl History {
         Self { steps: Vec::new(), position: 0, open: Gesture::Whole, saved: Some(0) }
     }
 
-    /// Applies a command, and records under `label` how to undo it; of a gesture, the last label stays. Undone steps are discarded.
+    /// Applies a command, and records under `label` how to undo it; of a gesture, the last label
+    /// stays. Undone steps are discarded.
     ///
     /// # Errors
     /// If the command does not fit the scene; then neither scene nor history changes.

@@ -231,7 +231,7 @@ fn why_an_object_is_not_seen_is_said_with_what_mends_it() {
             std::thread::sleep(std::time::Duration::from_millis(20));
             editor.settle();
         }
-        panic!("nobody says {text:?}");
+        panic!("{text:?} is not said");
     };
     until(&mut editor, "r_falke is in the picture");
     editor.perform_all(&[Action::ToggleVisible, Action::WhyUnseen]);

@@ -272,7 +272,7 @@ actions! {
         "Camera and light models" "Draws the models of the other cameras and of bulbs."
         "icons gizmo markers pyramids diamond";
     ToggleOverlays Show ONCE []
-        "Overlays" "Draws the selection's outline, the axes and the marks of lights over the picture."
+        "Overlays" "Draws the selection's outline, axes and marks of lights over the picture."
         "gizmo axes cones helpers outline guides widgets";
     ToggleCoarse Show ONCE []
         "Coarser while moving" "Draws slow scenes at reduced quality while something moves."
@@ -305,7 +305,7 @@ actions! {
         "Top view" "Looks from above, along -Y."
         "camera above bird plan down";
     WhyUnseen Camera ONCE []
-        "Why can't I see it?" "Says why nothing of the selected object is seen, and offers to mend it."
+        "Why can't I see it?" "Says why nothing of the selected object is seen, and what mends it."
         "invisible missing gone lost hidden vanished black find";
     LookBack Camera ONCE []
         "Back view" "Looks from behind, along +Z."
@@ -424,10 +424,10 @@ actions! {
         "theme auto colours colors";
     ThemeLight Window ONCE []
         "Light" "Shows dark text on light panels."
-        "theme white day bright";
+        "theme mode white day bright";
     ThemeDark Window ONCE []
         "Dark" "Shows light text on dark panels."
-        "theme black night";
+        "theme mode black night";
 }
 
 #[cfg(test)]

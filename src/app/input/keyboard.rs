@@ -61,7 +61,7 @@ impl Keyboard {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().waiting)
     }
 
-    /// Whether an Esc was held back: it came after one that closed a menu or left a panel, and whoever
+    /// Whether an Esc was held back: it came after one that closed a menu or left a panel. Whoever
     /// presses it twice there does not mean to leave the program.
     pub(crate) fn take_held_escape(ctx: &Context) -> bool {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().held_escape)

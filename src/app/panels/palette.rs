@@ -2,7 +2,9 @@
 //!
 //! It opens with an empty query. The arrows go through what was found, Enter does it, Esc closes.
 
-use egui::{Id, Key, Modal, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
+use egui::{
+    Align2, Id, Key, Modal, RichText, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, vec2,
+};
 
 use crate::accuracy::{ACCURACY_PRESETS, AXES};
 use crate::app::actions::search::{Search, Texts};
@@ -38,7 +40,9 @@ pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
     let room = ui.ctx().content_rect().size();
     let width = WIDTH.min(room.x - 40.0);
     let frame = egui::Frame::popup(&ui.ctx().global_style()).inner_margin(8.0);
-    let shown = Modal::new(id).frame(frame).show(ui.ctx(), |ui| {
+    // It stays where it is, however much is found.
+    let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, 48.0));
+    let shown = Modal::new(id).area(area).frame(frame).show(ui.ctx(), |ui| {
         ui.set_width(width);
         contents(ui, state, requests, (room.y - 120.0).clamp(90.0, 420.0))
     });
@@ -74,6 +78,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
     let field = egui::TextEdit::singleline(&mut query)
         .id(id.with("field"))
         .hint_text("Search: an action, an item, a setting")
+        .align(Align2::LEFT_CENTER)
         .min_size(vec2(0.0, theme::ROW + 4.0))
         .desired_width(f32::INFINITY);
     let response = ui.add(field).accessible_name("Search everything");
@@ -92,8 +97,10 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
     });
     ui.add_space(theme::GAP);
     let mut clicked = None;
-    let area = ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
-    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let mut list = ui.new_child(UiBuilder::new().id_salt("found").max_rect(rect));
+    let area = ScrollArea::vertical().auto_shrink(false);
+    area.content_margin(theme::SCROLL_MARGIN).show(&mut list, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (i, entry) in entries.iter().enumerate() {
             let response = entry.ui(ui, i == chosen);

@@ -15,6 +15,7 @@ use crate::app::state::{Measured, State};
 use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
+use crate::app::widgets::regions;
 use crate::app::widgets::text::grouped;
 use crate::lab::cost::{Explained, Group};
 use crate::render::{Effect, EffectUse};
@@ -161,6 +162,7 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
                 }
             }
         }
+        regions::follow_focus(ui);
     });
     ui.data_mut(|data| data.insert_temp(id, open));
 }

@@ -246,7 +246,7 @@ impl Places {
             .flatten()
     }
 
-    /// Where a splitter is taken hold of, `thick` points wide; `None` if there is none now.
+    /// The place at which a splitter is taken hold of, `thick` points wide, if there is one.
     #[must_use]
     pub fn grip(&self, splitter: Splitter, thick: f32) -> Option<Rect> {
         let upright = |rect: Rect, x: f32| {

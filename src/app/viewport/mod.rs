@@ -7,6 +7,7 @@ mod axes;
 pub(crate) mod comparison;
 mod marks;
 mod mouse;
+mod over;
 mod overlay;
 mod picking;
 
@@ -23,13 +24,13 @@ use crate::app::drawing::worker::{News, Pick, Worker};
 use crate::app::drawing::{border::Border, viewport_renderer::Drawn};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::state::State;
-use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
 use crate::base::image::Size;
 use crate::render::Hit;
 use crate::scene::ItemId;
 use marks::Projection;
 use mouse::{Mouse, Under};
+use over::Over;
 
 /// The purpose of a pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,12 +68,6 @@ pub(crate) struct Viewport {
     asked: Option<ItemId>,
     /// The pixel and the observer of the last click: a second click there selects what is behind.
     clicked: Option<([usize; 2], DMat4)>,
-}
-
-/// What lies over the picture and can be clicked.
-struct Over {
-    ends: Vec<axes::End>,
-    marks: Vec<marks::Mark>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -153,7 +148,7 @@ impl Viewport {
         let picks = self.mouse.ui(ui, &response, state, under, requests);
         Keyboard::set_viewport(ui.ctx(), id, self.mouse.is_flying());
         let projection = Projection::new(state, rect, size);
-        let over = Over { ends: axes::ends(state, rect), marks: marks::marks(state, &projection) };
+        let over = Over::new(state, rect, &projection);
         for (at, purpose) in picks {
             if let Some(request) = self.over_click(state, &over, at, purpose) {
                 requests.extend(request);
@@ -178,76 +173,6 @@ impl Viewport {
             overlay::statistics_ui(ui, state, rect);
         }
         self.menu_ui(ui, state, requests);
-    }
-
-    /// What a click on something over the picture asks for; `None` if it is for the picture.
-    fn over_click(
-        &mut self,
-        state: &State,
-        over: &Over,
-        at: Pos2,
-        purpose: Purpose,
-    ) -> Option<Option<Request>> {
-        let is_end = axes::end_at(&over.ends, at);
-        match (purpose, is_end) {
-            (Purpose::Select, Some(end)) => Some(Some(Request::Do(end.action))),
-            // The two clicks of a double click have turned the view already.
-            (Purpose::Frame, Some(_)) => Some(None),
-            (Purpose::Select, None) if !state.aiming && !state.lab.picking => {
-                let [free, _] = marks::lights_at(&over.marks, at);
-                let first = *free.first()?;
-                let pixel = self.pixel(at);
-                let click = (pixel, state.scene.observer_frame(&state.view));
-                let again = self.clicked.replace(click) == Some(click);
-                Some(Some(Request::Select(self.deeper(state, over, at, again, first))))
-            }
-            _ => None,
-        }
-    }
-
-    /// The first of what lies here, or the next after the selected one if it was clicked before.
-    fn deeper(&self, state: &State, over: &Over, at: Pos2, again: bool, first: ItemId) -> ItemId {
-        if !again {
-            return first;
-        }
-        let [mut all, following] = marks::lights_at(&over.marks, at);
-        let pixel = self.pixel(at);
-        let objects = self.size().map(|size| picking::objects_at(state, pixel, size));
-        all.extend(objects.unwrap_or_default().into_iter().map(ItemId::Object));
-        all.extend(following);
-        let here = all.iter().position(|item| state.selected() == Some(*item));
-        here.and_then(|here| all.get((here + 1) % all.len())).copied().unwrap_or(first)
-    }
-
-    /// Draws what lies over the picture: outline, marks of lights, axes.
-    fn over_ui(
-        &self,
-        ui: &Ui,
-        state: &State,
-        response: &Response,
-        projection: &Projection,
-        over: &Over,
-    ) {
-        let Some((rect, _)) = self.place else { return };
-        if let Some(outline) = self.outline.as_ref().filter(|it| Some(it.item) == state.outlined())
-        {
-            overlay::border_ui(ui, rect, outline, theme::accent(ui.visuals()));
-        }
-        marks::show(ui, state, projection, &over.marks);
-        let pointer = response.hover_pos().filter(|_| !self.mouse.is_dragging());
-        let end = pointer.and_then(|at| axes::end_at(&over.ends, at));
-        axes::show(ui, rect, &over.ends, end);
-        let light = pointer.and_then(|at| marks::lights_at(&over.marks, at)[0].first().copied());
-        if let Some(end) = end {
-            plate_ui(ui, rect, egui::Align2::RIGHT_BOTTOM, end.action.info().label.to_owned());
-        } else if let Some(name) = light.and_then(|light| state.name(light)) {
-            plate_ui(ui, rect, egui::Align2::RIGHT_BOTTOM, name.to_owned());
-        }
-        if state.aiming {
-            let text = "Click where the light shall shine; Esc cancels".to_owned();
-            plate_ui(ui, rect, egui::Align2::CENTER_TOP, text);
-            ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
-        }
     }
 
     /// Picks the pixel under the pointer, once for each pixel it enters.
@@ -331,9 +256,8 @@ impl Viewport {
             ItemId::Object(_) if again && state.view.polygons.is_none() => {
                 let Some((rect, size)) = self.place else { return Request::Select(hit.item) };
                 let projection = Projection::new(state, rect, size);
-                let (ends, marks) = (Vec::new(), marks::marks(state, &projection));
-                let place = self.point(at);
-                Request::Select(self.deeper(state, &Over { ends, marks }, place, true, hit.item))
+                let over = Over::new(state, rect, &projection);
+                Request::Select(self.deeper(state, &over, self.point(at), true, hit.item))
             }
             item => Request::Select(item),
         }

@@ -21,7 +21,7 @@ struct Region {
 struct Regions {
     pass: u64,
     shown: Vec<Region>,
-    /// Where the keyboard is to go, or went last.
+    /// The region that the keyboard is to go to, and the one that it went to last.
     target: Option<Id>,
     current: Option<Id>,
 }

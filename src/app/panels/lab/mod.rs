@@ -12,7 +12,7 @@ use egui::{Id, Layout, Rect, Ui, UiBuilder, vec2};
 
 use crate::app::actions::Request;
 use crate::app::state::State;
-use crate::app::widgets::controls::{self, Choice, choices};
+use crate::app::widgets::controls::{Choice, choices};
 use crate::app::widgets::regions;
 use crate::app::{actions::LabRequest, state::laboratory::Side, theme};
 
@@ -21,9 +21,6 @@ const ASKED: f32 = 264.0;
 
 /// In less width than this, one part is shown at a time.
 const WIDE: f32 = 840.0;
-
-/// The table in less width is scrolled sideways.
-const TABLE: f32 = 540.0;
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
@@ -79,7 +76,7 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     match part {
         0 => controls_ui::show(ui, state, requests),
         1 => within(ui, ui.available_rect_before_wrap(), |ui| scatter::show(ui, state, requests)),
-        2 => controls::no_narrower(ui, TABLE, |ui| table::show(ui, state, requests)),
+        2 => table::show(ui, state, requests),
         _ => lessons::show(ui, state, requests),
     }
 }
@@ -102,9 +99,7 @@ fn right_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         requests.push(Request::Lab(LabRequest::Side([Side::Table, Side::Lessons][clicked])));
     }
     match side {
-        Side::Table => {
-            controls::no_narrower(ui, TABLE, |ui| table::show(ui, state, requests));
-        }
+        Side::Table => table::show(ui, state, requests),
         Side::Lessons => lessons::show(ui, state, requests),
     }
 }

@@ -5,7 +5,7 @@ use egui::{Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, Widget
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{focus_ring, put_text, text};
+use crate::app::widgets::controls::{focus_ring, no_narrower, put_text, text};
 use crate::app::widgets::regions;
 use crate::lab::report::{Report, brief, heading};
 use crate::lab::sweep::{Measured, Row, Verdict};
@@ -17,6 +17,9 @@ struct Column {
     share: f32,
     value: fn(&Measured) -> String,
 }
+
+/// In less width the table is scrolled sideways.
+const LEAST: f32 = 540.0;
 
 /// What of the width the names have.
 const NAMES: f32 = 0.30;
@@ -75,6 +78,10 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         ui.weak("Nothing is measured yet.");
         return;
     };
+    no_narrower(ui, LEAST, |ui| rows_ui(ui, state, report, requests));
+}
+
+fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Request>) {
     head_ui(ui);
     let area = ScrollArea::vertical().id_salt("table of the laboratory").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
