@@ -67,6 +67,11 @@ impl Keyboard {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().held_escape)
     }
 
+    /// Notes that an Esc closed something that is no question.
+    pub(crate) fn note_escape(ctx: &Context) {
+        ctx.plugin_or_default::<Self>().lock().left_by_escape = true;
+    }
+
     /// From region to region, and back to the viewport.
     pub(crate) fn change_owner(ctx: &Context) {
         let viewport = ctx.plugin_or_default::<Self>().lock().viewport;
@@ -95,7 +100,8 @@ impl Keyboard {
         self.last_was_repeat = repeat || !self.down.insert(key);
         let left_by_escape = std::mem::take(&mut self.left_by_escape);
         if key == Key::Escape {
-            self.left_by_escape = owner != Owner::Viewport;
+            // A dialog that Esc closes may be the question whether to leave: Esc asks it again.
+            self.left_by_escape = matches!(owner, Owner::Panel | Owner::Text);
             if left_by_escape && owner == Owner::Viewport {
                 self.held_escape = true;
                 return true;

@@ -9,6 +9,7 @@ use egui::{
 use crate::accuracy::{ACCURACY_PRESETS, AXES};
 use crate::app::actions::search::{Search, Texts};
 use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::input::keyboard::Keyboard;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls;
@@ -46,6 +47,9 @@ pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
         ui.set_width(width);
         contents(ui, state, requests, (room.y - 120.0).clamp(90.0, 420.0))
     });
+    if shown.should_close() {
+        Keyboard::note_escape(ui.ctx());
+    }
     if shown.inner || shown.should_close() {
         forget(ui);
         requests.push(Action::Palette.into());

@@ -30,6 +30,9 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     controls::no_narrower(ui, LEAST, |ui| table_ui(ui, state, &explained));
 }
 
+/// The width of the button that measures.
+const BUTTON: f32 = 70.0;
+
 /// In less width the table is scrolled sideways.
 const LEAST: f32 = 540.0;
 
@@ -37,9 +40,13 @@ const LEAST: f32 = 540.0;
 fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
-        ui.label(RichText::new("Plan").strong());
+        let title = ui.label(RichText::new("Plan").strong());
         ui.add_space(theme::GAP);
-        let label = ui.add(egui::Label::new(RichText::new(summary(explained)).weak()).truncate());
+        let summary = RichText::new(summary(explained)).weak();
+        let text = controls::text(ui, summary.clone(), TextStyle::Body, f32::INFINITY);
+        // In a narrow window the summary gives way to the button.
+        let room = ui.available_width() - BUTTON - 2.0 * f32::from(theme::MARGIN);
+        let label = if text.size().x <= room { ui.label(summary) } else { title };
         label.on_hover_text(
             "Effects left out by class E change no bit of the picture. Those left out by class B, \
             which \"Leave out faint light\" allows, change a byte by at most one step.",
@@ -47,7 +54,7 @@ fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained:
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(f32::from(theme::MARGIN));
             let label = if state.plan.measuring { "Stop" } else { "Measure" };
-            let button = ui.add(egui::Button::new(label).min_size(vec2(70.0, theme::ROW)));
+            let button = ui.add(egui::Button::new(label).min_size(vec2(BUTTON, theme::ROW)));
             if Action::MeasurePlan.explain(button, state).clicked() {
                 requests.push(Action::MeasurePlan.into());
             }
