@@ -25,9 +25,9 @@ fn focused(editor: &Editor) -> Option<(String, Rect)> {
 
 /// Everything that the keyboard can go to.
 fn stops(editor: &Editor) -> BTreeSet<String> {
-    let all = editor
-        .harness
-        .query_all(By::new().predicate(|node| node.data().supports_action(Deed::Focus)));
+    let all = editor.harness.query_all(
+        By::new().predicate(|node| node.data().supports_action(Deed::Focus) && !node.is_disabled()),
+    );
     all.filter_map(|node| node.accesskit_node().label()).filter(|name| !name.is_empty()).collect()
 }
 
