@@ -15,9 +15,9 @@ use crate::io::{self, OwnFolders, Preferences};
 ///
 /// # Errors
 /// If no window can be opened, or if it is lost.
-pub fn run(files: Vec<PathBuf>, shell: Shell) -> Result<(), StartError> {
+pub fn run(files: &[PathBuf], shell: Shell) -> Result<(), StartError> {
     shell::find_display()?;
-    let named = files.clone();
+    let named = files.to_vec();
     let own = OwnFolders::of_user().map(|folders| (Preferences::load(&folders), folders));
     let window = window(own.as_ref().map(|((preferences, _), _)| preferences));
     let opened = shell::run(
@@ -36,7 +36,7 @@ pub fn run(files: Vec<PathBuf>, shell: Shell) -> Result<(), StartError> {
         }),
     );
     match opened {
-        Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(&files),
+        Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(files),
         opened => opened,
     }
 }

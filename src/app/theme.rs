@@ -113,6 +113,15 @@ pub(crate) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
     palette(visuals).axes[axis.index()]
 }
 
+/// The colour of an axis over the picture, on a dark ground.
+pub(crate) const fn axis_on_dark(axis: Axis) -> Color32 {
+    match axis {
+        Axis::X => DARK.axes[0],
+        Axis::Y => DARK.axes[1],
+        Axis::Z => DARK.axes[2],
+    }
+}
+
 /// The line between panels and about fields.
 pub(crate) fn line(visuals: &Visuals) -> Color32 {
     palette(visuals).line

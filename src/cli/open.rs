@@ -23,7 +23,7 @@ pub(crate) fn open(files: Vec<PathBuf>, shell: Option<Shell>) -> Result<(), Fail
     for file in &files {
         io::check_file(file)?;
     }
-    Ok(marraztu::app::run(files, shell.unwrap_or_default())?)
+    Ok(marraztu::app::run(&files, shell.unwrap_or_default())?)
 }
 
 /// The error if the first argument is not a file, but nearly the name of a command.

@@ -36,6 +36,12 @@ pub enum Side {
     Right,
     /// From +Y, along -Y, with -Z up.
     Top,
+    /// From -Z, along +Z.
+    Back,
+    /// From -X, along +X.
+    Left,
+    /// From -Y, along +Y, with +Z up.
+    Bottom,
 }
 
 impl Side {
@@ -46,6 +52,9 @@ impl Side {
             Self::Front => DMat3::IDENTITY,
             Self::Right => DMat3::from_cols(DVec3::NEG_Z, DVec3::Y, DVec3::X),
             Self::Top => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
+            Self::Back => DMat3::from_cols(DVec3::NEG_X, DVec3::Y, DVec3::NEG_Z),
+            Self::Left => DMat3::from_cols(DVec3::Z, DVec3::Y, DVec3::NEG_X),
+            Self::Bottom => DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y),
         }
     }
 }

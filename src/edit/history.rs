@@ -39,7 +39,8 @@ impl History {
         Self { steps: Vec::new(), position: 0, open: Gesture::Whole, saved: Some(0) }
     }
 
-    /// Applies a command, and records under `label` how to undo it. Undone steps are discarded.
+    /// Applies a command, and records under `label` how to undo it; of a gesture, the last label
+    /// stays. Undone steps are discarded.
     ///
     /// # Errors
     /// If the command does not fit the scene; then neither scene nor history changes.
@@ -59,6 +60,8 @@ impl History {
                 if !step.commands.last().is_some_and(|last| last.overwrites(&back)) {
                     step.commands.push(back);
                 }
+                // It says how far the whole gesture went.
+                label.clone_into(&mut step.label);
                 self.saved = self.saved.filter(|saved| *saved < self.position);
             }
             _ => {

@@ -4,6 +4,7 @@
 //! [`Command`](crate::scene::Command), a view, or a [`Refusal`] for the status line. Only
 //! [`History`] writes a scene.
 
+pub mod aiming;
 pub mod framing;
 mod gesture;
 mod history;

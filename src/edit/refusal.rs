@@ -74,6 +74,15 @@ pub enum Refusal {
     /// The light has no cone.
     #[error("only a spot has an aperture")]
     NotASpot,
+    /// The light cannot be aimed.
+    #[error("only a spot or a sun can be aimed")]
+    NotAimed,
+    /// The light stands in the point at which it is to be aimed.
+    #[error("the light stands there itself")]
+    AimedAtItself,
+    /// The interface has the largest or the smallest size.
+    #[error("the interface is as large or as small as it can be")]
+    LargestOrSmallest,
     /// A number has reached the end of its range.
     #[error("{0} is already at {1}")]
     Limit(&'static str, u32),

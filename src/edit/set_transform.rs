@@ -101,11 +101,20 @@ pub(super) fn pose_and_lens(
     Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
 }
 
+/// A view within this sine of straight up or down keeps the camera's own Y up.
+///
+/// Seen from above, the centre of an object is rarely exactly below the camera: with the world's Y
+/// up, the little that it is aside would turn the picture by any angle.
+const STEEP: f64 = 0.1;
+
 /// The upright pose in analysis that looks at the centre of the selected object.
 pub(super) fn aimed(pose: &Pose, target: ObjectId, centre: DVec3) -> Pose {
+    let steep = math::unit(pose.eye - centre)
+        .is_some_and(|z| z.cross(DVec3::Y).length() < STEEP && z.dot(pose.axes.z_axis) > 0.9);
+    let up = if steep { pose.axes.y_axis } else { DVec3::Y };
     Pose {
         eye: pose.eye,
-        axes: math::look_at(pose.eye, centre, DVec3::Y, pose.axes),
+        axes: math::look_at(pose.eye, centre, up, pose.axes),
         mode: CameraMode::Analysis { target },
     }
 }

@@ -91,6 +91,9 @@ fn the_sides_look_along_the_axes_of_the_world() {
         (Side::Front, DVec3::Z, DVec3::Y),
         (Side::Right, DVec3::X, DVec3::Y),
         (Side::Top, DVec3::Y, DVec3::NEG_Z),
+        (Side::Back, DVec3::NEG_Z, DVec3::Y),
+        (Side::Left, DVec3::NEG_X, DVec3::Y),
+        (Side::Bottom, DVec3::NEG_Y, DVec3::Z),
     ];
     for (side, z, y) in expected {
         let mut desk = desk();
@@ -98,6 +101,29 @@ fn the_sides_look_along_the_axes_of_the_world() {
         assert_eq!((desk.pose().axes.z_axis, desk.pose().axes.y_axis), (z, y), "{side:?}");
         let away = desk.pose().eye - DVec3::new(-99.0, 2.0, 3.0);
         close(away, z * 13.065_629_648_763_766);
+    }
+}
+
+#[test]
+fn analysis_from_above_does_not_turn_the_picture() {
+    for side in [Side::Top, Side::Bottom] {
+        // The centre is rarely exactly below the camera.
+        for aside in [DVec3::new(0.1, 0.0, 0.1), DVec3::new(-0.1, 0.0, -0.2)] {
+            let mut desk = desk();
+            desk.perform(framing::side(&desk.scene, &desk.view, side));
+            let id = desk.view.camera;
+            let eye = desk.pose().eye + aside;
+            desk.perform(placement::camera_eye(
+                &desk.scene,
+                &desk.view,
+                id,
+                eye,
+                GesturePhase::First,
+            ));
+            let before = desk.pose().axes;
+            desk.analyse();
+            assert!(desk.pose().axes.x_axis.dot(before.x_axis) > 0.99, "{side:?} {aside}");
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 #[path = "../common/plates.rs"]
 mod common;
 
+mod aiming;
 mod desk;
 mod framing;
 mod items;

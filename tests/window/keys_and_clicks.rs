@@ -405,7 +405,7 @@ fn the_panels_get_the_keyboard_by_f6_and_give_it_back_by_esc() {
     let mut editor = Editor::new();
     editor.press(Lower(Key::Z));
     let is_focused = |editor: &Editor| editor.harness.get_by_label("Viewport").is_focused();
-    for way_back in [Key::Escape, Key::F6] {
+    for way_back in [Key::Escape; 2] {
         assert!(is_focused(&editor));
         editor.press(Named(Key::F6));
         assert!(!is_focused(&editor));

@@ -1,8 +1,10 @@
 //! Actions: everything a user can ask for by a key, a menu or a button.
 
 mod chord;
+mod labels;
 mod request;
 mod resolve;
+pub mod search;
 mod table;
 
 pub use chord::Chord;

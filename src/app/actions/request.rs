@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
+use glam::DVec3;
+
 use super::table::Action;
 use crate::accuracy::Settings;
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
+use crate::app::state::layout::Layout;
 use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
@@ -35,6 +38,8 @@ pub enum Request {
     Lab(LabRequest),
     /// Selects an item, and makes its kind the subject.
     Select(ItemId),
+    /// Aims the selected light at a point of the world.
+    AimAt(DVec3),
     /// Selects a polygon of the selected object while polygons are shown one at a time.
     SelectPolygon(u32),
     /// Goes to the point in the history after this number of steps.
@@ -59,6 +64,8 @@ pub enum Request {
     DiscardWork(usize),
     /// Takes a gesture back while it lasts, as if it had never begun.
     Abandon(Gesture),
+    /// Divides the window differently among its panels.
+    Layout(Layout),
     /// Says in the status line why a request was refused.
     Refuse(String),
 }

@@ -9,12 +9,15 @@ use egui::ThemePreference;
 use super::table::Action;
 use crate::accuracy::{LeaveOut, Settings};
 use crate::app::state::State;
+use crate::app::state::layout::{Layout, Side};
 use crate::base::math::Axis;
-use crate::edit::framing::Side;
+use crate::edit::framing::Side as LookSide;
 use crate::edit::lights::{APERTURE_STEP, Channel};
 use crate::edit::selection::Selection;
 use crate::edit::transform::Sign;
-use crate::edit::{GesturePhase, Refusal, framing, items, lights, selection, shapes, transform};
+use crate::edit::{
+    GesturePhase, Refusal, aiming, framing, items, lights, selection, shapes, transform,
+};
 use crate::scene::{
     CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
     Panels, Projection, Shape, SpotOwner, Subject, Transformation, View,
@@ -35,6 +38,8 @@ pub(crate) enum Intent {
     Settings(Settings),
     /// Other panels are shown.
     Panels(Panels),
+    /// The window is divided differently among its panels.
+    Layout(Layout),
     /// The window becomes light or dark.
     Theme(ThemePreference),
     /// Asks for a new name.
@@ -49,6 +54,16 @@ pub(crate) enum Intent {
     AskCamera,
     /// The effects of the picture are measured, or no longer.
     Measure,
+    /// The reason why nothing of an object is seen is looked for.
+    WhyUnseen(ObjectId),
+    /// The list of everything that can be asked for opens or closes.
+    Palette,
+    /// The interface becomes this large.
+    Zoom(f32),
+    /// What is drawn over the picture is shown or hidden.
+    Overlays,
+    /// The next click into the picture aims the selected light.
+    AimByClick,
     /// The keyboard goes to the panels, or back to the viewport.
     ChangeKeyboardOwner,
 }
@@ -179,6 +194,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             Ok(Intent::Settings(Settings { leave_out, ..state.settings }))
         }
         Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
+        Action::ToggleOverlays => Ok(Intent::Overlays),
         Action::ToggleCoarse => viewed(state, |view| view.coarse_while_moving ^= true),
         Action::ToggleLightNormals => {
             viewed(state, |view| view.normals = other(view.normals, Normals::Vertex, Normals::Face))
@@ -191,9 +207,13 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToggleObserver => seen(state, |view| selection::toggle_observer(scene, view)),
         Action::FrameSelection => framing::selection(scene, view).map(Intent::Change),
         Action::FrameAll => framing::all(scene, view).map(Intent::Change),
-        Action::LookFront => look_from(Side::Front),
-        Action::LookRight => look_from(Side::Right),
-        Action::LookTop => look_from(Side::Top),
+        Action::LookFront => look_from(LookSide::Front),
+        Action::LookRight => look_from(LookSide::Right),
+        Action::LookTop => look_from(LookSide::Top),
+        Action::WhyUnseen => object(state).map(Intent::WhyUnseen),
+        Action::LookBack => look_from(LookSide::Back),
+        Action::LookLeft => look_from(LookSide::Left),
+        Action::LookBottom => look_from(LookSide::Bottom),
 
         Action::Light0
         | Action::Light1
@@ -210,6 +230,8 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         }
         Action::ApertureUp => aperture(APERTURE_STEP),
         Action::ApertureDown => aperture(-APERTURE_STEP),
+        Action::AimAtSelection => aiming::aim_at_selection(scene, view, phase).map(Intent::Change),
+        Action::AimByClick => aiming::can_aim(scene, view).map(|_| Intent::AimByClick),
         Action::RedUp => color(Channel::Red, 1),
         Action::RedDown => color(Channel::Red, -1),
         Action::GreenUp => color(Channel::Green, 1),
@@ -218,10 +240,16 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::BlueDown => color(Channel::Blue, -1),
 
         Action::ToPanels => Ok(Intent::ChangeKeyboardOwner),
+        Action::Palette => Ok(Intent::Palette),
+        Action::LargerText => zoom(state, 0.1),
+        Action::SmallerText => zoom(state, -0.1),
+        Action::NormalText => Ok(Intent::Zoom(1.0)),
         Action::CheatSheet => panels(state, |panels| panels.cheat_sheet ^= true),
-        Action::ToggleOutline => panels(state, |panels| panels.outline ^= true),
-        Action::ToggleProperties => panels(state, |panels| panels.properties ^= true),
-        Action::ToggleViewPanel => panels(state, |panels| panels.view ^= true),
+        Action::ToggleOutline => column(state, Side::Outline, |panels| &mut panels.outline),
+        Action::ToggleProperties => {
+            column(state, Side::Properties, |panels| &mut panels.properties)
+        }
+        Action::ToggleViewPanel => column(state, Side::Switches, |panels| &mut panels.view),
         Action::ToggleStatistics => panels(state, |panels| panels.statistics ^= true),
         Action::TogglePlan => panels(state, |panels| panels.plan ^= true),
         Action::MeasurePlan => Ok(Intent::Measure),
@@ -230,6 +258,15 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ThemeLight => Ok(Intent::Theme(ThemePreference::Light)),
         Action::ThemeDark => Ok(Intent::Theme(ThemePreference::Dark)),
     }
+}
+
+/// The interface in another size, within half and three times.
+fn zoom(state: &State, by: f32) -> Resolved {
+    let to = ((state.zoom + by) * 10.0).round() / 10.0;
+    if !(0.5..=3.0).contains(&to) {
+        return Err(Refusal::LargestOrSmallest);
+    }
+    Ok(Intent::Zoom(to))
 }
 
 fn selected(state: &State) -> Result<ItemId, Refusal> {
@@ -281,6 +318,15 @@ fn panels(state: &State, change: impl FnOnce(&mut Panels)) -> Resolved {
     Ok(Intent::Panels(panels))
 }
 
+/// Shows or hides a panel beside the picture; in a narrow window, unfolds or folds it.
+fn column(state: &State, side: Side, of: impl FnOnce(&mut Panels) -> &mut bool) -> Resolved {
+    if state.narrow {
+        let unfolded = (state.layout.unfolded != Some(side)).then_some(side);
+        return Ok(Intent::Layout(Layout { unfolded, ..state.layout }));
+    }
+    panels(state, |panels| *of(panels) ^= true)
+}
+
 /// The one of two that `now` is not.
 fn other<T: Copy + PartialEq>(now: T, first: T, second: T) -> T {
     if now == first { second } else { first }
@@ -305,36 +351,14 @@ impl Action {
         u32::try_from(at).ok()
     }
 
-    /// The name of what the action does now, as the history shows it: "Rotate teapot".
-    #[must_use]
-    pub fn step_label(self, state: &State) -> String {
-        let name = state.selected_name();
-        let steps = [
-            Self::StepXUp,
-            Self::StepXDown,
-            Self::StepYUp,
-            Self::StepYDown,
-            Self::StepZUp,
-            Self::StepZDown,
-        ];
-        if steps.contains(&self) {
-            let verb = match state.view.transformation {
-                Transformation::Translation => "Move",
-                Transformation::Rotation => "Rotate",
-                Transformation::Scaling => "Scale",
-            };
-            format!("{verb} {name}")
-        } else if matches!(self, Self::Delete | Self::Duplicate) {
-            format!("{} {name}", self.info().label)
-        } else {
-            self.info().label.to_owned()
-        }
-    }
-
     /// Whether the action's switch is on; `None` if the action is not a switch.
     #[must_use]
     pub fn is_on(self, state: &State) -> Option<bool> {
         let (scene, view, panels) = (&state.scene, &state.view, &state.panels);
+        let is_shown = |side, open| match state.narrow {
+            true => state.layout.unfolded == Some(side),
+            false => open,
+        };
         if let Some(slot) = self.slot() {
             return Some(scene.lights.iter().any(|(_, light)| light.slot == slot && light.on));
         }
@@ -370,14 +394,17 @@ impl Action {
             Self::ToggleVertexNormals => view.vertex_normals,
             Self::ToggleNormalLength => view.normal_length == NormalLength::BySize,
             Self::ToggleMarks => view.marks,
+            Self::ToggleOverlays => state.overlays,
+            Self::AimByClick => state.aiming,
+            Self::Palette => state.palette,
             Self::ToggleCoarse => view.coarse_while_moving,
             Self::ToggleLightNormals => view.normals == Normals::Face,
             Self::ToggleProjection => view.projection == Projection::Orthographic,
             Self::ToggleObserver => view.observer == Observer::Object,
             Self::CheatSheet => panels.cheat_sheet,
-            Self::ToggleOutline => panels.outline,
-            Self::ToggleProperties => panels.properties,
-            Self::ToggleViewPanel => panels.view,
+            Self::ToggleOutline => is_shown(Side::Outline, panels.outline),
+            Self::ToggleProperties => is_shown(Side::Properties, panels.properties),
+            Self::ToggleViewPanel => is_shown(Side::Switches, panels.view),
             Self::ToggleStatistics => panels.statistics,
             Self::TogglePlan => panels.plan,
             Self::MeasurePlan => state.plan.measuring,
@@ -403,8 +430,11 @@ impl Action {
             Self::StepXUp | Self::StepXDown | Self::StepYUp | Self::StepYDown => return None,
             Self::StepZUp | Self::StepZDown | Self::FrameSelection | Self::FrameAll => return None,
             Self::LookFront | Self::LookRight | Self::LookTop => return None,
+            Self::LookBack | Self::LookLeft | Self::LookBottom => return None,
             Self::ApertureUp | Self::ApertureDown | Self::RedUp | Self::RedDown => return None,
             Self::GreenUp | Self::GreenDown | Self::BlueUp | Self::BlueDown => return None,
+            Self::LargerText | Self::SmallerText | Self::NormalText => return None,
+            Self::AimAtSelection | Self::WhyUnseen => return None,
             Self::ToPanels | Self::Light0 | Self::Light1 | Self::Light2 | Self::Light3 => {
                 return None;
             }

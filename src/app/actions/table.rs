@@ -16,6 +16,8 @@ pub struct ActionInfo {
     pub label: &'static str,
     /// Over them: one sentence.
     pub hint: &'static str,
+    /// Other words that people use for it, for searches.
+    pub words: &'static str,
     /// Every way to press it; the first is the one that is shown.
     pub keys: &'static [Chord],
     /// Its group in menus and in the cheat sheet.
@@ -90,7 +92,7 @@ const REPEATS: bool = true;
 macro_rules! actions {
     ($(
         $name:ident $group:ident $repeats:ident [$($key:expr),*]
-            $label:literal $hint:literal;
+            $label:literal $hint:literal $words:literal;
     )+) => {
         /// Something a user can ask for that needs no further words.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -109,6 +111,7 @@ macro_rules! actions {
                     $(Self::$name => ActionInfo {
                         label: $label,
                         hint: $hint,
+                        words: $words,
                         keys: &[$($key),*],
                         group: Group::$group,
                         repeats: $repeats,
@@ -121,203 +124,328 @@ macro_rules! actions {
 
 actions! {
     New File ONCE [Command(Key::N)]
-        "New scene" "Starts over with the default scene.";
+        "New scene" "Starts over with the default scene."
+        "reset empty start over clear";
     Open File ONCE [Command(Key::O)]
-        "Open scene..." "Opens a scene file instead of this scene.";
+        "Open scene..." "Opens a scene file instead of this scene."
+        "project file import";
     Load File ONCE [Lower(Key::F)]
-        "Load model..." "Loads an .obj file, asks for its material and places it at the origin.";
+        "Load model..." "Loads an .obj file, asks for its material and places it at the origin."
+        "import obj add mesh object insert file";
     Save File ONCE [Command(Key::S)]
-        "Save scene" "Saves the scene to its file.";
+        "Save scene" "Saves the scene to its file."
+        "write store keep";
     SaveAs File ONCE [CommandShift(Key::S)]
-        "Save scene as..." "Saves the scene to a new file.";
+        "Save scene as..." "Saves the scene to a new file."
+        "write export copy";
     SavePicture File ONCE [Named(Key::F12)]
-        "Save picture..." "Saves the picture in the viewport as PNG, JPEG, WebP or PPM.";
+        "Save picture..." "Saves the picture in the viewport as PNG, JPEG, WebP or PPM."
+        "screenshot render export image png capture snapshot photo";
     CopyPicture File ONCE [CommandShift(Key::C)]
-        "Copy picture" "Copies the picture in the viewport to the clipboard.";
+        "Copy picture" "Copies the picture in the viewport to the clipboard."
+        "screenshot clipboard image capture snapshot";
     Quit File ONCE [Named(Key::Escape), Command(Key::Q)]
-        "Quit" "Closes the program; asks first if there are unsaved changes.";
+        "Quit" "Closes the program; asks first if there are unsaved changes."
+        "exit leave close";
 
     Undo Edit ONCE [Command(Key::Z)]
-        "Undo" "Undoes the last change to the scene.";
+        "Undo" "Undoes the last change to the scene."
+        "back revert";
     Redo Edit ONCE [CommandShift(Key::Z), Command(Key::Y)]
-        "Redo" "Redoes the change that was undone last.";
+        "Redo" "Redoes the change that was undone last."
+        "again forward repeat";
     TakeBack Edit ONCE [Either(Key::U)]
-        "Undo transformation" "Undoes the last transformation of the selected item.";
+        "Undo transformation" "Undoes the last transformation of the selected item."
+        "revert step back reset";
     Rename Edit ONCE [Named(Key::F2)]
-        "Rename" "Renames the selected item.";
+        "Rename" "Renames the selected item."
+        "name title label";
     Duplicate Edit ONCE [Command(Key::D)]
-        "Duplicate" "Adds a copy of the selected item and selects it.";
+        "Duplicate" "Adds a copy of the selected item and selects it."
+        "copy clone paste";
     Delete Edit ONCE [Named(Key::Delete)]
-        "Delete" "Deletes the selected item and the spots attached to it.";
+        "Delete" "Deletes the selected item and the spots attached to it."
+        "remove erase trash";
     Split Edit ONCE []
-        "Split into parts" "Turns each part of the selected object into an object of its own.";
+        "Split into parts" "Turns each part of the selected object into an object of its own."
+        "separate explode ungroup pieces";
     ToggleVisible Edit ONCE []
-        "Visible" "Shows or hides the selected object or camera.";
+        "Visible" "Shows or hides the selected object or camera."
+        "hide show eye";
 
     AddPlane Add ONCE []
-        "Plane" "Adds a plane as ground, below all objects.";
+        "Plane" "Adds a plane as ground, below all objects."
+        "floor ground quad primitive shape new";
     AddCube Add ONCE []
-        "Cube" "Adds a cube, a fifth as large as the scene, at the origin.";
+        "Cube" "Adds a cube, a fifth as large as the scene, at the origin."
+        "box primitive shape new";
     AddSphere Add ONCE []
-        "Sphere" "Adds a sphere, a fifth as large as the scene, at the origin.";
+        "Sphere" "Adds a sphere, a fifth as large as the scene, at the origin."
+        "ball globe primitive shape new";
     AddCylinder Add ONCE []
-        "Cylinder" "Adds a cylinder, a fifth as large as the scene, at the origin.";
+        "Cylinder" "Adds a cylinder, a fifth as large as the scene, at the origin."
+        "tube pipe primitive shape new";
     AddTorus Add ONCE []
-        "Torus" "Adds a torus, a fifth as large as the scene, at the origin.";
+        "Torus" "Adds a torus, a fifth as large as the scene, at the origin."
+        "ring donut primitive shape new";
     AddCamera Add ONCE [Upper(Key::F)]
-        "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z.";
+        "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z."
+        "viewpoint eye new";
     AddSun Add ONCE []
-        "Sun" "Adds a light that is infinitely far away.";
+        "Sun" "Adds a light that is infinitely far away."
+        "directional light lamp new";
     AddBulb Add ONCE []
-        "Bulb" "Adds a light that shines from a point in all directions.";
+        "Bulb" "Adds a light that shines from a point in all directions."
+        "point light lamp omni new";
     AddSpot Add ONCE []
-        "Spot" "Adds a light that shines from a point of its own in a cone.";
+        "Spot" "Adds a light that shines from a point of its own in a cone."
+        "spotlight cone light lamp torch new";
     AddObjectSpot Add ONCE []
-        "Spot on the object" "Adds a spot that shines from the selected object.";
+        "Spot on the object" "Adds a spot that shines from the selected object."
+        "spotlight headlight torch";
     AddCameraSpot Add ONCE []
-        "Spot on the camera" "Adds a spot that shines from the selected camera.";
+        "Spot on the camera" "Adds a spot that shines from the selected camera."
+        "spotlight headlight torch flash";
 
     NextItem Select REPEATS [Named(Key::Tab)]
-        "Next item" "Selects the next camera, object or light of the subject.";
+        "Next item" "Selects the next camera, object or light of the subject."
+        "cycle select following";
     NextPolygon Select REPEATS [Named(Key::Enter)]
-        "Next polygon" "Selects the next polygon of the selected object in polygon mode.";
+        "Next polygon" "Selects the next polygon of the selected object in polygon mode."
+        "face triangle cycle";
     NextSubject Select ONCE [Lower(Key::C)]
-        "Next subject" "Changes what the keys act on, from camera to object to light.";
+        "Next subject" "Changes what the keys act on, from camera to object to light."
+        "cycle mode what";
     SubjectCamera Select ONCE []
-        "Cameras" "Makes the keys act on the selected camera.";
+        "Cameras" "Makes the keys act on the selected camera."
+        "subject view navigate";
     SubjectObject Select ONCE []
-        "Objects" "Makes the keys act on the selected object.";
+        "Objects" "Makes the keys act on the selected object."
+        "subject model mesh";
     SubjectLight Select ONCE []
-        "Lights" "Makes the keys act on the selected light.";
+        "Lights" "Makes the keys act on the selected light."
+        "subject lamp";
 
     Translate Transform ONCE [Either(Key::T)]
-        "Move" "Makes the keys x, y and z move.";
+        "Move" "Makes the keys x, y and z move."
+        "translate translation position grab shift";
     Rotate Transform ONCE [Either(Key::R)]
-        "Rotate" "Makes the keys x, y and z rotate.";
+        "Rotate" "Makes the keys x, y and z rotate."
+        "rotation turn spin angle";
     Scale Transform ONCE [Either(Key::S)]
-        "Scale" "Makes the keys x, y and z scale the selected object.";
+        "Scale" "Makes the keys x, y and z scale the selected object."
+        "scaling size resize bigger smaller stretch enlarge";
     ToggleFrame Transform ONCE [Either(Key::G)]
         "Analysis / global"
-        "Makes cameras fly or orbit, and objects use their own axes or the world's.";
+        "Makes cameras fly or orbit, and objects use their own axes or the world's."
+        "orbit fly look around local global world axes turntable";
     StepXUp Transform REPEATS [Lower(Key::X)]
-        "Step along or about +X" "Transforms the selected item one step along or about +X.";
+        "Step along or about +X" "Transforms the selected item one step along or about +X."
+        "nudge move turn grow x";
     StepXDown Transform REPEATS [Upper(Key::X)]
-        "Step along or about -X" "Transforms the selected item one step along or about -X.";
+        "Step along or about -X" "Transforms the selected item one step along or about -X."
+        "nudge move turn grow x";
     StepYUp Transform REPEATS [Lower(Key::Y)]
-        "Step along or about +Y" "Transforms the selected item one step along or about +Y.";
+        "Step along or about +Y" "Transforms the selected item one step along or about +Y."
+        "nudge move turn grow y";
     StepYDown Transform REPEATS [Upper(Key::Y)]
-        "Step along or about -Y" "Transforms the selected item one step along or about -Y.";
+        "Step along or about -Y" "Transforms the selected item one step along or about -Y."
+        "nudge move turn grow y";
     StepZUp Transform REPEATS [Lower(Key::Z)]
-        "Step along or about +Z" "Transforms the selected item one step along or about +Z.";
+        "Step along or about +Z" "Transforms the selected item one step along or about +Z."
+        "nudge move turn grow z";
     StepZDown Transform REPEATS [Upper(Key::Z)]
-        "Step along or about -Z" "Transforms the selected item one step along or about -Z.";
+        "Step along or about -Z" "Transforms the selected item one step along or about -Z."
+        "nudge move turn grow z";
 
     ToggleEdges Show ONCE [Either(Key::L)]
-        "Wireframe" "Draws the edges of polygons instead of filling them.";
+        "Wireframe" "Draws the edges of polygons instead of filling them."
+        "wire mesh lines edges outline";
     ToggleEdgesOverFill Show ONCE []
-        "Edges over faces" "Draws the edges of polygons over the filled polygons.";
+        "Edges over faces" "Draws the edges of polygons over the filled polygons."
+        "wireframe overlay lines mesh contour";
     TogglePolygons Show ONCE [Either(Key::O)]
         "Polygon by polygon"
-        "Shows a single polygon of the selected object instead of whole objects.";
+        "Shows a single polygon of the selected object instead of whole objects."
+        "face triangle single step";
     ToggleOthers Show ONCE [Either(Key::D)]
-        "Isolate selection" "Hides everything but the selected object or polygon.";
+        "Isolate selection" "Hides everything but the selected object or polygon."
+        "solo only hide others focus";
     ToggleBackFaces Show ONCE [Either(Key::B)]
-        "Back faces" "Draws back faces in red instead of culling them.";
+        "Back faces" "Draws back faces in red instead of culling them."
+        "culling inside two sided backface";
     ToggleFaceNormals Show ONCE [Either(Key::N)]
-        "Face normals" "Draws the normal of each polygon.";
+        "Face normals" "Draws the normal of each polygon."
+        "arrows direction perpendicular";
     ToggleVertexNormals Show ONCE [Either(Key::M)]
-        "Vertex normals" "Draws the normal of each vertex.";
+        "Vertex normals" "Draws the normal of each vertex."
+        "arrows direction perpendicular smooth";
     ToggleNormalLength Show ONCE []
-        "Normals by size" "Draws normals in proportion to the object instead of 5 units long.";
+        "Normals by size" "Draws normals in proportion to the object instead of 5 units long."
+        "long short arrows scale";
     ToggleLeaveOut Show ONCE []
-        "Leave out faint light" "Skips lights that together add less than half a step of a byte.";
+        "Leave out faint light" "Skips lights that together add less than half a step of a byte."
+        "skip optimise faster performance";
     ToggleMarks Show ONCE []
-        "Camera and light models" "Draws the models of the other cameras and of bulbs.";
+        "Camera and light models" "Draws the models of the other cameras and of bulbs."
+        "icons gizmo markers pyramids diamond";
+    ToggleOverlays Show ONCE []
+        "Overlays" "Draws the selection's outline, axes and marks of lights over the picture."
+        "gizmo axes cones helpers outline guides widgets";
     ToggleCoarse Show ONCE []
-        "Coarser while moving" "Draws slow scenes at reduced quality while something moves.";
+        "Coarser while moving" "Draws slow scenes at reduced quality while something moves."
+        "quality fast preview performance resolution";
     ToggleLightNormals Show ONCE [Either(Key::I)]
         "Flat shading (face normals)"
-        "Lights polygons with face normals instead of vertex normals.";
+        "Lights polygons with face normals instead of vertex normals."
+        "smooth shading faceted hard soft gouraud";
 
     ToggleProjection Camera ONCE [Either(Key::P)]
-        "Orthographic" "Switches between orthographic and perspective projection.";
+        "Orthographic" "Switches between orthographic and perspective projection."
+        "ortho parallel perspective isometric";
     ToggleObserver Camera ONCE [Upper(Key::C)]
         "Look from the object"
-        "Looks from the selected object instead of through the selected camera.";
+        "Looks from the selected object instead of through the selected camera."
+        "ride first person point of view";
     FrameSelection Camera ONCE [Text(".")]
-        "Frame selection" "Moves the camera so that the selected item fills the picture.";
+        "Frame selection" "Moves the camera so that the selected item fills the picture."
+        "zoom focus centre center fit find";
     FrameAll Camera ONCE [Named(Key::Home)]
-        "Frame all" "Moves the camera so that everything visible fills the picture.";
+        "Frame all" "Moves the camera so that everything visible fills the picture."
+        "zoom fit home everything centre center reset view";
     LookFront Camera ONCE [Command(Key::Num1)]
-        "Front view" "Looks from the front, along -Z.";
+        "Front view" "Looks from the front, along -Z."
+        "camera ahead";
     LookRight Camera ONCE [Command(Key::Num3)]
-        "Right view" "Looks from the right, along -X.";
+        "Right view" "Looks from the right, along -X."
+        "camera side left";
     LookTop Camera ONCE [Command(Key::Num7)]
-        "Top view" "Looks from above, along -Y.";
+        "Top view" "Looks from above, along -Y."
+        "camera above bird plan down";
+    WhyUnseen Camera ONCE []
+        "Why can't I see it?" "Says why nothing of the selected object is seen, and what mends it."
+        "invisible missing gone lost hidden vanished black find";
+    LookBack Camera ONCE []
+        "Back view" "Looks from behind, along +Z."
+        "camera behind rear";
+    LookLeft Camera ONCE []
+        "Left view" "Looks from the left, along +X."
+        "camera side";
+    LookBottom Camera ONCE []
+        "Bottom view" "Looks from below, along +Y."
+        "camera under up";
 
     Light0 Light ONCE [Lower(Key::Num0)]
-        "Light 0" "Switches light 0 on or off.";
+        "Light 0" "Switches light 0 on or off."
+        "lamp turn on off";
     Light1 Light ONCE [Lower(Key::Num1)]
-        "Light 1" "Switches light 1 on or off.";
+        "Light 1" "Switches light 1 on or off."
+        "lamp turn on off";
     Light2 Light ONCE [Lower(Key::Num2)]
-        "Light 2" "Switches light 2 on or off.";
+        "Light 2" "Switches light 2 on or off."
+        "lamp turn on off";
     Light3 Light ONCE [Lower(Key::Num3)]
-        "Light 3" "Switches light 3 on or off.";
+        "Light 3" "Switches light 3 on or off."
+        "lamp turn on off";
     Light4 Light ONCE [Lower(Key::Num4)]
-        "Light 4" "Switches light 4 on or off.";
+        "Light 4" "Switches light 4 on or off."
+        "lamp turn on off";
     Light5 Light ONCE [Lower(Key::Num5)]
-        "Light 5" "Switches light 5 on or off.";
+        "Light 5" "Switches light 5 on or off."
+        "lamp turn on off";
     Light6 Light ONCE [Lower(Key::Num6)]
-        "Light 6" "Switches light 6 on or off.";
+        "Light 6" "Switches light 6 on or off."
+        "lamp turn on off";
     Light7 Light ONCE [Lower(Key::Num7)]
-        "Light 7" "Switches light 7 on or off.";
+        "Light 7" "Switches light 7 on or off."
+        "lamp turn on off";
     Light8 Light ONCE [Lower(Key::Num8)]
-        "Light 8" "Switches light 8 on or off.";
+        "Light 8" "Switches light 8 on or off."
+        "lamp turn on off";
     Light9 Light ONCE [Lower(Key::Num9)]
-        "Light 9" "Switches light 9 on or off.";
+        "Light 9" "Switches light 9 on or off."
+        "lamp turn on off";
     ApertureUp Light REPEATS [Text("+")]
-        "Wider spot" "Opens the selected spot by 5 degrees.";
+        "Wider spot" "Opens the selected spot by 5 degrees."
+        "cone angle bigger widen";
     ApertureDown Light REPEATS [Text("-")]
-        "Narrower spot" "Closes the selected spot by 5 degrees.";
+        "Narrower spot" "Closes the selected spot by 5 degrees."
+        "cone angle smaller tighten";
+    AimAtSelection Light ONCE []
+        "Aim at selection" "Turns the selected spot or sun towards the selected object."
+        "point target look track direct";
+    AimByClick Light ONCE []
+        "Aim by a click" "Turns the selected spot or sun towards the next point that is clicked."
+        "point target look direct";
     RedUp Light REPEATS [Lower(Key::Q)]
-        "More red" "Adds 1 to the selected light's red.";
+        "More red" "Adds 1 to the selected light's red."
+        "color colour tint";
     RedDown Light REPEATS [Upper(Key::Q)]
-        "Less red" "Subtracts 1 from the selected light's red.";
+        "Less red" "Subtracts 1 from the selected light's red."
+        "color colour tint";
     GreenUp Light REPEATS [Lower(Key::V)]
-        "More green" "Adds 1 to the selected light's green.";
+        "More green" "Adds 1 to the selected light's green."
+        "color colour tint";
     GreenDown Light REPEATS [Upper(Key::V)]
-        "Less green" "Subtracts 1 from the selected light's green.";
+        "Less green" "Subtracts 1 from the selected light's green."
+        "color colour tint";
     BlueUp Light REPEATS [Lower(Key::A)]
-        "More blue" "Adds 1 to the selected light's blue.";
+        "More blue" "Adds 1 to the selected light's blue."
+        "color colour tint";
     BlueDown Light REPEATS [Upper(Key::A)]
-        "Less blue" "Subtracts 1 from the selected light's blue.";
+        "Less blue" "Subtracts 1 from the selected light's blue."
+        "color colour tint";
 
+    Palette Window ONCE [Command(Key::K), Command(Key::P)]
+        "Command palette" "Finds actions, items and settings by their names."
+        "search find run commands";
     CheatSheet Window ONCE [Either(Key::H), Text("?"), Named(Key::F1)]
-        "Keys" "Lists every key and what it would do now.";
+        "Keys" "Lists every key and what it would do now."
+        "shortcuts help hotkeys keyboard bindings";
     ToPanels Window ONCE [Named(Key::F6)]
         "Keyboard to the panels"
-        "Moves keyboard focus to the panels; Esc returns it to the viewport.";
+        "Moves keyboard focus from region to region; Esc returns it to the viewport."
+        "focus next region tab";
     ToggleOutline Window ONCE []
-        "Outline" "Shows or hides the list of objects, cameras and lights.";
+        "Outline" "Shows or hides the list of objects, cameras and lights."
+        "tree hierarchy list scene layers";
     ToggleProperties Window ONCE []
-        "Properties" "Shows or hides the properties of the selected item.";
+        "Properties" "Shows or hides the properties of the selected item."
+        "inspector settings details material attributes";
     ToggleViewPanel Window ONCE []
-        "View switches" "Shows or hides the switches of the view.";
+        "View switches" "Shows or hides the switches of the view."
+        "options settings display accuracy";
     ToggleStatistics Window ONCE []
-        "Statistics" "Shows or hides how much is drawn and how long it takes.";
+        "Statistics" "Shows or hides how much is drawn and how long it takes."
+        "fps frames speed performance triangles count";
     TogglePlan Window ONCE [Named(Key::F3)]
-        "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost.";
+        "Plan" "Shows or hides each effect of the picture: on or off, why, and its cost."
+        "effects explain cost why";
     MeasurePlan Window ONCE [Named(Key::F4)]
-        "Measure effects" "Measures the time of a picture with and without each of its effects.";
+        "Measure effects" "Measures the time of a picture with and without each of its effects."
+        "benchmark time profile speed";
     ToggleLaboratory Window ONCE [Named(Key::F5)]
         "Laboratory"
-        "Shows or hides the laboratory, which measures what accuracy costs in time.";
+        "Shows or hides the laboratory, which measures what accuracy costs in time."
+        "accuracy benchmark error compare experiment";
+    LargerText Window ONCE [Command(Key::Plus), Command(Key::Equals)]
+        "Larger interface" "Makes texts and panels larger."
+        "zoom in scale font size big ui";
+    SmallerText Window ONCE [Command(Key::Minus)]
+        "Smaller interface" "Makes texts and panels smaller."
+        "zoom out scale font size small ui";
+    NormalText Window ONCE [Command(Key::Num0)]
+        "Normal interface size" "Makes texts and panels as large as the system says."
+        "zoom reset scale font size ui";
     ThemeSystem Window ONCE []
-        "Follow the system" "Makes the window light or dark as the system is.";
+        "Follow the system" "Makes the window light or dark as the system is."
+        "theme auto colours colors";
     ThemeLight Window ONCE []
-        "Light" "Shows dark text on light panels.";
+        "Light" "Shows dark text on light panels."
+        "theme mode white day bright";
     ThemeDark Window ONCE []
-        "Dark" "Shows light text on dark panels.";
+        "Dark" "Shows light text on dark panels."
+        "theme mode black night";
 }
 
 #[cfg(test)]
@@ -342,7 +470,7 @@ mod tests {
         let letters = "f F l L o O d D t T r R s S g G x X y Y z Z u U c C p P b B n N m M i I \
                        q Q v V a A 0 1 2 3 4 5 6 7 8 9 + - . ? h Tab Enter Esc Home Delete F1 F2 \
                        F12 Ctrl+Z Ctrl+Shift+Z Ctrl+Y Ctrl+S Ctrl+Shift+S Ctrl+O Ctrl+N Ctrl+D \
-                       Ctrl+Q Ctrl+1 Ctrl+3 Ctrl+7";
+                       Ctrl+Q Ctrl+1 Ctrl+3 Ctrl+7 Ctrl+K Ctrl+P";
         for name in letters.split_whitespace() {
             let named = |action: &&Action| {
                 action.info().keys.iter().any(|key| key.names().iter().any(|text| text == name))

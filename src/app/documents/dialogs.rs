@@ -133,9 +133,17 @@ impl Dialogs {
     }
 
     /// Asks for a file; `name` is offered.
-    pub(crate) fn ask_file(&mut self, ctx: &Context, wanted: Wanted, name: &str) {
-        if self.system.is_some() {
-            return;
+    ///
+    /// # Errors
+    /// If the system's dialog is open already: its title.
+    pub(crate) fn ask_file(
+        &mut self,
+        ctx: &Context,
+        wanted: Wanted,
+        name: &str,
+    ) -> Result<(), &'static str> {
+        if let Some(open) = &self.system {
+            return Err(open.wanted.description().0);
         }
         let (title, mode, endings) = wanted.description();
         let folder = self.folder();
@@ -157,10 +165,11 @@ impl Dialogs {
             if let Ok(task) = task {
                 let (begun, name) = (Instant::now(), name.to_owned());
                 self.system = Some(SystemDialog { wanted, name, begun, task });
-                return;
+                return Ok(());
             }
         }
         self.browse(wanted, name);
+        Ok(())
     }
 
     /// Shows the open dialogs. Returns the answer, if any.

@@ -2,7 +2,7 @@
 
 use crate::accuracy::Settings;
 use crate::base::image::Size;
-use crate::scene::{Scene, View};
+use crate::scene::{ItemId, Scene, View};
 
 /// Everything that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,12 +15,14 @@ pub(crate) struct Snapshot {
     pub(crate) moving: bool,
     /// Whether to explain the effects of the picture.
     pub(crate) explain: bool,
+    /// The item whose border is wanted with the picture.
+    pub(crate) outlined: Option<ItemId>,
 }
 
 impl Snapshot {
     /// Whether another snapshot differs in more than the time.
     pub(crate) fn differs_from(&self, other: &Self) -> bool {
-        let Self { scene, view, settings, size, moving: _, explain: _ } = self;
+        let Self { scene, view, settings, size, moving: _, explain: _, outlined: _ } = self;
         let view = |of: &View| View { time: view.time, ..of.clone() };
         (*settings, *size) != (other.settings, other.size)
             || *scene != other.scene

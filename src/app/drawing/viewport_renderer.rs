@@ -171,6 +171,11 @@ fn applicable(wanted: &Snapshot) -> Applicable {
 }
 
 impl ViewportRenderer {
+    /// Whether the last picture was cancelled for a newer one.
+    pub(crate) const fn was_given_up(&self) -> bool {
+        self.gave_up
+    }
+
     /// The border of the visible part of an item.
     pub(crate) fn border(&mut self, item: ItemId) -> Option<Border> {
         self.shown?;
@@ -211,7 +216,8 @@ mod tests {
 
     fn snapshot(size: Size) -> Snapshot {
         let (scene, view) = io::default_scene();
-        Snapshot { scene, view, settings: Settings::default(), size, moving: false, explain: false }
+        let (settings, moving, explain, outlined) = (Settings::default(), false, false, None);
+        Snapshot { scene, view, settings, size, moving, explain, outlined }
     }
 
     /// The same in another colour, for which everything has to be drawn.

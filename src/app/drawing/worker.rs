@@ -30,6 +30,8 @@ pub(crate) struct Pick<P> {
 pub(crate) struct News<P> {
     pub(crate) border: Option<Border>,
     pub(crate) drawn: Option<Drawn>,
+    /// The border that was wanted with the picture, if it was drawn anew.
+    pub(crate) outline: Option<Option<Border>>,
     pub(crate) explained: Option<Arc<Explained>>,
     pub(crate) picked: Vec<(Pick<P>, Option<Hit>)>,
     pub(crate) failed: bool,
@@ -145,7 +147,8 @@ impl<P> Drop for Worker<P> {
 
 impl<P> News<P> {
     const fn none() -> Self {
-        Self { border: None, drawn: None, explained: None, picked: Vec::new(), failed: false }
+        let (border, drawn, outline, explained) = (None, None, None, None);
+        Self { border, drawn, outline, explained, picked: Vec::new(), failed: false }
     }
 }
 
@@ -164,6 +167,7 @@ impl<P> Shared<P> {
 /// Draws and answers until the desk is closed.
 fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
     let mut painter = ViewportRenderer::new(Instant::now);
+    let mut outlined = None;
     loop {
         let (picks, border, wanted) = {
             let mut desk = shared.lock();
@@ -196,10 +200,18 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
         };
         // A fault of the renderer costs a picture, not the user's work.
         match catch_unwind(AssertUnwindSafe(|| painter.draw(&wanted, &asked))) {
-            Ok(None) => {}
-            Ok(Some(drawn)) => {
-                shared.lock().news.drawn = Some(drawn);
-                wake();
+            Ok(drawn) => {
+                let another = wanted.outlined != outlined && !painter.was_given_up();
+                if drawn.is_some() || another {
+                    // Of this very picture, so that it never lags behind.
+                    let outline = wanted.outlined.and_then(|item| painter.border(item));
+                    outlined = wanted.outlined;
+                    let mut desk = shared.lock();
+                    desk.news.drawn = drawn.or(desk.news.drawn.take());
+                    desk.news.outline = Some(outline);
+                    drop(desk);
+                    wake();
+                }
             }
             Err(_) => {
                 painter = ViewportRenderer::new(Instant::now);

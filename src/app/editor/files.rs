@@ -25,7 +25,7 @@ use crate::edit::{Gesture, items};
 use crate::io::{self, Finding, LoadError, Loaded};
 use crate::render::Renderer;
 use crate::render::plan_frame;
-use crate::scene::{MaterialChoice, Object, ObjectId, Texture};
+use crate::scene::{MaterialChoice, Object, ObjectId, Subject, Texture};
 
 /// The maximum number of files read at the same time.
 const MOST_LOADING: usize = 8;
@@ -51,7 +51,7 @@ impl App {
             Answer::Save(after) => self.save(ctx, Some(after)),
             Answer::Discard(after) => self.after(ctx, after),
             Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
-            Answer::ChooseTexture => self.dialogs.ask_file(ctx, Wanted::TextureOfModel, ""),
+            Answer::ChooseTexture => self.ask_file(ctx, Wanted::TextureOfModel, ""),
         }
     }
 
@@ -97,7 +97,7 @@ impl App {
         let Some((path, loaded)) = dialog.loaded else {
             let model = io::cam_model();
             let command = items::insert_camera(&self.state.scene, model, material);
-            self.change(command, Gesture::Whole, "Add a camera");
+            self.add(command, Subject::Camera, "Add a camera");
             return;
         };
         if loaded.model.options == options && texture.is_none() {
@@ -312,7 +312,7 @@ impl App {
             }
             After::Recover(at) => self.recover(ctx, at),
             After::Open(Some(path)) => self.open_scene(ctx, path),
-            After::Open(None) => self.dialogs.ask_file(ctx, Wanted::Scene, ""),
+            After::Open(None) => self.ask_file(ctx, Wanted::Scene, ""),
         }
     }
 

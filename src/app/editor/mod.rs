@@ -18,7 +18,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{CentralPanel, Context, Frame, ViewportCommand};
+use egui::{Context, UiBuilder, ViewportCommand};
 
 use crate::app::actions::{Action, Request};
 use crate::app::documents::dialogs::{After, Dialogs};
@@ -30,8 +30,10 @@ use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{self, notices};
 use crate::app::shell::Editor;
 use crate::app::state::State;
+use crate::app::state::layout::NARROW;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
+use crate::app::widgets::number::take_bad_text;
 use crate::scene::{Scene, Steps, View};
 use keeping::Keeping;
 use laboratory::Work;
@@ -118,17 +120,20 @@ impl App {
         let ctx = ui.ctx().clone();
         let mut requests = Vec::new();
         let _touch = self.lab.touch();
-        Keyboard::begin(&ctx);
         self.begin(&ctx, &mut requests);
-        panels::show(ui, &self.state, &mut requests);
+        self.state.zoom = ctx.zoom_factor();
+        self.state.narrow = ui.available_width() < NARROW;
+        let arrangement = panels::show(ui, &self.state, &mut requests);
+        let place = arrangement.picture();
         if let Some(worker) = &self.worker {
-            CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-                self.viewport.ui(ui, &self.state, worker, &mut requests);
-                if let Some(rect) = self.viewport.rect() {
-                    self.comparison.ui(ui, rect, &self.state, &mut requests);
-                }
-            });
+            let mut ui = ui.new_child(UiBuilder::new().id_salt("picture").max_rect(place));
+            ui.set_clip_rect(place.intersect(ui.clip_rect()));
+            self.viewport.ui(&ui, &self.state, worker, &mut requests);
+            if let Some(rect) = self.viewport.rect() {
+                self.comparison.ui(&ui, rect, &self.state, &mut requests);
+            }
         }
+        arrangement.splitters_ui(ui, &self.state, &mut requests);
         notices::show(&ctx, &self.state, &self.loading, &mut requests);
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
@@ -136,6 +141,12 @@ impl App {
         // Last, so that everything that is shown in a frame shows the same scene.
         if !requests.is_empty() || !pressed.is_empty() || answer.is_some() {
             ctx.request_repaint();
+        }
+        if let Some(text) = take_bad_text(&ctx) {
+            self.refuse(format!("\"{text}\" means nothing here: the field keeps its value"));
+        }
+        if Keyboard::take_held_escape(&ctx) {
+            self.state.tell(Some("Esc once more leaves the program".to_owned()));
         }
         for press in pressed {
             self.press(&ctx, press);
@@ -171,7 +182,10 @@ impl App {
         if self.worker.is_none() {
             Keyboard::install(ctx);
             // Quitting is an action like the others.
-            ctx.options_mut(|options| options.quit_shortcuts.clear());
+            ctx.options_mut(|options| {
+                options.quit_shortcuts.clear();
+                options.zoom_with_keyboard = false;
+            });
             let waker = ctx.clone();
             let watch = self.lab.watch();
             let wake = move || {
@@ -224,7 +238,9 @@ impl App {
         let State { scene, view, settings, .. } = &self.state;
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
         let explain = self.state.panels.plan;
-        let mut wanted = Snapshot { scene, view, settings, size, moving: false, explain };
+        let outlined = self.state.outlined();
+        let moving = false;
+        let mut wanted = Snapshot { scene, view, settings, size, moving, explain, outlined };
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
         // An animated scene is always being drawn.

@@ -4,6 +4,7 @@
 //! writes the scene.
 
 use egui::{Context, Key};
+use glam::DVec3;
 
 use super::App;
 use crate::app::actions::{Action, Chord, FileIntent, Intent, Request, resolve};
@@ -12,8 +13,8 @@ use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
-use crate::edit::{Gesture, items};
-use crate::scene::{Command, Subject, View};
+use crate::edit::{Gesture, GesturePhase, aiming, items};
+use crate::scene::{Command, ItemId, Subject, View};
 
 impl App {
     /// Performs the action of a key. Esc first closes whatever is open.
@@ -23,7 +24,9 @@ impl App {
             if self.viewport.cancel_drag(&mut requests) {
                 return requests.into_iter().for_each(|request| self.answer(ctx, request));
             }
-            if std::mem::take(&mut self.state.panels.cheat_sheet)
+            if std::mem::take(&mut self.state.aiming)
+                || std::mem::take(&mut self.state.lab.picking)
+                || std::mem::take(&mut self.state.panels.cheat_sheet)
                 || self.state.renaming.take().is_some()
             {
                 return;
@@ -45,6 +48,7 @@ impl App {
                 Ok(selection) => self.select(selection, Gesture::Whole),
                 Err(refusal) => self.refuse(refusal.to_string()),
             },
+            Request::AimAt(point) => self.aim_at(point),
             Request::SelectPolygon(polygon) => {
                 let mut view = state.view.clone();
                 match selection::go_to_polygon(&state.scene, &mut view, polygon) {
@@ -62,7 +66,7 @@ impl App {
             }
             Request::BeginRename(id) => state.renaming = Some(id),
             Request::EndRename(name) => self.end_rename(name),
-            Request::ChooseTexture(id) => self.dialogs.ask_file(ctx, Wanted::Texture(id), ""),
+            Request::ChooseTexture(id) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
@@ -81,13 +85,14 @@ impl App {
             }
             Request::Recover(at) => self.unless_unsaved(ctx, After::Recover(at)),
             Request::DiscardWork(at) => self.discard_work(at),
+            Request::Layout(layout) => state.layout = layout,
             Request::Refuse(why) => self.refuse(why),
         }
     }
 
     /// Performs an action. Every key, menu entry and button ends here.
     pub fn perform(&mut self, ctx: &Context, action: Action, gesture: Gesture) {
-        let label = action.step_label(&self.state);
+        let label = action.step_label(&self.state, self.state.next_repeat(gesture));
         // Framing the object by any key or button dismisses the notice that offers it.
         if action == Action::FrameSelection {
             let framed = self.state.view.object.map(Offer::Frame);
@@ -101,6 +106,7 @@ impl App {
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
             Ok(Intent::Settings(settings)) => self.state.settings = settings,
             Ok(Intent::Panels(panels)) => self.state.panels = panels,
+            Ok(Intent::Layout(layout)) => self.state.layout = layout,
             Ok(Intent::Theme(theme)) => {
                 self.state.theme = theme;
                 ctx.set_theme(theme);
@@ -120,7 +126,28 @@ impl App {
             Ok(Intent::File(intent)) => self.file(ctx, intent),
             Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
             Ok(Intent::Measure) => self.measure(ctx),
+            Ok(Intent::WhyUnseen(id)) => self.why_unseen(ctx, id),
+            Ok(Intent::Palette) => self.state.palette ^= true,
+            Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
+            Ok(Intent::Overlays) => self.state.overlays ^= true,
+            Ok(Intent::AimByClick) => self.state.aiming ^= true,
             Ok(Intent::ChangeKeyboardOwner) => Keyboard::change_owner(ctx),
+        }
+    }
+
+    /// Aims the selected light, as a click into the picture asks for.
+    fn aim_at(&mut self, point: DVec3) {
+        let State { scene, view, .. } = &self.state;
+        let command = aiming::can_aim(scene, view)
+            .and_then(|id| aiming::aim(scene, view, id, point, GesturePhase::First));
+        match command {
+            Ok(command) => {
+                let name = view.light.and_then(|id| self.state.name(ItemId::Light(id)));
+                let label = format!("Aim {}", name.unwrap_or("a light"));
+                self.state.aiming = false;
+                self.change(command, Gesture::Whole, &label);
+            }
+            Err(refusal) => self.refuse(refusal.to_string()),
         }
     }
 
@@ -129,11 +156,19 @@ impl App {
             FileIntent::New => self.unless_unsaved(ctx, After::New),
             FileIntent::Open => self.unless_unsaved(ctx, After::Open(None)),
             FileIntent::Quit => self.unless_unsaved(ctx, After::Quit),
-            FileIntent::Load => self.dialogs.ask_file(ctx, Wanted::Model, ""),
+            FileIntent::Load => self.ask_file(ctx, Wanted::Model, ""),
             FileIntent::Save => self.save(ctx, None),
             FileIntent::SaveAs => self.save_as(ctx, None),
             FileIntent::CopyPicture => self.copy_picture(ctx),
-            FileIntent::SavePicture => self.dialogs.ask_file(ctx, Wanted::PictureTo, "picture.png"),
+            FileIntent::SavePicture => self.ask_file(ctx, Wanted::PictureTo, "picture.png"),
+        }
+    }
+
+    /// Asks for a file, unless the system's dialog is asking for one already: it may be lost behind
+    /// the window.
+    pub(crate) fn ask_file(&mut self, ctx: &Context, wanted: Wanted, name: &str) {
+        if let Err(open) = self.dialogs.ask_file(ctx, wanted, name) {
+            self.refuse(format!("the dialog \"{open}\" is open already: answer it first"));
         }
     }
 
@@ -173,9 +208,10 @@ impl App {
     pub(crate) fn change(&mut self, command: Command, gesture: Gesture, label: &str) {
         let state = &mut self.state;
         let before = state.scene.clone();
+        let repeats = state.next_repeat(gesture);
         match state.history.perform(&mut state.scene, command, gesture, label) {
             Ok(()) => {
-                state.gesture = gesture;
+                (state.gesture, state.repeats) = (gesture, repeats);
                 state.message = None;
                 selection::follow(&before, &state.scene, &mut state.view);
             }

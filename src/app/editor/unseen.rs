@@ -11,10 +11,15 @@ use crate::app::tasks::{Outcome, Task};
 use crate::base::image::Size;
 use crate::render::plan_frame;
 use crate::render::{Renderer, Unseen, unseen};
-use crate::scene::{Object, ObjectId, Projection};
+use crate::scene::{ItemId, Object, ObjectId, Projection};
 
 /// A search for objects that are not visible, with the reasons.
-pub(crate) type Search = Task<Vec<(ObjectId, Unseen)>>;
+#[derive(Debug)]
+pub(crate) struct Search {
+    task: Task<Vec<(ObjectId, Unseen)>>,
+    /// The object that the user asked about: it is said, too, that it is seen.
+    asked: Option<ObjectId>,
+}
 
 /// The size of the picture before the window has one.
 const SIZE: Size = Size::new(800, 600);
@@ -22,6 +27,23 @@ const SIZE: Size = Size::new(800, 600);
 impl App {
     /// Starts to search for which of these objects are not visible in the current scene.
     pub(crate) fn look_for_unseen(&mut self, ctx: &Context, ids: Vec<ObjectId>) {
+        self.search(ctx, ids, None);
+    }
+
+    /// Says why nothing of an object is seen, or that it is.
+    pub(crate) fn why_unseen(&mut self, ctx: &Context, id: ObjectId) {
+        let Some(object) = self.state.scene.objects.get(id) else { return };
+        if object.visible {
+            return self.search(ctx, vec![id], Some(id));
+        }
+        let (text, offer) = (format!("{} is hidden", object.name), Some(Offer::Show(id)));
+        let notice = Notice { text, details: Vec::new(), offer };
+        if !self.state.notices.contains(&notice) {
+            self.state.notices.push(notice);
+        }
+    }
+
+    fn search(&mut self, ctx: &Context, ids: Vec<ObjectId>, asked: Option<ObjectId>) {
         let State { scene, view, settings, .. } = &self.state;
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
         let size = self.viewport.size().unwrap_or(SIZE);
@@ -35,20 +57,25 @@ impl App {
             all
         });
         // Without a thread there is no notice, and nothing is lost.
-        self.searches.extend(search);
+        self.searches.extend(search.map(|task| Search { task, asked }));
     }
 
     /// Adds notices about the objects found.
     pub(crate) fn hear_searches(&mut self) {
-        let mut found = Vec::new();
-        self.searches.retain(|search| match search.outcome() {
+        let (mut found, mut seen) = (Vec::new(), None);
+        self.searches.retain(|search| match search.task.outcome() {
             Outcome::Running => true,
             Outcome::Done(all) => {
+                seen = search.asked.filter(|id| all.iter().all(|(other, _)| other != id));
                 found.extend(all);
                 false
             }
             Outcome::Lost => false,
         });
+        if let Some(name) = seen.and_then(|id| self.state.name(ItemId::Object(id))) {
+            let text = format!("{name} is in the picture: nothing hides all of it");
+            self.state.tell(Some(text));
+        }
         let notices = found.into_iter().filter_map(|(id, why)| notice(&self.state, id, &why));
         let notices: Vec<Notice> = notices.collect();
         self.state.notices.extend(notices);

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 
 use crate::app::actions::{Action, Chord, Group};
-use crate::app::widgets::gestures;
+use crate::app::widgets::{gestures, regions};
 use crate::edit::Gesture;
 
 /// A press of a key that asks for something.
@@ -36,9 +36,11 @@ pub(crate) struct Keyboard {
     /// Whether the last key event was sent by a held key: its text follows it.
     last_was_repeat: bool,
     presses: u64,
-    /// The frames left until the keyboard has reached the panels.
-    leaving: u8,
     waiting: Vec<Press>,
+    /// Whether the last thing that was pressed was Esc, to leave a menu, a panel or a dialog.
+    left_by_escape: bool,
+    /// Whether an Esc was held back since this was last asked.
+    held_escape: bool,
 }
 
 impl Keyboard {
@@ -59,38 +61,23 @@ impl Keyboard {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().waiting)
     }
 
-    /// From the viewport to the panels, or back.
+    /// Whether an Esc was held back: it came after one that closed a menu or left a panel. Whoever
+    /// presses it twice there does not mean to leave the program.
+    pub(crate) fn take_held_escape(ctx: &Context) -> bool {
+        std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().held_escape)
+    }
+
+    /// Notes that an Esc closed something that is no question.
+    pub(crate) fn note_escape(ctx: &Context) {
+        ctx.plugin_or_default::<Self>().lock().left_by_escape = true;
+    }
+
+    /// From region to region, and back to the viewport.
     pub(crate) fn change_owner(ctx: &Context) {
-        let handle = ctx.plugin_or_default::<Self>();
-        let mut keyboard = handle.lock();
-        let focused = ctx.memory(|memory| memory.focused());
-        match keyboard.viewport {
-            Some(viewport) if focused.is_some_and(|id| id != viewport) => {
-                ctx.memory_mut(|memory| memory.request_focus(viewport));
-            }
-            // The focus goes on as widgets are shown: from the viewport, which is the last of them,
-            // to the first one of the frame after.
-            _ => keyboard.leaving = 3,
+        let viewport = ctx.plugin_or_default::<Self>().lock().viewport;
+        if let Some(viewport) = viewport {
+            regions::go_on(ctx, viewport);
         }
-        ctx.request_repaint();
-    }
-
-    /// At the beginning of a frame.
-    pub(crate) fn begin(ctx: &Context) {
-        let handle = ctx.plugin_or_default::<Self>();
-        let mut keyboard = handle.lock();
-        if keyboard.leaving == 3 {
-            ctx.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next));
-        }
-        if keyboard.leaving > 0 {
-            keyboard.leaving -= 1;
-            ctx.request_repaint();
-        }
-    }
-
-    /// Whether the keyboard is on its way to the panels, and the viewport must not take it.
-    pub(crate) fn is_leaving(ctx: &Context) -> bool {
-        ctx.plugin_or_default::<Self>().lock().leaving > 0
     }
 
     fn whose(&self, ctx: &Context) -> Owner {
@@ -111,6 +98,15 @@ impl Keyboard {
     /// Notes a key, and says whether the viewport keeps it from egui.
     fn key(&mut self, owner: Owner, key: Key, modifiers: Modifiers, repeat: bool) -> bool {
         self.last_was_repeat = repeat || !self.down.insert(key);
+        let left_by_escape = std::mem::take(&mut self.left_by_escape);
+        if key == Key::Escape {
+            // A dialog that Esc closes may be the question whether to leave: Esc asks it again.
+            self.left_by_escape = matches!(owner, Owner::Panel | Owner::Text);
+            if left_by_escape && owner == Owner::Viewport {
+                self.held_escape = true;
+                return true;
+            }
+        }
         let chord = |chord: &Chord| chord.is_pressed_by(key, modifiers);
         self.ask(owner, chord);
         let own = matches!(
@@ -190,6 +186,7 @@ impl egui::Plugin for Keyboard {
                 true
             }
             Event::PointerButton { pressed: true, .. } => {
+                self.left_by_escape = false;
                 gestures::count_press(ctx);
                 true
             }

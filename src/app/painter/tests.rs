@@ -34,7 +34,7 @@ impl Desk {
         let frame = Frame { primitives, scale: 1.0, ground: GROUND };
         let canvas = Canvas { pixels: &mut self.pixels, size: [WIDTH, HEIGHT], age: self.age };
         self.age = 1;
-        self.painter.paint(canvas, frame, textures)
+        self.painter.paint(&mut canvas, frame, textures)
     }
 }
 
@@ -379,8 +379,7 @@ fn a_part_of_a_texture_can_be_changed_and_what_shows_it_is_painted_again() {
 #[test]
 fn what_egui_makes_of_panels_and_text_is_painted_as_the_plainest_arithmetic_does() {
     let ctx = egui::Context::default();
-    let mut input = egui::RawInput::default();
-    input.screen_rect = Some(everywhere());
+    let input = egui::RawInput { screen_rect: Some(everywhere()), ..egui::RawInput::default() };
     let mut output = ctx.run_ui(input, |ui| {
         egui::Frame::window(ui.style()).show(ui, |ui| {
             ui.heading("Viewport");

@@ -2,6 +2,7 @@
 
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
+use crate::app::actions::search::Search;
 use crate::app::actions::{Action, Group, Request};
 use crate::app::state::State;
 use crate::app::theme;
@@ -30,14 +31,7 @@ pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
 
 fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let id = Id::unique("search among the keys");
-    let mut wanted: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    let field = egui::TextEdit::singleline(&mut wanted)
-        .hint_text("Search: an action, a key")
-        .align(egui::Align2::LEFT_CENTER)
-        .min_size(vec2(0.0, theme::ROW))
-        .desired_width(f32::INFINITY);
-    let response = ui.add(field).accessible_name("Search among the keys");
-    // It was not shown in the pass before this one.
+    // It was not shown in the pass before this one: what was searched for then is forgotten.
     let pass = ui.ctx().cumulative_pass_nr();
     let last = ui.data_mut(|data| {
         let last = data.get_temp::<u64>(id);
@@ -45,6 +39,16 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         last
     });
     let just_opened = last.is_none_or(|last| last + 1 < pass);
+    let mut wanted: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    if just_opened {
+        wanted.clear();
+    }
+    let field = egui::TextEdit::singleline(&mut wanted)
+        .hint_text("Search: an action, a key")
+        .align(egui::Align2::LEFT_CENTER)
+        .min_size(vec2(0.0, theme::ROW))
+        .desired_width(f32::INFINITY);
+    let response = ui.add(field).accessible_name("Search among the keys");
     if just_opened {
         response.request_focus();
     }
@@ -54,10 +58,11 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.data_mut(|data| data.insert_temp(id, wanted.clone()));
     ui.add_space(theme::GAP);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let mut search = Search::new(&wanted);
         let mut found = false;
         for group in Group::ALL {
             let actions: Vec<Action> =
-                group.actions().filter(|action| matches(*action, &wanted)).collect();
+                group.actions().filter(|it| it.score(&mut search, &wanted).is_some()).collect();
             if actions.is_empty() {
                 continue;
             }
@@ -72,22 +77,6 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.weak("Nothing of this name, and no such key.");
         }
     });
-}
-
-/// Whether an action matches a search: by one of its keys as it is written, or by any of its
-/// words.
-fn matches(action: Action, wanted: &str) -> bool {
-    let info = action.info();
-    let wanted = wanted.trim();
-    let keys = || info.keys.iter().flat_map(|key| key.names());
-    if wanted.chars().count() == 1 && keys().any(|key| key == wanted) {
-        return true;
-    }
-    let text = format!("{} {} {}", info.label, info.hint, info.group.label()).to_lowercase();
-    let wanted = wanted.to_lowercase();
-    wanted.split_whitespace().all(|word| {
-        text.contains(word) || keys().any(|key| key.len() > 1 && key.to_lowercase().contains(word))
-    })
 }
 
 /// One action: a click does it.
@@ -137,23 +126,5 @@ fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action)
     controls::focus_ring(ui, rect, &response);
     if action.explain(response, state).clicked() {
         requests.push(action.into());
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn found(wanted: &str) -> Vec<Action> {
-        Action::ALL.iter().copied().filter(|action| matches(*action, wanted)).collect()
-    }
-
-    #[test]
-    fn an_action_is_found_by_its_key_and_by_its_words() {
-        assert!(found("l").contains(&Action::ToggleEdges));
-        assert!(found("ctrl+z").contains(&Action::Undo));
-        assert_eq!(found("vertex normals draws"), [Action::ToggleVertexNormals]);
-        assert_eq!(found(""), Action::ALL);
-        assert!(found("no such words").is_empty());
     }
 }

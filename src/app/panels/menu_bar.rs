@@ -12,7 +12,7 @@ use crate::io::EXAMPLES;
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
 
 /// Those that stand under Help.
-const HELP: [Action; 2] = [Action::CheatSheet, Action::ToPanels];
+const HELP: [Action; 3] = [Action::Palette, Action::CheatSheet, Action::ToPanels];
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {

@@ -5,85 +5,89 @@ mod lab;
 mod menu_bar;
 pub(crate) mod notices;
 mod outline;
+mod palette;
 mod plan;
 mod properties;
+mod splitters;
 mod status_line;
 mod view_switches;
 
-use egui::{Frame, Margin, Panel, Ui};
+use egui::{Frame, Layout, Margin, Panel, Rect, Ui, UiBuilder};
 
 use crate::app::actions::Request;
 use crate::app::state::State;
+use crate::app::state::layout::{Places, Side};
 use crate::app::theme;
+use crate::app::widgets::regions;
 
-/// Below this width of the window the panels at the sides are narrower, so that the picture stays
-/// the largest thing.
-const WIDE: f32 = 1200.0;
+/// Where everything stands in a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrangement {
+    /// All between the menus and the status line.
+    area: Rect,
+    places: Places,
+}
 
-/// Shows all open panels. The rest of `ui` is left to the viewport.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let wide = ui.available_width() >= WIDE;
-    let (left, right) = if wide { (228.0, 280.0) } else { (204.0, 256.0) };
-    let most = |part: f32, least: f32| (ui.available_width() * part).max(least);
-    let (most_left, most_right) = (most(0.25, 200.0), most(0.3, 250.0));
-    let fill = ui.visuals().panel_fill;
-    let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
-    // The contents leave room for a scroll bar.
-    let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
-    let side = Frame::new().fill(fill).inner_margin(margin);
-    Panel::top("menu bar").frame(bar).show(ui, |ui| menu_bar::show(ui, state, requests));
-    Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, requests));
-    if state.panels.laboratory {
-        let most = (ui.available_height() * 0.8).max(180.0);
-        Panel::bottom("laboratory")
-            .frame(side)
-            .resizable(true)
-            // The picture keeps two fifths of the height; on a large screen a plot and the verdict
-            // are seen as a whole.
-            .default_size((ui.available_height() * 0.6).round().clamp(180.0, 620.0))
-            .size_range(160.0..=most)
-            .show(ui, |ui| lab::show(ui, state, requests));
+impl Arrangement {
+    /// The place that is left to the picture.
+    pub(crate) const fn picture(&self) -> Rect {
+        self.places.picture
     }
-    // A new name is typed in the outline.
-    let outline = state.panels.outline || state.renaming.is_some();
-    if outline || state.panels.view {
-        Panel::left("left").frame(side).default_size(left).size_range(170.0..=most_left).show(
-            ui,
-            |ui| {
-                left_ui(ui, state, requests, outline);
-            },
-        );
-    }
-    if state.panels.properties {
-        Panel::right("properties")
-            .frame(side)
-            .default_size(right)
-            .size_range(220.0..=most_right)
-            .show(ui, |ui| properties::show(ui, state, requests));
-    }
-    // Under the picture alone, so that the lists beside it keep their height.
-    if state.panels.plan {
-        plan::show(ui, state, requests);
-    }
-    if state.panels.cheat_sheet {
-        cheat_sheet::show(ui, state, requests);
+
+    /// Shows the borders that can be dragged; over the picture, which would take their presses.
+    pub(crate) fn splitters_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+        splitters::show(ui, state, self.area, &self.places, requests);
     }
 }
 
-/// The outline, and the switches of the view under it.
-fn left_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, outline: bool) {
-    if !outline {
-        view_switches::show(ui, state, requests);
-        return;
+/// Shows all open panels.
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> Arrangement {
+    let fill = ui.visuals().panel_fill;
+    let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
+    Panel::top("menu bar").frame(bar).show(ui, |ui| {
+        regions::begin(ui, "menus");
+        menu_bar::show(ui, state, requests);
+    });
+    Panel::bottom("status line").frame(bar).show(ui, |ui| status_line::show(ui, state, requests));
+    let area = ui.available_rect_before_wrap();
+    let mut layout = state.layout;
+    if state.renaming.is_some() {
+        // A new name is typed in the outline.
+        layout.unfolded = Some(Side::Outline);
     }
-    if state.panels.view {
-        let height = (ui.available_height() * 0.56).round();
-        Panel::bottom("view switches")
-            .frame(Frame::NONE)
-            .resizable(true)
-            .default_size(height)
-            .size_range(90.0..=(height + 40.0).max(90.0))
-            .show(ui, |ui| view_switches::show(ui, state, requests));
+    let outline = state.panels.outline || state.renaming.is_some();
+    let panels = crate::scene::Panels { outline, ..state.panels };
+    let places = layout.divide(area, panels);
+    if let Some(rect) = places.strip {
+        ui.painter().rect_filled(rect, 0.0, fill);
+        regions::begin(ui, "strip");
+        splitters::strip_ui(ui, rect, state, requests);
     }
-    outline::show(ui, state, requests);
+    within(ui, "outline", places.outline, |ui| outline::show(ui, state, requests));
+    within(ui, "view switches", places.switches, |ui| view_switches::show(ui, state, requests));
+    within(ui, "properties", places.properties, |ui| properties::show(ui, state, requests));
+    within(ui, "laboratory", places.laboratory, |ui| lab::show(ui, state, requests));
+    within(ui, "plan", places.plan, |ui| plan::show(ui, state, requests));
+    if state.panels.cheat_sheet {
+        cheat_sheet::show(ui, state, requests);
+    }
+    if state.palette {
+        palette::show(ui, state, requests);
+    }
+    Arrangement { area, places }
+}
+
+/// Shows a panel in its place. What it holds never makes it larger.
+fn within(ui: &mut Ui, name: &str, place: Option<Rect>, add: impl FnOnce(&mut Ui)) {
+    let Some(rect) = place else { return };
+    ui.painter().rect_filled(rect, 0.0, ui.visuals().panel_fill);
+    // The contents leave room for a scroll bar.
+    let margin = Margin { left: theme::MARGIN, right: 2, top: 4, bottom: 4 };
+    let layout = Layout::top_down(egui::Align::Min);
+    let builder = UiBuilder::new().id_salt(name).max_rect(rect - margin).layout(layout);
+    let mut child = ui.new_child(builder);
+    child.set_clip_rect(rect.intersect(ui.clip_rect()));
+    regions::begin(&child, name);
+    add(&mut child);
+    regions::follow_focus(&child);
 }

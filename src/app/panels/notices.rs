@@ -4,7 +4,7 @@ use egui::{Align2, Area, Context, Frame, Id, Order, Ui, vec2};
 
 use crate::app::actions::Request;
 use crate::app::documents::loading::Loading;
-use crate::app::state::{Notice, State};
+use crate::app::state::{Notice, Offer, State};
 use crate::edit::Gesture;
 
 /// Shows them at the top of the picture; their requests are added to `requests`.
@@ -24,7 +24,11 @@ pub(crate) fn show(ctx: &Context, state: &State, loading: &[Loading], requests: 
             Frame::popup(ui.style()).show(ui, |ui| recoverable_ui(ui, at, work, requests));
         }
         for (at, notice) in state.notices.iter().enumerate() {
-            Frame::popup(ui.style()).show(ui, |ui| notice_ui(ui, at, notice, state, requests));
+            // Ids go with the notice, so that a press on one is never a click on another that has
+            // come to its place.
+            ui.push_id((&notice.text, notice.offer.map(Offer::object)), |ui| {
+                Frame::popup(ui.style()).show(ui, |ui| notice_ui(ui, at, notice, state, requests));
+            });
         }
     });
 }

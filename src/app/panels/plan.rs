@@ -7,8 +7,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{
-    Align2, Color32, Frame, Id, Margin, Panel, Rect, RichText, ScrollArea, Sense, TextStyle, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
 use crate::app::actions::{Action, Request};
@@ -16,37 +15,38 @@ use crate::app::state::{Measured, State};
 use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
+use crate::app::widgets::regions;
 use crate::app::widgets::text::grouped;
 use crate::lab::cost::{Explained, Group};
 use crate::render::{Effect, EffectUse};
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let margin = Margin { left: theme::MARGIN, right: 0, top: 4, bottom: 4 };
-    let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(margin);
-    let height = ui.available_height();
-    Panel::bottom("plan")
-        .frame(frame)
-        .resizable(true)
-        .default_size((height * 0.34).round())
-        .size_range(90.0..=(height * 0.7).max(90.0))
-        .show(ui, |ui| {
-            let Some(explained) = state.plan.explained.clone() else {
-                ui.weak("The next picture says what it is made of.");
-                return;
-            };
-            header_ui(ui, state, requests, &explained);
-            table_ui(ui, state, &explained);
-        });
+    let Some(explained) = state.plan.explained.clone() else {
+        ui.add(egui::Label::new("The next picture says what it is made of.").wrap());
+        return;
+    };
+    header_ui(ui, state, requests, &explained);
+    controls::no_narrower(ui, LEAST, |ui| table_ui(ui, state, &explained));
 }
+
+/// The width of the button that measures.
+const BUTTON: f32 = 70.0;
+
+/// In less width the table is scrolled sideways.
+const LEAST: f32 = 540.0;
 
 /// The summary, and the button that measures.
 fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
-        ui.label(RichText::new("Plan").strong());
+        let title = ui.label(RichText::new("Plan").strong());
         ui.add_space(theme::GAP);
-        let label = ui.add(egui::Label::new(RichText::new(summary(explained)).weak()).truncate());
+        let summary = RichText::new(summary(explained)).weak();
+        let text = controls::text(ui, summary.clone(), TextStyle::Body, f32::INFINITY);
+        // In a narrow window the summary gives way to the button.
+        let room = ui.available_width() - BUTTON - 2.0 * f32::from(theme::MARGIN);
+        let label = if text.size().x <= room { ui.label(summary) } else { title };
         label.on_hover_text(
             "Effects left out by class E change no bit of the picture. Those left out by class B, \
             which \"Leave out faint light\" allows, change a byte by at most one step.",
@@ -54,7 +54,7 @@ fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained:
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(f32::from(theme::MARGIN));
             let label = if state.plan.measuring { "Stop" } else { "Measure" };
-            let button = ui.add(egui::Button::new(label).min_size(vec2(70.0, theme::ROW)));
+            let button = ui.add(egui::Button::new(label).min_size(vec2(BUTTON, theme::ROW)));
             if Action::MeasurePlan.explain(button, state).clicked() {
                 requests.push(Action::MeasurePlan.into());
             }
@@ -169,6 +169,7 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
                 }
             }
         }
+        regions::follow_focus(ui);
     });
     ui.data_mut(|data| data.insert_temp(id, open));
 }

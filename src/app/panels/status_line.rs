@@ -13,7 +13,8 @@ use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::short;
 use crate::edit::steps;
 use crate::scene::{
-    CameraMode, Frame, ItemId, LightKind, Observer, Projection, SpotOwner, Subject, Transformation,
+    CameraMode, Fill, Frame, ItemId, LightKind, Observer, Projection, SpotOwner, Subject,
+    Transformation,
 };
 
 /// What stands between the parts of the line.
@@ -86,6 +87,7 @@ fn parts(state: &State) -> Vec<String> {
         }
         _ => format!("{}, {projection}", middle_elided(camera, LONGEST_NAME)),
     });
+    parts.extend(drawn(state));
     let on = scene.lights.iter().filter(|(_, light)| light.on).count();
     parts.push(match on {
         1 => "1 light".to_owned(),
@@ -97,6 +99,23 @@ fn parts(state: &State) -> Vec<String> {
     }
     if statistics.pictures > 0 {
         parts.push(format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0));
+    }
+    parts
+}
+
+/// What is drawn otherwise than at first: polygon by polygon, as a wireframe, the selection alone.
+fn drawn(state: &State) -> Vec<String> {
+    let (scene, view) = (&state.scene, &state.view);
+    let mut parts = Vec::new();
+    let object = view.object.and_then(|id| scene.objects.get(id));
+    if let (Some(mode), Some(object)) = (&view.polygons, object) {
+        let count = object.model.mesh.polygon_count();
+        parts.push(format!("polygon {} of {count}", mode.current + 1));
+    } else if view.only_selected {
+        parts.push("isolated".to_owned());
+    }
+    if view.fill == Fill::Edges {
+        parts.push("wireframe".to_owned());
     }
     parts
 }

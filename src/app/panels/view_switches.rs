@@ -1,6 +1,6 @@
 //! The switches of the view, with their keys, and the settings of accuracy.
 
-use egui::{ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
+use egui::{Id, ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
 use crate::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis};
 use crate::app::actions::{Action, Group, Request, change};
@@ -9,6 +9,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{self, Choice, choices, choices_in_rows, row, section};
+use crate::app::widgets::regions;
 use crate::scene::{
     CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation,
 };
@@ -38,8 +39,11 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         section(ui, "Light", true, |ui| {
             slots_ui(ui, state, requests);
             normals_ui(ui, state, requests);
-            settings_ui(ui, state, requests);
+            for axis in AXES.iter().filter(|axis| is_of_light(axis)) {
+                axis_ui(ui, axis, state, requests);
+            }
         });
+        section(ui, "Accuracy", true, |ui| settings_ui(ui, state, requests));
     });
 }
 
@@ -146,12 +150,23 @@ fn slots_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let width = ((ui.available_width() - 9.0 * 2.0) / 10.0).floor();
-        for action in Action::ALL.iter().copied() {
-            if let Some(slot) = action.slot() {
-                slot_ui(ui, state, requests, action, slot, width);
-            }
+        let slots = Action::ALL.iter().copied().filter_map(|action| Some((action, action.slot()?)));
+        let slots: Vec<(Action, u32)> = slots.collect();
+        let ids: Vec<Id> = slots.iter().map(|slot| ui.scope_id().with(("slot", slot.1))).collect();
+        let stop = regions::stop(ui, &ids, None, ids.len());
+        for (i, ((action, slot), id)) in slots.into_iter().zip(ids).enumerate() {
+            let place = Slot { id, is_stop: i == stop, width };
+            slot_ui(ui, state, requests, action, slot, place);
         }
     });
+}
+
+/// The small switch of a light.
+#[derive(Clone, Copy)]
+struct Slot {
+    id: Id,
+    is_stop: bool,
+    width: f32,
 }
 
 fn slot_ui(
@@ -160,13 +175,14 @@ fn slot_ui(
     requests: &mut Vec<Request>,
     action: Action,
     slot: u32,
-    width: f32,
+    place: Slot,
 ) {
     let light = state.scene.lights.iter().find(|(_, light)| light.slot == slot);
     let on = light.is_some_and(|(_, light)| light.on);
     let enabled = light.is_some();
-    let sense = if enabled { Sense::click() } else { Sense::hover() };
-    let (rect, response) = ui.allocate_exact_size(vec2(width, theme::ROW), sense);
+    let sense = if enabled { Sense::click() } else { Sense::focusable_noninteractive() };
+    let (rect, _) = ui.allocate_exact_size(vec2(place.width, theme::ROW), Sense::hover());
+    let response = ui.interact(rect, place.id, regions::sense(sense, place.is_stop));
     let label = action.info().label;
     response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, enabled, on, label));
     let visuals = ui.visuals();
@@ -185,13 +201,13 @@ fn slot_ui(
         let bar = rect.with_min_y(rect.bottom() - 2.0).shrink2(vec2(3.0, 0.0));
         ui.painter().rect_filled(bar, 1.0, theme::accent(visuals));
     }
-    let digit = controls::text(ui, slot.to_string(), TextStyle::Body, width);
+    let digit = controls::text(ui, slot.to_string(), TextStyle::Body, place.width);
     let at = rect.center() - digit.size() / 2.0;
     ui.painter().galley_with_override_text_color(at, digit, color);
     controls::focus_ring(ui, rect, &response);
     let name = light.map_or("No light has this key", |(_, light)| light.name.as_str());
     let response = action.explain(response, state).on_hover_text(name);
-    if response.clicked() {
+    if enabled && response.clicked() {
         requests.push(action.into());
     }
 }
@@ -215,9 +231,14 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if let Some(clicked) = row(ui, "Accuracy", |ui| choices_in_rows(ui, &presets)) {
         requests.push(Request::Settings(ACCURACY_PRESETS[clicked].of(&now)));
     }
-    for axis in AXES {
+    for axis in AXES.iter().filter(|axis| !is_of_light(axis)) {
         axis_ui(ui, axis, state, requests);
     }
+}
+
+/// Whether an axis stands among the switches of light: how things are shaded, where they shine.
+fn is_of_light(axis: &Axis) -> bool {
+    matches!(axis.key, "shading" | "specular")
 }
 
 /// The choices of an axis of accuracy.

@@ -1,6 +1,7 @@
 //! Everything that panels read. Only the app writes it.
 
 pub mod laboratory;
+pub mod layout;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,6 +20,7 @@ use crate::scene::{
     Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Sides, View,
 };
 use laboratory::Laboratory;
+use layout::Layout;
 
 /// The scene being edited, and everything shown about it.
 #[derive(Debug)]
@@ -43,6 +45,18 @@ pub struct State {
     pub plan: Plan,
     /// Which panels are shown.
     pub panels: Panels,
+    /// How the window is divided among them.
+    pub layout: Layout,
+    /// Whether the palette is open.
+    pub palette: bool,
+    /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
+    pub overlays: bool,
+    /// Whether the next click into the picture aims the selected light.
+    pub aiming: bool,
+    /// How large the interface is; 1 is the system's size.
+    pub zoom: f32,
+    /// Whether the window is so narrow that panels are folded.
+    pub narrow: bool,
     /// Whether the window is light or dark.
     pub theme: ThemePreference,
     /// The state of the laboratory.
@@ -55,6 +69,8 @@ pub struct State {
     pub renaming: Option<ItemId>,
     /// The gesture of the last change.
     pub(crate) gesture: Gesture,
+    /// How many changes it has had.
+    pub(crate) repeats: u32,
 }
 
 /// A message to the user.
@@ -93,6 +109,8 @@ pub enum Offer {
     Frame(ObjectId),
     /// To draw both sides of an object's faces.
     TwoSides(ObjectId),
+    /// To show an object that is hidden.
+    Show(ObjectId),
 }
 
 impl Offer {
@@ -102,7 +120,15 @@ impl Offer {
         match self {
             Self::Frame(_) => "Frame",
             Self::TwoSides(_) => "Draw both sides",
+            Self::Show(_) => "Show",
         }
+    }
+
+    /// The object that it is about.
+    #[must_use]
+    pub const fn object(self) -> ObjectId {
+        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id)) = self;
+        id
     }
 
     /// The change of the scene, and its label in the history.
@@ -110,13 +136,17 @@ impl Offer {
     /// # Errors
     /// If the object is gone, or the observer is an object.
     pub fn command(self, scene: &Scene, view: &View) -> Result<(Command, String), Refusal> {
-        let (Self::Frame(id) | Self::TwoSides(id)) = self;
+        let id = self.object();
         let name = &scene.objects.get(id).ok_or(Refusal::Gone)?.name;
         Ok(match self {
             Self::Frame(_) => (framing::objects(scene, view, &[id])?, format!("Frame {name}")),
             Self::TwoSides(_) => {
                 let two = |object: &mut Object| object.sides = Sides::Two;
                 (items::change_object(scene, id, two)?, format!("Draw both sides of {name}"))
+            }
+            Self::Show(_) => {
+                let show = |object: &mut Object| object.visible = true;
+                (items::change_object(scene, id, show)?, format!("Show {name}"))
             }
         })
     }
@@ -210,12 +240,19 @@ impl State {
             statistics: Statistics::default(),
             plan: Plan::default(),
             panels: Panels::DEFAULT,
+            layout: Layout::default(),
+            palette: false,
+            overlays: true,
+            aiming: false,
+            zoom: 1.0,
+            narrow: false,
             theme: ThemePreference::System,
             lab: Laboratory::default(),
             recent: Vec::new(),
             recoverable: Vec::new(),
             renaming: None,
             gesture: Gesture::Whole,
+            repeats: 0,
         }
     }
 
@@ -223,6 +260,17 @@ impl State {
     #[must_use]
     pub fn selected(&self) -> Option<ItemId> {
         selection::selected(&self.view)
+    }
+
+    /// Whether anything is drawn over the picture now: a comparison shows the pictures alone.
+    #[must_use]
+    pub fn shows_overlays(&self) -> bool {
+        self.overlays && self.lab.compare == laboratory::Compare::Off
+    }
+
+    /// The item whose outline is drawn over the picture: the one that the keys act on.
+    pub(crate) fn outlined(&self) -> Option<ItemId> {
+        self.selected().filter(|_| self.shows_overlays())
     }
 
     /// Its name; empty if nothing is selected.
@@ -261,6 +309,14 @@ impl State {
             |light: &Light| matches!(&light.kind, LightKind::Bulb { orbit, .. } if orbit.on);
         self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
             || self.scene.lights.iter().any(|(_, light)| circles(light))
+    }
+
+    /// How many changes `gesture` will have had after the next one.
+    pub(crate) fn next_repeat(&self, gesture: Gesture) -> u32 {
+        match self.phase(gesture) {
+            GesturePhase::First => 1,
+            GesturePhase::Continued => self.repeats.saturating_add(1),
+        }
     }
 
     /// The phase of the next change in `gesture`: the first one pushes the old transform.

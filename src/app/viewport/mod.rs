@@ -3,8 +3,11 @@
 //! The picture is aligned to the pixels of the screen and shown unfiltered, so that each pixel of
 //! the renderer is a pixel of the screen.
 
+mod axes;
 pub(crate) mod comparison;
+mod marks;
 mod mouse;
+mod over;
 mod overlay;
 mod picking;
 
@@ -25,7 +28,9 @@ use crate::app::widgets::plate::plate_ui;
 use crate::base::image::Size;
 use crate::render::Hit;
 use crate::scene::ItemId;
+use marks::Projection;
 use mouse::{Mouse, Under};
+use over::Over;
 
 /// The purpose of a pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +43,8 @@ pub(crate) enum Purpose {
     Frame,
     /// Opens the menu of the item that was right-clicked.
     Menu(Pos2),
+    /// Aims the selected light at this point of the window.
+    Aim(Pos2),
 }
 
 /// The picture, and the state of input over it.
@@ -53,6 +60,8 @@ pub(crate) struct Viewport {
     menu: Option<Menu>,
     /// The border of the item under the pointer.
     border: Option<Border>,
+    /// The border of the selected item.
+    outline: Option<Border>,
     /// Whether the picture has changed since the last pick under the pointer.
     stale: bool,
     /// The item whose border was requested for this picture.
@@ -108,6 +117,9 @@ impl Viewport {
         for (pick, hit) in news.picked {
             self.answer(ctx, state, pick, hit, requests);
         }
+        if let Some(outline) = news.outline {
+            self.outline = outline;
+        }
         if let Some(drawn) = news.drawn {
             self.take(ctx, drawn);
         }
@@ -135,7 +147,17 @@ impl Viewport {
         let under = Under { rect, size, hit };
         let picks = self.mouse.ui(ui, &response, state, under, requests);
         Keyboard::set_viewport(ui.ctx(), id, self.mouse.is_flying());
+        let projection = Projection::new(state, rect, size);
+        let over = Over::new(state, rect, &projection);
         for (at, purpose) in picks {
+            if let Some(request) = self.over_click(state, &over, at, purpose) {
+                requests.extend(request);
+                continue;
+            }
+            let purpose = match purpose {
+                Purpose::Select if state.aiming => Purpose::Aim(at),
+                purpose => purpose,
+            };
             let at = self.pixel(at);
             if state.lab.picking && purpose == Purpose::Select {
                 requests.push(Request::Lab(LabRequest::Attribute(at)));
@@ -145,6 +167,7 @@ impl Viewport {
         }
         self.hover(&response, worker);
         self.border_ui(ui, worker);
+        self.over_ui(ui, state, &response, &projection, &over);
         self.overlay(ui, state);
         if state.panels.statistics {
             overlay::statistics_ui(ui, state, rect);
@@ -184,7 +207,17 @@ impl Viewport {
                 }
             }
             Purpose::Select => requests.extend(hit.map(|hit| self.selecting(state, pick.at, hit))),
-            Purpose::Frame => match item {
+            Purpose::Aim(at) => requests.push(match (hit, self.place) {
+                (Some(hit), Some((rect, size))) => {
+                    match Projection::new(state, rect, size).world(at, hit.depth) {
+                        Some(point) => Request::AimAt(point),
+                        None => Request::Refuse("there is no point here".to_owned()),
+                    }
+                }
+                _ => Request::Refuse("nothing is here to aim at: click on an object".to_owned()),
+            }),
+            // What lies under a light's mark is meant.
+            Purpose::Frame => match self.framed(state, pick.at, item) {
                 Some(item) => {
                     requests.extend([Request::Select(item), Request::Do(Action::FrameSelection)]);
                 }
@@ -198,12 +231,22 @@ impl Viewport {
         }
     }
 
+    /// What a double click frames: the object there, also if the mark of a light lies over it.
+    fn framed(&self, state: &State, at: [usize; 2], item: Option<ItemId>) -> Option<ItemId> {
+        match item {
+            Some(ItemId::Light(_)) => {
+                let objects = picking::objects_at(state, at, self.size()?);
+                objects.first().copied().map(ItemId::Object)
+            }
+            item => item,
+        }
+    }
+
     /// The request of a click on `hit`: selects the polygon in polygon mode, otherwise the item; a
     /// second click on the same pixel selects the object behind the selected one.
     fn selecting(&mut self, state: &State, at: [usize; 2], hit: Hit) -> Request {
         let click = (at, state.scene.observer_frame(&state.view));
         let again = self.clicked.replace(click) == Some(click);
-        let selected = state.selected();
         match hit.item {
             ItemId::Object(id)
                 if state.view.polygons.is_some() && state.view.object == Some(id) =>
@@ -211,11 +254,10 @@ impl Viewport {
                 Request::SelectPolygon(hit.polygon)
             }
             ItemId::Object(_) if again && state.view.polygons.is_none() => {
-                let all = self.size().map(|size| picking::objects_at(state, at, size));
-                let all = all.unwrap_or_default();
-                let here = all.iter().position(|id| selected == Some(ItemId::Object(*id)));
-                let next = here.and_then(|here| all.get((here + 1) % all.len()));
-                Request::Select(next.map_or(hit.item, |id| ItemId::Object(*id)))
+                let Some((rect, size)) = self.place else { return Request::Select(hit.item) };
+                let projection = Projection::new(state, rect, size);
+                let over = Over::new(state, rect, &projection);
+                Request::Select(self.deeper(state, &over, self.point(at), true, hit.item))
             }
             item => Request::Select(item),
         }
@@ -231,7 +273,7 @@ impl Viewport {
         if let (Some(border), Some((rect, _))) = (&self.border, self.place)
             && Some(border.item) == over
         {
-            overlay::border_ui(ui, rect, border);
+            overlay::border_ui(ui, rect, border, egui::Color32::WHITE);
         }
     }
 
@@ -267,6 +309,17 @@ impl Viewport {
             ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
         };
         [along(part.x, size.width), along(part.y, size.height)]
+    }
+
+    /// The middle of a pixel in the window.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
+    fn point(&self, [x, y]: [usize; 2]) -> Pos2 {
+        let Some((rect, size)) = self.place else { return Pos2::ZERO };
+        let part = vec2(
+            (x as f32 + 0.5) / size.width.max(1) as f32,
+            (y as f32 + 0.5) / size.height.max(1) as f32,
+        );
+        rect.min + part * rect.size()
     }
 
     /// Shows the name of the item under the pointer, or the speed of flight.
@@ -322,6 +375,7 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
     match item {
         ItemId::Object(_) => &[
             Action::FrameSelection,
+            Action::WhyUnseen,
             Action::TogglePolygons,
             Action::ToggleOthers,
             Action::ToggleVisible,
@@ -341,6 +395,8 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
             Action::Delete,
         ],
         ItemId::Light(_) => &[
+            Action::AimAtSelection,
+            Action::AimByClick,
             Action::ToggleVisible,
             Action::Rename,
             Action::Duplicate,
@@ -377,7 +433,6 @@ fn keep_focus(ctx: &Context, response: &Response) {
     let pressed = ctx.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
     let free =
         ctx.memory(|memory| memory.focused().is_none() && memory.top_modal_layer().is_none());
-    let free = free && !Keyboard::is_leaving(ctx);
     if (pressed || free) && !response.has_focus() && !egui::Popup::is_any_open(ctx) {
         response.request_focus();
     }

@@ -26,6 +26,9 @@ use crate::scene::{CameraMode, Command, Projection};
 /// A drag that stays within this distance of its start, in points, is a click.
 const CLICK: f32 = 4.0;
 
+/// How far splitters reach into the picture.
+const SPLITTER: f32 = 4.0;
+
 /// Points that a touchpad scrolls for one notch of a wheel.
 const POINTS_A_NOTCH: f32 = 50.0;
 
@@ -36,6 +39,8 @@ pub(crate) struct Mouse {
     /// A factor of the default speed of flight.
     speed: f64,
     count: u64,
+    /// Whether the last press of the left button was one on the picture, and the one before it.
+    pressed: [bool; 2],
 }
 
 /// The picture under the mouse.
@@ -74,7 +79,7 @@ enum Motion {
 
 impl Default for Mouse {
     fn default() -> Self {
-        Self { drag: None, speed: 1.0, count: 0 }
+        Self { drag: None, speed: 1.0, count: 0, pressed: [false; 2] }
     }
 }
 
@@ -120,6 +125,12 @@ impl Mouse {
         for event in ui.input(|input| input.events.clone()) {
             match event {
                 Event::PointerButton { pos, button, pressed: true, modifiers } => {
+                    if button == PointerButton::Primary {
+                        let here = response.contains_pointer()
+                            && !egui::Popup::is_any_open(ui.ctx())
+                            && response.rect.contains(pos);
+                        self.pressed = [here, self.pressed[0]];
+                    }
                     self.press(ui, response, state, (pos, button, modifiers), requests);
                 }
                 Event::PointerMoved(at) => {
@@ -138,7 +149,8 @@ impl Mouse {
             // It was released outside the window.
             self.drag = None;
         }
-        if response.double_clicked_by(PointerButton::Primary) {
+        // A click that put a notice away, and one on what lay under it, are no double click.
+        if response.double_clicked_by(PointerButton::Primary) && self.pressed == [true; 2] {
             picks.extend(response.interact_pointer_pos().map(|at| (at, Purpose::Frame)));
         }
         if response.contains_pointer() {
@@ -162,6 +174,10 @@ impl Mouse {
             return;
         }
         if comparison::grip(state, response.rect).is_some_and(|grip| grip.contains(from)) {
+            return;
+        }
+        // At the border of the picture a press is for a splitter.
+        if !response.rect.shrink(SPLITTER).contains(from) {
             return;
         }
         // A press that closes a menu does no more than that.

@@ -74,12 +74,12 @@ fn reasons<'a>(items: &[(ItemId, Change)], name: impl Fn(ItemId) -> Option<&'a s
     all.into_iter().filter_map(reason).collect::<Vec<_>>().join(", ")
 }
 
-/// Outlines an item, light with a dark border, so that it is visible on any background.
+/// Outlines an item with a dark border, so that it is visible on any background.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
-pub(crate) fn border_ui(ui: &Ui, rect: Rect, border: &Border) {
+pub(crate) fn border_ui(ui: &Ui, rect: Rect, border: &Border, color: Color32) {
     let pixel = rect.size() / vec2(border.size.width as f32, border.size.height as f32);
     let mut mesh = Mesh::default();
-    let colors = [Color32::from_black_alpha(160), Color32::WHITE];
+    let colors = [Color32::from_black_alpha(160), color];
     for (runs, color) in [&border.outer, &border.inner].into_iter().zip(colors) {
         for run in runs {
             let min = rect.min + vec2(run.x as f32, run.y as f32) * pixel;

@@ -9,12 +9,12 @@ use std::ops::RangeInclusive;
 
 use egui::{
     Color32, CursorIcon, Mesh, Popup, PopupCloseBehavior, Pos2, Rect, Response, Role, Sense, Shape,
-    Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+    Stroke, StrokeKind, TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::controls::focus_ring;
 use super::gestures;
-use super::number::Number;
+use super::number::{self, Number};
 use crate::app::theme;
 use crate::base::color::Color;
 use crate::edit::Gesture;
@@ -127,7 +127,40 @@ fn picker_ui(ui: &mut Ui, name: &str, color: Color) -> Option<(Color, Gesture)> 
         ui.data_mut(|data| data.insert_temp(id, [hsv.hue, hsv.saturation, hsv.value]));
         return Some((hsv.color(), gesture));
     }
-    numbers_ui(ui, name, color)
+    let typed = numbers_ui(ui, name, color);
+    typed.or_else(|| hex_ui(ui, name, color).map(|to| (to, Gesture::Whole)))
+}
+
+/// The colour as six hexadecimal digits, as pages of the web write it.
+fn hex_ui(ui: &mut Ui, name: &str, color: Color) -> Option<Color> {
+    let [r, g, b] = color.0;
+    let id = ui.scope_id().with("hexadecimal");
+    let field = id.with("field");
+    let kept = ui.data(|data| data.get_temp::<String>(id));
+    let edited = ui.memory(|memory| memory.has_focus(field));
+    let mut text = kept.filter(|_| edited).unwrap_or_else(|| format!("#{r:02x}{g:02x}{b:02x}"));
+    let edit = TextEdit::singleline(&mut text).id(field).desired_width(WIDTH - 8.0);
+    let response = ui.add(edit).accessible_name(format!("{name}: hexadecimal"));
+    let left = response.lost_focus() && !ui.input(|input| input.key_pressed(egui::Key::Escape));
+    let to = hexadecimal(&text);
+    if left && to.is_none() {
+        number::say_bad_text(ui.ctx(), &text);
+    }
+    ui.data_mut(|data| data.insert_temp(id, text));
+    response.on_hover_text("Six hexadecimal digits: red, green, blue");
+    to.filter(|to| left && *to != color)
+}
+
+/// `#7db8f7` or `7db8f7`; of three digits each counts twice.
+fn hexadecimal(text: &str) -> Option<Color> {
+    let digits = text.trim().trim_start_matches('#');
+    let digit = |c: char| c.to_digit(16).and_then(|digit| u8::try_from(digit).ok());
+    let digits: Vec<u8> = digits.chars().map(digit).collect::<Option<_>>()?;
+    match digits[..] {
+        [r, g, b] => Some(Color([r, g, b].map(|digit| digit * 17))),
+        [r, s, g, h, b, c] => Some(Color([r * 16 + s, g * 16 + h, b * 16 + c])),
+        _ => None,
+    }
 }
 
 fn pressed_at(response: &Response) -> Option<Pos2> {
@@ -217,6 +250,15 @@ const fn narrow(number: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hexadecimal_digits_are_colours() {
+        assert_eq!(hexadecimal("#7db8f7"), Some(Color([0x7d, 0xb8, 0xf7])));
+        assert_eq!(hexadecimal(" FA0 "), Some(Color([0xff, 0xaa, 0x00])));
+        for bad in ["", "#12", "#12345g", "1234567"] {
+            assert_eq!(hexadecimal(bad), None, "{bad}");
+        }
+    }
 
     #[test]
     fn every_colour_comes_back_from_its_hue_saturation_and_value() {

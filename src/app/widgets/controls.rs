@@ -7,11 +7,12 @@ use std::sync::Arc;
 
 use egui::collapsing_header::CollapsingState;
 use egui::{
-    Color32, Galley, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, TextWrapMode,
-    Ui, WidgetInfo, WidgetText, pos2, vec2,
+    Color32, Galley, Id, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle,
+    TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
 };
 
 use super::icons::Icon;
+use super::regions;
 use crate::app::theme;
 
 /// A line of text, truncated with dots if it does not fit.
@@ -32,6 +33,7 @@ pub(crate) fn put_text(ui: &Ui, rect: Rect, galley: Arc<Galley>, color: Color32)
 
 /// A part of a panel that can be folded away.
 pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl FnOnce(&mut Ui)) {
+    regions::begin(ui, ("section", ui.layer_id(), title));
     let id = Id::unique(("section", title));
     let mut folding = CollapsingState::load_with_default_open(ui.ctx(), id, open);
     let size = vec2(ui.available_width(), theme::ROW + 4.0);
@@ -54,6 +56,19 @@ pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
     folding.show_body_unindented(ui, |ui| {
         add(ui);
         ui.add_space(theme::GAP);
+    });
+    regions::follow_focus(ui);
+}
+
+/// Shows what needs `least` points of width; in less it is scrolled sideways.
+pub(crate) fn no_narrower(ui: &mut Ui, least: f32, add: impl FnOnce(&mut Ui)) {
+    if ui.available_width() >= least {
+        return add(ui);
+    }
+    let area = ScrollArea::horizontal().id_salt("sideways").auto_shrink(false);
+    area.show(ui, |ui| {
+        ui.set_width(least);
+        add(ui);
     });
 }
 
@@ -204,6 +219,10 @@ fn choices_in(ui: &mut Ui, choices: &[Choice<'_>], columns: usize) -> Option<usi
     ui.painter().rect_filled(all, 4.0, ui.visuals().widgets.inactive.bg_fill);
     let mut clicked = None;
     let mut at = all.left_top();
+    // One stop of Tab: the arrows go from choice to choice.
+    let ids: Vec<Id> = choices.iter().map(|choice| ui.scope_id().with(&choice.name)).collect();
+    let chosen = choices.iter().position(|choice| choice.on);
+    let stop = regions::stop(ui, &ids, chosen, columns);
     for (i, choice) in choices.iter().enumerate() {
         let in_row = columns.min(choices.len() - i / columns * columns);
         let rest = u16::try_from(in_row - i % columns).unwrap_or(1);
@@ -213,7 +232,8 @@ fn choices_in(ui: &mut Ui, choices: &[Choice<'_>], columns: usize) -> Option<usi
         if rest == 1 {
             at = pos2(all.left(), at.y + theme::ROW);
         }
-        if choice_ui(ui, rect, choice).clicked() && !choice.on {
+        let shown = choice_ui(ui, rect, choice, i == stop);
+        if shown.clicked() && !choice.on && choice.refused.is_none() {
             clicked = Some(i);
         }
     }
@@ -237,9 +257,11 @@ fn columns(ui: &Ui, choices: &[Choice<'_>]) -> usize {
 /// Beside the name of a choice, to each side.
 const ROOM: f32 = 4.0;
 
-fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>) -> Response {
+fn choice_ui(ui: &Ui, rect: Rect, choice: &Choice<'_>, is_stop: bool) -> Response {
     let enabled = choice.refused.is_none();
-    let sense = if enabled { Sense::click() } else { Sense::hover() };
+    // One that cannot be chosen can still be gone to, to hear why.
+    let sense = if enabled { Sense::click() } else { Sense::focusable_noninteractive() };
+    let sense = regions::sense(sense, is_stop);
     let response = ui.interact(rect, ui.scope_id().with(&choice.name), sense);
     let info = || WidgetInfo::selected(Role::RadioButton, enabled, choice.on, &choice.name);
     response.widget_info(info);

@@ -48,6 +48,12 @@ pub(crate) enum Icon {
     Tick,
     /// A refusal or an error.
     Warning,
+    /// The outline.
+    List,
+    /// The switches of the view.
+    Switches,
+    /// The properties.
+    Properties,
 }
 
 impl Icon {
@@ -100,6 +106,9 @@ impl Icon {
             Self::Right => icons::ICON_KEYBOARD_ARROW_RIGHT,
             Self::Tick => icons::ICON_CHECK,
             Self::Warning => icons::ICON_WARNING,
+            Self::List => icons::ICON_LIST,
+            Self::Switches => icons::ICON_TOGGLE_ON,
+            Self::Properties => icons::ICON_TUNE,
         }
     }
 }

@@ -7,5 +7,6 @@ pub mod gestures;
 pub(crate) mod icons;
 pub(crate) mod number;
 pub(crate) mod plate;
+pub(crate) mod regions;
 pub(crate) mod spheres;
 pub(crate) mod text;

@@ -7,7 +7,7 @@
 use std::ops::RangeInclusive;
 
 use egui::text::CCursorRange;
-use egui::{DragValue, RichText, TextEdit, TextStyle, Ui, vec2};
+use egui::{Context, DragValue, Id, RichText, TextEdit, TextStyle, Ui, vec2};
 use glam::DVec3;
 
 use super::expression;
@@ -101,6 +101,7 @@ impl<'a> Number<'a> {
         let mut to = value;
         // Asked when the text is made, for Tab gives the field the keyboard just before that.
         let (ctx, room) = (ui.ctx().clone(), self.room(width));
+        let parsed = ctx.clone();
         let edited = move || ctx.memory(|memory| memory.has_focus(id));
         let format =
             move |number: f64, _| if edited() { exact(number) } else { short_in(number, room) };
@@ -112,7 +113,13 @@ impl<'a> Number<'a> {
             .min_size(vec2(width, theme::ROW))
             .clip_text(true)
             .custom_formatter(format)
-            .custom_parser(expression::value);
+            .custom_parser(move |text| {
+                let value = expression::value(text);
+                if value.is_none() {
+                    say_bad_text(&parsed, text);
+                }
+                value
+            });
         if self.whole {
             field = field.max_decimals(0);
         }
@@ -145,6 +152,20 @@ impl<'a> Number<'a> {
         let changed = response.changed() && (response.dragged() || exact(to) != exact(value));
         changed.then(|| (to, gestures::of(&response)))
     }
+}
+
+fn bad_text() -> Id {
+    Id::unique("text that is no number")
+}
+
+/// Notes that a field could make nothing of its text.
+pub(super) fn say_bad_text(ctx: &Context, text: &str) {
+    ctx.data_mut(|data| data.insert_temp(bad_text(), text.to_owned()));
+}
+
+/// The text that was typed into a field since this was last asked, if it means nothing there.
+pub(crate) fn take_bad_text(ctx: &Context) -> Option<String> {
+    ctx.data_mut(|data| data.remove_temp(bad_text()))
 }
 
 /// Three fields like `field` in a row, one for each axis. Gives the vector that they should become.

@@ -129,7 +129,7 @@ impl PlacedTexture<'_> {
             simd,
             position,
             #[inline(always)]
-            || Real::max(self.to_neighbour(simd, of, at, 0), self.to_neighbour(simd, of, at, 1)),
+            || Real::max(self.squared_step(simd, of, at, 0), self.squared_step(simd, of, at, 1)),
         )
     }
 
@@ -177,7 +177,7 @@ impl PlacedTexture<'_> {
     ///
     ///   (U + dU) / (1/w + d) - U w = (dU - u d) w / (1 + w d)
     #[inline(always)]
-    fn to_neighbour<S: Simd>(
+    fn squared_step<S: Simd>(
         &self,
         simd: S,
         of: &impl Triangles<S>,
@@ -223,7 +223,7 @@ pub(crate) fn steps<T: AttributeNumber>(
 }
 
 /// The footprint of a pixel with these perspective-correct weights and this w: the differences of
-/// uv to its neighbours on the right and below. See [`PlacedTexture::to_neighbour`].
+/// uv to its neighbours on the right and below. See [`PlacedTexture::squared_step`].
 pub(crate) fn footprint([a, b, c]: Uvs, weights: DVec3, w: f64, steps: Steps) -> [[f64; 2]; 2] {
     steps.map(|[first, second, third]| {
         let by_w = first + second + third;

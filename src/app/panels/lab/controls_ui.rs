@@ -9,6 +9,7 @@ use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::theme;
 use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, row};
 use crate::app::widgets::number::Number;
+use crate::app::widgets::regions;
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
 use crate::lab::picture_source::Reference;
@@ -29,6 +30,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         if let Some(report) = state.lab.shown() {
             command_ui(ui, report);
         }
+        regions::follow_focus(ui);
     });
 }
 

@@ -7,6 +7,7 @@ use crate::app::actions::{LabRequest, Request};
 use crate::app::panels::view_switches::axis_ui;
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::regions;
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
@@ -46,6 +47,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.label(RichText::new(title).small().strong());
             ui.add(egui::Label::new(sentence).wrap());
         }
+        regions::follow_focus(ui);
     });
 }
 

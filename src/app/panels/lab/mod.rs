@@ -8,19 +8,26 @@ mod lessons;
 mod plots;
 mod table;
 
-use egui::{Layout, Rect, Ui, UiBuilder, vec2};
+use egui::{Id, Layout, Rect, Ui, UiBuilder, vec2};
 
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::controls::{Choice, choices};
+use crate::app::widgets::regions;
 use crate::app::{actions::LabRequest, state::laboratory::Side, theme};
 
 /// The width of the controls.
 const ASKED: f32 = 264.0;
 
+/// In less width than this, one part is shown at a time.
+const WIDE: f32 = 840.0;
+
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let whole = ui.available_rect_before_wrap();
+    if whole.width() < WIDE {
+        return one_ui(ui, state, requests);
+    }
     let all = whole.shrink2(vec2(0.0, 2.0));
     let gap = f32::from(theme::MARGIN);
     let asked = all.with_max_x(all.left() + ASKED);
@@ -28,10 +35,50 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let middle = rest.with_max_x(rest.left() + (rest.width() * 0.47).round());
     let right = rest.with_min_x(middle.right() + gap);
     within(ui, asked, |ui| controls_ui::show(ui, state, requests));
-    within(ui, middle, |ui| plots::show(ui, state, requests));
-    within(ui, right, |ui| right_ui(ui, state, requests));
-    // All of it, else the panel would shrink from frame to frame.
-    ui.allocate_rect(whole, egui::Sense::hover());
+    within(ui, middle, |ui| {
+        regions::begin(ui, "chart");
+        plots::show(ui, state, requests);
+    });
+    within(ui, right, |ui| {
+        regions::begin(ui, "table");
+        right_ui(ui, state, requests);
+    });
+}
+
+/// One part at a time, for there is no room beside it.
+fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let id = Id::unique("part of the laboratory");
+    let mut part: usize = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    if part >= 2 {
+        // What is asked for elsewhere is shown.
+        part = if state.lab.side == Side::Table { 2 } else { 3 };
+    }
+    let all = [
+        ("Measure", "What to measure, and how to compare"),
+        ("Chart", "Time against error"),
+        ("Table", "Every choice with its figures"),
+        ("Lessons", "What each axis teaches"),
+    ];
+    let shown: Vec<Choice<'_>> = all
+        .iter()
+        .enumerate()
+        .map(|(i, (label, hint))| Choice::new("Laboratory", label, i == part, hint))
+        .collect();
+    ui.horizontal(|ui| {
+        ui.set_width(ui.available_width() - f32::from(theme::MARGIN));
+        if let Some(clicked) = choices(ui, &shown) {
+            part = clicked;
+            let side = if clicked == 3 { Side::Lessons } else { Side::Table };
+            requests.push(Request::Lab(LabRequest::Side(side)));
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, part));
+    match part {
+        0 => controls_ui::show(ui, state, requests),
+        1 => within(ui, ui.available_rect_before_wrap(), |ui| plots::show(ui, state, requests)),
+        2 => table::show(ui, state, requests),
+        _ => lessons::show(ui, state, requests),
+    }
 }
 
 fn within(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {

@@ -1,14 +1,15 @@
 //! The plots of time against error: an overview, or the panel of an axis. Clicking a mark draws the
 //! picture with its settings.
 
-use egui::{Color32, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, Visuals};
+use egui::{Color32, Id, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, Visuals};
 use egui::{WidgetInfo, pos2, vec2};
 use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls;
+use crate::app::widgets::controls::{self, Choice, choices_in_rows};
+use crate::app::widgets::regions;
 use crate::lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 
 /// The least height of a plot with its title: 420 points and a line.
@@ -65,39 +66,35 @@ fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if state.lab.suite.is_empty() {
         return;
     }
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
-        let scenes = state.lab.suite.iter().map(|report| report.scene.as_str()).enumerate();
-        let scenes = scenes.map(|(i, name)| (Some(i), name.trim_start_matches("suite scene ")));
-        for (place, name) in std::iter::once((None, "This scene")).chain(scenes) {
-            let chosen = state.lab.shown_suite == place;
-            if chip_ui(ui, "Measured", name, chosen).clicked() {
-                requests.push(Request::Lab(LabRequest::ShowSuite(place)));
-            }
-        }
-    });
-}
-
-/// A small button of a row; one of them is chosen.
-fn chip_ui(ui: &mut Ui, row: &str, label: &str, chosen: bool) -> Response {
-    let response = ui.add(egui::Button::selectable(chosen, RichText::new(label).small()).small());
-    let name = format!("{row}: {label}");
-    response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, chosen, &name));
-    response
+    let scenes = state.lab.suite.iter().map(|report| report.scene.as_str()).enumerate();
+    let scenes = scenes.map(|(i, name)| (Some(i), name.trim_start_matches("suite scene ")));
+    let all: Vec<_> = std::iter::once((None, "This scene")).chain(scenes).collect();
+    let chips: Vec<Choice<'_>> = all
+        .iter()
+        .map(|(place, name)| {
+            let chosen = state.lab.shown_suite == *place;
+            Choice::new("Measured", name, chosen, "The scene whose figures are shown")
+        })
+        .collect();
+    if let Some(clicked) = choices_in_rows(ui, &chips) {
+        requests.push(Request::Lab(LabRequest::ShowSuite(all[clicked].0)));
+    }
 }
 
 /// The choice of a panel.
 fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Vec<Request>) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
-        for panel in std::iter::once(&panels.overview).chain(&panels.axes) {
+    let all: Vec<&Panel> = std::iter::once(&panels.overview).chain(&panels.axes).collect();
+    let chips: Vec<Choice<'_>> = all
+        .iter()
+        .map(|panel| {
             let label = panel.axis.map_or("Overview", |axis| axis.label);
-            if chip_ui(ui, "Plot", label, panel.title == shown.title).clicked() {
-                let key = panel.axis.map(|axis| axis.key);
-                requests.push(Request::Lab(LabRequest::Panel(key)));
-            }
-        }
-    });
+            Choice::new("Plot", label, panel.title == shown.title, "Time against error")
+        })
+        .collect();
+    if let Some(clicked) = choices_in_rows(ui, &chips) {
+        let key = all[clicked].axis.map(|axis| axis.key);
+        requests.push(Request::Lab(LabRequest::Panel(key)));
+    }
 }
 
 fn panel_ui(
@@ -114,9 +111,16 @@ fn panel_ui(
     let at: Vec<Pos2> = panel.marks.iter().map(|mark| position(mark, &transform)).collect();
     let line = Stroke::new(1.5, theme::accent(ui.visuals()));
     let _ = ui.painter().with_clip_rect(*transform.frame()).line(at.clone(), line);
-    for (mark, at) in panel.marks.iter().zip(&at) {
-        let is_now = report.findings.points[mark.point].settings == state.settings;
-        if mark_ui(ui, *at, mark, is_now, report).clicked() {
+    let is_now = |mark: &PanelMark| report.findings.points[mark.point].settings == state.settings;
+    // One stop of Tab: the arrows go from mark to mark.
+    let ids: Vec<Id> =
+        panel.marks.iter().map(|mark| ui.scope_id().with(("mark", mark.point))).collect();
+    let stop = regions::stop(ui, &ids, panel.marks.iter().position(is_now), 1);
+    for (i, (mark, at)) in panel.marks.iter().zip(&at).enumerate() {
+        let rect = Rect::from_center_size(*at, vec2(14.0, 14.0));
+        let sense = regions::sense(Sense::click(), i == stop);
+        let response = ui.interact(rect, ids[i], sense);
+        if mark_ui(ui, response, mark, is_now(mark), report).clicked() {
             requests.push(Request::Settings(report.findings.points[mark.point].settings));
         }
     }
@@ -202,10 +206,14 @@ fn names_ui(ui: &Ui, panel: &Panel, at: &[Pos2], frame: &Rect) {
     }
 }
 
-fn mark_ui(ui: &Ui, at: Pos2, mark: &PanelMark, is_now: bool, report: &Report) -> Response {
-    let rect = Rect::from_center_size(at, vec2(14.0, 14.0));
-    let id = ui.scope_id().with(("mark", mark.point));
-    let response = ui.interact(rect, id, Sense::click());
+fn mark_ui(
+    ui: &Ui,
+    response: Response,
+    mark: &PanelMark,
+    is_now: bool,
+    report: &Report,
+) -> Response {
+    let (rect, at) = (response.rect, response.rect.center());
     let name = format!("Draw with {}", report.findings.points[mark.point].name);
     response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, is_now, &name));
     let visuals = ui.visuals();

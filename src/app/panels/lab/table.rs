@@ -1,11 +1,12 @@
 //! The table of the laboratory: every choice with its figures; a click applies it.
 
-use egui::{Color32, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
+use egui::{Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{focus_ring, put_text, text};
+use crate::app::widgets::controls::{focus_ring, no_narrower, put_text, text};
+use crate::app::widgets::regions;
 use crate::lab::error::{Error, Region};
 use crate::lab::report::{Report, brief, heading};
 use crate::lab::sweep::{Measured, Row, Verdict};
@@ -17,6 +18,9 @@ struct Column {
     share: f32,
     value: fn(&Measured, &Error, Region) -> String,
 }
+
+/// In less width the table is scrolled sideways.
+const LEAST: f32 = 540.0;
 
 /// What of the width the names have.
 const NAMES: f32 = 0.30;
@@ -75,23 +79,39 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         ui.weak("Nothing is measured yet.");
         return;
     };
+    no_narrower(ui, LEAST, |ui| rows_ui(ui, state, report, requests));
+}
+
+fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Request>) {
     head_ui(ui);
     let area = ScrollArea::vertical().id_salt("table of the laboratory").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut last = String::new();
         let front = report.front();
-        for row in report.rows() {
+        let rows: Vec<&Row> = report.rows();
+        let ids: Vec<Id> = (0..rows.len()).map(|i| ui.scope_id().with(("row", i))).collect();
+        let is_now = |row: &&Row| report.findings.points[row.point].settings == state.settings;
+        let stop = regions::stop(ui, &ids, rows.iter().position(is_now), 1);
+        for (i, row) in rows.into_iter().enumerate() {
             let heading = heading(row);
             if heading != last {
                 ui.add_space(theme::GAP);
                 ui.label(RichText::new(&heading).small().strong());
                 last = heading;
             }
-            row_ui(ui, state, report, row, front.contains(&row.point), requests);
+            let place = Place { id: ids[i], is_stop: i == stop };
+            row_ui(ui, state, report, row, (place, front.contains(&row.point)), requests);
         }
         foot_ui(ui, report);
+        regions::follow_focus(ui);
     });
+}
+
+/// The place of a row among the others, for the keyboard.
+struct Place {
+    id: Id,
+    is_stop: bool,
 }
 
 /// The place of a column in a row.
@@ -120,13 +140,14 @@ fn row_ui(
     state: &State,
     report: &Report,
     row: &Row,
-    on_front: bool,
+    (place, on_front): (Place, bool),
     requests: &mut Vec<Request>,
 ) {
     let (point, error) = (&report.findings.points[row.point], report.findings.error_of(row));
     let now = point.settings == state.settings;
     let size = vec2(ui.available_width(), theme::ROW - 3.0);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    let response = ui.interact(rect, place.id, regions::sense(Sense::click(), place.is_stop));
     let name = format!("{}: {}", heading(row), row.name);
     response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, now, &name));
     let visuals = ui.visuals();

@@ -8,7 +8,9 @@ mod row;
 
 use std::collections::BTreeSet;
 
-use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
 
 use crate::app::actions::{Action, Request};
 use crate::app::input::buttons::action_icon;
@@ -16,6 +18,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_button};
 use crate::app::widgets::icons::Icon;
+use crate::app::widgets::regions;
 use crate::scene::{ItemId, ObjectId, Subject};
 use order::{place, reorder};
 
@@ -32,10 +35,18 @@ enum Line {
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    egui::Panel::bottom("outline tools")
-        .show_separator_line(false)
-        .frame(egui::Frame::NONE.inner_margin(theme::SCROLL_MARGIN))
-        .show(ui, |ui| tools_ui(ui, state, requests));
+    let all = ui.available_rect_before_wrap();
+    let tools = all.with_min_y((all.bottom() - theme::ROW).max(all.top()));
+    let tools = tools.with_max_x(all.right() - f32::from(theme::MARGIN));
+    let list = all.with_max_y((tools.top() - theme::GAP).max(all.top()));
+    let mut child = ui.new_child(UiBuilder::new().id_salt("list").max_rect(list));
+    child.set_clip_rect(list.intersect(ui.clip_rect()));
+    list_ui(&mut child, state, requests);
+    let mut child = ui.new_child(UiBuilder::new().id_salt("tools").max_rect(tools));
+    tools_ui(&mut child, state, requests);
+}
+
+fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if state.renaming.is_none() {
         row::forget_new_name(ui);
     }
@@ -50,17 +61,33 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         let (all, _) = ui.allocate_exact_size(size, Sense::hover());
         // Other lines come to the same places when the list is scrolled or unfolded.
         ui.ctx().allow_widget_id_changes_in(all);
+        let items: Vec<ItemId> = lines.iter().filter_map(|line| line.item()).collect();
+        let ids: Vec<Id> = items.iter().map(|item| row::id(ui, *item)).collect();
+        let chosen = items.iter().position(|item| state.selected() == Some(*item));
+        let chosen = row::busy(ui, &items).or(chosen);
+        let stop = items.get(regions::stop(ui, &ids, chosen, 1)).copied();
         for (i, line) in (0..count).zip(&lines) {
             let top = all.top() + f32::from(i) * theme::ROW;
             let rect = Rect::from_min_size(pos2(all.left(), top), vec2(all.width(), theme::ROW));
             follow_selection(ui, state, *line, rect);
             let (y, bottom) = (rect.top() - all.top(), rect.bottom() - all.top());
-            if bottom >= seen.top() && y <= seen.bottom() {
-                line_ui(ui, state, requests, *line, rect, &mut unfolded);
+            let is_stop = stop.is_some() && line.item() == stop;
+            if is_stop || (bottom >= seen.top() && y <= seen.bottom()) {
+                line_ui(ui, state, requests, *line, rect, (&mut unfolded, is_stop));
             }
         }
+        regions::follow_focus(ui);
     });
     ui.data_mut(|data| data.insert_temp(id, unfolded));
+}
+
+impl Line {
+    fn item(&self) -> Option<ItemId> {
+        match self {
+            Self::Item(item) => Some(*item),
+            Self::Header(_) | Self::Part(..) => None,
+        }
+    }
 }
 
 /// The lines, from the top.
@@ -100,12 +127,13 @@ fn line_ui(
     requests: &mut Vec<Request>,
     line: Line,
     rect: Rect,
-    unfolded: &mut BTreeSet<ObjectId>,
+    (unfolded, is_stop): (&mut BTreeSet<ObjectId>, bool),
 ) {
     match line {
         Line::Header(subject) => header_ui(ui, state, requests, subject, rect),
         Line::Item(item) => {
-            if row::item_ui(ui, state, requests, item, rect, unfolded_of(unfolded, item))
+            let row = row::Row { item, rect, is_stop, unfolded: unfolded_of(unfolded, item) };
+            if row::item_ui(ui, state, requests, &row)
                 && let ItemId::Object(id) = item
                 && !unfolded.remove(&id)
             {
@@ -157,7 +185,7 @@ fn header_ui(
         requests.push(action.into());
     }
     let button = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
-    ui.scope_builder(egui::UiBuilder::new().max_rect(button), |ui| {
+    ui.scope_builder(UiBuilder::new().max_rect(button), |ui| {
         add_ui(ui, state, requests, subject);
     });
 }
@@ -188,7 +216,6 @@ fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subj
 
 /// What can be done with the selected item, at the foot of the list.
 fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    ui.add_space(theme::GAP);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         move_ui(ui, state, requests, Icon::Up, "Move up the list");

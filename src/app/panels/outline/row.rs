@@ -1,8 +1,8 @@
 //! One line of the outline: an item, or a part of one.
 
 use egui::{
-    Color32, Id, Key, Popup, Pos2, Rect, Response, Role, Sense, StrokeKind, TextEdit, TextStyle,
-    Ui, WidgetInfo, pos2, text::CCursorRange, vec2,
+    Color32, Id, Key, Popup, Pos2, Rect, Response, Role, Sense, TextEdit, TextStyle, Ui,
+    WidgetInfo, pos2, text::CCursorRange, vec2,
 };
 
 use super::order::take_dragged;
@@ -11,23 +11,42 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_at};
 use crate::app::widgets::icons::Icon;
+use crate::app::widgets::regions;
 use crate::edit::{Gesture, items};
 use crate::scene::{ItemId, ObjectId, Scene};
 
 /// Where icons of items begin, from the left end of the line.
 const INDENT: f32 = 20.0;
 
-/// Shows an item in `rect`. Says whether its parts are to be folded or unfolded.
-pub(crate) fn item_ui(
-    ui: &mut Ui,
-    state: &State,
-    requests: &mut Vec<Request>,
-    item: ItemId,
-    rect: Rect,
-    unfolded: bool,
-) -> bool {
+/// One line with an item.
+pub(crate) struct Row {
+    pub(crate) item: ItemId,
+    pub(crate) rect: Rect,
+    /// Whether Tab stops at it, and at what stands in it.
+    pub(crate) is_stop: bool,
+    /// Whether its parts are listed.
+    pub(crate) unfolded: bool,
+}
+
+/// The id of an item's line.
+pub(crate) fn id(ui: &Ui, item: ItemId) -> Id {
+    ui.scope_id().with(("item", item))
+}
+
+/// The place of the item among `items` in whose line a button has the keyboard.
+pub(crate) fn busy(ui: &Ui, items: &[ItemId]) -> Option<usize> {
+    let focused = ui.memory(egui::Memory::focused)?;
+    let scope = ui.scope_id();
+    let buttons = |item: &ItemId| [scope.with(("shown", *item)), scope.with(("parts", *item))];
+    items.iter().position(|item| buttons(item).contains(&focused))
+}
+
+/// Shows an item. Says whether its parts are to be folded or unfolded.
+pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, row: &Row) -> bool {
+    let Row { item, rect, is_stop, unfolded } = *row;
     let name = state.name(item).unwrap_or_default();
-    let response = ui.interact(rect, ui.scope_id().with(("item", item)), Sense::click_and_drag());
+    let response =
+        ui.interact(rect, id(ui, item), regions::sense(Sense::click_and_drag(), is_stop));
     let is_subject = state.selected() == Some(item);
     response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, true, is_subject, name));
     ground(ui, state, item, rect, &response);
@@ -37,7 +56,7 @@ pub(crate) fn item_ui(
     let color = ground_color(ui, is_subject, shown);
     let icon = Rect::from_min_size(rect.min + vec2(INDENT, 0.0), vec2(16.0, rect.height()));
     Icon::of(&state.scene, item).paint(ui.painter(), icon, 13.0, color);
-    let mut right = shown_ui(ui, state, requests, item, rect, shown);
+    let mut right = shown_ui(ui, state, requests, row, shown);
     if let ItemId::Light(id) = item
         && let Some(light) = state.scene.lights.get(id)
     {
@@ -52,7 +71,7 @@ pub(crate) fn item_ui(
     }
     controls::focus_ring(ui, rect, &response);
     clicks(state, requests, item, &response);
-    fold_ui(ui, state, item, rect, unfolded, color)
+    fold_ui(ui, state, row, unfolded, color)
 }
 
 /// The line's ground: filled for the item that the keys act on, marked at the left for the selected
@@ -95,14 +114,8 @@ fn is_shown(scene: &Scene, item: ItemId) -> bool {
 }
 
 /// The eye, or the switch of a light. Gives where its left end is.
-fn shown_ui(
-    ui: &Ui,
-    state: &State,
-    requests: &mut Vec<Request>,
-    item: ItemId,
-    rect: Rect,
-    shown: bool,
-) -> f32 {
+fn shown_ui(ui: &Ui, state: &State, requests: &mut Vec<Request>, row: &Row, shown: bool) -> f32 {
+    let Row { item, rect, is_stop, .. } = *row;
     let (icon, verb) = match (item, shown) {
         (ItemId::Light(_), true) => (Icon::On, "Switch off"),
         (ItemId::Light(_), false) => (Icon::Off, "Switch on"),
@@ -111,7 +124,8 @@ fn shown_ui(
     };
     let label = format!("{verb} {}", state.name(item).unwrap_or_default());
     let rect = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
-    let response = ui.interact(rect, ui.scope_id().with(("shown", item)), Sense::click());
+    let sense = regions::sense(Sense::click(), is_stop);
+    let response = ui.interact(rect, ui.scope_id().with(("shown", item)), sense);
     icon_at(ui, rect, &response, icon, &label, true);
     let key = match item {
         ItemId::Light(id) => state.scene.lights.get(id).map(|light| light.slot),
@@ -135,9 +149,9 @@ fn light_ui(ui: &Ui, color: [u8; 4], slot: u32, at: Pos2) -> f32 {
     let left = controls::key_cap(ui, at, &slot.to_string(), true) - theme::GAP;
     let rect = Rect::from_center_size(pos2(left - 6.0, at.y), vec2(12.0, 12.0));
     let [r, g, b, _] = color;
-    ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
+    // A disk: a white square looks like a box to be ticked.
     let line = egui::Stroke::new(1.0, ui.visuals().weak_text_color());
-    ui.painter().rect_stroke(rect, 2.0, line, StrokeKind::Inside);
+    ui.painter().circle(rect.center(), 5.5, Color32::from_rgb(r, g, b), line);
     rect.left()
 }
 
@@ -186,8 +200,11 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
         if !matches!(item, ItemId::Light(_)) {
             actions.push(Action::ToggleVisible);
         }
+        if matches!(item, ItemId::Light(_)) {
+            actions.extend([Action::AimAtSelection, Action::AimByClick]);
+        }
         if matches!(item, ItemId::Object(_)) {
-            actions.extend([Action::FrameSelection, Action::Split]);
+            actions.extend([Action::FrameSelection, Action::WhyUnseen, Action::Split]);
         }
         for action in actions {
             requests.extend(action.menu_item(ui, state).map(Request::from));
@@ -196,21 +213,16 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
 }
 
 /// The arrow before an object of several parts. Says whether it was clicked.
-fn fold_ui(
-    ui: &Ui,
-    state: &State,
-    item: ItemId,
-    rect: Rect,
-    unfolded: bool,
-    color: Color32,
-) -> bool {
+fn fold_ui(ui: &Ui, state: &State, row: &Row, unfolded: bool, color: Color32) -> bool {
+    let Row { item, rect, is_stop, .. } = *row;
     let ItemId::Object(id) = item else { return false };
     let Some(object) = state.scene.objects.get(id) else { return false };
     if object.model.mesh.parts().len() < 2 {
         return false;
     }
     let rect = Rect::from_min_size(rect.min + vec2(4.0, 0.0), vec2(15.0, rect.height()));
-    let response = ui.interact(rect, ui.scope_id().with(("parts", item)), Sense::click());
+    let sense = regions::sense(Sense::click(), is_stop);
+    let response = ui.interact(rect, ui.scope_id().with(("parts", item)), sense);
     let label = format!("Parts of {}", object.name);
     response.widget_info(|| WidgetInfo::selected(Role::DisclosureTriangle, true, unfolded, &label));
     let icon = if unfolded { Icon::Down } else { Icon::Right };

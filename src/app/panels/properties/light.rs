@@ -4,7 +4,7 @@ use egui::{ComboBox, Slider, Ui};
 use glam::DVec3;
 
 use super::{number_row, steps_ui};
-use crate::app::actions::{Request, change};
+use crate::app::actions::{Action, Request, change};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
@@ -31,7 +31,10 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
     match &light.kind {
         LightKind::Ambient => {}
         LightKind::Sun { direction } => {
-            section(ui, "Direction", true, |ui| shown.direction_ui(ui, requests, *direction.now()));
+            section(ui, "Direction", true, |ui| {
+                shown.direction_ui(ui, requests, *direction.now());
+                aim_ui(ui, state, requests);
+            });
         }
         LightKind::Bulb { position, orbit } => {
             section(ui, "Place", true, |ui| {
@@ -47,6 +50,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
                     shown.position_ui(ui, requests, aim.now().position);
                     shown.direction_ui(ui, requests, aim.now().direction);
                 }
+                aim_ui(ui, state, requests);
             });
         }
     }
@@ -56,6 +60,14 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
     if !matches!(light.kind, LightKind::Ambient) {
         steps_ui(ui, state, requests, false);
     }
+}
+
+/// What turns the light towards something.
+fn aim_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    ui.horizontal_wrapped(|ui| {
+        requests.extend(Action::AimAtSelection.button(ui, state).map(Request::from));
+        requests.extend(Action::AimByClick.switch(ui, state).map(Request::from));
+    });
 }
 
 impl Shown<'_> {

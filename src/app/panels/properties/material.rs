@@ -1,12 +1,13 @@
 //! The choice of a material: the nineteen presets as spheres, the file's, or one's own.
 
-use egui::{Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use egui::{Id, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use super::number_row;
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{self, row};
 use crate::app::widgets::number::Number;
+use crate::app::widgets::regions;
 use crate::app::widgets::spheres::{self, Sphere};
 use crate::base::color::Color;
 use crate::edit::Gesture;
@@ -34,11 +35,17 @@ pub(crate) fn choice_ui(
         ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
         let gaps = f32::from(COLUMNS - 1) * theme::GAP;
         let side = ((ui.available_width() - gaps) / f32::from(COLUMNS)).floor();
-        for cells in cells.chunks(usize::from(COLUMNS)) {
+        let columns = usize::from(COLUMNS);
+        let ids: Vec<Id> = (0..cells.len()).map(|i| ui.scope_id().with(("material", i))).collect();
+        let on = cells.iter().position(|(to, ..)| same_kind(choice, to));
+        let stop = regions::stop(ui, &ids, on, columns);
+        for (row, cells) in cells.chunks(columns).enumerate() {
             ui.horizontal(|ui| {
-                for (to, sphere, name) in cells {
-                    let on = same_kind(choice, to);
-                    if cell_ui(ui, side, *sphere, name, on) && !on {
+                for (column, (to, sphere, name)) in cells.iter().enumerate() {
+                    let i = row * columns + column;
+                    let cell = Cell { id: ids[i], is_stop: i == stop, side };
+                    let on = on == Some(i);
+                    if cell.ui(ui, *sphere, name, on) && !on {
                         chosen = Some((to.clone(), Gesture::Whole));
                     }
                 }
@@ -73,35 +80,46 @@ fn same_kind(a: &MaterialChoice, b: &MaterialChoice) -> bool {
     }
 }
 
-fn cell_ui(ui: &mut Ui, side: f32, sphere: Sphere, name: &str, on: bool) -> bool {
-    let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
-    let label = format!("Material: {name}");
-    response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, on, &label));
-    let visuals = ui.visuals();
-    if on {
-        ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill);
-        let ring = Stroke::new(1.5, theme::accent(visuals));
-        ui.painter().rect_stroke(rect, 4.0, ring, StrokeKind::Inside);
-    } else if response.hovered() {
-        ui.painter().rect_filled(rect, 4.0, visuals.widgets.hovered.bg_fill);
+/// The place of a sphere among the others.
+struct Cell {
+    id: Id,
+    is_stop: bool,
+    side: f32,
+}
+
+impl Cell {
+    fn ui(&self, ui: &mut Ui, sphere: Sphere, name: &str, on: bool) -> bool {
+        let size = vec2(self.side, self.side);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        let response = ui.interact(rect, self.id, regions::sense(Sense::click(), self.is_stop));
+        let label = format!("Material: {name}");
+        response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, on, &label));
+        let visuals = ui.visuals();
+        if on {
+            ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill);
+            let ring = Stroke::new(1.5, theme::accent(visuals));
+            ui.painter().rect_stroke(rect, 4.0, ring, StrokeKind::Inside);
+        } else if response.hovered() {
+            ui.painter().rect_filled(rect, 4.0, visuals.widgets.hovered.bg_fill);
+        }
+        spheres::paint(ui, rect.shrink(3.0), sphere);
+        // Materials that are not presets carry a letter.
+        let letter = match sphere {
+            Sphere::Preset(_) => "",
+            Sphere::File(_) => "file",
+            Sphere::Own(_) => "own",
+        };
+        if !letter.is_empty() {
+            corner_text(ui, rect, letter);
+        }
+        controls::focus_ring(ui, rect, &response);
+        let hint = match sphere {
+            Sphere::Preset(_) => name.to_owned(),
+            Sphere::File(_) => "What the model's file says, part by part".to_owned(),
+            Sphere::Own(_) => "Your own: begins as what is chosen now".to_owned(),
+        };
+        response.on_hover_text(hint).clicked()
     }
-    spheres::paint(ui, rect.shrink(3.0), sphere);
-    // Materials that are not presets carry a letter.
-    let letter = match sphere {
-        Sphere::Preset(_) => "",
-        Sphere::File(_) => "F",
-        Sphere::Own(_) => "own",
-    };
-    if !letter.is_empty() {
-        corner_text(ui, rect, letter);
-    }
-    controls::focus_ring(ui, rect, &response);
-    let hint = match sphere {
-        Sphere::Preset(_) => name.to_owned(),
-        Sphere::File(_) => "What the model's file says, part by part".to_owned(),
-        Sphere::Own(_) => "Your own: begins as what is chosen now".to_owned(),
-    };
-    response.on_hover_text(hint).clicked()
 }
 
 fn corner_text(ui: &Ui, rect: Rect, letter: &str) {

@@ -1,0 +1,234 @@
+//! Finds actions, items and settings by what people type.
+//!
+//! Every word of a query has to match one of a thing's texts. The best match counts: a label that
+//! begins with the word, one of the other words for it, a label that contains the word's letters in
+//! their order (`nucleo-matcher`, as the Helix editor's picker), and last a hint that contains it.
+
+use nucleo_matcher::pattern::{Atom, AtomKind, CaseMatching, Normalization};
+use nucleo_matcher::{Config, Matcher, Utf32Str};
+
+use super::table::Action;
+
+/// The texts by which something is found.
+#[derive(Clone, Copy, Debug)]
+pub struct Texts<'a> {
+    /// As it is called.
+    pub label: &'a str,
+    /// Other words for it, with blanks between them.
+    pub words: &'a str,
+    /// What it does, in a sentence.
+    pub hint: &'a str,
+}
+
+/// A query, and the memory that matching takes.
+pub struct Search {
+    words: Vec<(String, Atom)>,
+    matcher: Matcher,
+    letters: Vec<char>,
+}
+
+impl std::fmt::Debug for Search {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Search").field("words", &self.words).finish_non_exhaustive()
+    }
+}
+
+/// Better than any number of letters in their order.
+const LABEL: u32 = 3000;
+const WORD: u32 = 2500;
+const BEGINS_WORD: u32 = 2000;
+const FUZZY: u32 = 1000;
+const HINT: u32 = 500;
+
+/// A match by scattered letters alone has at least this score a letter.
+const CLOSE: u32 = 18;
+
+impl Search {
+    /// A search for `query`.
+    #[must_use]
+    pub fn new(query: &str) -> Self {
+        let atom = |word: &str| {
+            let (case, normalize) = (CaseMatching::Ignore, Normalization::Smart);
+            Atom::new(word, case, normalize, AtomKind::Fuzzy, false)
+        };
+        let words = query.split_whitespace().map(|word| (word.to_lowercase(), atom(word)));
+        let words = words.collect();
+        Self { words, matcher: Matcher::new(Config::DEFAULT), letters: Vec::new() }
+    }
+
+    /// Whether nothing is asked for: everything matches.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.words.is_empty()
+    }
+
+    /// How well something matches; `None` if it does not.
+    pub fn score(&mut self, texts: Texts<'_>) -> Option<u32> {
+        let label = texts.label.to_lowercase();
+        let hint = texts.hint.to_lowercase();
+        let mut sum = 0;
+        for (word, atom) in &self.words {
+            let haystack = Utf32Str::new(texts.label, &mut self.letters);
+            let fuzzy = atom.score(haystack, &mut self.matcher).map(u32::from);
+            let letters = u32::try_from(word.chars().count()).unwrap_or(u32::MAX);
+            let fuzzy = fuzzy.filter(|score| *score >= CLOSE.saturating_mul(letters));
+            let mut others = texts.words.split_whitespace();
+            let best = if label.starts_with(word.as_str()) {
+                // The shorter of two labels is closer to what was typed.
+                LABEL + 200_u32.saturating_sub(u32::try_from(label.len()).unwrap_or(200))
+            } else if others.clone().any(|other| other == word) {
+                WORD
+            } else if label.split([' ', '(', ':']).any(|part| part.starts_with(word.as_str())) {
+                BEGINS_WORD + 300
+            } else if others.any(|other| letters > 1 && other.starts_with(word.as_str())) {
+                BEGINS_WORD
+            } else if let Some(score) = fuzzy {
+                FUZZY + score.min(900)
+            } else if letters > 2 && hint.contains(word.as_str()) {
+                HINT
+            } else {
+                return None;
+            };
+            sum += best;
+        }
+        Some(sum)
+    }
+}
+
+impl Action {
+    /// How well the action matches a search: by one of its keys as it is written, by its label, or
+    /// by other words for it.
+    pub fn score(self, search: &mut Search, query: &str) -> Option<u32> {
+        let info = self.info();
+        let query = query.trim();
+        let mut keys = info.keys.iter().flat_map(|key| key.names());
+        let is_key = |key: String| match query.chars().count() {
+            0 => false,
+            1 => key == query,
+            _ => key.eq_ignore_ascii_case(query),
+        };
+        if keys.any(is_key) {
+            return Some(10 * LABEL);
+        }
+        let hint = &format!("{} {}", info.hint, info.group.label());
+        search.score(Texts { label: info.label, words: info.words, hint })
+    }
+}
+
+/// The actions that match, best first; in the order of the table for an empty query.
+#[must_use]
+pub fn actions_for(query: &str) -> Vec<Action> {
+    let mut search = Search::new(query);
+    let mut found: Vec<(u32, Action)> = Action::ALL
+        .iter()
+        .filter_map(|action| Some((action.score(&mut search, query)?, *action)))
+        .collect();
+    found.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
+    found.into_iter().map(|(_, action)| action).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The words that people use, and the action that they mean.
+    const WORDS: [(&str, Action); 62] = [
+        ("flat", Action::ToggleLightNormals),
+        ("smooth", Action::ToggleLightNormals),
+        ("faceted", Action::ToggleLightNormals),
+        ("wireframe", Action::ToggleEdges),
+        ("wire", Action::ToggleEdges),
+        ("wirefrm", Action::ToggleEdges),
+        ("screenshot", Action::SavePicture),
+        ("render", Action::SavePicture),
+        ("png", Action::SavePicture),
+        ("export image", Action::SavePicture),
+        ("zoom", Action::FrameSelection),
+        ("fit", Action::FrameAll),
+        ("home", Action::FrameAll),
+        ("focus", Action::FrameSelection),
+        ("orbit", Action::ToggleFrame),
+        ("fly", Action::ToggleFrame),
+        ("local", Action::ToggleFrame),
+        ("theme", Action::ThemeDark),
+        ("dark mode", Action::ThemeDark),
+        ("night", Action::ThemeDark),
+        ("white", Action::ThemeLight),
+        ("shortcuts", Action::CheatSheet),
+        ("hotkeys", Action::CheatSheet),
+        ("help", Action::CheatSheet),
+        ("import", Action::Load),
+        ("load obj", Action::Load),
+        ("insert", Action::Load),
+        ("exit", Action::Quit),
+        ("close", Action::Quit),
+        ("copy", Action::Duplicate),
+        ("clone", Action::Duplicate),
+        ("remove", Action::Delete),
+        ("erase", Action::Delete),
+        ("hide", Action::ToggleVisible),
+        ("show", Action::ToggleVisible),
+        ("solo", Action::ToggleOthers),
+        ("isolate", Action::ToggleOthers),
+        ("translate", Action::Translate),
+        ("grab", Action::Translate),
+        ("turn", Action::Rotate),
+        ("resize", Action::Scale),
+        ("ortho", Action::ToggleProjection),
+        ("parallel", Action::ToggleProjection),
+        ("perspective", Action::ToggleProjection),
+        ("isometric", Action::ToggleProjection),
+        ("culling", Action::ToggleBackFaces),
+        ("backface", Action::ToggleBackFaces),
+        ("spotlight", Action::AddSpot),
+        ("point light", Action::AddBulb),
+        ("directional", Action::AddSun),
+        ("fps", Action::ToggleStatistics),
+        ("hierarchy", Action::ToggleOutline),
+        ("inspector", Action::ToggleProperties),
+        ("revert", Action::Undo),
+        ("again", Action::Redo),
+        ("above", Action::LookTop),
+        ("side view", Action::LookRight),
+        ("explode", Action::Split),
+        ("gizmo", Action::ToggleOverlays),
+        ("target", Action::AimAtSelection),
+        ("font size", Action::LargerText),
+        ("benchmark", Action::ToggleLaboratory),
+    ];
+
+    #[test]
+    fn words_that_people_use_find_what_they_mean_among_the_first_five() {
+        let mut missed = Vec::new();
+        for (word, action) in WORDS {
+            let found = actions_for(word);
+            let first = &found[..found.len().min(5)];
+            if !first.contains(&action) {
+                missed.push(format!("{word:?} finds {first:?}, not {action:?}"));
+            }
+        }
+        assert!(missed.is_empty(), "{}", missed.join("\n"));
+    }
+
+    #[test]
+    fn an_action_is_found_by_its_key_and_by_its_words() {
+        assert_eq!(actions_for("l")[0], Action::ToggleEdges);
+        assert_eq!(actions_for("ctrl+z")[0], Action::Undo);
+        assert_eq!(actions_for("F6")[0], Action::ToPanels);
+        assert_eq!(actions_for("vertex normals draws"), [Action::ToggleVertexNormals]);
+        assert_eq!(actions_for(""), Action::ALL);
+        assert!(actions_for("no such words").is_empty());
+    }
+
+    #[test]
+    fn every_action_has_other_words_and_none_of_them_stands_twice() {
+        for action in Action::ALL {
+            let words: Vec<&str> = action.info().words.split_whitespace().collect();
+            assert!(!words.is_empty(), "{action:?}");
+            for (i, word) in words.iter().enumerate() {
+                assert!(!words[i + 1..].contains(word), "{action:?} has {word} twice");
+                assert_eq!(*word, word.to_lowercase(), "{action:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! The command palette: actions, items and settings, found by what people type.
+//!
+//! It opens with an empty query. The arrows go through what was found, Enter does it, Esc closes.
+
+use egui::{
+    Align2, Id, Key, Modal, RichText, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, vec2,
+};
+
+use crate::accuracy::{ACCURACY_PRESETS, AXES};
+use crate::app::actions::search::{Search, Texts};
+use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::input::keyboard::Keyboard;
+use crate::app::state::State;
+use crate::app::theme;
+use crate::app::widgets::controls;
+use crate::io::EXAMPLES;
+use crate::scene::ItemId;
+
+const WIDTH: f32 = 560.0;
+
+/// The most lines that are listed.
+const MOST: usize = 60;
+
+/// Something that can be asked for.
+struct Entry {
+    label: String,
+    /// What kind of thing it is.
+    kind: &'static str,
+    hint: String,
+    key: String,
+    on: bool,
+    /// Why it cannot be done now.
+    refused: Option<String>,
+    score: u32,
+    request: Request,
+}
+
+/// Shows it; its requests are added to `requests`.
+pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+    let id = Id::unique("palette");
+    let room = ui.ctx().content_rect().size();
+    let width = WIDTH.min(room.x - 40.0);
+    let frame = egui::Frame::popup(&ui.ctx().global_style()).inner_margin(8.0);
+    // It stays where it is, however much is found.
+    let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, 48.0));
+    let shown = Modal::new(id).area(area).frame(frame).show(ui.ctx(), |ui| {
+        ui.set_width(width);
+        contents(ui, state, requests, (room.y - 120.0).clamp(90.0, 420.0))
+    });
+    if shown.should_close() {
+        Keyboard::note_escape(ui.ctx());
+    }
+    if shown.inner || shown.should_close() {
+        forget(ui);
+        requests.push(Action::Palette.into());
+    }
+}
+
+fn query_id() -> Id {
+    Id::unique("palette: query")
+}
+
+/// The next palette begins with an empty query.
+fn forget(ui: &Ui) {
+    ui.data_mut(|data| {
+        data.remove_temp::<String>(query_id());
+        data.remove_temp::<usize>(query_id());
+    });
+}
+
+/// The field and the list. Says whether something was chosen.
+fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32) -> bool {
+    let id = query_id();
+    let first = ui.data(|data| data.get_temp::<String>(id)).is_none();
+    let mut query: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let mut chosen: usize = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    // Taken before the field sees them: in it they would move the cursor.
+    let (down, up, enter) = ui.input_mut(|input| {
+        let mut count = |key| input.count_and_consume_key(egui::Modifiers::NONE, key);
+        (count(Key::ArrowDown), count(Key::ArrowUp), count(Key::Enter) > 0)
+    });
+    let field = egui::TextEdit::singleline(&mut query)
+        .id(id.with("field"))
+        .hint_text("Search: an action, an item, a setting")
+        .align(Align2::LEFT_CENTER)
+        .min_size(vec2(0.0, theme::ROW + 4.0))
+        .desired_width(f32::INFINITY);
+    let response = ui.add(field).accessible_name("Search everything");
+    if first || !response.has_focus() {
+        response.request_focus();
+    }
+    if response.changed() {
+        chosen = 0;
+    }
+    let entries = found(state, &query);
+    let last = entries.len().saturating_sub(1);
+    chosen = (chosen + down).saturating_sub(up).min(last);
+    ui.data_mut(|data| {
+        data.insert_temp(id, query);
+        data.insert_temp(id, chosen);
+    });
+    ui.add_space(theme::GAP);
+    let mut clicked = None;
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let mut list = ui.new_child(UiBuilder::new().id_salt("found").max_rect(rect));
+    let area = ScrollArea::vertical().auto_shrink(false);
+    area.content_margin(theme::SCROLL_MARGIN).show(&mut list, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for (i, entry) in entries.iter().enumerate() {
+            let response = entry.ui(ui, i == chosen);
+            if i == chosen && (down > 0 || up > 0) {
+                response.scroll_to_me(None);
+            }
+            if response.clicked() {
+                clicked = Some(i);
+            }
+        }
+        if entries.is_empty() {
+            ui.weak("Nothing is called so.");
+        }
+    });
+    let Some(entry) = clicked.or(enter.then_some(chosen)).and_then(|at| entries.get(at)) else {
+        return false;
+    };
+    requests.push(match &entry.refused {
+        Some(why) => Request::Refuse(why.clone()),
+        None => entry.request.clone(),
+    });
+    true
+}
+
+/// Everything that matches, best first.
+fn found(state: &State, query: &str) -> Vec<Entry> {
+    let mut search = Search::new(query);
+    let mut entries = Vec::new();
+    for action in Action::ALL.iter().copied().filter(|action| *action != Action::Palette) {
+        let Some(score) = action.score(&mut search, query) else { continue };
+        let info = action.info();
+        entries.push(Entry {
+            label: info.label.to_owned(),
+            kind: info.group.label(),
+            hint: info.hint.to_owned(),
+            key: info.keys.first().map(|key| key.name()).unwrap_or_default(),
+            on: action.is_on(state) == Some(true),
+            refused: action.availability(state).err(),
+            score,
+            request: action.into(),
+        });
+    }
+    items(state, &mut search, &mut entries);
+    if !search.is_empty() {
+        settings(state, &mut search, &mut entries);
+    }
+    entries.sort_by_key(|entry| std::cmp::Reverse(entry.score));
+    entries.truncate(MOST);
+    entries
+}
+
+fn items(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
+    let scene = &state.scene;
+    let objects = scene.objects.iter().map(|(id, it)| (ItemId::Object(id), &it.name, "Object"));
+    let cameras = scene.cameras.iter().map(|(id, it)| (ItemId::Camera(id), &it.name, "Camera"));
+    let lights = scene.lights.iter().map(|(id, it)| (ItemId::Light(id), &it.name, "Light"));
+    for (id, name, kind) in objects.chain(cameras).chain(lights) {
+        if search.is_empty() {
+            return;
+        }
+        let texts = Texts { label: name, words: "select", hint: "" };
+        let Some(score) = search.score(texts) else { continue };
+        entries.push(Entry {
+            label: name.clone(),
+            kind,
+            hint: "Selects it.".to_owned(),
+            key: String::new(),
+            on: state.selected() == Some(id),
+            refused: None,
+            // Before actions that match alike: a name was given to be found.
+            score: score + 50,
+            request: Request::Select(id),
+        });
+    }
+}
+
+fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
+    let now = state.settings;
+    let mut add = |label: String, words, kind, hint: &str, on, request| {
+        if let Some(score) = search.score(Texts { label: &label, words, hint }) {
+            let (hint, key, refused) = (hint.to_owned(), String::new(), None);
+            entries.push(Entry { label, kind, hint, key, on, refused, score, request });
+        }
+    };
+    for preset in ACCURACY_PRESETS {
+        let to = preset.of(&now);
+        let label = format!("Accuracy: {}", preset.label);
+        add(label, "quality preset", "Setting", preset.what, to == now, Request::Settings(to));
+    }
+    for axis in AXES {
+        for choice in axis.choices {
+            let label = format!("{}: {}", axis.label, choice.label);
+            let to = Request::Settings(choice.of(&now));
+            add(label, "accuracy quality", "Setting", choice.what, choice.is(&now), to);
+        }
+        let lesson = Request::Lab(LabRequest::Lesson(axis.key));
+        let label = format!("Lesson: {}", axis.lesson.title);
+        add(label, "learn help", "Lesson", axis.lesson.what, false, lesson);
+    }
+    for example in EXAMPLES {
+        let open = Request::LoadFiles(vec![example.path.into()]);
+        let label = format!("Example: {}", example.title);
+        add(label, "open sample demo", "Example", "Opens it in place of this scene.", false, open);
+    }
+}
+
+impl Entry {
+    fn ui(&self, ui: &mut Ui, chosen: bool) -> egui::Response {
+        let enabled = self.refused.is_none();
+        let size = vec2(ui.available_width(), theme::ROW + 2.0);
+        // The arrows go through the list while the field has the keyboard.
+        let (rect, response) = ui.allocate_exact_size(size, Sense::CLICK);
+        response.widget_info(|| {
+            WidgetInfo::selected(egui::Role::ListBoxOption, enabled, chosen, &self.label)
+        });
+        let visuals = ui.visuals();
+        let mut color = controls::text_color(ui, enabled);
+        let mut weak = visuals.weak_text_color();
+        if chosen {
+            ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill);
+            let bar = rect.with_max_x(rect.left() + 3.0).shrink2(vec2(0.0, 3.0));
+            ui.painter().rect_filled(bar, 1.5, theme::accent(visuals));
+            color = visuals.selection.stroke.color;
+            weak = color;
+        } else if response.hovered() {
+            ui.painter().rect_filled(rect, 4.0, visuals.widgets.inactive.bg_fill);
+        }
+        let mut right = rect.right() - 6.0;
+        if !self.key.is_empty() {
+            let at = egui::pos2(right, rect.center().y);
+            right = controls::key_cap(ui, at, &self.key, enabled) - 6.0;
+        }
+        let text = |text: RichText, width| controls::text(ui, text, TextStyle::Body, width);
+        let kind = text(RichText::new(self.kind).small(), 90.0);
+        right -= kind.size().x;
+        controls::put_text(ui, rect.with_min_x(right), kind, weak);
+        let left = rect.left() + 10.0;
+        let room = right - theme::GAP - left;
+        let state = if self.on { "  (on)" } else { "" };
+        let label = text(RichText::new(format!("{}{state}", self.label)), room);
+        let end = left + label.size().x + 12.0;
+        controls::put_text(ui, rect.with_min_x(left), label, color);
+        let said = match &self.refused {
+            Some(why) => format!("Not now: {why}."),
+            None => self.hint.clone(),
+        };
+        if right - 12.0 - end > 60.0 {
+            let hint = text(RichText::new(&said).small(), right - 12.0 - end);
+            controls::put_text(ui, rect.with_min_x(end), hint, weak);
+        }
+        response.on_hover_text(said)
+    }
+}

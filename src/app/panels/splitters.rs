@@ -1,0 +1,74 @@
+//! Borders between panels that can be dragged, and the strip of buttons in a narrow window.
+
+use egui::{CursorIcon, Id, Rect, Sense, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
+
+use crate::app::actions::{Action, Request};
+use crate::app::input::buttons::action_icon;
+use crate::app::state::State;
+use crate::app::state::layout::{Places, Side, Splitter};
+use crate::app::theme;
+use crate::app::widgets::icons::Icon;
+
+/// How wide a splitter is to the mouse.
+const GRIP: f32 = 7.0;
+
+/// Shows all splitters, over the panels; their requests are added to `requests`.
+pub(crate) fn show(
+    ui: &Ui,
+    state: &State,
+    area: Rect,
+    places: &Places,
+    requests: &mut Vec<Request>,
+) {
+    for splitter in Splitter::ALL {
+        let (Some(line), Some(grip)) = (places.grip(splitter, 0.0), places.grip(splitter, GRIP))
+        else {
+            continue;
+        };
+        // No stop of Tab: sizes are no part of a scene.
+        let sense = Sense::click_and_drag() - Sense::FOCUSABLE;
+        let response = ui.interact(grip, Id::unique(("splitter", splitter)), sense);
+        let name = splitter.name();
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Splitter, true, name));
+        let cursor = if splitter.is_upright() {
+            CursorIcon::ResizeHorizontal
+        } else {
+            CursorIcon::ResizeVertical
+        };
+        let held = response.dragged();
+        let response = response.on_hover_cursor(cursor);
+        let stroke = if held || response.hovered() {
+            theme::ring(ui.visuals())
+        } else {
+            Stroke::new(1.0, theme::line(ui.visuals()))
+        };
+        if splitter.is_upright() {
+            ui.painter().vline(line.center().x, line.y_range(), stroke);
+        } else {
+            ui.painter().hline(line.x_range(), line.center().y, stroke);
+        }
+        if response.double_clicked() {
+            requests.push(Request::Layout(state.layout.reset(splitter)));
+        } else if let Some(to) = response.interact_pointer_pos().filter(|_| held) {
+            requests.push(Request::Layout(state.layout.dragged(splitter, to, area, places)));
+        }
+    }
+}
+
+/// The buttons that unfold a panel each.
+pub(crate) fn strip_ui(ui: &mut Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
+    let inner = rect.shrink2(vec2((rect.width() - theme::ROW) / 2.0, theme::GAP));
+    let mut child = ui.new_child(UiBuilder::new().id_salt("strip").max_rect(inner));
+    for (side, icon, action) in [
+        (Side::Outline, Icon::List, Action::ToggleOutline),
+        (Side::Switches, Icon::Switches, Action::ToggleViewPanel),
+        (Side::Properties, Icon::Properties, Action::ToggleProperties),
+    ] {
+        if state.layout.unfolded == Some(side) {
+            let row = vec2(theme::ROW, theme::ROW);
+            let ground = Rect::from_min_size(child.cursor().min, row);
+            child.painter().rect_filled(ground, 4.0, child.visuals().selection.bg_fill);
+        }
+        action_icon(&mut child, state, requests, icon, action);
+    }
+}

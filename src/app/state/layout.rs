@@ -1,0 +1,368 @@
+//! Divides the window among the panels and the picture.
+//!
+//! Splitters set wishes: widths of the columns in points, heights as shares. What a window has room
+//! for is worked out from them in each frame, and they stay as they are, so that panels recover
+//! when a window that was small is large again.
+
+use egui::{Rect, pos2, vec2};
+
+use crate::scene::Panels;
+
+/// Windows narrower than this show one panel at a time, beside a strip of buttons.
+pub const NARROW: f32 = 900.0;
+
+/// Windows at least this wide have room for wider columns.
+const WIDE: f32 = 1200.0;
+
+/// The width of the strip of buttons in a narrow window.
+const STRIP: f32 = 30.0;
+
+/// The least height of a panel that shares a column, and of the picture.
+const LEAST: f32 = 72.0;
+
+/// A panel beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The list of objects, cameras and lights.
+    Outline,
+    /// The switches of the view.
+    Switches,
+    /// The properties of the selected item.
+    Properties,
+}
+
+/// A border between two panels that can be dragged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Splitter {
+    /// At the right of the left column.
+    Left,
+    /// At the left of the properties.
+    Right,
+    /// Between the outline and the switches.
+    Switches,
+    /// Above the laboratory.
+    Laboratory,
+    /// Above the plan.
+    Plan,
+}
+
+impl Splitter {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Left, Self::Right, Self::Switches, Self::Laboratory, Self::Plan];
+
+    /// Its name for screen readers.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Left => "Width of the left column",
+            Self::Right => "Width of the properties",
+            Self::Switches => "Height of the view switches",
+            Self::Laboratory => "Height of the laboratory",
+            Self::Plan => "Height of the plan",
+        }
+    }
+
+    /// Whether it is dragged to the left and right.
+    #[must_use]
+    pub const fn is_upright(self) -> bool {
+        matches!(self, Self::Left | Self::Right)
+    }
+}
+
+/// What the user wishes: `None` is the size that suits the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// The width of the left column, in points.
+    pub left: Option<f32>,
+    /// The width of the properties, in points.
+    pub right: Option<f32>,
+    /// The share of the left column that the switches have, from 0 to 1.
+    pub switches: Option<f32>,
+    /// The laboratory's share of the height.
+    pub laboratory: Option<f32>,
+    /// The plan's share of the height above the laboratory.
+    pub plan: Option<f32>,
+    /// The panel that is unfolded in a narrow window.
+    pub unfolded: Option<Side>,
+}
+
+/// The places of everything between the menus and the status line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Places {
+    /// The buttons that unfold panels, in a narrow window.
+    pub strip: Option<Rect>,
+    /// The list of objects, cameras and lights.
+    pub outline: Option<Rect>,
+    /// The switches of the view.
+    pub switches: Option<Rect>,
+    /// The properties of the selected item.
+    pub properties: Option<Rect>,
+    /// The laboratory.
+    pub laboratory: Option<Rect>,
+    /// The plan.
+    pub plan: Option<Rect>,
+    /// The picture.
+    pub picture: Rect,
+}
+
+/// A part of `of`, with at least `least` for it and `rest` beside it; half if there is no room.
+fn share(of: f32, part: f32, least: f32, rest: f32) -> f32 {
+    let size = if of < least + rest { of / 2.0 } else { (of * part).clamp(least, of - rest) };
+    size.round()
+}
+
+impl Layout {
+    /// Divides `area` among the open panels and the picture.
+    #[must_use]
+    pub fn divide(&self, area: Rect, panels: Panels) -> Places {
+        let mut rest = area;
+        let laboratory = panels.laboratory.then(|| {
+            let height = share(area.height(), self.laboratory.unwrap_or(0.58), 150.0, 150.0);
+            let (above, place) = cut(rest, area.bottom() - height);
+            rest = above;
+            place
+        });
+        let mut places = Places {
+            strip: None,
+            outline: None,
+            switches: None,
+            properties: None,
+            laboratory,
+            plan: None,
+            picture: rest,
+        };
+        if area.width() < NARROW {
+            self.one_column(&mut rest, &mut places);
+        } else {
+            self.columns(area.width(), &mut rest, panels, &mut places);
+        }
+        places.plan = panels.plan.then(|| {
+            let height = share(rest.height(), self.plan.unwrap_or(0.34), 90.0, LEAST);
+            let (above, place) = cut(rest, rest.bottom() - height);
+            rest = above;
+            place
+        });
+        places.picture = rest;
+        places
+    }
+
+    /// One panel at a time, beside the strip.
+    fn one_column(&self, rest: &mut Rect, places: &mut Places) {
+        places.strip = Some(rest.with_max_x(rest.left() + STRIP));
+        rest.min.x += STRIP;
+        let Some(side) = self.unfolded else { return };
+        let wish = match side {
+            Side::Outline | Side::Switches => self.left,
+            Side::Properties => self.right,
+        };
+        let width = share(rest.width(), wish.unwrap_or(250.0) / rest.width(), 220.0, 40.0);
+        let place = Some(rest.with_max_x(rest.left() + width));
+        match side {
+            Side::Outline => places.outline = place,
+            Side::Switches => places.switches = place,
+            Side::Properties => places.properties = place,
+        }
+        rest.min.x += width;
+    }
+
+    /// The columns at both sides.
+    fn columns(&self, width: f32, rest: &mut Rect, panels: Panels, places: &mut Places) {
+        let (left, right) = if width >= WIDE { (228.0, 280.0) } else { (212.0, 256.0) };
+        if panels.outline || panels.view {
+            let left = self.left.unwrap_or(left).clamp(180.0, width * 0.28).round();
+            let column = rest.with_max_x(rest.left() + left);
+            rest.min.x += left;
+            match (panels.outline, panels.view) {
+                (true, true) => {
+                    let part = self.switches.unwrap_or(0.56);
+                    let height = share(column.height(), part, LEAST, LEAST);
+                    let (above, below) = cut(column, column.bottom() - height);
+                    (places.outline, places.switches) = (Some(above), Some(below));
+                }
+                (true, false) => places.outline = Some(column),
+                _ => places.switches = Some(column),
+            }
+        }
+        if panels.properties {
+            let right = self.right.unwrap_or(right).clamp(232.0, width * 0.34).round();
+            places.properties = Some(rest.with_min_x(rest.right() - right));
+            rest.max.x -= right;
+        }
+    }
+
+    /// The layout after a splitter was dragged to `to`, while the panels stood in these places.
+    #[must_use]
+    pub fn dragged(mut self, splitter: Splitter, to: egui::Pos2, area: Rect, now: &Places) -> Self {
+        let part =
+            |whole: Rect| ((whole.bottom() - to.y) / whole.height().max(1.0)).clamp(0.05, 0.95);
+        let joined = |a: Option<Rect>, b: Option<Rect>| Some(a?.union(b?));
+        match splitter {
+            Splitter::Left => self.left = Some(to.x - area.left() - now.strip_width()),
+            Splitter::Right if now.strip.is_some() => {
+                self.right = Some(to.x - area.left() - now.strip_width());
+            }
+            Splitter::Right => self.right = Some(area.right() - to.x),
+            Splitter::Switches => {
+                self.switches = joined(now.outline, now.switches).map(part).or(self.switches);
+            }
+            Splitter::Laboratory => self.laboratory = Some(part(area)),
+            Splitter::Plan => {
+                self.plan = joined(now.plan, Some(now.picture)).map(part).or(self.plan);
+            }
+        }
+        self
+    }
+
+    /// The layout with a splitter where it was at the first start.
+    #[must_use]
+    pub const fn reset(mut self, splitter: Splitter) -> Self {
+        match splitter {
+            Splitter::Left => self.left = None,
+            Splitter::Right => self.right = None,
+            Splitter::Switches => self.switches = None,
+            Splitter::Laboratory => self.laboratory = None,
+            Splitter::Plan => self.plan = None,
+        }
+        self
+    }
+}
+
+/// The parts of a rectangle above and below a height.
+fn cut(rect: Rect, y: f32) -> (Rect, Rect) {
+    (rect.with_max_y(y), rect.with_min_y(y))
+}
+
+impl Places {
+    fn strip_width(&self) -> f32 {
+        self.strip.map_or(0.0, |strip| strip.width())
+    }
+
+    /// All panels, and the picture.
+    pub fn all(&self) -> impl Iterator<Item = Rect> {
+        let Self { strip, outline, switches, properties, laboratory, plan, picture } = *self;
+        [strip, outline, switches, properties, laboratory, plan, Some(picture)]
+            .into_iter()
+            .flatten()
+    }
+
+    /// The place at which a splitter is taken hold of, `thick` points wide, if there is one.
+    #[must_use]
+    pub fn grip(&self, splitter: Splitter, thick: f32) -> Option<Rect> {
+        let upright = |rect: Rect, x: f32| {
+            Rect::from_center_size(pos2(x, rect.center().y), vec2(thick, rect.height()))
+        };
+        let level = |rect: Rect| {
+            Rect::from_center_size(pos2(rect.center().x, rect.top()), vec2(rect.width(), thick))
+        };
+        match splitter {
+            Splitter::Left => {
+                let column = match (self.outline, self.switches) {
+                    (Some(outline), Some(switches)) => outline.union(switches),
+                    (one, other) => one.or(other)?,
+                };
+                Some(upright(column, column.right()))
+            }
+            Splitter::Right => {
+                let place = self.properties?;
+                let x = if self.strip.is_some() { place.right() } else { place.left() };
+                Some(upright(place, x))
+            }
+            Splitter::Switches => self.outline.and(self.switches).map(level),
+            Splitter::Laboratory => self.laboratory.map(level),
+            Splitter::Plan => self.plan.map(level),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZES: [[f32; 2]; 8] = [
+        [320.0, 150.0],
+        [512.0, 270.0],
+        [640.0, 350.0],
+        [899.0, 350.0],
+        [900.0, 350.0],
+        [1024.0, 590.0],
+        [1280.0, 750.0],
+        [1920.0, 1030.0],
+    ];
+
+    fn every_layout(check: impl Fn(Layout, Rect, Panels)) {
+        let wishes = [Layout::default(), wished(40.0, 0.02), wished(2000.0, 0.98)];
+        for [width, height] in SIZES {
+            for bits in 0..32_u8 {
+                let on = |bit: u8| bits >> bit & 1 == 1;
+                let panels = Panels {
+                    outline: on(0),
+                    view: on(1),
+                    properties: on(2),
+                    laboratory: on(3),
+                    plan: on(4),
+                    ..Panels::DEFAULT
+                };
+                for wish in wishes {
+                    check(wish, Rect::from_min_size(pos2(3.0, 26.0), vec2(width, height)), panels);
+                }
+            }
+        }
+    }
+
+    fn wished(width: f32, part: f32) -> Layout {
+        Layout {
+            left: Some(width),
+            right: Some(width),
+            switches: Some(part),
+            laboratory: Some(part),
+            plan: Some(part),
+            unfolded: Some(Side::Properties),
+        }
+    }
+
+    #[test]
+    fn panels_and_picture_fill_the_area_and_share_no_point() {
+        every_layout(|layout, area, panels| {
+            let places = layout.divide(area, panels);
+            let all: Vec<Rect> = places.all().collect();
+            let sum: f32 = all.iter().map(Rect::area).sum();
+            assert!((sum - area.area()).abs() < 1.0, "{places:?}");
+            for (i, a) in all.iter().enumerate() {
+                assert!(area.contains_rect(*a), "{a} in {area}");
+                assert!(a.width() >= 30.0 && a.height() >= 36.0, "{a} of {places:?}");
+                for b in &all[i + 1..] {
+                    assert!(!a.shrink(0.1).intersects(b.shrink(0.1)), "{a} and {b}");
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn a_splitter_that_is_dragged_goes_where_it_is_dragged_and_back() {
+        let area = Rect::from_min_size(pos2(0.0, 26.0), vec2(1280.0, 750.0));
+        let panels = Panels { plan: true, laboratory: true, ..Panels::DEFAULT };
+        let now = Layout::default().divide(area, panels);
+        for splitter in Splitter::ALL {
+            let grip = now.grip(splitter, 6.0).unwrap();
+            let to = grip.center() + vec2(17.0, -13.0);
+            let layout = Layout::default().dragged(splitter, to, area, &now);
+            let moved = layout.divide(area, panels).grip(splitter, 6.0).unwrap().center();
+            let gone = if splitter.is_upright() { moved.x - to.x } else { moved.y - to.y };
+            assert!(gone.abs() <= 1.0, "{splitter:?} is {gone} away");
+            assert_eq!(layout.reset(splitter), Layout::default());
+        }
+    }
+
+    #[test]
+    fn a_window_that_was_small_has_its_panels_back() {
+        let layout = Layout { left: Some(300.0), laboratory: Some(0.6), ..Layout::default() };
+        let panels = Panels { laboratory: true, ..Panels::DEFAULT };
+        let large = Rect::from_min_size(pos2(0.0, 0.0), vec2(1920.0, 1030.0));
+        let before = layout.divide(large, panels);
+        let small = layout.divide(Rect::from_min_size(large.min, vec2(640.0, 350.0)), panels);
+        assert!(small.outline.is_none() && small.strip.is_some());
+        assert_eq!(layout.divide(large, panels), before);
+        assert_eq!(before.outline.unwrap().width(), 300.0);
+    }
+}

@@ -1,0 +1,296 @@
+//! The palette, and what lies over the picture.
+//!
+//! Catches: a palette that keeps an old query or does another thing than it shows, a mark that
+//! cannot be clicked or hides what is under it, a light that is aimed elsewhere, a double click
+//! that began on a notice.
+
+use egui::accesskit::Role;
+use egui::{Key, PointerButton};
+use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
+use marraztu::accuracy::LightAt;
+use marraztu::app::actions::Chord::{Command, Either, Lower, Named};
+use marraztu::app::actions::{Action, Request};
+use marraztu::scene::{ItemId, LightKind, SpotOwner, Subject};
+
+use crate::editor::Editor;
+use crate::panels::{control, type_text};
+
+/// What the palette lists, from the top.
+fn listed(editor: &Editor) -> Vec<String> {
+    let dialog = editor.harness.get_by_label("Search everything").rect();
+    let rows = editor.harness.query_all(By::new().role(Role::ListBoxOption));
+    rows.filter(|row| row.rect().top() > dialog.bottom() && row.rect().width() > 400.0)
+        .filter_map(|row| row.accesskit_node().label())
+        .collect()
+}
+
+#[test]
+fn the_palette_does_what_it_shows_and_begins_anew() {
+    let mut editor = Editor::new();
+    for (chord, query) in [(Command(Key::K), "wireframe"), (Command(Key::P), "mesh lines")] {
+        let before = editor.view().fill;
+        editor.press(chord);
+        let field = control(&editor, Role::TextInput, "Search everything");
+        assert!(field.is_focused());
+        assert_eq!(field.value().unwrap_or_default(), "", "the old query does not stay");
+        type_text(&mut editor, query);
+        assert_eq!(listed(&editor)[0], "Wireframe", "{query}");
+        editor.press(Named(Key::Enter));
+        assert_ne!(editor.view().fill, before, "{query}");
+        assert!(!editor.shows("Search everything"));
+    }
+    // The keyboard is the viewport's again.
+    editor.press(Lower(Key::C));
+    assert_eq!(editor.view().subject, Subject::Object);
+}
+
+#[test]
+fn items_and_settings_are_found_by_name_and_esc_closes() {
+    let mut editor = Editor::new();
+    let mut choose = |query: &str, down: usize| {
+        editor.press(Command(Key::K));
+        type_text(&mut editor, query);
+        for _ in 0..down {
+            editor.press(Named(Key::ArrowDown));
+        }
+        let listed = listed(&editor);
+        editor.press(Named(Key::Enter));
+        (listed, editor.state().selected(), editor.state().settings)
+    };
+    let (_, selected, _) = choose("x_wing", 0);
+    assert!(matches!(selected, Some(ItemId::Object(_))));
+    let (listed, _, settings) = choose("gouraud", 0);
+    let at = listed.iter().position(|label| label == "Shading: Gouraud").unwrap();
+    if at > 0 {
+        let (_, _, settings) = choose("gouraud", at);
+        assert_eq!(settings.light, LightAt::Vertex);
+    } else {
+        assert_eq!(settings.light, LightAt::Vertex);
+    }
+    editor.press(Command(Key::K));
+    editor.press(Named(Key::Escape));
+    assert!(!editor.shows("Search everything"));
+    assert!(!editor.state().palette);
+}
+
+#[test]
+fn what_cannot_be_done_says_why() {
+    let mut editor = Editor::new();
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "redo");
+    editor.press(Named(Key::Enter));
+    let told = editor.harness.get_by_role(Role::Alert).accesskit_node().label();
+    assert_eq!(told.as_deref(), Some("there is nothing to redo"));
+}
+
+#[test]
+fn the_list_of_keys_forgets_what_was_searched_for_and_knows_the_same_words() {
+    let mut editor = Editor::new();
+    editor.press(Either(Key::H));
+    type_text(&mut editor, "screenshot");
+    assert!(editor.shows("Save picture..."));
+    editor.press(Named(Key::Escape));
+    editor.press(Either(Key::H));
+    let field = control(&editor, Role::TextInput, "Search among the keys");
+    assert_eq!(field.value().unwrap_or_default(), "");
+}
+
+/// The scene with a free spot at the origin, which is selected.
+fn with_spot() -> Editor {
+    let mut editor = Editor::new();
+    editor.perform(Action::AddSpot);
+    editor
+}
+
+fn direction(editor: &Editor) -> glam::DVec3 {
+    let id = editor.view().light.unwrap();
+    match &editor.scene().lights.get(id).unwrap().kind {
+        LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } => aim.now().direction,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_spot_is_aimed_at_the_selection_and_by_a_click() {
+    let mut editor = with_spot();
+    let steps = editor.steps();
+    editor.perform(Action::AimAtSelection);
+    // The selected object stands at the left.
+    assert!(direction(&editor).x < -0.99);
+    // The other ship stands at the right.
+    editor.perform(Action::AimByClick);
+    assert!(editor.state().aiming);
+    let nothing = editor.at(0.5, 0.95);
+    editor.click(nothing, PointerButton::Primary);
+    assert!(editor.state().aiming, "there is nothing to aim at");
+    let at = ship_at_the_right(&editor);
+    editor.click(at, PointerButton::Primary);
+    assert!(!editor.state().aiming);
+    assert!(direction(&editor).x > 0.8, "{}", direction(&editor));
+    assert_eq!(editor.steps(), steps + 2);
+    editor.perform(Action::AimByClick);
+    editor.press(Named(Key::Escape));
+    assert!(!editor.state().aiming && !editor.shows("Save the scene?"));
+}
+
+/// A place in the picture that shows the ship at (100, 0, 0).
+fn ship_at_the_right(editor: &Editor) -> egui::Pos2 {
+    let rect = editor.picture();
+    // 100 units aside, 400 away, 22.5 degrees across half of the shorter side.
+    let half = rect.width().min(rect.height()) / 2.0;
+    rect.center() + egui::vec2(100.0 / 400.0 / 22.5_f32.to_radians().tan() * half, 0.0)
+}
+
+#[test]
+fn a_click_on_a_mark_selects_the_light_and_the_next_what_lies_under_it() {
+    let mut editor = with_spot();
+    let spot = editor.view().light.unwrap();
+    editor.perform(Action::SubjectCamera);
+    let middle = editor.picture().center();
+    // A hair aside, so that no end of an axis and no other light is meant.
+    editor.click(middle, PointerButton::Primary);
+    assert_eq!(editor.state().selected(), Some(ItemId::Light(spot)));
+    editor.perform(Action::ToggleOverlays);
+    editor.perform(Action::SubjectCamera);
+    editor.harness.run_steps(60);
+    editor.click(middle, PointerButton::Primary);
+    assert_ne!(editor.state().selected(), Some(ItemId::Light(spot)), "the mark is hidden");
+}
+
+#[test]
+fn the_axes_turn_the_view() {
+    let mut editor = Editor::new();
+    let corner = editor.picture().right_top() + egui::vec2(-46.0, 46.0);
+    editor.click(corner + egui::vec2(30.0, 0.0), PointerButton::Primary);
+    let mut asked = Editor::new();
+    asked.perform(Action::LookRight);
+    assert!(editor.scene() == asked.scene());
+    assert_eq!(editor.steps(), 1);
+}
+
+#[test]
+fn a_double_click_that_began_on_a_notice_is_none_on_the_picture() {
+    let mut editor = Editor::new();
+    let at = editor.picture().center();
+    let outside = egui::pos2(editor.picture().left() - 40.0, at.y);
+    let before = editor.scene();
+    editor.harness.event(egui::Event::PointerMoved(at));
+    for (place, pressed) in [(outside, true), (outside, false), (at, true), (at, false)] {
+        let (button, modifiers) = (PointerButton::Primary, egui::Modifiers::NONE);
+        editor.harness.event(egui::Event::PointerMoved(place));
+        editor.harness.event(egui::Event::PointerButton { pos: place, button, pressed, modifiers });
+    }
+    editor.settle();
+    assert!(editor.scene() == before, "nothing was framed");
+}
+
+#[test]
+fn the_history_says_how_far_a_held_key_went() {
+    let mut editor = Editor::new();
+    editor.ask(Request::Do(Action::SubjectObject));
+    editor.hold(Lower(Key::X), 4);
+    let steps: Vec<String> = editor.state().history.steps().map(str::to_owned).collect();
+    assert_eq!(steps, ["Move r_falke 50 along x"]);
+}
+
+#[test]
+fn text_that_is_no_number_is_said_and_changes_nothing() {
+    let mut editor = Editor::tall();
+    editor.perform(Action::SubjectObject);
+    control(&editor, Role::SpinButton, "Position X").click();
+    editor.settle();
+    editor.press(Command(Key::A));
+    type_text(&mut editor, "ten");
+    editor.press(Named(Key::Enter));
+    let told = editor.harness.get_by_role(Role::Alert).accesskit_node().label();
+    assert_eq!(told.as_deref(), Some("\"ten\" means nothing here: the field keeps its value"));
+    assert_eq!(editor.steps(), 0);
+}
+
+#[test]
+fn esc_in_a_menu_and_esc_again_does_not_leave_the_program() {
+    let mut editor = Editor::new();
+    control(&editor, Role::Button, "File").click();
+    editor.settle();
+    assert!(editor.shows("Save scene as..."));
+    editor.press(Named(Key::Escape));
+    editor.press(Named(Key::Escape));
+    let told = editor.harness.get_by_role(Role::Alert).accesskit_node().label();
+    assert_eq!(told.as_deref(), Some("Esc once more leaves the program"));
+}
+
+#[test]
+fn why_an_object_is_not_seen_is_said_with_what_mends_it() {
+    let mut editor = Editor::new();
+    editor.perform_all(&[Action::SubjectObject, Action::WhyUnseen]);
+    let until = |editor: &mut Editor, text: &str| {
+        for _ in 0..200 {
+            if editor.shows(text) {
+                return;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            editor.settle();
+        }
+        panic!("{text:?} is not said");
+    };
+    until(&mut editor, "r_falke is in the picture");
+    editor.perform_all(&[Action::ToggleVisible, Action::WhyUnseen]);
+    until(&mut editor, "r_falke is hidden");
+    control(&editor, Role::Button, "Show").click();
+    editor.settle();
+    assert_eq!(Action::ToggleVisible.is_on(editor.state()), Some(true));
+    assert!(!editor.shows("r_falke is hidden"));
+}
+
+#[test]
+fn each_of_two_notices_frames_its_own_object() {
+    let mut editor = Editor::new();
+    let ids: Vec<_> = editor.scene().objects.ids().collect();
+    let far = glam::DMat4::from_translation(glam::DVec3::X * 4000.0);
+    for id in &ids[..2] {
+        let mut object = editor.scene().objects.get(*id).unwrap().clone();
+        object.placement = marraztu::scene::Tracked::new(far * *object.placement.now());
+        let item = marraztu::scene::Item::Object(*id, Box::new(object));
+        let (gesture, label) = (marraztu::edit::Gesture::Whole, "Move".to_owned());
+        let command = marraztu::scene::Command::Replace(item);
+        editor.ask(Request::Change { command, gesture, label });
+        let mut view = editor.view();
+        view.object = Some(*id);
+        editor.ask(Request::View(Box::new(view)));
+        editor.perform(Action::WhyUnseen);
+        for _ in 0..200 {
+            let name = editor.scene().objects.get(*id).unwrap().name.clone();
+            if editor.shows(&format!("{name} is out of view")) {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            editor.settle();
+        }
+    }
+    let names = |editor: &Editor| -> Vec<String> {
+        let buttons = editor.harness.query_all(By::new().role(Role::Button).label("Frame"));
+        buttons.map(|button| format!("{:?}", button.rect())).collect()
+    };
+    assert_eq!(names(&editor).len(), 2);
+    let first = editor.scene().objects.get(ids[0]).unwrap().name.clone();
+    let top = editor.harness.query_all(By::new().role(Role::Button).label("Frame")).next();
+    top.unwrap().click();
+    editor.settle();
+    assert_eq!(editor.state().history.steps().last(), Some(format!("Frame {first}").as_str()));
+    assert_eq!(names(&editor).len(), 1, "the other notice stays");
+}
+
+#[test]
+fn the_status_line_says_what_is_drawn_otherwise() {
+    let mut editor = Editor::new();
+    for (action, said) in [
+        (Action::ToggleEdges, "wireframe"),
+        (Action::TogglePolygons, "polygon 1 of "),
+        (Action::TogglePolygons, "wireframe"),
+        (Action::ToggleOthers, "isolated"),
+    ] {
+        editor.perform(action);
+        let status = editor.harness.get_by_role(Role::Status).accesskit_node().label();
+        assert!(status.clone().unwrap_or_default().contains(said), "{status:?}");
+    }
+}
