@@ -395,7 +395,7 @@ fn the_list_of_keys_is_searched_and_does_what_is_clicked() {
     editor.press(Command(Key::A));
     type_text(&mut editor, "Ctrl+S");
     let found = entries(&editor);
-    assert!(found.contains(&"Save scene".to_owned()) && found.len() <= 3, "{found:?}");
+    assert!(found.contains(&"Save scene".to_owned()) && found.len() <= 4, "{found:?}");
 }
 
 #[test]
