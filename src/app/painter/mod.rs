@@ -109,7 +109,7 @@ impl Painter {
     /// nothing is painted, unless the canvas is new.
     pub(crate) fn paint(
         &mut self,
-        canvas: Canvas<'_>,
+        canvas: &mut Canvas<'_>,
         frame: Frame,
         textures: &mut TexturesDelta,
     ) -> Vec<PixelBox> {

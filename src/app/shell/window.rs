@@ -279,7 +279,7 @@ impl Window {
                 self.window.set_visible(true);
             }
         }
-        self.act(copy.map(Arc::new));
+        self.act(copy.map(Arc::new).as_ref());
         Ok(Flow::On)
     }
 
@@ -315,11 +315,11 @@ impl Window {
     }
 
     /// Does what commands want done to the clipboard and with the picture of the window.
-    fn act(&mut self, copy: Option<Arc<egui::ColorImage>>) {
+    fn act(&mut self, copy: Option<&Arc<egui::ColorImage>>) {
         for action in std::mem::take(&mut self.actions) {
             let event = match action {
                 ActionRequested::Screenshot(callback) => {
-                    if let Some(copy) = &copy {
+                    if let Some(copy) = copy {
                         callback.complete(Arc::clone(copy));
                     }
                     None
