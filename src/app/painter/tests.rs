@@ -32,7 +32,7 @@ impl Desk {
         };
         let primitives = meshes.iter().map(primitive).collect();
         let frame = Frame { primitives, scale: 1.0, ground: GROUND };
-        let canvas = Canvas { pixels: &mut self.pixels, size: [WIDTH, HEIGHT], age: self.age };
+        let mut canvas = Canvas { pixels: &mut self.pixels, size: [WIDTH, HEIGHT], age: self.age };
         self.age = 1;
         self.painter.paint(&mut canvas, frame, textures)
     }
@@ -126,6 +126,7 @@ fn shape(rng: &mut Rng) -> Mesh {
 }
 
 /// The same in f64 and the plainest way: triangle by triangle, pixel by pixel.
+#[expect(clippy::cast_possible_truncation, reason = "bytes, and places near the picture")]
 fn reference(meshes: &[(Rect, Mesh)], textures: [&ColorImage; 2], nearest: [bool; 2]) -> Vec<u32> {
     let ground = GROUND.to_array().map(f64::from);
     let mut pixels = vec![[ground[0], ground[1], ground[2]]; WIDTH * HEIGHT];
@@ -158,6 +159,7 @@ fn reference(meshes: &[(Rect, Mesh)], textures: [&ColorImage; 2], nearest: [bool
     pixels.iter().map(|[r, g, b]| (*r as u32) << 16 | (*g as u32) << 8 | *b as u32).collect()
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "brought to the borders of the picture")]
 fn sample(image: &ColorImage, nearest: bool, u: f64, v: f64) -> [f64; 4] {
     let [width, height] = image.size;
     let texel = |x: f64, y: f64| {
@@ -379,7 +381,7 @@ fn a_part_of_a_texture_can_be_changed_and_what_shows_it_is_painted_again() {
 #[test]
 fn what_egui_makes_of_panels_and_text_is_painted_as_the_plainest_arithmetic_does() {
     let ctx = egui::Context::default();
-    let input = egui::RawInput { screen_rect: Some(everywhere()), ..egui::RawInput::default() };
+    let input = egui::RawInput { screen_rect: Some(everywhere()), ..Default::default() };
     let mut output = ctx.run_ui(input, |ui| {
         egui::Frame::window(ui.style()).show(ui, |ui| {
             ui.heading("Viewport");

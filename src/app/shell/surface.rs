@@ -66,8 +66,8 @@ impl Surface {
         let size = [buffer.width(), buffer.height()];
         let size = size.map(|count| usize::try_from(count.get()).unwrap_or(usize::MAX));
         let age = if self.lost { 0 } else { usize::from(buffer.age()) };
-        let changed =
-            self.painter.paint(&mut Canvas { pixels: &mut buffer, size, age }, frame, textures);
+        let mut canvas = Canvas { pixels: &mut buffer, size, age };
+        let changed = self.painter.paint(&mut canvas, frame, textures);
         let copy = copy.then(|| copied(&buffer, size));
         let all = softbuffer::Rect { x: 0, y: 0, width, height };
         let damage = if std::mem::take(&mut self.exposed) {
