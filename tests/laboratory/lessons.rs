@@ -14,7 +14,7 @@ fn every_lesson_opens_on_an_error_that_can_be_seen() {
     for axis in AXES {
         let opened = io::lesson_scene(axis.lesson.scene).unwrap();
         let settings = axis.lesson_choice().of(&Settings::default());
-        let size = Size::new(240, 150);
+        let size = Size::new(480, 300);
         let mut studio = Studio::new(Shot::new(&opened.scene, &opened.view, &settings, size));
         let exact = studio.reference(&settings, Reference::of(axis));
         let error = studio.rendering(&settings).error(&exact);

@@ -62,7 +62,8 @@ pub fn page_markdown(reports: &[Report], picture: &dyn Fn(&str) -> String) -> St
 }
 
 const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}\
-    svg{max-width:100%;height:auto}table{border-collapse:collapse;font-size:.85rem}td,th{padding:.2rem .6rem;text-align:right;\
+    svg{max-width:100%;height:auto}\
+    table{border-collapse:collapse;font-size:.85rem}td,th{padding:.2rem .6rem;text-align:right;\
     border-bottom:1px solid #8884}td:first-child,th:first-child{text-align:left}\
     .dark{display:none}@media(prefers-color-scheme:dark){body{background:#18181c;color:#e6e6ea}\
     .dark{display:block}.light{display:none}}";

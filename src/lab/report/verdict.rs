@@ -65,13 +65,12 @@ pub(super) fn verdict(report: &Report) -> Vec<String> {
     let said = said(report);
     let mut sentences = told(&said);
     let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
-    let nothing = if said.iter().any(is_faster) { "Nothing else" } else { "Nothing" };
+    let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
     let noise = digits((report.findings.floor * 100.0).max(0.1));
     sentences.push(format!("{nothing} saves more than the noise ({noise}%)."));
     let [width, height] = report.findings.size;
     if let Some(first) = sentences.first_mut() {
-        let rest = first.replacen("Nothing", "nothing", usize::from(first.starts_with("Nothing")));
-        *first = format!("At {width}x{height} on {}: {rest}", report.scene);
+        *first = format!("At {width}x{height} on {}: {first}", report.scene);
     }
     // The first goes on after a colon.
     sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
@@ -90,11 +89,11 @@ fn told(said: &[Said<'_>]) -> Vec<String> {
     let wasted: Vec<String> = sorted(of(Kind::Wasted), |it| it.ratio())
         .map(|it| format!("{} ({})", it.name(), times(it.ratio())))
         .collect();
-    sentences.extend(listed("Slower and no more exact here", &wasted));
+    sentences.extend(listed("slower and no more exact here", &wasted));
     let worse: Vec<String> = sorted(of(Kind::Worse), |it| it.error)
         .map(|it| format!("{} ({})", it.name(), digits(it.error)))
         .collect();
-    sentences.extend(listed("Less exact and no faster here, with the error in brackets", &worse));
+    sentences.extend(listed("less exact and no faster here, with the error in brackets", &worse));
     sentences
 }
 
