@@ -9,6 +9,9 @@ use crate::scene::{Aim, Command, LightId, LightKind, Scene, SpotOwner, Tracked, 
 /// How far from the middle of the scene the mark of a sun stands, in its radii.
 const SUN: f64 = 0.6;
 
+/// A light nearer to the centre of an object than this, in the object's radii, is in the centre.
+const NEAR: f64 = 0.1;
+
 /// The selected light, if it can be aimed.
 ///
 /// # Errors
@@ -56,6 +59,11 @@ pub fn aim_at_selection(
     let id = can_aim(scene, view)?;
     let (object, _) = set_transform::selected_object(scene, view)?;
     let sphere = framing::sphere(scene, view, &[object]).ok_or(Refusal::NothingToFrame)?;
+    let from = stands(scene, view, id).ok_or(Refusal::NotAimed)?.position;
+    if from.distance(sphere.centre) < NEAR * sphere.radius {
+        // From within the object no direction leads to it.
+        return Err(Refusal::AimedAtItself);
+    }
     aim(scene, view, id, sphere.centre, phase)
 }
 
