@@ -251,7 +251,7 @@ fn case_37_a_floor_is_right_up_to_its_horizon() {
     let texture = noise(64, 64, Wrap::Repeat, [1.0; 2]);
     let (scene, view) = quad(corners, square(0.0, 0.0, 180.0, 60.0), &texture);
     let settings = Settings { filter: Filter::Trilinear, ..Settings::default() };
-    let exact = Settings { arithmetic: Arithmetic::F64, ..settings.clone() };
+    let exact = Settings { arithmetic: Arithmetic::F64, ..settings };
     let [ours, exact] = [&settings, &exact].map(|own| draw(&scene, &view, own, SIDE));
     let pairs = ours.pixels().iter().zip(exact.pixels());
     let off = pairs.map(|(a, b)| (f64::from(a[0]) - f64::from(b[0])).abs()).fold(0.0, f64::max);
