@@ -13,8 +13,8 @@ use crate::io;
 ///
 /// # Errors
 /// If no window can be opened, or if it is lost.
-pub fn run(files: Vec<PathBuf>, shell: Shell) -> Result<(), StartError> {
-    let named = files.clone();
+pub fn run(files: &[PathBuf], shell: Shell) -> Result<(), StartError> {
+    let named = files.to_vec();
     let opened = shell::run(
         shell,
         Box::new(move |ctx| -> Box<dyn Editor> {
@@ -27,7 +27,7 @@ pub fn run(files: Vec<PathBuf>, shell: Shell) -> Result<(), StartError> {
         }),
     );
     match opened {
-        Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(&files),
+        Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(files),
         opened => opened,
     }
 }

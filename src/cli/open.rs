@@ -13,14 +13,14 @@ use super::failure::Failure;
 use super::stage::{is_standard, usage};
 
 /// Opens the editor with these files, which have to exist.
-pub(crate) fn open(files: Vec<PathBuf>, shell: Option<Shell>) -> Result<(), Failure> {
+pub(crate) fn open(files: &[PathBuf], shell: Option<Shell>) -> Result<(), Failure> {
     if let Some(wrong) = misspelt() {
         return Err(Failure::Usage(Box::new(wrong)));
     }
     if files.iter().any(|file| is_standard(file)) {
         return Err(usage("the editor opens files; `marraztu render -` reads standard input"));
     }
-    for file in &files {
+    for file in files {
         io::check_file(file)?;
     }
     Ok(marraztu::app::run(files, shell.unwrap_or_default())?)
