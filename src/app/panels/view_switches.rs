@@ -162,6 +162,7 @@ fn slots_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// The small switch of a light.
+#[derive(Clone, Copy, Debug)]
 struct Slot {
     id: Id,
     is_stop: bool,
