@@ -47,10 +47,12 @@ pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
         ui.set_width(width);
         contents(ui, state, requests, (room.y - 120.0).clamp(90.0, 420.0))
     });
-    if shown.should_close() {
+    // Asked once: the answer takes the press of Esc.
+    let closes = shown.should_close();
+    if closes {
         Keyboard::note_escape(ui.ctx());
     }
-    if shown.inner || shown.should_close() {
+    if closes || shown.inner {
         forget(ui);
         requests.push(Action::Palette.into());
     }

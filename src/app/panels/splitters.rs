@@ -42,10 +42,14 @@ pub(crate) fn show(
         } else {
             Stroke::new(1.0, theme::line(ui.visuals()))
         };
+        // Within the panel: of the picture no pixel is covered.
+        let half = stroke.width / 2.0;
         if splitter.is_upright() {
-            ui.painter().vline(line.center().x, line.y_range(), stroke);
+            let at_left = splitter == Splitter::Right && places.strip.is_none();
+            let aside = if at_left { half } else { -half };
+            ui.painter().vline(line.center().x + aside, line.y_range(), stroke);
         } else {
-            ui.painter().hline(line.x_range(), line.center().y, stroke);
+            ui.painter().hline(line.x_range(), line.center().y + half, stroke);
         }
         if response.double_clicked() {
             requests.push(Request::Layout(state.layout.reset(splitter)));

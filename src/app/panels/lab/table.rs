@@ -109,6 +109,7 @@ fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Reque
 }
 
 /// The place of a row among the others, for the keyboard.
+#[derive(Clone, Copy, Debug)]
 struct Place {
     id: Id,
     is_stop: bool,
