@@ -70,7 +70,7 @@ impl App {
     pub(crate) fn take_scene(&mut self, ctx: &Context, opening: Opening) {
         let Opening { path, relocated, result } = opening;
         match result {
-            Ok(opened) => self.show_scene(ctx, path, opened),
+            Ok(opened) => self.show_scene(ctx, &path, opened),
             Err(SceneFileError::Model(LoadError::Cancelled)) => {
                 self.state.tell(Some("Opening was cancelled".to_owned()));
             }
@@ -121,23 +121,23 @@ impl App {
         ));
     }
 
-    fn show_scene(&mut self, ctx: &Context, path: PathBuf, opened: Opened) {
+    fn show_scene(&mut self, ctx: &Context, path: &Path, opened: Opened) {
         let Opened { scene, view, settings, findings } = opened;
         let panels = view.panels;
         let mut state = State { settings, ..State::new(scene, view) };
         selection::settle(&state.scene, &mut state.view);
         state.tell(Some(format!("Opened {}", path.display())));
         if !findings.is_empty() {
-            let text = format!("{}: {} findings", file_name(&path), findings.len());
+            let text = format!("{}: {} findings", file_name(path), findings.len());
             let details = findings.iter().map(ToString::to_string).collect();
             state.notices.push(Notice { text, details, offer: None });
         }
         // An example is saved under a name of its own.
-        state.path = (!io::is_example(&path)).then(|| path.clone());
+        state.path = (!io::is_example(path)).then(|| path.to_owned());
         self.replace(state);
         self.state.panels = panels;
-        if !self.settle_recovered(&path) {
-            self.note_recent(&path);
+        if !self.settle_recovered(path) {
+            self.note_recent(path);
         }
         let objects = self.state.scene.objects.ids().collect();
         self.look_for_unseen(ctx, objects);
