@@ -12,6 +12,7 @@ use super::scene_file::{Opened, SceneFileError, open_text};
 const LESSONS: &[(&str, &str)] = &[
     ("ball", include_str!("../../assets/lessons/ball.marraztu")),
     ("dusk", include_str!("../../assets/lessons/dusk.marraztu")),
+    ("faint", include_str!("../../assets/lessons/faint.marraztu")),
     ("far", include_str!("../../assets/lessons/far.marraztu")),
     ("fence", include_str!("../../assets/lessons/fence.marraztu")),
     ("floor", include_str!("../../assets/lessons/floor.marraztu")),

@@ -21,7 +21,7 @@ fn every_lesson_opens_on_an_error_that_can_be_seen() {
         // Light that is left out as too faint, and rounding, are a step off at most by what they
         // promise: there the error is shown amplified, and has to be in many bytes.
         let (largest, differing) = match axis.key {
-            "faint" | "rounding" => (1, 0.0005),
+            "faint" | "rounding" => (1, 0.02),
             _ => (4, 0.0002),
         };
         let whole = &error.whole;

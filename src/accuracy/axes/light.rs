@@ -161,8 +161,9 @@ pub(super) const FAINT: Axis = Axis {
         what: "A distant light, or the rim of a highlight, may add less than a byte can hold.",
         coarse: "Everything that is left out adds less than half a step together, so a byte may be \
             rounded the other way: it is at most one step off.",
-        shows: "Only in the picture of the error, amplified 256 times, where highlights fade out.",
-        scene: "ball",
+        shows: "Only in the picture of the error, amplified 256 times: a faint second lamp over \
+            the plate is left out.",
+        scene: "faint",
         choice: None,
     },
 };
