@@ -73,8 +73,10 @@ impl App {
 
     /// Hands what has changed to the journal, and writes preferences once they have settled.
     pub(crate) fn keep(&mut self, ctx: &Context) {
-        let Some(keeping) = &mut self.keeping else { return };
-        let State { scene, view, settings, history, path, .. } = &self.state;
+        let Self { keeping: Some(keeping), waiting_scene, state, .. } = self else { return };
+        // During a lesson it is the user's own scene that must not be lost.
+        let own = waiting_scene.as_deref().unwrap_or(state);
+        let State { scene, view, settings, history, path, .. } = own;
         if let Some(journal) = &keeping.journal {
             if history.is_saved() {
                 if keeping.kept.take().is_some() {
@@ -86,8 +88,8 @@ impl App {
                 journal.keep(Unsaved { scene, view, settings: *settings, file });
             }
             if let Some(fault) = journal.fault() {
-                self.state.notices.retain(|notice| !notice.text.starts_with(NOT_KEPT));
-                self.state.notices.push(notice(format!("{NOT_KEPT}{fault}.")));
+                state.notices.retain(|notice| !notice.text.starts_with(NOT_KEPT));
+                state.notices.push(notice(format!("{NOT_KEPT}{fault}.")));
             }
         }
         let Some(keeping) = &mut self.keeping else { return };
