@@ -123,7 +123,7 @@ impl App {
         }
         // If that fails, the window that could say so is gone.
         let _ = keeping.preferences.save(&keeping.folders);
-        if (self.leaving || self.state.history.is_saved())
+        if (self.leaving || self.is_all_saved())
             && let Some(journal) = keeping.journal
         {
             journal.end();
