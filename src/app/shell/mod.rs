@@ -155,7 +155,7 @@ fn explained(text: &str) -> StartError {
     }
 }
 
-/// What an error of the display means: "os error at <a file of the library>:<line>: <reason>".
+/// What an error of the display means: "os error at FILE OF THE LIBRARY:LINE: REASON".
 fn display_error(error: &dyn std::error::Error) -> StartError {
     let text = error.to_string();
     let reason = text.rsplit(": ").next().unwrap_or(&text).to_owned();
