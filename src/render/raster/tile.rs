@@ -330,17 +330,25 @@ impl Visibility {
         triangle: &LargeTriangle,
     ) {
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
+        let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
+        let mut blocks = some;
+        while blocks != 0 {
+            let block = blocks.trailing_zeros();
+            blocks &= blocks - 1;
+            if large.high < self.farthest[block as usize] {
+                some &= !(1 << block);
+            }
+        }
+        if some == 0 {
+            return;
+        }
         let tests: [Option<AlphaTest<'_>>; N] = std::array::from_fn(|sample| {
             let shift = self.sample_positions.shift::<N>(sample);
             AlphaTest::of(plan, frame, triangle.number, shift)
         });
-        let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
         while some != 0 {
             let block = some.trailing_zeros() as usize;
             some &= some - 1;
-            if large.high < self.farthest[block] {
-                continue;
-            }
             self.write::<S, N>(simd, block);
             let (first, whole) = (self.corner(block), whole >> block & 1 != 0);
             for (sample, test) in tests.iter().enumerate() {
