@@ -82,7 +82,7 @@ impl<T: ShadingNumber> Default for Painter<T> {
 
 impl<T: ShadingNumber> Painter<T> {
     /// Begins a frame.
-    pub(crate) const fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         self.shader.begin();
     }
 

@@ -9,6 +9,7 @@ use super::barycentric_variants::locate_by_variant;
 use super::barycentrics::Barycentrics;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
+use super::face_colors::FaceColors;
 use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
@@ -31,6 +32,9 @@ use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
 use crate::render::texture::placement::Placement;
 
+/// The number of faces in a block up to which their colours are remembered.
+const FEW_FACES: usize = 16;
+
 /// Shades blocks. Each thread has its own.
 #[derive(Debug)]
 pub(crate) struct Shader<T> {
@@ -46,6 +50,7 @@ pub(crate) struct Shader<T> {
     pub(super) far: Vec<FarTexture>,
     pub(crate) texels: Rows<T>,
     colors: Colors,
+    faces: FaceColors,
 }
 
 /// The destination of a block's colours.
@@ -80,14 +85,16 @@ impl<T: ShadingNumber> Default for Shader<T> {
             far: Vec::new(),
             texels: [[T::default(); BATCH]; 3],
             colors: Colors::default(),
+            faces: FaceColors::default(),
         }
     }
 }
 
 impl<T: ShadingNumber> Shader<T> {
     /// Begins a frame.
-    pub(crate) const fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         self.attributes.forget();
+        self.faces.begin();
     }
 
     /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on. Pixels
@@ -245,6 +252,19 @@ impl<T: ShadingNumber> Shader<T> {
         let each = textured || rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
+        // The faces of the list have one colour each, which they may have had before. Small ones
+        // show in few blocks.
+        let by_face = self.fragments.count <= FEW_FACES
+            && !each
+            && matches!(light, Some((LightAt::Face, _)))
+            && rounding == Rounding::Nearest
+            && draw.back != Back::Red
+            && self.colors.form == Form::Pixels;
+        let numbers = &self.fragments.numbers[..self.fragments.count];
+        if by_face && let Some(known) = self.faces.find(numbers) {
+            self.colors.pixels = known;
+            return self.colors.hand_out(&self.fragments.slots);
+        }
         let new = self.take(context, group, located);
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
@@ -288,6 +308,10 @@ impl<T: ShadingNumber> Shader<T> {
         } else {
             let thresholds = &thresholds(rounding, &self.fragments);
             T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
+        }
+        if by_face {
+            let Fragments { numbers, count, .. } = &self.fragments;
+            self.faces.keep(&numbers[..*count], &self.colors.pixels);
         }
         if !(located || each) {
             self.colors.hand_out(&self.fragments.slots);
