@@ -83,13 +83,22 @@ fn layers(count: u32) -> Shared<Model> {
 
 /// A sheet of `count` triangles with all that a file can hold: places on a texture, and colours.
 pub(crate) fn painted(count: u32) -> Shared<Model> {
+    placed(count, |[u, v]| Some([u, v, 1.0]))
+}
+
+/// A sheet of `count` triangles with places on a texture.
+pub(crate) fn textured(count: u32) -> Shared<Model> {
+    placed(count, |_| None)
+}
+
+fn placed(count: u32, color: impl Fn([f32; 2]) -> Option<[f32; 3]>) -> Shared<Model> {
     let plain = sheet(count);
     let mesh = &plain.mesh;
     let across = |place: &[f32; 3]| [place[0], place[1]].map(|x| x / 2.0 + 0.5);
     let (positions, corners) = (mesh.positions(), mesh.corners());
     build(MeshSource {
         uvs: positions.iter().map(across).collect(),
-        colors: positions.iter().map(across).map(|[u, v]| [u, v, 1.0]).collect(),
+        colors: positions.iter().filter_map(|place| color(across(place))).collect(),
         corners: corners
             .iter()
             .map(|corner| SourceCorner { uv: corner.position, ..plainly(corner.position) })

@@ -22,7 +22,7 @@ const FILTERS: [(&str, Filter); 3] = [
 pub(crate) fn measure(criterion: &mut Criterion) {
     for count in [1, 2_000, 100_000] {
         let mut group = criterion.benchmark_group(format!("textures/{count}"));
-        let sheet = shapes::painted(count);
+        let sheet = shapes::textured(count);
         let mut stage = Stage::new(&sheet, FULL);
         edit(&mut stage, |object| object.surface = Surface::Material);
         group.bench_function("none", |b| stage.measure(b));
@@ -44,7 +44,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
 
 fn floor(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("textures/floor");
-    let mut stage = Stage::new(&shapes::painted(2), FULL);
+    let mut stage = Stage::new(&shapes::textured(2), FULL);
     let texture = Shared::new(Texture { scale: [200.0; 2], ..noise(false) });
     edit(&mut stage, |object| {
         object.texture = Some(texture);

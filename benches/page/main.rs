@@ -26,6 +26,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .replace("{{machine}}", &machine())
         .replace("{{stages}}", &tables::stages(&measured)?)
         .replace("{{effects}}", &tables::effects(&measured)?)
+        .replace("{{textures}}", &tables::textures(&measured)?)
+        .replace("{{objects}}", &tables::objects(&measured)?)
         .replace("{{threads}}", &tables::threads(&measured)?)
         .replace("{{peers}}", &peers::table(&docs.join("speed/peers.csv"))?);
     let page = docs.join("speed.md");

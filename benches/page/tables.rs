@@ -34,6 +34,42 @@ pub(crate) fn effects(measured: &Measured) -> Result<String, String> {
     Ok(text)
 }
 
+/// Textures by filter, on sheets of triangles and on a floor.
+pub(crate) fn textures(measured: &Measured) -> Result<String, String> {
+    const COLUMNS: [&str; 6] =
+        ["none", "nearest", "bilinear", "trilinear", "nearest with holes", "trilinear with holes"];
+    let mut text = head("triangles", &COLUMNS);
+    for (group, name) in [("1", "1"), ("2000", "2,000"), ("100000", "100,000"), ("floor", "floor")]
+    {
+        let cell = |column: &&str| measured.of(&format!("textures/{group}"), column).map(brief);
+        // The floor has no other columns.
+        let cells: Vec<String> =
+            COLUMNS.iter().map(|column| cell(column).unwrap_or_default()).collect();
+        if cells[2].is_empty() {
+            return cell(&"bilinear");
+        }
+        let _ = writeln!(text, "| {name} | {} |", cells.join(" | "));
+    }
+    Ok(text)
+}
+
+/// How the time of a frame grows with the number of objects.
+pub(crate) fn objects(measured: &Measured) -> Result<String, String> {
+    let mut rows: Vec<(u32, f64)> = measured
+        .group("objects")
+        .filter_map(|(name, ms)| name.parse().ok().map(|count| (count, ms)))
+        .collect();
+    rows.sort_by_key(|row| row.0);
+    if rows.is_empty() {
+        return Err("no benchmark of objects".to_owned());
+    }
+    let mut text = head("objects", &["milliseconds"]);
+    for (count, ms) in rows {
+        let _ = writeln!(text, "| {count} | {} |", brief(ms));
+    }
+    Ok(text)
+}
+
 /// How many times as fast more threads are.
 pub(crate) fn threads(measured: &Measured) -> Result<String, String> {
     let one = measured.of("threads", "1")?;
