@@ -3,11 +3,12 @@ use fearless_simd::{SimdBase as _, i32x16};
 use super::*;
 use crate::accuracy::Samples;
 use crate::base::image::Size;
+use crate::render::raster::bins::LargeTriangle;
 use crate::render::raster::queue::{ROWS, SMALL};
 use crate::render::raster::small;
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::screen::clip::ScreenVertex;
-use crate::render::screen::coverage::Snapped;
+use crate::render::screen::coverage::{Snapped, Triangle};
 use crate::render::screen::sample_positions::passes;
 use crate::render::screen::tiles::TILE;
 
