@@ -178,7 +178,7 @@ impl App {
         self.state.path.clone_from(&work.scene_file);
         self.state.history.mark_unsaved();
         self.state.tell(Some(format!("Recovered {}", name_of(&work))));
-        // The file of the work is none that the user knows.
+        // The user does not know the file that the work was kept in.
         let own_name = file_name(opened);
         for notice in &mut self.state.notices {
             if let Some(rest) = notice.text.strip_prefix(&own_name) {

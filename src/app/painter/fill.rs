@@ -82,7 +82,7 @@ pub(super) fn hides(item: &Item, texture: &Texture, area: PixelBox) -> bool {
     }
 }
 
-/// Where the texels of a picture lie.
+/// The position of texels in a picture.
 #[derive(Debug)]
 struct Map {
     /// Whether every pixel shows one texel as it is.

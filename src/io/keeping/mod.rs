@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::reason;
 
-/// Where the program keeps its own files.
+/// The folders of the program's own files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OwnFolders {
     /// Unsaved work.

@@ -36,8 +36,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         blocks.each(|[column, row]| {
             self.fragments.list_full_block(number, [x + column, y + row]);
-            let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
-            let at = canvas.offset(place);
+            let at = canvas.offset_of([column, row]);
             self.color_group(context, &group, &mut Out::Tile(canvas, at));
         });
     }
@@ -75,8 +74,7 @@ impl<T: ShadingNumber> Shader<T> {
         if is_uniform {
             let color = self.first_color(context, group);
             blocks.each(|[column, row]| {
-                let place = [column, row].map(|i| usize::try_from(i).expect("in the tile"));
-                let at = canvas.offset(place);
+                let at = canvas.offset_of([column, row]);
                 for row in canvas.pixels[at..].chunks_mut(canvas.stride).take(ROW) {
                     row[..ROW].fill(color);
                 }

@@ -40,6 +40,12 @@ impl Canvas<'_> {
         }
     }
 
+    /// The index of the first pixel of a block, as [`Blocks::each`] gives it.
+    #[inline(always)]
+    pub(crate) fn offset_of(&self, first: [i32; 2]) -> usize {
+        self.offset(first.map(|i| usize::try_from(i).expect("in the tile")))
+    }
+
     /// The index of a pixel of the tile, by its column and row.
     #[inline(always)]
     pub(crate) const fn offset(&self, [x, y]: [usize; 2]) -> usize {

@@ -44,7 +44,7 @@ pub(crate) struct Shader<T> {
     pub(crate) attributes: TriangleAttributes<T>,
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
-    /// Where the textures of the triangles lie.
+    /// The positions of the triangles on their texture.
     pub(crate) placement: Placement,
     /// Those among them that f32 is not enough for.
     pub(super) far: Vec<FarTexture>,
