@@ -179,6 +179,55 @@ fn case_39_texels_far_from_the_origin_of_the_texture_are_right_to_a_step() {
 }
 
 #[test]
+fn case_39_a_pixel_is_a_hole_exactly_if_its_alpha_is_below_one_half() {
+    let opaque = noise(23, 17, Wrap::Repeat, [1.0; 2]);
+    let texels = opaque.picture.pixels().iter().map(|[grey, ..]| [*grey; 4]).collect();
+    let picture = Picture::from_pixels(Size::new(23, 17), texels).unwrap();
+    let texture = Shared::new(Texture { picture: picture.into(), ..Texture::clone(&opaque) });
+    let uvs = square(-0.5, 0.25, 1.5, 1.0);
+    let (scene, view) = quad(wall(), uvs, &texture);
+    let (mut wrong, mut holes, mut pixels) = (0, 0, 0);
+    for filter in [Filter::Nearest, Filter::Bilinear, Filter::Trilinear] {
+        let picture = draw(&scene, &view, &Settings { filter, ..Settings::default() }, SIDE);
+        for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+            let Some(at) = place(wall(), uvs, x, y) else { continue };
+            let alpha = grey(&texture, at, filter) - 127.5;
+            // Corners lie on 1/256 pixel, which moves a texel, or an alpha by some steps.
+            let is_clear = match filter {
+                Filter::Nearest => {
+                    let moved = |by: f64| grey(&texture, [at[0] + by, at[1] + by], filter) - 127.5;
+                    [0.002, -0.002].iter().all(|by| moved(*by).signum() == alpha.signum())
+                }
+                Filter::Bilinear | Filter::Trilinear => alpha.abs() > 2.0,
+            };
+            if is_clear && inside(x, y) {
+                pixels += 1;
+                let is_hole = picture.pixel(x, y) == scene.background.opaque();
+                holes += usize::from(is_hole);
+                wrong += usize::from(is_hole != (alpha < 0.0));
+            }
+        }
+    }
+    assert!(pixels > 3000 && holes > pixels / 4, "{holes} of {pixels}");
+    Figure {
+        case: 39,
+        what: "pixels that are a hole, or none, against their alpha",
+        naive: None,
+        ours: wrong as f64,
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
+/// Whether the wall covers a pixel and all of its neighbours.
+fn inside(x: usize, y: usize) -> bool {
+    let uvs = square(0.0, 0.0, 1.0, 1.0);
+    let beside = |i: usize| i.saturating_sub(1)..(i + 2).min(SIDE);
+    beside(y).all(|y| beside(x).all(|x| place(wall(), uvs, x, y).is_some()))
+}
+
+#[test]
 fn case_39_minified_a_thousand_times_a_texture_is_its_mean() {
     let texels = (0..64 * 64).map(|i| if (i % 64 + i / 64) % 2 == 0 { [0; 3] } else { [254; 3] });
     let texels = texels.map(|[r, g, b]| [r, g, b, 255]).collect();
