@@ -8,8 +8,8 @@ use egui::ThemePreference;
 
 use super::table::Action;
 use crate::accuracy::{LeaveOut, Settings};
-use crate::app::state::State;
 use crate::app::state::layout::{Layout, Side};
+use crate::app::state::{DrawingChoices, State};
 use crate::base::math::Axis;
 use crate::edit::framing::Side as LookSide;
 use crate::edit::lights::{APERTURE_STEP, Channel};
@@ -36,6 +36,8 @@ pub(crate) enum Intent {
     Select(Box<Selection>),
     /// Other settings of accuracy.
     Settings(Settings),
+    /// The window draws in another way beyond the settings.
+    Drawing(DrawingChoices),
     /// Other panels are shown.
     Panels(Panels),
     /// The window is divided differently among its panels.
@@ -196,6 +198,10 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
         Action::ToggleOverlays => Ok(Intent::Overlays),
         Action::ToggleCoarse => viewed(state, |view| view.coarse_while_moving ^= true),
+        Action::ToggleRefine => {
+            let refines = !state.drawing.refines;
+            Ok(Intent::Drawing(DrawingChoices { refines, ..state.drawing }))
+        }
         Action::ToggleLightNormals => {
             viewed(state, |view| view.normals = other(view.normals, Normals::Vertex, Normals::Face))
         }
@@ -398,6 +404,7 @@ impl Action {
             Self::AimByClick => state.aiming,
             Self::Palette => state.palette,
             Self::ToggleCoarse => view.coarse_while_moving,
+            Self::ToggleRefine => state.drawing.refines,
             Self::ToggleLightNormals => view.normals == Normals::Face,
             Self::ToggleProjection => view.projection == Projection::Orthographic,
             Self::ToggleObserver => view.observer == Observer::Object,

@@ -295,6 +295,10 @@ actions! {
     ToggleCoarse Show ONCE []
         "Coarser while moving" "Draws slow scenes at reduced quality while something moves."
         "quality fast preview performance resolution";
+    ToggleRefine Show ONCE []
+        "Refine when still"
+        "Refines the picture to more samples per pixel while nothing happens."
+        "antialiasing smooth edges samples progressive quality sharp";
     ToggleLightNormals Show ONCE [Either(Key::I)]
         "Flat shading (face normals)"
         "Lights polygons with face normals instead of vertex normals."

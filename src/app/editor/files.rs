@@ -9,7 +9,7 @@ use egui::Context;
 
 use super::App;
 use super::unseen::out_of_sight;
-use crate::accuracy::Shot;
+use crate::accuracy::{Settings, Shot};
 use crate::app::documents::dialogs::{After, Answer, Wanted};
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
@@ -292,13 +292,22 @@ impl App {
         self.state.tell(Some(format!("Copied a picture of {width} x {height} pixels")));
     }
 
+    /// The picture that the viewport shows.
+    #[must_use]
+    pub fn shown_picture(&self) -> Option<Picture> {
+        self.viewport.image().and_then(|image| viewport_renderer::picture(image))
+    }
+
     /// The picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
         let State { scene, view, settings, statistics, .. } = &self.state;
-        if statistics.reduction == Reduction::NONE {
-            return self.viewport.image().and_then(|image| viewport_renderer::picture(image));
+        if statistics.reduction == Reduction::NONE && statistics.refined == self.state.refined_to()
+        {
+            return self.shown_picture();
         }
-        let plan = plan_frame(&Shot::new(scene, view, settings, self.viewport.size()?));
+        let samples = self.state.refined_to().unwrap_or(settings.samples);
+        let settings = Settings { samples, ..*settings };
+        let plan = plan_frame(&Shot::new(scene, view, &settings, self.viewport.size()?));
         Some(Renderer::default().render(&plan).clone())
     }
 
@@ -323,13 +332,13 @@ impl App {
 
     /// As [`Self::replace`]; gives what was there.
     pub(crate) fn swap(&mut self, state: State) -> State {
-        let State { panels, theme, .. } = self.state;
+        let State { panels, theme, drawing, .. } = self.state;
         let statistics = self.state.statistics.clone();
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
         self.end_measuring();
         self.first_steps = None;
-        let new = State { panels, theme, statistics, recent, recoverable, ..state };
+        let new = State { panels, theme, drawing, statistics, recent, recoverable, ..state };
         std::mem::replace(&mut self.state, new)
     }
 }

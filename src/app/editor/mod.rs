@@ -23,7 +23,7 @@ use egui::{Context, UiBuilder, ViewportCommand};
 use crate::app::actions::{Action, Request};
 use crate::app::documents::dialogs::{After, Dialogs};
 use crate::app::documents::loading::{Loading, Queued, Waiting};
-use crate::app::drawing::adaptive_quality::{Happening, Motion};
+use crate::app::drawing::motion::{Happening, Motion};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::input::keyboard::Keyboard;
@@ -177,6 +177,14 @@ impl App {
         }
     }
 
+    /// Waits until the picture is refined as far as it will be.
+    /// The next frame shows it.
+    pub fn wait_until_refined(&self) {
+        if let Some(worker) = &self.worker {
+            worker.wait_until_refined();
+        }
+    }
+
     /// Prepares a frame: the results of the worker, the clock, the screen.
     fn begin(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
         if self.worker.is_none() {
@@ -210,6 +218,9 @@ impl App {
             if let Some(explained) = &news.explained {
                 self.state.plan.explained = Some(Arc::clone(explained));
             }
+            if let Some(refined) = &news.refined {
+                self.state.statistics.refined = refined.refined;
+            }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, requests);
             if failed {
@@ -239,9 +250,14 @@ impl App {
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
         let explain = self.state.panels.plan;
         let outlined = self.state.outlined();
-        let moving = false;
-        let mut wanted = Snapshot { scene, view, settings, size, moving, explain, outlined };
+        let budget = Duration::from_millis(self.state.drawing.budget_ms.into());
+        let (moving, refined) = (false, self.state.refined_to());
+        let mut wanted =
+            Snapshot { scene, view, settings, size, moving, budget, refined, explain, outlined };
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
+        if held || ctx.input(|input| !input.events.is_empty()) {
+            worker.stir();
+        }
         let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
         // An animated scene is always being drawn.
         let drawing = worker.is_drawing() && !self.state.is_animated();

@@ -43,6 +43,7 @@ impl App {
             Request::Change { command, gesture, label } => self.change(command, gesture, &label),
             Request::View(view) => self.show_view(*view),
             Request::Settings(settings) => state.settings = settings,
+            Request::Drawing(choices) => state.drawing = choices,
             Request::Lab(request) => self.answer_lab(ctx, request),
             Request::Select(id) => match selection::pick(&state.scene, &state.view, id) {
                 Ok(selection) => self.select(selection, Gesture::Whole),
@@ -105,6 +106,7 @@ impl App {
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
             Ok(Intent::Settings(settings)) => self.state.settings = settings,
+            Ok(Intent::Drawing(choices)) => self.state.drawing = choices,
             Ok(Intent::Panels(panels)) => self.state.panels = panels,
             Ok(Intent::Layout(layout)) => self.state.layout = layout,
             Ok(Intent::Theme(theme)) => {
