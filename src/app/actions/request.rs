@@ -58,6 +58,8 @@ pub enum Request {
     Details(usize),
     /// Gives up loading the file that stands at this place.
     CancelLoading(usize),
+    /// Gives up making the file that stands at this place.
+    CancelMaking(usize),
     /// Puts away the notice that stands at this place.
     PutAway(usize),
     /// Shows the unsaved work that is offered at this place.

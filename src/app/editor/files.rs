@@ -9,7 +9,7 @@ use egui::Context;
 
 use super::App;
 use super::unseen::out_of_sight;
-use crate::accuracy::{Settings, Shot};
+use crate::accuracy::{AccuracyPreset, Settings, Shot};
 use crate::app::documents::dialogs::{After, Answer, Wanted};
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
@@ -51,6 +51,7 @@ impl App {
             Answer::Save(after) => self.save(ctx, Some(after)),
             Answer::Discard(after) => self.after(ctx, after),
             Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
+            Answer::Picture(choices) => self.take_picture(ctx, choices),
             Answer::ChooseTexture => self.ask_file(ctx, Wanted::TextureOfModel, ""),
         }
     }
@@ -72,6 +73,16 @@ impl App {
             Wanted::PictureTo => {
                 if let Some(path) = paths.next() {
                     self.save_picture(&path);
+                }
+            }
+            Wanted::PictureWithOptionsTo | Wanted::TurntableTo => {
+                if let Some(path) = paths.next() {
+                    self.make_picture(ctx, path);
+                }
+            }
+            Wanted::ExportTo => {
+                if let Some(path) = paths.next() {
+                    self.export_scene(ctx, path);
                 }
             }
             Wanted::Scene => {
@@ -318,6 +329,13 @@ impl App {
             After::New => {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
+            }
+            After::NewAncestor => {
+                let (scene, view) = io::default_scene();
+                let preset = AccuracyPreset::named("ancestor-a");
+                let settings = Settings::default();
+                let settings = preset.map_or(settings, |preset| preset.of(&settings));
+                self.replace(State { settings, ..State::new(scene, view) });
             }
             After::Recover(at) => self.recover(ctx, at),
             After::Open(Some(path)) => self.open_scene(ctx, path),

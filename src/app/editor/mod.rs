@@ -8,6 +8,7 @@ mod files;
 mod first_models;
 mod keeping;
 mod laboratory;
+mod making;
 mod measuring;
 mod requests;
 mod scenes;
@@ -37,6 +38,7 @@ use crate::app::widgets::number::take_bad_text;
 use crate::scene::{Scene, Steps, View};
 use keeping::Keeping;
 use laboratory::Work;
+use making::Making;
 use measuring::Measuring;
 use unseen::Search;
 
@@ -47,6 +49,8 @@ pub struct App {
     pub(crate) dialogs: Dialogs,
     pub(crate) loading: Vec<Loading>,
     pub(crate) searches: Vec<Search>,
+    /// Files that are being made.
+    pub(crate) making: Making,
     /// Files that wait to be read.
     pub(crate) queued: VecDeque<Queued>,
     /// A scene that waits for the user to locate its missing models.
@@ -85,6 +89,7 @@ impl App {
             dialogs: Dialogs::default(),
             loading: Vec::new(),
             searches: Vec::new(),
+            making: Making::default(),
             queued: VecDeque::new(),
             waiting: None,
             viewport: Viewport::default(),
@@ -134,7 +139,7 @@ impl App {
             }
         }
         arrangement.splitters_ui(ui, &self.state, &mut requests);
-        notices::show(&ctx, &self.state, &self.loading, &mut requests);
+        notices::show(&ctx, &self.state, &self.loading, &self.making.tasks, &mut requests);
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
 
@@ -158,6 +163,7 @@ impl App {
             self.take_answer(&ctx, answer);
         }
         self.hear_loading(&ctx);
+        self.hear_making(&ctx);
         self.hear_searches();
         self.hear_measuring();
         self.hear_laboratory(&ctx);
