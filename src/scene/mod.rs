@@ -12,6 +12,7 @@ mod mesh;
 mod model;
 mod object;
 mod shapes;
+mod surface_map;
 mod tracked;
 pub mod triangulate;
 mod view;
@@ -36,6 +37,7 @@ pub use model::{
 };
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use shapes::Shape;
+pub use surface_map::{MapKind, SurfaceMap, SurfaceMaps};
 pub use tracked::Tracked;
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,

@@ -139,9 +139,9 @@ fn two_parts() -> Shared<Model> {
         ..one
     };
     let dull =
-        Material { ambient: [0.1; 3], diffuse: [0.7, 0.4, 0.2], specular: [0.0; 3], exponent: 1.0 };
+        Material { ambient: [0.1; 3], diffuse: [0.7, 0.4, 0.2], specular: [0.0; 3], exponent: 1.0, emission: [0.0; 3] };
     let shiny =
-        Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [0.9; 3], exponent: 20.0 };
+        Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [0.9; 3], exponent: 20.0, emission: [0.0; 3] };
     let file = |name: &str, material, opacity| FileMaterial {
         name: name.to_owned(),
         material,
@@ -173,7 +173,7 @@ pub(crate) fn material(rng: &mut Rng) -> Material {
     };
     let (ambient, diffuse, specular) = (row(), row(), row());
     let exponent = rng.one_of(&[0.0, 1.0, 5.0, 32.0, 128.0, 1000.0]);
-    Material { ambient, diffuse, specular, exponent }
+    Material { ambient, diffuse, specular, exponent, emission: [0.0; 3] }
 }
 
 /// A texture of a few texels, with holes or without.

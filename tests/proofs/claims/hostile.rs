@@ -230,7 +230,7 @@ impl Hostile {
     fn material(&mut self) -> Material {
         let mut color = || std::array::from_fn(|_| self.amount(1.0));
         let (ambient, diffuse, specular) = (color(), color(), color());
-        Material { ambient, diffuse, specular, exponent: self.amount(128.0) }
+        Material { ambient, diffuse, specular, exponent: self.amount(128.0), emission: [0.0; 3] }
     }
 
     fn texture(&mut self) -> Shared<Texture> {
