@@ -293,8 +293,8 @@ impl Statements {
                 findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
             }
             // Refraction, filters, sharpness, and physically based shading.
-            b"kt" | b"ni" | b"tf" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc"
-            | b"pcr" | b"aniso" | b"anisor" => {}
+            b"kt" | b"ni" | b"tf" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc" | b"pcr"
+            | b"aniso" | b"anisor" => {}
             _ => findings.add(FindingKind::Unknown, &decode(keyword), Some(line.number)),
         }
         if !read {

@@ -88,7 +88,13 @@ fn ball(rings: u32) -> Shared<Model> {
 
 fn shiny(color: [f64; 3], exponent: f64) -> MaterialChoice {
     let [ambient, diffuse] = [0.15, 0.55].map(|part| color.map(|c| c * part));
-    MaterialChoice::Own(Material { ambient, diffuse, specular: [0.8; 3], exponent, emission: [0.0; 3] })
+    MaterialChoice::Own(Material {
+        ambient,
+        diffuse,
+        specular: [0.8; 3],
+        exponent,
+        emission: [0.0; 3],
+    })
 }
 
 fn object(model: Shared<Model>, material: MaterialChoice, placement: DMat4) -> Object {

@@ -17,6 +17,7 @@ mod face_colors;
 mod far_texture;
 pub(crate) mod fragments;
 mod full_blocks;
+mod glow;
 mod groups;
 mod interpolate;
 pub(crate) mod interpolated;
