@@ -7,7 +7,7 @@ use glam::{DMat3, DMat4};
 
 use super::FramePlan;
 use super::extras::Extras;
-use crate::accuracy::LightAt;
+use crate::accuracy::{LightAt, Tangents};
 use crate::base::{Shared, color::Color};
 use crate::render::lights::{self, LightRow, PhongMaterial};
 use crate::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
@@ -59,9 +59,12 @@ impl Draw {
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
+        let is_bumpy = shaded.iter().any(|shaded| shaded.extras.bump.is_some());
+        let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
         let Lines { edges, face_normals, .. } = self.lines;
         for (what, needed) in [
             (Derived::DrawOrder, true),
+            (Derived::Tangents(self.normal_source), at_vertices),
             (Derived::PolygonOf, true),
             (Derived::EdgeOrder, edges),
             (Derived::Facets, flat),

@@ -1,5 +1,6 @@
 //! What surfaces add to their colour beside the light of lamps, and the maps of their highlights.
 
+use super::bumps::TangentRows;
 use super::context::ShadingContext;
 use super::groups::Group;
 use super::interpolated::ShadingNumber;
@@ -20,6 +21,8 @@ pub(crate) struct MapRows<T> {
     pub(super) texels: Rows<T>,
     /// Where each map lies.
     placed: [Placed; Map::COUNT],
+    /// The tangents of the triangles, if they have bumps.
+    pub(super) tangents: TangentRows<T>,
 }
 
 /// The maps of a surface beside its texture.
@@ -39,27 +42,45 @@ impl Map {
 impl<T: ShadingNumber> Default for MapRows<T> {
     fn default() -> Self {
         let rows = [[T::default(); BATCH]; 3];
-        Self { glow: rows, texels: rows, placed: Default::default() }
+        Self {
+            glow: rows,
+            texels: rows,
+            placed: Default::default(),
+            tangents: TangentRows::default(),
+        }
+    }
+}
+
+impl<T: ShadingNumber> MapRows<T> {
+    /// Reads a map into the rows for texels, all of which were `base` before.
+    pub(super) fn read(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        points: &Points<'_, T>,
+        (map, source, what, new): (Map, TexelSource<'_>, Texels, bool),
+        base: [f64; 3],
+    ) {
+        let Self { texels, placed, .. } = self;
+        for (row, base) in texels.iter_mut().zip(base) {
+            row.fill(T::from_f64(base));
+        }
+        let placed = &mut placed[map as usize];
+        points.read(context, group, (source, what, new), placed, (base, texels));
     }
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Reads a map into the rows for texels, all of which were `base` before.
-    pub(super) fn read_map(
+    /// As [`MapRows::read`], at the fragments of the list.
+    fn read_map(
         &mut self,
         context: &ShadingContext<'_, T>,
         group: &Group<'_>,
-        (map, source, what, new): (Map, TexelSource<'_>, Texels, bool),
+        of: (Map, TexelSource<'_>, Texels, bool),
         base: [f64; 3],
     ) {
         let Self { fragments, attributes, barycentrics, maps, .. } = self;
-        let MapRows { texels, placed, .. } = &mut **maps;
-        for (row, base) in texels.iter_mut().zip(base) {
-            row.fill(T::from_f64(base));
-        }
-        let points = Points { fragments, attributes, barycentrics };
-        let placed = &mut placed[map as usize];
-        points.read(context, group, (source, what, new), placed, (base, texels));
+        maps.read(context, group, &Points { fragments, attributes, barycentrics }, of, base);
     }
 
     /// Finds what is added to the colour of each pixel: Ke times its map, and the ambient light

@@ -1,6 +1,7 @@
 //! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and mip
 //! maps. Those of the last picture are reused.
 
+use super::colors::prepare_linear;
 use crate::accuracy::Filter;
 use crate::base::Shared;
 use crate::render::frame::FramePlan;
@@ -30,6 +31,7 @@ impl<T: Number> LightTerms<T> {
         self.encoding = plan.variants.are_linear().then(Encoding::new);
         if self.encoding.is_some() {
             prepare_decoding();
+            prepare_linear();
         }
         self.prepare_mips(plan);
         self.terms.resize_with(plan.pipelines.len(), Vec::new);

@@ -10,6 +10,7 @@
 mod barycentric_variants;
 pub(crate) mod barycentrics;
 mod blocks;
+mod bumps;
 mod clamp_to_triangle;
 pub(crate) mod colors;
 pub(crate) mod context;

@@ -77,7 +77,9 @@ impl<T: Number> Kernel<T> for Finish<'_, T> {
                 let Vec3([r, g, b]) = color;
                 color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);
             }
-            match thresholds {
+            // Linear values are rounded when they are added up and encoded.
+            let added_up = encoding.is_some() && colors.form == Form::Parts;
+            match thresholds.filter(|_| !added_up) {
                 None => colors.store(lanes, color, at),
                 Some(thresholds) => {
                     colors.store_by(lanes, color, lanes.load(thresholds, at), at);

@@ -7,6 +7,7 @@
 
 use super::barycentric_variants::locate_by_variant;
 use super::barycentrics::Barycentrics;
+use super::bumps::bend;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
 use super::face_colors::FaceColors;
@@ -19,7 +20,7 @@ use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
 use super::quantize::{Finish, Quantize, SurfaceColor};
 use super::rounding::{QuantizeWithThresholds, thresholds};
-use super::textured::Placed;
+use super::textured::{Placed, Points};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
@@ -161,6 +162,7 @@ impl<T: ShadingNumber> Shader<T> {
             Out::Tile(..) => Form::Pixels,
             Out::Sums(_) => Form::Parts,
         };
+        self.colors.linear = context.plan.variants.are_linear();
         self.group(context, group);
         match out {
             Out::Tile(canvas, at) => self.copy(canvas, *at),
@@ -367,7 +369,7 @@ impl<T: ShadingNumber> Shader<T> {
         if shaded.extras.exponent.is_some() {
             self.map_exponents(context, group, shaded, new);
         }
-        let Self { tile, fragments, attributes, barycentrics, batch, .. } = self;
+        let Self { tile, fragments, attributes, barycentrics, batch, maps, .. } = self;
         let light = tile.light(plan, group.pipeline, shaded);
         if light.needs_positions {
             if new {
@@ -375,6 +377,10 @@ impl<T: ShadingNumber> Shader<T> {
                 attributes.spread(level);
             }
             surface_samples(level, (plan, group.draw), fragments, attributes, barycentrics, batch);
+            if let Some(bump) = &shaded.extras.bump {
+                let points = Points { fragments, attributes, barycentrics };
+                bend(context, group, &points, (bump, new), (maps, batch));
+            }
         } else {
             // The attributes were not fetched, so the next block must not reuse them.
             attributes.forget();
