@@ -5,6 +5,7 @@
 
 mod assets;
 mod describe;
+mod dimples;
 mod error;
 mod examples;
 mod finding_kinds;
