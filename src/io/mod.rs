@@ -6,6 +6,7 @@
 mod animation;
 mod assets;
 mod describe;
+mod dimples;
 mod error;
 mod examples;
 mod export;
