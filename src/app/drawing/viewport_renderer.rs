@@ -258,7 +258,7 @@ impl ViewportRenderer {
     }
 }
 
-/// Copies a picture into an image that nobody holds, and makes that the last one.
+/// Copies a picture into a free image, and makes that the last one.
 fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {
     let [first, second, _] = images;
     let free = if Arc::get_mut(first).is_some() { 0 } else { 1 };
