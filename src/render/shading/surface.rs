@@ -405,7 +405,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let Self { fragments, attributes, barycentrics, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
-        let stored = !plan.variants.are_linear();
+        let stored = !plan.variants.are_linear() && shaded.extras.is_empty();
         if colored && stored && plan.variants.rounding == Rounding::Nearest {
             mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors));
             return Mixture::Bytes;
