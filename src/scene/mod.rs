@@ -12,6 +12,7 @@ mod mesh;
 mod model;
 mod object;
 mod shapes;
+mod spheres;
 mod surface_map;
 mod tracked;
 pub mod triangulate;
@@ -37,6 +38,7 @@ pub use model::{
 };
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use shapes::Shape;
+pub use spheres::Spheres;
 pub use surface_map::{MapKind, SurfaceMap, SurfaceMaps};
 pub use tracked::Tracked;
 pub use view::{

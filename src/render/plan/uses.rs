@@ -166,6 +166,11 @@ impl Notes {
         Self { wanted: true, ..Self::default() }
     }
 
+    /// Whether decisions are noted.
+    pub(super) const fn are_wanted(&self) -> bool {
+        self.wanted
+    }
+
     /// Notes a decision. What is on for one part of an object is on for the object.
     pub(super) fn add(&mut self, make: impl FnOnce() -> EffectUse) {
         if !self.wanted {
