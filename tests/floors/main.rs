@@ -108,6 +108,7 @@ const ROOMS: &[(&str, &[&str])] = &[
         "app",
         &[
             "theme",
+            "fonts",
             "tasks",
             "painter",
             "shell",
@@ -135,6 +136,10 @@ const GUESTS: &[(&str, &str)] = &[
     ("egui_material_icons", "app"),
     ("nucleo_matcher", "app"),
     ("rfd", "app"),
+    ("fontdb", "app"),
+    ("ttf_parser", "app"),
+    ("png", "io"),
+    ("gltf_json", "io"),
     ("tobj", "io"),
     ("image", "io"),
     ("ron", "io"),

@@ -149,7 +149,7 @@ actions! {
         "Asks for size, samples, a transparent ground and overlays, and saves a picture."
         "screenshot render resolution size transparent alpha large print wallpaper";
     SaveTurntable File ONCE []
-        "Save turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
+        "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
         "animation gif apng video movie spin rotate frames orbit";
     ExportScene File ONCE []
         "Export scene..." "Writes the scene for other programs, as OBJ with MTL or as glTF."

@@ -56,6 +56,10 @@ pub struct State {
     pub overlays: bool,
     /// Whether the next click into the picture aims the selected light.
     pub aiming: bool,
+    /// The title of the system's dialog that is open.
+    pub asking: Option<&'static str>,
+    /// Whether the strip of the first minute is shown.
+    pub greeting: bool,
     /// How large the interface is; 1 is the system's size.
     pub zoom: f32,
     /// Whether the window is so narrow that panels are folded.
@@ -275,6 +279,8 @@ impl State {
             palette: false,
             overlays: true,
             aiming: false,
+            asking: None,
+            greeting: false,
             zoom: 1.0,
             narrow: false,
             theme: ThemePreference::System,
