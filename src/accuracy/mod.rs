@@ -9,7 +9,7 @@ pub use axes::{AXES, Axis, AxisKind, Choice, Lesson, uncapitalized};
 pub use presets::{ACCURACY_PRESETS, AccuracyPreset};
 pub use settings::{
     Arithmetic, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt, NormalMatrix,
-    Normalising, Rounding, Samples, Settings, SpecularForm, SpecularPower, Subpixels,
+    Normalising, Rounding, Samples, Settings, SpecularForm, SpecularPower, Subpixels, Transparency,
     VertexArithmetic,
 };
 pub use shot::Shot;

@@ -10,21 +10,22 @@ pub struct Picture {
     width: usize,
     height: usize,
     pixels: Vec<[u8; 4]>,
-    least_alpha: LeastAlpha,
+    alphas: Alphas,
 }
 
-/// The least alpha of a picture's pixels, computed when it is first needed.
+/// The least alpha of a picture's pixels, and whether any is neither 0 nor 255; computed when they
+/// are first needed.
 #[derive(Clone, Debug, Default)]
-struct LeastAlpha(OnceLock<u8>);
+struct Alphas(OnceLock<(u8, bool)>);
 
-/// It follows from the pixels, which are compared anyway.
-impl PartialEq for LeastAlpha {
+/// They follow from the pixels, which are compared anyway.
+impl PartialEq for Alphas {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl Eq for LeastAlpha {}
+impl Eq for Alphas {}
 
 /// The width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -54,8 +55,8 @@ impl Picture {
     #[must_use]
     pub fn filled(size: Size, pixel: [u8; 4]) -> Self {
         let pixels = vec![pixel; size.area()];
-        let least_alpha = LeastAlpha::default();
-        Self { width: size.width, height: size.height, pixels, least_alpha }
+        let alphas = Alphas::default();
+        Self { width: size.width, height: size.height, pixels, alphas }
     }
 
     /// A picture of these pixels, row by row from the top; `None` if their number does not fit.
@@ -65,7 +66,7 @@ impl Picture {
             width: size.width,
             height: size.height,
             pixels,
-            least_alpha: LeastAlpha::default(),
+            alphas: Alphas::default(),
         })
     }
 
@@ -83,15 +84,29 @@ impl Picture {
 
     /// All pixels, to be written.
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
-        self.least_alpha = LeastAlpha::default();
+        self.alphas = Alphas::default();
         &mut self.pixels
     }
 
     /// The least alpha of all pixels; 255 if there are none.
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
-        let least = || self.pixels.iter().fold(255, |least, pixel| pixel[3].min(least));
-        *get_or_compute(&self.least_alpha.0, least)
+        self.alphas().0
+    }
+
+    /// Whether the alpha of any pixel is neither 0 nor 255.
+    #[must_use]
+    pub fn has_partial_alpha(&self) -> bool {
+        self.alphas().1
+    }
+
+    fn alphas(&self) -> (u8, bool) {
+        let find = || {
+            self.pixels.iter().fold((255, false), |(least, partial), [.., alpha]| {
+                (least.min(*alpha), partial | (*alpha != 0 && *alpha != 255))
+            })
+        };
+        *get_or_compute(&self.alphas.0, find)
     }
 
     /// The pixel in column `x` of row `y`, both counted from the upper left.
@@ -104,6 +119,6 @@ impl Picture {
     pub fn resize(&mut self, size: Size) {
         (self.width, self.height) = (size.width, size.height);
         self.pixels.resize(size.area(), [0, 0, 0, 255]);
-        self.least_alpha = LeastAlpha::default();
+        self.alphas = Alphas::default();
     }
 }

@@ -25,6 +25,8 @@ pub(crate) struct Draw {
     /// Whether the placement mirrors, so that front faces run clockwise.
     pub(crate) mirrored: bool,
     pub(crate) back: Back,
+    /// Whether back faces of opaque parts are culled though those of transparent ones are lit.
+    pub(crate) culls_opaque: bool,
     pub(crate) normals: Normals,
     pub(crate) normal_source: NormalSource,
     /// The pipeline of each part; `None` for parts that are not drawn.
@@ -134,6 +136,7 @@ impl Pipeline {
         }));
         key.extend(shaded.texture.as_ref().map(|_| "texture".to_owned()));
         key.extend(shaded.cutout.map(|_| "holes".to_owned()));
+        key.extend(shaded.opacity.map(|_| "transparent".to_owned()));
         key.extend(shaded.vertex_colors.then(|| "vertex colours".to_owned()));
         key.join(" + ")
     }
@@ -151,6 +154,14 @@ impl Pipeline {
     /// Whether it needs the alpha test.
     pub(crate) const fn is_cutout(&self) -> bool {
         matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
+    }
+
+    /// Its opacity, if it is transparent.
+    pub(crate) const fn opacity(&self) -> Option<f64> {
+        match self {
+            Self::Shaded(Shaded { opacity, .. }) => *opacity,
+            Self::Flat(_) => None,
+        }
     }
 }
 
@@ -179,6 +190,8 @@ pub(crate) struct Shaded {
     /// For the alpha test: the material's opacity, if the texture's alpha may bring it below one
     /// half.
     pub(crate) cutout: Option<f64>,
+    /// If it is transparent: its opacity, which the texture's alpha multiplies.
+    pub(crate) opacity: Option<f64>,
 }
 
 impl Shaded {
@@ -195,13 +208,15 @@ impl Shaded {
             tint,
             texture,
             cutout,
+            opacity,
         } = self;
         let PhongMaterial { ambient, diffuse, specular, exponent, floor, least_cosine } = material;
         for color in [ambient, diffuse, specular, tint] {
             color.map(bits).hash(hasher);
         }
         [*exponent, *floor, *least_cosine, *dropped, *cut_off].map(bits).hash(hasher);
-        (*needs_positions, *tiled, *vertex_colors, cutout.map(bits)).hash(hasher);
+        (*needs_positions, *tiled, *vertex_colors).hash(hasher);
+        (cutout.map(bits), opacity.map(bits)).hash(hasher);
         for stage in light.iter().flatten() {
             (stage.effect.name, stage.light).hash(hasher);
         }
@@ -268,6 +283,7 @@ mod tests {
             tint: [1.0; 3],
             texture: None,
             cutout: None,
+            opacity: None,
         };
         change(&mut shaded);
         Pipeline::Shaded(shaded).fingerprint()
@@ -283,11 +299,12 @@ mod tests {
             shaded(|shaded| shaded.material.floor = -3.0),
             shaded(|shaded| shaded.tint[2] = 0.5),
             shaded(|shaded| shaded.cutout = Some(1.0)),
+            shaded(|shaded| shaded.opacity = Some(1.0)),
             shaded(|shaded| shaded.vertex_colors = true),
             Pipeline::Flat(Color::WHITE).fingerprint(),
             Pipeline::Flat(Color::BACK_FACE).fingerprint(),
         ];
         let all: BTreeSet<u64> = others.into_iter().chain([plain]).collect();
-        assert_eq!(all.len(), 9);
+        assert_eq!(all.len(), 10);
     }
 }

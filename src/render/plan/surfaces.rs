@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use super::bounded;
+use super::cover::Cover;
 use super::planning::{Planner, Planning, Shining};
 use super::rules::{LitSurface, Reading, TexturedSurface};
 use super::uses::{self, Class, Effect, EffectState, EffectUse};
@@ -62,7 +63,9 @@ impl Planner<'_> {
     ) -> Option<u32> {
         let object = ground.object;
         let look = object.part_look(part);
-        if look.opacity < 0.5 {
+        let textured = !object.model.mesh.uvs().is_empty();
+        let cover = Cover::of(&look, textured, self.shot.settings.transparency);
+        if let Cover::Nothing(_) = cover {
             return None;
         }
         if !ground.seen {
@@ -83,7 +86,14 @@ impl Planner<'_> {
             vertex_colors: colored && !mesh.colors().is_empty(),
             tint: if colored { object.tint.factors() } else { [1.0; 3] },
             texture: texture.cloned(),
-            cutout: texture.filter(has_holes).map(|_| look.opacity),
+            cutout: match cover {
+                Cover::Threshold(opacity) => texture.filter(has_holes).map(|_| opacity),
+                Cover::Transparent(_) | Cover::Nothing(_) => None,
+            },
+            opacity: match cover {
+                Cover::Transparent(opacity) => Some(opacity),
+                Cover::Threshold(_) | Cover::Nothing(_) => None,
+            },
             ..self.lit(into, ground, &look)
         };
         Some(into.pipeline(Pipeline::Shaded(shaded)))
@@ -105,6 +115,7 @@ impl Planner<'_> {
             tint: [1.0; 3],
             texture: None,
             cutout: None,
+            opacity: None,
         };
         if ground.object.surface == Surface::Texture {
             return shaded;

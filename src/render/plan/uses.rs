@@ -21,6 +21,8 @@ pub enum Effect {
     Texture,
     /// The alpha test of textures.
     AlphaTest,
+    /// Transparent surfaces.
+    Transparency,
     /// The colours of vertices.
     VertexColors,
     /// Back faces.
@@ -46,6 +48,7 @@ impl Effect {
             Self::Normals => "Normals at pixels",
             Self::Texture => "Textures",
             Self::AlphaTest => "Holes of textures",
+            Self::Transparency => "Transparency",
             Self::VertexColors => "Vertex colours",
             Self::BackFaces => "Back faces",
             Self::Edges => "Edges",

@@ -25,6 +25,7 @@ impl FramePlan {
                 shaded.cutout = None;
             }),
             Effect::AlphaTest => plan.for_each_shaded(|shaded| shaded.cutout = None),
+            Effect::Transparency => plan.for_each_shaded(|shaded| shaded.opacity = None),
             Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
             Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Culled),
             Effect::Edges => plan.draws.iter_mut().for_each(|draw| draw.lines.edges = false),

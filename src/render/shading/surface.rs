@@ -7,6 +7,7 @@
 
 use super::barycentric_variants::locate_by_variant;
 use super::barycentrics::Barycentrics;
+use super::blend::Blend;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
 use super::face_colors::FaceColors;
@@ -60,6 +61,8 @@ pub(crate) enum Out<'a, 'b> {
     Tile(&'a mut Canvas<'b>, usize),
     /// The sums over several samples.
     Sums(&'a mut Sums),
+    /// What is behind a layer.
+    Layer(&'a mut Blend),
 }
 
 /// The result of interpolating the light of vertices.
@@ -159,7 +162,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         self.colors.form = match out {
             Out::Tile(..) => Form::Pixels,
-            Out::Sums(_) => Form::Parts,
+            Out::Sums(_) | Out::Layer(_) => Form::Parts,
         };
         self.group(context, group);
         match out {
@@ -167,6 +170,13 @@ impl<T: ShadingNumber> Shader<T> {
             Out::Sums(sums) => {
                 let Fragments { len, pixels, shares, .. } = &self.fragments;
                 sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
+            }
+            Out::Layer(blend) => {
+                let opacities = self.opacities(context, group);
+                let pixels = &self.fragments.pixels[..self.fragments.len];
+                for (i, (place, opacity)) in pixels.iter().zip(opacities).enumerate() {
+                    blend.put(usize::from(*place), self.colors.part(i), opacity);
+                }
             }
         }
     }
