@@ -223,7 +223,7 @@ fn describe_material(material: &FileMaterial) -> String {
     );
     if material.opacity < 1.0 {
         let _ = write!(text, ", d {}", short(material.opacity));
-        text.push_str(if material.opacity < 0.5 { " (draws nothing)" } else { " (drawn opaque)" });
+        text.push_str(if material.opacity == 0.0 { " (draws nothing)" } else { " (transparent)" });
     }
     if let Some(texture) = &material.texture {
         let size = texture.picture.size();

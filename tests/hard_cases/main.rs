@@ -29,4 +29,5 @@ mod geometry;
 mod interpolation;
 mod light;
 mod textures;
+mod transparency;
 mod undo;
