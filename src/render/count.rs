@@ -21,8 +21,8 @@ use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
 use crate::render::screen::coverage::{PixelBox, doubled_area};
 use crate::render::screen::tiles::{BLOCK_PIXELS, tiles_of};
-use crate::render::seen::Seen;
 use crate::render::shading::painter::bounds_of;
+use crate::render::tile_layers::TileLayers;
 use crate::scene::ItemId;
 
 /// The triangle that a sample of the visibility buffer shows.
@@ -66,7 +66,7 @@ impl FramePlan {
         let counts = (0..tiles)
             .into_par_iter()
             .map_init(
-                || (Seen::default(), TilePlan::default()),
+                || (TileLayers::default(), TilePlan::default()),
                 |(seen, tile_plan), tile| {
                     let bounds = bounds_of(tile, self.size);
                     seen.draw(level, self, frame, (tile, bounds));
@@ -86,7 +86,7 @@ impl FramePlan {
         &self,
         level: Level,
         frame: &ScreenGeometry,
-        (tile_seen, bounds): (&mut Seen, PixelBox),
+        (tile_seen, bounds): (&mut TileLayers, PixelBox),
         tile: &mut TilePlan,
     ) -> Counts {
         let mut counts = Counts::default();

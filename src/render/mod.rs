@@ -16,7 +16,7 @@
 //! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there
 //!   to the visibility buffer.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
-//! * `seen`: what the pixels of a tile show.
+//! * `tile_layers`: what the pixels of a tile show.
 //! * `renderer`, `damage`, `count`, `unseen`: draw plans, and answer questions about what was
 //!   drawn.
 
@@ -29,10 +29,10 @@ mod raster;
 mod reference;
 mod renderer;
 pub mod screen;
-mod seen;
 mod shading;
 pub mod simd;
 mod texture;
+mod tile_layers;
 mod timings;
 mod unseen;
 

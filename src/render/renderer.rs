@@ -26,9 +26,9 @@ use crate::render::raster::visibility_buffer::Visible;
 use crate::render::raster::{depth_format, visibility_buffer};
 use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::render::screen::tiles::{BLOCK_PIXELS, TILE, TILE_SIDE, block_at, tiles_of};
-use crate::render::seen::Seen;
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
+use crate::render::tile_layers::TileLayers;
 use crate::render::timings::{Laps, Timings};
 use crate::scene::ItemId;
 
@@ -267,7 +267,7 @@ impl Renderer {
         let [x, y] = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
-        let mut tile_seen = Seen::default();
+        let mut tile_seen = TileLayers::default();
         tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
         let mut word = 0;
         tile_seen.each(self.level, &self.frame, block_at(x % TILE, y % TILE), |at, nearest, _| {
@@ -349,7 +349,7 @@ impl Renderer {
     }
 
     /// Calls `each` with the index of each pixel of the last picture, its nearest word and all that
-    /// it shows, tile by tile, until it breaks. See [`Seen::each`].
+    /// it shows, tile by tile, until it breaks. See [`TileLayers::each`].
     fn look(
         &mut self,
         mut each: impl FnMut(&Self, &FramePlan, usize, u64, &[u64]) -> ControlFlow<()>,
@@ -357,7 +357,7 @@ impl Renderer {
         self.build_again();
         let Some(plan) = &self.plan else { return };
         let [columns, rows] = tiles_of(plan.size);
-        let mut tile_seen = Seen::default();
+        let mut tile_seen = TileLayers::default();
         for tile in 0..usize::try_from(columns * rows).expect("not negative") {
             tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
             for block in 0..BLOCK_PIXELS {

@@ -159,8 +159,8 @@ impl Offer {
     }
 }
 
-/// Makes an object opaque: its own opacity becomes 1. If it was, its file's materials or its texture
-/// hide it: it gets the first part's material as its own, or shows its material alone.
+/// Makes an object opaque: its own opacity becomes 1. If it was, the materials or the texture of
+/// its file hide it: it gets the first part's material as its own, or shows its material alone.
 fn make_opaque(object: &mut Object) {
     let was_transparent = object.opacity < 1.0;
     object.opacity = 1.0;

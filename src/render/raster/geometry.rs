@@ -311,8 +311,8 @@ impl ScreenGeometry {
         (number(draw), self.starts[draw])
     }
 
-    /// What triangles are sorted by if draws are laid over each other as wholes: the draw's place in
-    /// the order from far to near above, and the number of the triangle below.
+    /// What triangles are sorted by if draws are laid over each other as wholes: the draw's place
+    /// in the order from far to near above, and the number of the triangle below.
     pub(crate) fn key_by_draw(&self, triangle: u32) -> u64 {
         let (draw, _) = self.draw_of(triangle);
         let place = self.far_to_near.get(draw as usize).map_or(0, |place| u64::from(*place) + 1);

@@ -6,8 +6,8 @@
 //! each other change places at the pixel where they do. Of equal depths the lower number is in
 //! front, as among opaque triangles: it belongs to the older object or is the earlier face.
 //!
-//! A list holds [`MOST`] layers. If a pixel has more, the farthest are taken first, and the block is
-//! gathered again for the next, so memory is bounded whatever the number of layers.
+//! A list holds [`MOST`] layers. If a pixel has more, the farthest are taken first, and the block
+//! is gathered again for the next, so memory is bounded whatever the number of layers.
 
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -291,8 +291,8 @@ struct Keys<'a> {
 }
 
 impl Keys<'_> {
-    /// The key of a word of the visibility buffer: itself, or the draw's place in the order from far
-    /// to near above and the triangle's number below.
+    /// The key of a word of the visibility buffer: itself, or the draw's place in the order from
+    /// far to near above and the triangle's number below.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lower half is the number")]
     fn of(&self, word: u64) -> u64 {

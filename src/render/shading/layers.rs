@@ -9,18 +9,20 @@ use super::blend::{Blend, Way};
 use super::colors::Sums;
 use super::context::ShadingContext;
 use super::interpolated::ShadingNumber;
-use super::painter::Painter;
 use super::resolve::add_other;
 use super::surface::{Out, Shader};
 use crate::accuracy::Transparency;
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::raster::depth_format;
+use crate::render::raster::layers::Layers;
+use crate::render::raster::tile::Visibility;
 use crate::render::raster::visibility_buffer::{Visible, key, seen};
 use crate::render::screen::tiles::BLOCK_PIXELS;
 
-/// The colours of one sample of a block, and what it shows.
+/// The layers of a tile, and the colours of one sample of a block.
 #[derive(Debug, Default)]
 pub(super) struct Layered {
+    pub(super) layers: Layers,
     blend: Blend,
     /// The numbers of all that the sample shows, layer by layer from what is opaque; empty if that
     /// is not known.
@@ -29,36 +31,36 @@ pub(super) struct Layered {
     before: Vec<u64>,
 }
 
-impl<T: ShadingNumber> Painter<T> {
-    /// Adds the colours of all samples of a block that transparent triangles touch. Returns whether
-    /// it may show more than the background.
-    pub(super) fn add_layered(
+impl Layered {
+    /// Adds the colours of all samples of a block that transparent triangles touch.
+    pub(super) fn add<T: ShadingNumber>(
         &mut self,
         context: &ShadingContext<'_, T>,
+        (shader, visibility): (&mut Shader<T>, &mut Visibility),
         (block, corner): (usize, [i32; 2]),
         sums: &mut Sums,
     ) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let samples = frame.sample_positions().count();
-        self.layered.before.clear();
+        self.before.clear();
         for sample in 0..samples {
-            let opaque = self.visibility.entries(level, block, sample);
+            let opaque = visibility.entries(level, block, sample);
+            let (at, order) = ((block, sample), (frame, plan.transparency));
             self.layers.open();
-            let at = (block, sample);
-            let mut more = self.layers.take(level, (frame, plan.transparency), at, &opaque);
+            let mut more = self.layers.take(level, order, at, &opaque);
             self.note_sequence(plan, samples, &opaque);
-            let Layered { blend, sequence, before } = &mut self.layered;
+            let Self { layers, blend, sequence, before } = self;
             if sequence.is_empty() || sequence != before {
                 let mut behind = Sums::default();
-                self.shader.add_entries(context, &opaque, corner, &mut behind);
+                shader.add_entries(context, &opaque, corner, &mut behind);
                 blend.begin(|place| behind.parts(place), way(plan));
                 while more {
-                    for i in 0..self.layers.len() {
-                        let row = self.layers.row(plan.transparency, i);
+                    for i in 0..layers.len() {
+                        let row = layers.row(plan.transparency, i);
                         blend.place(|place| distance(plan, row[place]));
-                        self.shader.layer(context, &row, corner, blend);
+                        shader.layer(context, &row, corner, blend);
                     }
-                    more = self.layers.take(level, (frame, plan.transparency), at, &opaque);
+                    more = layers.take(level, order, at, &opaque);
                 }
             }
             std::mem::swap(sequence, before);
@@ -68,7 +70,7 @@ impl<T: ShadingNumber> Painter<T> {
 
     /// Notes what a sample shows, if another sample may be compared with it.
     fn note_sequence(&mut self, plan: &FramePlan, samples: usize, opaque: &[u64; BLOCK_PIXELS]) {
-        let Self { layers, layered: Layered { sequence, .. }, .. } = self;
+        let Self { layers, sequence, .. } = self;
         sequence.clear();
         // The weights of a mean differ from sample to sample.
         if samples > 1 && layers.are_all() && way(plan) == Way::Over {

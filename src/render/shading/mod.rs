@@ -5,9 +5,9 @@
 //! (`barycentrics`), interpolates attributes (`interpolate`), lights fragments per pixel, face or
 //! vertex (`light`), and multiplies with the colour of the surface (`textured`). `quantize`
 //! converts the result to bytes, and `resolve` averages samples. Blocks that one triangle covers
-//! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`). Blocks that
-//! transparent triangles reach are coloured layer by layer (`layers`), each with its `opacity`, which
-//! `blend` lays over what is behind.
+//! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`). Blocks
+//! that transparent triangles reach are coloured layer by layer (`layers`), each with its
+//! `opacity`, which `blend` lays over what is behind.
 
 mod barycentric_variants;
 pub(crate) mod barycentrics;

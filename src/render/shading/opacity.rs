@@ -35,8 +35,9 @@ impl<T: ShadingNumber> Shader<T> {
             *corners = uvs(group.draw, *number);
         }
         let filter = context.plan.filter;
+        let own = &mut opacities[..fragments.len];
         // Dispatched so that rounding down uses the processor's instruction, if it has one.
-        dispatch!(context.level, _ => for (i, own) in opacities[..fragments.len].iter_mut().enumerate() {
+        dispatch!(context.level, _ => for (i, own) in own.iter_mut().enumerate() {
             let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
             if let Some(corners) = corners[slot] {
                 let uv = uv(corners, barycentrics.weights(i));

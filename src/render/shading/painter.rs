@@ -17,7 +17,6 @@ use super::surface::{Out, Shader};
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::render::frame::FramePlan;
-use crate::render::raster::layers::Layers;
 use crate::render::raster::tile::Visibility;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::{ALL, FOUR};
@@ -64,10 +63,9 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
 #[derive(Debug)]
 #[repr(align(128))]
 pub(crate) struct Painter<T> {
-    pub(super) shader: Shader<T>,
-    pub(super) visibility: Visibility,
-    pub(super) layers: Layers,
-    pub(super) layered: Layered,
+    shader: Shader<T>,
+    visibility: Visibility,
+    layered: Layered,
     samples: Samples,
     /// A buffer for a tile that is not painted straight into the picture.
     pixels: Vec<[u8; 4]>,
@@ -78,7 +76,6 @@ impl<T: ShadingNumber> Default for Painter<T> {
         Self {
             shader: Shader::default(),
             visibility: Visibility::default(),
-            layers: Layers::default(),
             layered: Layered::default(),
             samples: Samples::default(),
             pixels: vec![[0; 4]; TILE_SIDE * TILE_SIDE],
@@ -133,7 +130,7 @@ impl<T: ShadingNumber> Painter<T> {
         if frame.is_empty(tile) {
             return false;
         }
-        let Self { shader, visibility, layers, .. } = self;
+        let Self { shader, visibility, layered: Layered { layers, .. }, .. } = self;
         visibility.draw(level, plan, frame, (tile, bounds));
         if frame.is_layered(tile) {
             layers.begin(level, plan, frame, (tile, bounds));
@@ -154,7 +151,7 @@ impl<T: ShadingNumber> Painter<T> {
         bounds: PixelBox,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let layered = self.layers.touched();
+        let layered = self.layered.layers.touched();
         let mut whole = self.visibility.full_blocks() & !layered;
         if whole != u64::MAX {
             for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
@@ -167,7 +164,8 @@ impl<T: ShadingNumber> Painter<T> {
                 let at = canvas.offset(corner_in_tile(block));
                 let mut sums = Sums::default();
                 let corner = self.visibility.corner(block);
-                self.add_layered(context, (block, corner), &mut sums);
+                let Self { shader, visibility, layered, .. } = self;
+                layered.add(context, (shader, visibility), (block, corner), &mut sums);
                 canvas.put(at, &sums.means(context.frame.sample_positions().count().ilog2()));
                 shows = true;
             } else if let Some(number) = self.visibility.whole(block) {
@@ -242,9 +240,10 @@ impl<T: ShadingNumber> Painter<T> {
         }
         let empty = !self.see(context, tile, bounds_of(tile, plan.size));
         for (block, to) in to.iter_mut().enumerate() {
-            if !empty && self.layers.touches(block) {
+            if !empty && self.layered.layers.touches(block) {
                 let corner = self.visibility.corner(block);
-                self.add_layered(context, (block, corner), to);
+                let Self { shader, visibility, layered, .. } = self;
+                layered.add(context, (shader, visibility), (block, corner), to);
                 continue;
             }
             let Self { shader, visibility, samples, .. } = self;

@@ -15,7 +15,7 @@ use crate::accuracy::Transparency;
 
 /// The tile that is looked at.
 #[derive(Debug, Default)]
-pub(crate) struct Seen {
+pub(crate) struct TileLayers {
     pub(crate) visibility: Visibility,
     layers: Layers,
     bounds: Option<PixelBox>,
@@ -23,7 +23,7 @@ pub(crate) struct Seen {
     words: Vec<Vec<u64>>,
 }
 
-impl Seen {
+impl TileLayers {
     /// Draws the visibility of a tile.
     pub(crate) fn draw(
         &mut self,
