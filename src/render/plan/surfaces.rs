@@ -64,7 +64,8 @@ impl Planner<'_> {
         let object = ground.object;
         let look = object.part_look(part);
         let textured = !object.model.mesh.uvs().is_empty();
-        let cover = Cover::of(&look, textured, self.shot.settings.transparency);
+        let settings = &self.shot.settings;
+        let cover = Cover::of(&look, textured, settings.transparency);
         if let Cover::Nothing(_) = cover {
             return None;
         }
@@ -92,7 +93,11 @@ impl Planner<'_> {
             },
             opacity: match cover {
                 Cover::Transparent(opacity) => Some(opacity),
-                Cover::Threshold(_) | Cover::Nothing(_) => None,
+                // One with a texture has an alpha test then.
+                Cover::Threshold(opacity) => Some(opacity).filter(|_| {
+                    texture.is_none() && rules.layer(settings.transparency).is_none()
+                }),
+                Cover::Nothing(_) => None,
             },
             ..self.lit(into, ground, &look)
         };
