@@ -13,10 +13,18 @@ pub struct Picture {
     alphas: Alphas,
 }
 
-/// The least alpha of a picture's pixels, and whether any is neither 0 nor 255; computed when they
-/// are first needed.
+/// What the alphas of a picture's pixels are; found when it is first needed.
 #[derive(Clone, Debug, Default)]
-struct Alphas(OnceLock<(u8, bool)>);
+struct Alphas(OnceLock<Found>);
+
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    least: u8,
+    /// Whether any is neither 0 nor 255.
+    partial: bool,
+    /// Whether any pixel is neither black nor white.
+    grey: bool,
+}
 
 /// They follow from the pixels, which are compared anyway.
 impl PartialEq for Alphas {
@@ -91,19 +99,33 @@ impl Picture {
     /// The least alpha of all pixels; 255 if there are none.
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
-        self.alphas().0
+        self.alphas().least
     }
 
     /// Whether the alpha of any pixel is neither 0 nor 255.
     #[must_use]
     pub fn has_partial_alpha(&self) -> bool {
-        self.alphas().1
+        self.alphas().partial
     }
 
-    fn alphas(&self) -> (u8, bool) {
+    /// Whether, as a map of opacity, it is anywhere between nothing and all: its alpha is or, if all
+    /// of it is opaque, its colour.
+    #[must_use]
+    pub fn fades(&self) -> bool {
+        let Found { least, partial, grey } = self.alphas();
+        if least == 255 { grey } else { partial }
+    }
+
+    fn alphas(&self) -> Found {
+        let nothing = Found { least: 255, partial: false, grey: false };
         let find = || {
-            self.pixels.iter().fold((255, false), |(least, partial), [.., alpha]| {
-                (least.min(*alpha), partial | (*alpha != 0 && *alpha != 255))
+            self.pixels.iter().fold(nothing, |found, [r, g, b, alpha]| {
+                let color = [*r, *g, *b];
+                Found {
+                    least: found.least.min(*alpha),
+                    partial: found.partial | (*alpha != 0 && *alpha != 255),
+                    grey: found.grey | (color != [0; 3] && color != [255; 3]),
+                }
             })
         };
         *get_or_compute(&self.alphas.0, find)

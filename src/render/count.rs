@@ -203,6 +203,9 @@ impl FramePlan {
             (Effect::AlphaTest, shaded.cutout.is_some()),
             (Effect::Transparency, shaded.opacity.is_some()),
             (Effect::VertexColors, shaded.vertex_colors),
+            (Effect::Emission, shaded.extras.emission.is_some()),
+            (Effect::Maps, shaded.extras.has_maps()),
+            (Effect::Bumps, shaded.extras.bump.is_some()),
         ];
         for (effect, _) in features.into_iter().filter(|(_, there)| *there) {
             counts.add(effect, item, pixels);

@@ -26,6 +26,7 @@ const LIGHT: &str = "Light";
 const COLOUR: &str = "Colour";
 const CAMERA: &str = "Camera";
 const UNDO: &str = "Undo";
+const SURFACES: &str = "Surfaces";
 const FILES: &str = "Files and scale";
 const TRANSPARENCY: &str = "Transparency";
 
@@ -116,6 +117,14 @@ pub(crate) static CASES: &[Case] = &[
     case(84, TRANSPARENCY, "R", "the order of the list shows through glass"),
     case(85, TRANSPARENCY, "D", "glass that reaches behind the eye is drawn whole or not at all"),
     case(86, TRANSPARENCY, "D", "a fading texture is cut off at one half"),
+    case(90, SURFACES, "D", "bumps on the mirrored half of a model are dents"),
+    case(91, SURFACES, "R", "bumps break at a seam of the texture coordinates"),
+    case(92, SURFACES, "I", "texture coordinates without area divide by 0 and turn the surface black"),
+    case(93, SURFACES, "R", "bumps of no height change the last bit, or cost time"),
+    case(94, SURFACES, "R", "a flat map of normals tilts everything by half a step"),
+    case(95, SURFACES, "Z", "what shines by itself is dimmed by light that is not there"),
+    case(96, COLOUR, "Z", "black and white do not survive decoding and encoding"),
+    case(97, COLOUR, "Z", "the middle between black and white is too dark"),
 ];
 
 #[test]

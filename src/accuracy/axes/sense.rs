@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use crate::accuracy::{Samples, Settings};
 use crate::base::math::power_of_two_near;
-use crate::scene::{Object, ObjectId, Scene, Surface, Texture, View};
+use crate::scene::{MapKind, Object, ObjectId, Scene, Surface, Texture, View};
 
 /// The objects that are shown.
 fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> {
@@ -45,10 +45,19 @@ pub(super) fn is_textured(object: &Object, part: u32) -> bool {
 pub(super) fn is_transparent(object: &Object, part: u32) -> bool {
     let look = object.part_look(part);
     let partial = |texture: &Texture| texture.picture.has_partial_alpha();
+    let map = look.map(MapKind::Opacity).filter(|_| !object.model.mesh.uvs().is_empty());
     (look.opacity > 0.0 && look.opacity < 1.0)
+        || (look.opacity > 0.0 && map.is_some_and(|map| map.texture.picture.fades()))
         || (is_textured(object, part)
             && look.opacity > 0.0
             && look.texture.is_some_and(|texture| partial(texture)))
+}
+
+/// Whether it is lit, and has a map of heights or normals.
+pub(super) fn has_bumps(object: &Object, part: u32) -> bool {
+    let look = object.part_look(part);
+    let mapped = [MapKind::Bump, MapKind::Normal].iter().any(|kind| look.map(*kind).is_some());
+    is_lit(object, part) && mapped && !object.model.mesh.uvs().is_empty()
 }
 
 pub(super) fn is_mirroring(object: &Object, part: u32) -> bool {

@@ -36,7 +36,7 @@ pub const SUITE: &[SuiteScene] = &[
     SuiteScene {
         word: "pixels",
         what: "one lit triangle over the whole picture",
-        axes: &["arithmetic", "normalising", "faint", "rounding"],
+        axes: &["arithmetic", "normalising", "faint", "rounding", "values"],
         make: scenes::pixels,
     },
     SuiteScene {
@@ -80,6 +80,12 @@ pub const SUITE: &[SuiteScene] = &[
         what: "thirty-two glass balls, one inside another, each cut through by its neighbours",
         axes: &["transparency"],
         make: scenes::layers,
+    },
+    SuiteScene {
+        word: "bumps",
+        what: "balls with a map of heights, near and far",
+        axes: &["bumps", "tangents"],
+        make: scenes::bumps,
     },
     SuiteScene {
         word: "first",

@@ -51,7 +51,7 @@ impl Layered {
             self.note_sequence(plan, samples, &opaque);
             let Self { layers, blend, sequence, before } = self;
             if sequence.is_empty() || sequence != before {
-                let mut behind = Sums::default();
+                let mut behind = Sums::new(plan.variants.are_linear());
                 shader.add_entries(context, &opaque, corner, &mut behind);
                 blend.begin(|place| behind.parts(place), way(plan));
                 while more {

@@ -162,7 +162,7 @@ impl<T: ShadingNumber> Painter<T> {
         for block in 0..BLOCK_PIXELS {
             if layered >> block & 1 != 0 {
                 let at = canvas.offset(corner_in_tile(block));
-                let mut sums = Sums::default();
+                let mut sums = Sums::new(context.plan.variants.are_linear());
                 let corner = self.visibility.corner(block);
                 let Self { shader, visibility, layered, .. } = self;
                 layered.add(context, (shader, visibility), (block, corner), &mut sums);
@@ -205,7 +205,7 @@ impl<T: ShadingNumber> Painter<T> {
         if samples.compare(context.level, planes) {
             return shader.block(context, &planes[0], corner, (canvas, at));
         }
-        let mut sums = Sums::default();
+        let mut sums = Sums::new(context.plan.variants.are_linear());
         let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
         canvas.put(at, &sums.means(FOUR.ilog2()));
         shows
@@ -234,7 +234,7 @@ impl<T: ShadingNumber> Painter<T> {
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
-        to.resize(BLOCK_PIXELS, Sums::default());
+        to.resize(BLOCK_PIXELS, Sums::new(plan.variants.are_linear()));
         if !frame.sample_positions().are_many() {
             return self.add_picture(context, tile, &mut to);
         }
