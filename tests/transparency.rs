@@ -18,8 +18,13 @@ const SIDE: usize = 64;
 
 /// A colour that does not depend on any light but the ambient one.
 fn plain(color: [f64; 3]) -> MaterialChoice {
-    let material =
-        Material { ambient: color, diffuse: [0.0; 3], specular: [0.0; 3], exponent: 1.0 };
+    let material = Material {
+        ambient: color,
+        diffuse: [0.0; 3],
+        specular: [0.0; 3],
+        exponent: 1.0,
+        emission: [0.0; 3],
+    };
     MaterialChoice::Own(material)
 }
 

@@ -67,6 +67,7 @@ fn stage(sheets: &[(u32, Sheet)]) -> (Scene, View) {
                 diffuse: [0.0; 3],
                 specular: [0.0; 3],
                 exponent: 1.0,
+                emission: [0.0; 3],
             });
         });
     }
