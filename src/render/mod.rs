@@ -16,6 +16,7 @@
 //! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there
 //!   to the visibility buffer.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
+//! * `tile_layers`: what the pixels of a tile show.
 //! * `renderer`, `damage`, `count`, `unseen`, `without_ground`: draw plans, and answer questions
 //!   about what was drawn.
 
@@ -31,6 +32,7 @@ pub mod screen;
 mod shading;
 pub mod simd;
 mod texture;
+mod tile_layers;
 mod timings;
 mod unseen;
 mod without_ground;

@@ -51,6 +51,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "reference",
             "raster",
             "shading",
+            "tile_layers",
             "count",
             "damage",
             "renderer",

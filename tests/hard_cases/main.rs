@@ -30,4 +30,5 @@ mod interpolation;
 mod light;
 mod surfaces;
 mod textures;
+mod transparency;
 mod undo;

@@ -21,6 +21,8 @@ pub enum Effect {
     Texture,
     /// The alpha test of textures.
     AlphaTest,
+    /// Transparent surfaces.
+    Transparency,
     /// The colours of vertices.
     VertexColors,
     /// Light of the surface's own.
@@ -54,6 +56,7 @@ impl Effect {
             Self::Normals => "Normals at pixels",
             Self::Texture => "Textures",
             Self::AlphaTest => "Holes of textures",
+            Self::Transparency => "Transparency",
             Self::VertexColors => "Vertex colours",
             Self::Emission => "Emission",
             Self::Maps => "Maps of Ka, Ks, Ns",

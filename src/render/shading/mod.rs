@@ -5,10 +5,13 @@
 //! (`barycentrics`), interpolates attributes (`interpolate`), lights fragments per pixel, face or
 //! vertex (`light`), and multiplies with the colour of the surface (`textured`). `quantize`
 //! converts the result to bytes, and `resolve` averages samples. Blocks that one triangle covers
-//! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`).
+//! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`). Blocks
+//! that transparent triangles reach are coloured layer by layer (`layers`), each with its
+//! `opacity`, which `blend` lays over what is behind.
 
 mod barycentric_variants;
 pub(crate) mod barycentrics;
+mod blend;
 mod blocks;
 mod bumps;
 mod clamp_to_triangle;
@@ -22,8 +25,10 @@ mod glow;
 mod groups;
 mod interpolate;
 pub(crate) mod interpolated;
+mod layers;
 pub(crate) mod light;
 pub(crate) mod light_terms;
+mod opacity;
 pub(crate) mod painter;
 pub(crate) mod quantize;
 mod resolve;
