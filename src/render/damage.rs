@@ -41,6 +41,8 @@ pub enum DamageCause {
     Background,
     /// The settings of accuracy changed.
     Settings,
+    /// A light that casts shadows changed, or something that casts them.
+    Shadows,
     /// The order of draws changed, which decides between equal depths.
     Order,
     /// These items changed; the list is empty if the picture stays as it is.
@@ -151,6 +153,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         clip_from_view,
         line_width,
         lights: _,
+        shadows,
         draws: _,
         pipelines: _,
         leave_out,
@@ -174,6 +177,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         () if moved => Some(DamageCause::Camera),
         () if settings => Some(DamageCause::Settings),
         () if *background != before.background => Some(DamageCause::Background),
+        () if !shadows.is_same(&before.shadows) => Some(DamageCause::Shadows),
         () => None,
     }
 }

@@ -1,11 +1,13 @@
 //! What a frame draws, as plain data. Nothing here makes a decision or touches a pixel.
 
 pub(crate) mod draw;
+pub(crate) mod shadows;
 pub(crate) mod variants;
 
 use glam::DMat4;
 
 use self::draw::{Draw, Pipeline};
+use self::shadows::Shadows;
 use self::variants::Variants;
 use super::lights::ViewLight;
 use crate::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples};
@@ -47,6 +49,8 @@ pub struct FramePlan {
     pub(crate) lights: Vec<ViewLight>,
     /// The ids of the lights, in the same order.
     pub(crate) light_ids: Vec<LightId>,
+    /// Which lights cast shadows, and what casts them.
+    pub(crate) shadows: Shadows,
     /// What is drawn, in the order that decides between equal depths.
     pub(crate) draws: Vec<Draw>,
     /// The distinct pipelines of all draws.
@@ -87,6 +91,7 @@ impl FramePlan {
     /// of them themselves: see [`together`](crate::base::work_stealing::together).
     pub(crate) fn prepare(&self) {
         self.draws.iter().for_each(|draw| draw.prepare(self));
+        self.shadows.prepare();
     }
 
     /// Pixels.

@@ -12,6 +12,7 @@ mod planner;
 mod planning;
 mod range;
 mod rules;
+mod shadows;
 mod surfaces;
 pub(crate) mod tile;
 mod turning;
@@ -25,6 +26,7 @@ use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectState, EffectUse, Thing};
 use self::view_lights::view_lights;
 use crate::accuracy::{Arithmetic, LightAt, Samples, Settings, Shot};
+use crate::render::frame::shadows::Shadows;
 use crate::render::frame::variants::Variants;
 use crate::render::frame::{Eye, FramePlan, Rules};
 use crate::scene::Projection;
@@ -85,6 +87,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         line_width: if view.wide_lines { 2 } else { 1 },
         lights: Vec::new(),
         light_ids: Vec::new(),
+        shadows: Shadows::default(),
         draws: Vec::new(),
         pipelines: Vec::new(),
         leave_out: settings.leave_out,
@@ -93,6 +96,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     let mut into = Planning::new(plan, notes);
     let shining = view_lights(&mut into, scene, view, &observer);
     let planner = Planner { shot, observer, shining };
+    planner.add_shadows(&mut into);
     planner.add_objects(&mut into);
     if view.marks {
         planner.add_marks(&mut into);

@@ -33,7 +33,7 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    fn thing(&self) -> Option<uses::Thing> {
+    pub(super) fn thing(&self) -> Option<uses::Thing> {
         Some(uses::Thing { item: self.item, name: self.object.name.clone() })
     }
 }
@@ -168,7 +168,8 @@ impl Planner<'_> {
     ) -> Vec<Stage> {
         let mut stages = Vec::new();
         let mut no_highlight = Some("no light is on it");
-        for Shining { id, name, effect, light, .. } in &self.shining {
+        for shining in &self.shining {
+            let Shining { id, name, effect, light, .. } = shining;
             let source = into.plan.lights[*light as usize];
             let (region, turning) = (ground.region.as_ref(), ground.turning.as_ref());
             let meeting = LitSurface { effect, light: &source, material, region, turning };
@@ -181,6 +182,7 @@ impl Planner<'_> {
                 state: reason.map_or(EffectState::ON, EffectState::exact),
                 pixels: None,
             });
+            self.note_shadows(into, ground, shining, reason);
             if reason.is_some() {
                 continue;
             }

@@ -131,9 +131,12 @@ impl<T: ShadingNumber> Shader<T> {
         let has_variant = plan.variants.locates_one_by_one()
             || plan.variants.root_variant().is_some()
             || plan.variants.rounding != Rounding::Nearest;
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let is_shaded = plan.shadows.any_of(stages);
         if (is_lit && !pixels)
             || shaded.vertex_colors
             || has_variant
+            || is_shaded
             || group.draw.back == Back::Red
         {
             return false;
