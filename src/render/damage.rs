@@ -288,6 +288,8 @@ impl Compared<'_> {
                     && after.iter().zip(before).all(|(after, before)| {
                         after.effect.name == before.effect.name
                             && after.highlight == before.highlight
+                            && self.after.shadows.source(after.light).is_some()
+                                == self.before.shadows.source(before.light).is_some()
                             && alike_lights(
                                 &self.after.lights[after.light as usize],
                                 &self.before.lights[before.light as usize],

@@ -25,6 +25,7 @@ const INTERPOLATION: &str = "Interpolation";
 const LIGHT: &str = "Light";
 const COLOUR: &str = "Colour";
 const CAMERA: &str = "Camera";
+const SHADOWS: &str = "Shadows";
 const UNDO: &str = "Undo";
 const FILES: &str = "Files and scale";
 
@@ -108,6 +109,15 @@ pub(crate) static CASES: &[Case] = &[
     case(65, FILES, "Z", "odd faces in files read past the end, or are filled wrongly"),
     case(66, FILES, "R", "a scene in millimetres looks other than one in kilometres"),
     case(67, FILES, "I", "nothing at all, and very much, are not drawn"),
+    case(68, SHADOWS, "D", "light leaks in under a cube on the ground, or the ground speckles"),
+    case(69, SHADOWS, "I", "rays pass through the edges and corners of a closed body"),
+    case(70, SHADOWS, "I", "the surface under a lamp puts everything else in shadow"),
+    case(71, SHADOWS, "D", "far from the origin a thin gap has no shadow, or all is shadow"),
+    case(72, SHADOWS, "D", "thin leaves shade themselves, or not what lies close below"),
+    case(73, SHADOWS, "R", "a mirrored body casts no shadow"),
+    case(74, SHADOWS, "I", "a light inside of a closed body shines through it"),
+    case(75, SHADOWS, "R", "a bias that suits one unit of length is wrong in another"),
+    case(76, SHADOWS, "I", "triangles of one plane shade each other"),
 ];
 
 #[test]
@@ -117,9 +127,9 @@ fn every_case_has_a_row_and_a_test_with_its_number() {
     for entry in std::fs::read_dir(folder).unwrap() {
         sources += &std::fs::read_to_string(entry.unwrap().path()).unwrap();
     }
-    for (number, row) in (1..=67).zip(CASES) {
+    for (number, row) in (1..=76).zip(CASES) {
         assert_eq!(row.number, number);
         assert!(sources.contains(&format!("fn case_{number}_")), "case {number} has no test");
     }
-    assert_eq!(CASES.len(), 67);
+    assert_eq!(CASES.len(), 76);
 }

@@ -28,5 +28,6 @@ mod files_and_scale;
 mod geometry;
 mod interpolation;
 mod light;
+mod shadows;
 mod textures;
 mod undo;

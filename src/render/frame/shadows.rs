@@ -12,13 +12,13 @@ use crate::scene::{Derived, ItemId, Model, Texture};
 /// The shadows of a frame; empty if no light casts any.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Shadows {
-    /// For each light of the plan, where the rays to it end, if it casts shadows.
+    /// For each light of the plan, the end of the rays to it, if it casts shadows.
     pub(crate) sources: Vec<Option<ShadowSource>>,
     /// What casts shadows, the oldest first.
     pub(crate) casters: Vec<Caster>,
 }
 
-/// Where the rays to a light end, in world space.
+/// The end of the rays to a light, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ShadowSource {
     /// At a point.
@@ -29,7 +29,8 @@ pub(crate) enum ShadowSource {
 
 impl ShadowSource {
     fn is_same(&self, other: &Self) -> bool {
-        let same = |a: &DVec3, b: &DVec3| a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits);
+        let same =
+            |a: &DVec3, b: &DVec3| a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits);
         match (self, other) {
             (Self::Point(a), Self::Point(b)) | (Self::Direction(a), Self::Direction(b)) => {
                 same(a, b)
@@ -72,9 +73,8 @@ impl Caster {
 
     /// Whether all of its triangles are drawn and have no holes.
     pub(crate) fn is_solid(&self) -> bool {
-        let solid = |part: &Option<CasterPart>| {
-            part.as_ref().is_some_and(|part| part.holes.is_none())
-        };
+        let solid =
+            |part: &Option<CasterPart>| part.as_ref().is_some_and(|part| part.holes.is_none());
         self.polygons.is_none() && self.parts.iter().all(solid)
     }
 
@@ -104,7 +104,7 @@ impl Shadows {
         !self.casters.is_empty() && self.sources.iter().any(Option::is_some)
     }
 
-    /// Where the rays to a light end, if it casts shadows.
+    /// The end of the rays to a light, if it casts shadows.
     #[inline(always)]
     pub(crate) fn source(&self, light: u32) -> Option<ShadowSource> {
         self.sources.get(light as usize).copied().flatten()

@@ -65,7 +65,7 @@ pub(super) fn view_lights(
     shining
 }
 
-/// Where the rays of shadows end, if the light casts any.
+/// The end of the rays of shadows, if the light casts any.
 fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
     let point = ShadowSource::Point(source.position);
     let kind = match light.kind {

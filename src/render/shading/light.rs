@@ -203,8 +203,7 @@ impl<T: ShadingNumber> Table<T> {
                     place_vertices(tracer, positions, count, origins);
                 }
             };
-            let shadows =
-                tracer.map(|(tracer, _)| BatchShadows::new(tracer, scratch, &mut place));
+            let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, scratch, &mut place));
             run(stages, terms, level, batch, shadows);
             let mut diffuse = [[T::default(); 4]; BATCH];
             let mut specular = [[T::default(); 4]; BATCH];

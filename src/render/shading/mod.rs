@@ -23,6 +23,7 @@ mod interpolate;
 pub(crate) mod interpolated;
 pub(crate) mod light;
 pub(crate) mod light_terms;
+mod lit_points;
 pub(crate) mod painter;
 pub(crate) mod quantize;
 mod resolve;

@@ -1,8 +1,9 @@
 //! Shades batches: light reaches a position only if nothing stands between.
 //!
-//! A light with shadows is added like any other. Only where it added something do rays run to it,
-//! and where one is stopped, the light that was there before is put back, bit for bit. So the
-//! shaders of lights know nothing of shadows, and a position that no light reaches costs no ray.
+//! A light with shadows is added like any other. Then rays run to it from the positions at which
+//! it added something, and those whose ray is stopped get back what they had before, bit for bit.
+//! So the shaders of lights know nothing of shadows, and a position that no light reaches costs no
+//! ray.
 //!
 //! Rays begin where light is evaluated: at the point of the triangle that a pixel shows (with
 //! several samples, at the point at which they are lit), at a vertex, or at the centre of a face.
@@ -11,15 +12,10 @@
 use fearless_simd::Level;
 use glam::DVec3;
 
-use super::barycentrics::Barycentrics;
-use super::context::ShadingContext;
-use super::fragments::Fragments;
-use super::groups::Group;
 use super::interpolated::ShadingNumber;
 use super::triangle_attributes::TriangleAttributes;
 use crate::render::frame::draw::{Draw, Stage};
 use crate::render::lights::{Batch, LightTerm};
-use crate::render::screen::weights::Weights;
 use crate::render::shadow::rays::{Origins, RayScratch};
 use crate::render::shadow::tracer::Tracer;
 use crate::render::simd::Number;
@@ -97,54 +93,6 @@ impl<'a> BatchShadows<'a> {
     }
 }
 
-/// Sets the points at which fragments are lit.
-pub(crate) fn place_fragments<T: ShadingNumber>(
-    context: &ShadingContext<'_, T>,
-    (tracer, caster): (&Tracer<'_>, u32),
-    group: &Group<'_>,
-    (fragments, attributes): (&Fragments, &TriangleAttributes<T>),
-    barycentrics: &Barycentrics<T>,
-    origins: &mut Origins,
-) {
-    let ShadingContext { plan, frame, .. } = *context;
-    origins.begin(Some(caster), true);
-    let vertices = frame.corners_of(plan, group.draw_index);
-    let (mut last, mut known) = (usize::MAX, None);
-    for i in 0..fragments.len {
-        let slot = fragments.slots[i].cast_unsigned() as usize;
-        let number = attributes.numbers[slot];
-        if slot != last {
-            last = slot;
-            let corners = tracer.corners_of(caster, number);
-            let reach = corners.iter().fold(0.0, |most: f64, c| most.max(c.abs().max_element()));
-            origins.reach = origins.reach.max(reach);
-            known = Some((corners, Weights::new(plan, group.draw, vertices, number, [0; 2])));
-        }
-        let Some((corners, weights)) = &known else { continue };
-        let at_centre = weights.at([fragments.x[i], fragments.y[i]]);
-        // Lit at the centre of its pixel, unless that is outside of the triangle.
-        let weights = if fragments.shared && !(at_centre.min_element() >= 0.0) {
-            barycentrics.weights(i)
-        } else {
-            at_centre
-        };
-        origins.set(i, within(corners, weights), [number, number + 1]);
-    }
-}
-
-/// The point of a triangle with these weights of its corners, which are clamped.
-fn within([a, b, c]: &[DVec3; 3], weights: DVec3) -> DVec3 {
-    let weights = DVec3::new(above_0(weights.x), above_0(weights.y), above_0(weights.z));
-    let sum = weights.element_sum();
-    let weights = if sum > 0.0 && sum.is_finite() { weights / sum } else { DVec3::splat(1.0 / 3.0) };
-    *a + (*b - *a) * weights.y + (*c - *a) * weights.z
-}
-
-/// NaN gives 0.
-fn above_0(x: f64) -> f64 {
-    if x > 0.0 { x } else { 0.0 }
-}
-
 /// Sets the points at which vertices are lit, from their positions in object space.
 pub(crate) fn place_vertices<T: Number>(
     (tracer, caster): (&Tracer<'_>, u32),
@@ -155,7 +103,8 @@ pub(crate) fn place_vertices<T: Number>(
     origins.begin(Some(caster), false);
     let world_from_object = tracer.placement(caster);
     for i in 0..count {
-        let [x, y, z]: [f64; 3] = [positions[0][i], positions[1][i], positions[2][i]].map(Into::into);
+        let [x, y, z]: [f64; 3] =
+            [positions[0][i], positions[1][i], positions[2][i]].map(Into::into);
         let at = world_from_object.transform_point3(DVec3::new(x + 0.0, y + 0.0, z + 0.0));
         origins.set(i, at, [0; 2]);
     }

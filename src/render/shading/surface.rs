@@ -17,9 +17,10 @@ use super::groups::{Group, group_of, one_group};
 use super::interpolate::{Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
+use super::lit_points::place_fragments;
 use super::quantize::{Quantize, SurfaceColor};
 use super::rounding::{QuantizeWithThresholds, thresholds};
-use super::shadows::{BatchShadows, place_faces, place_fragments};
+use super::shadows::{BatchShadows, place_faces};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
@@ -426,9 +427,8 @@ impl<T: ShadingNumber> Shader<T> {
         let Self { attributes, batch, rays, .. } = self;
         let stages = shaded.light.as_deref().unwrap_or_default();
         let terms = context.terms.of(group.pipeline);
-        let tracer = context
-            .tracer_of(group.draw_index)
-            .filter(|_| context.plan.shadows.any_of(stages));
+        let tracer =
+            context.tracer_of(group.draw_index).filter(|_| context.plan.shadows.any_of(stages));
         let lighting = Lighting { level: context.level, draw: group.draw, stages, terms, tracer };
         attributes.carry_light(
             group.draw,

@@ -51,7 +51,8 @@ impl LocalRays {
             }
             self.end[i] = ((length * (1.0 + SINGLE)) as f32).min(f32::MAX).next_up();
         }
-        let columns = m.x_axis.truncate().abs() + m.y_axis.abs().truncate() + m.z_axis.abs().truncate();
+        let columns =
+            m.x_axis.truncate().abs() + m.y_axis.abs().truncate() + m.z_axis.abs().truncate();
         let exact = (columns * reach + m.w_axis.truncate().abs()) * DOUBLE;
         let far = bounds.min.abs().max(bounds.max.abs()) + largest;
         let pad = far * SINGLE + exact;

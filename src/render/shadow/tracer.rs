@@ -8,7 +8,7 @@ use super::triangle::{Corners, Prepared, is_between, reaches_behind};
 use crate::accuracy::Filter;
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
-use crate::render::frame::shadows::{Caster, CasterPart, ShadowSource};
+use crate::render::frame::shadows::{Caster, CasterPart, ShadowSource, Shadows};
 use crate::render::simd::BATCH;
 use crate::render::texture::sample::sample;
 use crate::render::texture::uv::uv;
@@ -20,17 +20,17 @@ const SUN: f64 = (1_u64 << 60) as f64;
 /// What casts shadows in a frame, ready to be met by rays.
 #[derive(Debug)]
 pub(crate) struct Tracer<'a> {
-    casters: Vec<Placed<'a>>,
+    casters: Vec<InPlace<'a>>,
     /// For each draw, the caster that it draws.
     of_draws: Vec<Option<u32>>,
-    /// For each light, where the rays to it end, if it casts shadows.
+    /// For each light, the end of the rays to it, if it casts shadows.
     lights: Vec<Option<DVec3>>,
     filter: Filter,
 }
 
 /// A caster in its place.
 #[derive(Debug)]
-struct Placed<'a> {
+struct InPlace<'a> {
     caster: &'a Caster,
     tree: &'a RayTree,
     object_from_world: DMat4,
@@ -52,26 +52,31 @@ fn placed(world_from_object: &DMat4, corners: [[f32; 3]; 3]) -> Corners {
 impl<'a> Tracer<'a> {
     /// Makes the casters of a plan ready; `None` if no light casts shadows.
     pub(crate) fn new(plan: &'a FramePlan) -> Option<Self> {
-        let shadows = &plan.shadows;
-        if !shadows.are_cast() {
+        if !plan.shadows.are_cast() {
             return None;
         }
-        let casters: Vec<Placed<'a>> = shadows.casters.iter().filter_map(Placed::new).collect();
-        let reach = casters.iter().map(Placed::reach).fold(f64::MIN_POSITIVE, f64::max);
-        let far = power_of_two_above(reach) * SUN;
-        let of_draw = |item| casters.iter().position(|placed| placed.caster.item == item);
+        let tracer = Self::of(&plan.shadows, plan.filter);
+        let of_draw = |item| tracer.casters.iter().position(|placed| placed.caster.item == item);
         let index = |at: usize| u32::try_from(at).expect("fewer than 2^32 objects");
         let of_draws = plan.draws.iter().map(|draw| of_draw(draw.item).map(index)).collect();
+        Some(Self { of_draws, ..tracer })
+    }
+
+    /// Makes casters ready.
+    fn of(shadows: &'a Shadows, filter: Filter) -> Self {
+        let casters: Vec<InPlace<'a>> = shadows.casters.iter().filter_map(InPlace::new).collect();
+        let reach = casters.iter().map(InPlace::reach).fold(f64::MIN_POSITIVE, f64::max);
+        let far = power_of_two_above(reach) * SUN;
         let end = |source: &ShadowSource| match source {
             ShadowSource::Direction(towards) => *towards * far,
             // A light that is farther than a sun is one.
             ShadowSource::Point(at) => *at * (far / at.abs().max_element()).min(1.0),
         };
         let lights = shadows.sources.iter().map(|source| source.as_ref().map(end)).collect();
-        Some(Self { casters, of_draws, lights, filter: plan.filter })
+        Self { casters, of_draws: Vec::new(), lights, filter }
     }
 
-    /// Where the rays to a light end, if it casts shadows.
+    /// The end of the rays to a light, if it casts shadows.
     #[inline(always)]
     pub(crate) fn light(&self, light: u32) -> Option<DVec3> {
         self.lights[light as usize]
@@ -134,7 +139,8 @@ impl<'a> Tracer<'a> {
                 }
                 for triangle in &placed.tree.triangles[child.triangles()] {
                     let rays = reached & alive;
-                    alive &= !self.behind(simd, (placed, triangle), (&packet, origins, &local.at), rays);
+                    alive &=
+                        !self.behind(simd, (placed, triangle), (&packet, origins, &local.at), rays);
                 }
                 if alive == 0 {
                     return mask;
@@ -149,7 +155,7 @@ impl<'a> Tracer<'a> {
     fn behind<S: Simd>(
         &self,
         simd: S,
-        (placed, triangle): (&Placed<'_>, &TreeTriangle),
+        (placed, triangle): (&InPlace<'_>, &TreeTriangle),
         (packet, origins, at): (&Packet, &Origins, &[[f64; BATCH]; 3]),
         mut rays: u64,
     ) -> u64 {
@@ -175,7 +181,7 @@ impl<'a> Tracer<'a> {
     #[inline(never)]
     fn settle(
         &self,
-        (placed, number): (&Placed<'_>, u32),
+        (placed, number): (&InPlace<'_>, u32),
         (prepared, corners): (&Prepared, &Corners),
         (packet, origins): (&Packet, &Origins),
         decided: super::triangle::Decided,
@@ -211,7 +217,7 @@ impl<'a> Tracer<'a> {
 
     /// The corners of a triangle of a caster, in world space.
     pub(crate) fn corners_of(&self, caster: u32, triangle: u32) -> Corners {
-        let Placed { caster, .. } = &self.casters[caster as usize];
+        let InPlace { caster, .. } = &self.casters[caster as usize];
         let order = caster.model.mesh.draw_order();
         let corners = each(order.vertices_of(triangle), |vertex| {
             let i = vertex as usize;
@@ -223,7 +229,7 @@ impl<'a> Tracer<'a> {
     /// Whether a part of a caster stops light where these parts of a triangle's corners meet.
     fn is_solid_at(
         &self,
-        placed: &Placed<'_>,
+        placed: &InPlace<'_>,
         part: Option<&CasterPart>,
         triangle: u32,
         parts: DVec3,
@@ -245,7 +251,7 @@ struct Packet {
     is_own: bool,
 }
 
-impl<'a> Placed<'a> {
+impl<'a> InPlace<'a> {
     fn new(caster: &'a Caster) -> Option<Self> {
         let mesh = &caster.model.mesh;
         let own = mesh.bounds()?;
@@ -314,3 +320,6 @@ fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
 fn power_of_two_above(x: f64) -> f64 {
     libm::ldexp(1.0, libm::frexp(x).1)
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! s(P) = (B - A) x (C - A) . (P - A)        the side of the plane that P lies on; s(L) alike
-//! e(P) = (A - L) x (B - A) . (P - A)        the side of the plane through L, A and B; B and C alike
+//! e(P) = (A - L) x (B - A) . (P - A)        the side of the plane through L, A, B; others alike
 //! ```
 //!
 //! The triangle stands between if s(P) and s(L) have opposite signs and no e(P) has the sign of
@@ -105,8 +105,11 @@ impl Prepared {
         let to_light = light - a;
         let size = largest(ab) * largest(ca);
         let of_light = plane.dot(to_light);
-        let of_light =
-            if of_light.abs() > ERROR * size * largest(to_light) { of_light } else { side(&corners, light) };
+        let of_light = if of_light.abs() > ERROR * size * largest(to_light) {
+            of_light
+        } else {
+            side(&corners, light)
+        };
         let sign = match () {
             () if of_light > 0.0 => -1.0,
             () if of_light < 0.0 => 1.0,
@@ -135,7 +138,8 @@ impl Prepared {
             let (mut between, mut possible) = (0xff, 0xff);
             for (i, (normal, error)) in self.normals.iter().zip(self.errors).enumerate() {
                 let from = self.corners[i % 3];
-                let value = (x - from.x) * normal.x + (y - from.y) * normal.y + (z - from.z) * normal.z;
+                let value =
+                    (x - from.x) * normal.x + (y - from.y) * normal.y + (z - from.z) * normal.z;
                 between &= value.simd_gt(error).to_bitmask();
                 possible &= value.simd_ge(-error).to_bitmask();
                 if possible & (mask >> first) == 0 {

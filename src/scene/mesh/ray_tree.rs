@@ -129,10 +129,7 @@ impl RayTree {
                     let own = groups.starts[*group as usize]..groups.starts[*group as usize + 1];
                     flat.triangles.extend_from_slice(&groups.triangles[own]);
                 }
-                own = TreeChild {
-                    first: index(first),
-                    count: index(flat.triangles.len() - first),
-                };
+                own = TreeChild { first: index(first), count: index(flat.triangles.len() - first) };
                 let around = flat.triangles[first..].iter().map(|own| box_of(&own.corners));
                 leaf_boxes.push((parent, around.fold(EMPTY, union)));
             }
