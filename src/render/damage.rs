@@ -17,7 +17,7 @@ use crate::render::frame::draw::{Draw, Lines, Pipeline, Shaded};
 use crate::render::lights::{PhongMaterial, ViewLight};
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::{TILE, tiles_of};
-use crate::scene::ItemId;
+use crate::scene::{ItemId, Texture};
 
 /// The tiles that are painted again, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -276,12 +276,18 @@ impl Compared<'_> {
             tint,
             texture,
             cutout,
+            opacity_map,
+            extras,
         } = after;
-        let textures = match (texture, &before.texture) {
+        let alike_maps = |after: &Option<Shared<Texture>>, before: &Option<Shared<Texture>>| match (
+            after, before,
+        ) {
             (Some(after), Some(before)) => Shared::same(after, before),
             (None, None) => true,
             _ => false,
         };
+        let textures =
+            alike_maps(texture, &before.texture) && alike_maps(opacity_map, &before.opacity_map);
         let stages = match (light, &before.light) {
             (Some(after), Some(before)) => {
                 after.len() == before.len()
@@ -290,6 +296,7 @@ impl Compared<'_> {
                             && after.highlight == before.highlight
                             && self.after.shadows.source(after.light).is_some()
                                 == self.before.shadows.source(before.light).is_some()
+                            && after.is_mapped == before.is_mapped
                             && alike_lights(
                                 &self.after.lights[after.light as usize],
                                 &self.before.lights[before.light as usize],
@@ -306,6 +313,7 @@ impl Compared<'_> {
             && *vertex_colors == before.vertex_colors
             && alike(tint, &before.tint)
             && alike(cutout.as_slice(), before.cutout.as_slice())
+            && extras.are_alike(&before.extras)
     }
 }
 

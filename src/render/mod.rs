@@ -17,8 +17,8 @@
 //!   to the visibility buffer.
 //! * `shadow`: rays from lit points to lights, and what stands between.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
-//! * `renderer`, `damage`, `count`, `unseen`: draw plans, and answer questions about what was
-//!   drawn.
+//! * `renderer`, `damage`, `count`, `unseen`, `without_ground`: draw plans, and answer questions
+//!   about what was drawn.
 
 mod count;
 mod damage;
@@ -35,6 +35,7 @@ pub mod simd;
 mod texture;
 mod timings;
 mod unseen;
+mod without_ground;
 
 pub use damage::{Change, Damage, DamageCause};
 pub use frame::FramePlan;
@@ -42,3 +43,4 @@ pub use plan::{Class, Effect, EffectState, EffectUse, explain_frame, plan_everyt
 pub use renderer::{Cancelled, Hit, Renderer};
 pub use timings::Timings;
 pub use unseen::{Unseen, unseen};
+pub use without_ground::without_ground;

@@ -29,5 +29,6 @@ mod geometry;
 mod interpolation;
 mod light;
 mod shadows;
+mod surfaces;
 mod textures;
 mod undo;

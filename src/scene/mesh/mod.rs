@@ -21,6 +21,7 @@ mod fans;
 mod points;
 pub(super) mod ray_tree;
 mod splits;
+mod tangents;
 
 use glam::DVec3;
 
