@@ -28,6 +28,7 @@ use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::render::screen::tiles::{BLOCK_PIXELS, TILE, TILE_SIDE, block_at, tiles_of};
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
+use crate::render::shadow::tracer::Tracer;
 use crate::render::tile_layers::TileLayers;
 use crate::render::timings::{Laps, Timings};
 use crate::scene::ItemId;
@@ -401,7 +402,9 @@ impl Renderer {
         terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let context = ShadingContext { level, plan, frame, lit, terms };
+        let tracer = Tracer::new(plan);
+        let tracer = tracer.as_ref();
+        let context = ShadingContext { level, plan, frame, lit, terms, tracer };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self

@@ -50,6 +50,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "plan",
             "reference",
             "raster",
+            "shadow",
             "shading",
             "tile_layers",
             "count",

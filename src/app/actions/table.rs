@@ -388,6 +388,12 @@ actions! {
     ApertureDown Light REPEATS [Text("-")]
         "Narrower spot" "Closes the selected spot by 5 degrees."
         "cone angle smaller tighten";
+    ToggleAllShadows Light ONCE []
+        "Shadows" "Switches the shadows of all lights on or off."
+        "shadow cast ray trace occlusion shade";
+    ToggleShadows Light ONCE []
+        "Shadows of this light" "Switches the shadows of the selected light on or off."
+        "shadow cast ray trace occlusion shade lamp";
     AimAtSelection Light ONCE []
         "Aim at selection" "Turns the selected spot or sun towards the selected object."
         "point target look track direct";

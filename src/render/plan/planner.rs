@@ -70,6 +70,11 @@ impl Planner<'_> {
         }
     }
 
+    /// Whether the view shows an object.
+    pub(super) fn is_asked_for(&self, id: ObjectId, object: &Object) -> bool {
+        self.not_asked_for(id, object).is_none()
+    }
+
     fn add_object(&self, into: &mut Planning, item: ItemId, object: &Object) {
         let selected = self.shot.view.object.map(ItemId::Object) == Some(item);
         let polygons = self.shot.view.polygons.as_ref().filter(|_| selected).map(|mode| {
