@@ -279,11 +279,18 @@ impl Renderer {
     /// from the top.
     #[must_use]
     pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
+        self.pixels_of_any(&[item])
+    }
+
+    /// Marks the pixels at which the last picture shows any of these items, as
+    /// [`Self::pixels_of`].
+    #[must_use]
+    pub fn pixels_of_any(&mut self, items: &[ItemId]) -> Vec<bool> {
         let mut pixels = vec![false; self.seen_size().area()];
         self.look(|renderer, plan, at, word| {
             pixels[at] = renderer
                 .seen(plan, word)
-                .is_some_and(|(draw, _)| plan.draws[draw as usize].item == item);
+                .is_some_and(|(draw, _)| items.contains(&plan.draws[draw as usize].item));
             ControlFlow::Continue(())
         });
         pixels

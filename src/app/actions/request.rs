@@ -9,6 +9,7 @@ use crate::accuracy::Settings;
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::app::state::layout::Layout;
+use crate::edit::several::Others;
 use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
@@ -38,6 +39,10 @@ pub enum Request {
     Lab(LabRequest),
     /// Selects an item, and makes its kind the subject.
     Select(ItemId),
+    /// Selects these items too, or no longer; the last of them becomes the one that keys act on.
+    SelectAlso(Vec<ItemId>, Also),
+    /// Selects these items beside the one that the keys act on.
+    Others(Others),
     /// Aims the selected light at a point of the world.
     AimAt(DVec3),
     /// Selects a polygon of the selected object while polygons are shown one at a time.
@@ -68,6 +73,17 @@ pub enum Request {
     Layout(Layout),
     /// Says in the status line why a request was refused.
     Refuse(String),
+}
+
+/// How items are added to the selection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Also {
+    /// One that is selected is selected no longer.
+    Toggle,
+    /// They alone are selected.
+    Only,
+    /// They are selected too.
+    Add,
 }
 
 impl From<Action> for Request {

@@ -30,8 +30,9 @@ pub(crate) struct Pick<P> {
 pub(crate) struct News<P> {
     pub(crate) border: Option<Border>,
     pub(crate) drawn: Option<Drawn>,
-    /// The border that was wanted with the picture, if it was drawn anew.
-    pub(crate) outline: Option<Option<Border>>,
+    /// The borders that were wanted with the picture, if it was drawn anew: of the first item, and
+    /// of the others.
+    pub(crate) outline: Option<[Option<Border>; 2]>,
     pub(crate) explained: Option<Arc<Explained>>,
     pub(crate) picked: Vec<(Pick<P>, Option<Hit>)>,
     pub(crate) failed: bool,
@@ -167,7 +168,7 @@ impl<P> Shared<P> {
 /// Draws and answers until the desk is closed.
 fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
     let mut painter = ViewportRenderer::new(Instant::now);
-    let mut outlined = None;
+    let mut outlined = Vec::new();
     loop {
         let (picks, border, wanted) = {
             let mut desk = shared.lock();
@@ -204,8 +205,12 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
                 let another = wanted.outlined != outlined && !painter.was_given_up();
                 if drawn.is_some() || another {
                     // Of this very picture, so that it never lags behind.
-                    let outline = wanted.outlined.and_then(|item| painter.border(item));
-                    outlined = wanted.outlined;
+                    let (first, others) = wanted.outlined.split_first().unzip();
+                    let own = first.and_then(|item| painter.border(*item));
+                    let others = others.filter(|others| !others.is_empty());
+                    let others = others.and_then(|all| painter.border_of(*first?, all));
+                    let outline = [own, others];
+                    outlined.clone_from(&wanted.outlined);
                     let mut desk = shared.lock();
                     desk.news.drawn = drawn.or(desk.news.drawn.take());
                     desk.news.outline = Some(outline);

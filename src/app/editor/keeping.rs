@@ -54,6 +54,7 @@ impl App {
         ctx.set_zoom_factor(preferences.scale);
         self.state.theme = theme;
         self.state.panels = preferences.panels;
+        self.state.gizmo = preferences.gizmo;
         self.state.recent.clone_from(&preferences.recent);
         self.state.notices.extend(said.map(notice));
         let offered = Abandoned::all(&folders);
@@ -245,6 +246,7 @@ fn preferences_now(ctx: &Context, state: &State, before: &Preferences) -> Prefer
             ThemePreference::Dark => Theme::Dark,
         },
         panels: Panels { cheat_sheet: false, ..state.panels },
+        gizmo: state.gizmo,
         scale,
         window: size.map(whole).or(before.window),
         maximized,

@@ -38,8 +38,8 @@ impl App {
         let Some(size) = self.viewport.size() else { return };
         let (scene, view) = (self.state.scene.clone(), self.state.view.clone());
         let settings = self.state.settings;
-        let of =
-            Snapshot { scene, view, settings, size, moving: false, explain: true, outlined: None };
+        let outlined = Vec::new();
+        let of = Snapshot { scene, view, settings, size, moving: false, explain: true, outlined };
         let theirs = of.clone();
         let task = Task::start(ctx, "measure effects".to_owned(), move |progress| {
             let of = Shot::new(&theirs.scene, &theirs.view, &theirs.settings, theirs.size);

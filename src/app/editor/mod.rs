@@ -11,6 +11,7 @@ mod laboratory;
 mod measuring;
 mod requests;
 mod scenes;
+mod selecting;
 mod unseen;
 
 use std::collections::VecDeque;

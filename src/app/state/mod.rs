@@ -13,6 +13,7 @@ use crate::accuracy::Settings;
 pub use crate::app::drawing::adaptive_quality::Reduction;
 use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
+use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
 use crate::lab::cost::{Costs, Explained};
 use crate::render::Damage;
@@ -51,6 +52,10 @@ pub struct State {
     pub palette: bool,
     /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
     pub overlays: bool,
+    /// Whether handles to move, rotate and scale the selection lie over the picture.
+    pub gizmo: bool,
+    /// The items that are selected beside the one that the keys act on.
+    pub several: Others,
     /// Whether the next click into the picture aims the selected light.
     pub aiming: bool,
     /// How large the interface is; 1 is the system's size.
@@ -243,6 +248,8 @@ impl State {
             layout: Layout::default(),
             palette: false,
             overlays: true,
+            gizmo: true,
+            several: Others::default(),
             aiming: false,
             zoom: 1.0,
             narrow: false,
@@ -262,15 +269,42 @@ impl State {
         selection::selected(&self.view)
     }
 
+    /// The items that are selected beside the one that the keys act on.
+    #[must_use]
+    pub fn others(&self) -> Vec<ItemId> {
+        self.several.of(&self.scene, &self.view).collect()
+    }
+
+    /// Whether an item is selected, as the one that the keys act on or beside it.
+    #[must_use]
+    pub fn is_selected(&self, id: ItemId) -> bool {
+        self.selected() == Some(id)
+            || self.several.of(&self.scene, &self.view).any(|other| other == id)
+    }
+
+    /// What commands act on, in words: the name of the selected item, or how many there are.
+    #[must_use]
+    pub fn acted_on_name(&self) -> String {
+        match self.others().len() {
+            0 => self.selected_name().to_owned(),
+            others => format!("{} items", others + 1),
+        }
+    }
+
     /// Whether anything is drawn over the picture now: a comparison shows the pictures alone.
     #[must_use]
     pub fn shows_overlays(&self) -> bool {
         self.overlays && self.lab.compare == laboratory::Compare::Off
     }
 
-    /// The item whose outline is drawn over the picture: the one that the keys act on.
-    pub(crate) fn outlined(&self) -> Option<ItemId> {
-        self.selected().filter(|_| self.shows_overlays())
+    /// The items whose outlines are drawn over the picture: first the one that the keys act on.
+    pub(crate) fn outlined(&self) -> Vec<ItemId> {
+        match self.selected() {
+            Some(first) if self.shows_overlays() => {
+                std::iter::once(first).chain(self.others()).collect()
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// Its name; empty if nothing is selected.

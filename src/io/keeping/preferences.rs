@@ -25,6 +25,8 @@ pub struct Preferences {
     pub theme: Theme,
     /// Which panels are open.
     pub panels: Panels,
+    /// Whether handles to move, rotate and scale the selection lie over the picture.
+    pub gizmo: bool,
     /// The zoom of the interface: 1 is the system's.
     pub scale: f32,
     /// The inner width and height of the window in points, if it was ever open.
@@ -52,6 +54,7 @@ impl Default for Preferences {
         Self {
             theme: Theme::System,
             panels: Panels::DEFAULT,
+            gizmo: true,
             scale: 1.0,
             window: None,
             maximized: false,
