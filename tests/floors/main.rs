@@ -67,6 +67,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "flip",
             "error",
             "picture_source",
+            "pixel",
             "attribution",
             "pairs",
             "candidates",

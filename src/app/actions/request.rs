@@ -43,6 +43,10 @@ pub enum Request {
     SelectAlso(Vec<ItemId>, Also),
     /// Selects these items beside the one that the keys act on.
     Others(Others),
+    /// Explains this pixel of the picture.
+    Explain([usize; 2]),
+    /// Closes the explanation of a pixel.
+    EndExplaining,
     /// Aims the selected light at a point of the world.
     AimAt(DVec3),
     /// Selects a polygon of the selected object while polygons are shown one at a time.
@@ -119,7 +123,7 @@ pub enum LabRequest {
     Sampled(bool),
     /// The next click picks a pixel, or does not.
     Pick(bool),
-    /// Explain this pixel.
+    /// Attribute the error of this pixel.
     Attribute([usize; 2]),
     /// Show this beside the plots.
     Side(Side),

@@ -69,6 +69,8 @@ pub(crate) enum Intent {
     TypeAmount,
     /// These are selected beside the selected item.
     Others(Others),
+    /// The next click into the picture explains a pixel.
+    Explain,
     /// The next click into the picture aims the selected light.
     AimByClick,
     /// The keyboard goes to the panels, or back to the viewport.
@@ -253,6 +255,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::LookRight => look_from(LookSide::Right),
         Action::LookTop => look_from(LookSide::Top),
         Action::WhyUnseen => object(state).map(Intent::WhyUnseen),
+        Action::ExplainPixel => Ok(Intent::Explain),
         Action::LookBack => look_from(LookSide::Back),
         Action::LookLeft => look_from(LookSide::Left),
         Action::LookBottom => look_from(LookSide::Bottom),
@@ -439,6 +442,7 @@ impl Action {
             Self::ToggleOverlays => state.overlays,
             Self::ToggleGizmo => state.gizmo,
             Self::AimByClick => state.aiming,
+            Self::ExplainPixel => state.explaining,
             Self::Palette => state.palette,
             Self::ToggleCoarse => view.coarse_while_moving,
             Self::ToggleLightNormals => view.normals == Normals::Face,

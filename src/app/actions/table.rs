@@ -337,6 +337,10 @@ actions! {
     WhyUnseen Camera ONCE []
         "Why can't I see it?" "Says why nothing of the selected object is seen, and what mends it."
         "invisible missing gone lost hidden vanished black find";
+    ExplainPixel Show ONCE [Either(Key::E)]
+        "Explain a pixel"
+        "Says what the next pixel that is clicked shows, and what its colour is made of."
+        "why colour color value inspect probe light terms debug vectors";
     LookBack Camera ONCE []
         "Back view" "Looks from behind, along +Z."
         "camera behind rear";

@@ -4,6 +4,7 @@
 //! writes the scene.
 
 mod comparing;
+mod explaining;
 mod files;
 mod first_models;
 mod keeping;
@@ -28,7 +29,7 @@ use crate::app::drawing::adaptive_quality::{Happening, Motion};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::input::keyboard::Keyboard;
-use crate::app::panels::{self, notices};
+use crate::app::panels::{self, notices, pixel};
 use crate::app::shell::Editor;
 use crate::app::state::State;
 use crate::app::state::layout::NARROW;
@@ -36,6 +37,7 @@ use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
 use crate::scene::{Scene, Steps, View};
+use explaining::Explaining;
 use keeping::Keeping;
 use laboratory::Work;
 use measuring::Measuring;
@@ -60,6 +62,8 @@ pub struct App {
     worker: Option<Worker<Purpose>>,
     /// The running measurement of effects.
     pub(crate) measuring: Option<Measuring>,
+    /// The pixel that is being explained.
+    pub(crate) explaining: Option<Explaining>,
     /// Whether the window is closing.
     leaving: bool,
     /// Whether the picture is changing.
@@ -94,6 +98,7 @@ impl App {
             comparison: Comparison::default(),
             worker: None,
             measuring: None,
+            explaining: None,
             leaving: false,
             motion: Motion::default(),
             moved_at: None,
@@ -136,6 +141,7 @@ impl App {
         }
         arrangement.splitters_ui(ui, &self.state, &mut requests);
         notices::show(&ctx, &self.state, &self.loading, &mut requests);
+        pixel::show(&ctx, &self.state, place, &mut requests);
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
 
@@ -161,6 +167,7 @@ impl App {
         self.hear_loading(&ctx);
         self.hear_searches();
         self.hear_measuring();
+        self.hear_explaining(&ctx);
         self.hear_laboratory(&ctx);
         self.compare(&ctx);
         self.take_dropped(&ctx);

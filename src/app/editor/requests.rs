@@ -26,10 +26,15 @@ impl App {
                 return requests.into_iter().for_each(|request| self.answer(ctx, request));
             }
             if std::mem::take(&mut self.state.aiming)
+                || std::mem::take(&mut self.state.explaining)
                 || std::mem::take(&mut self.state.lab.picking)
                 || std::mem::take(&mut self.state.panels.cheat_sheet)
                 || self.state.renaming.take().is_some()
             {
+                return;
+            }
+            if self.state.explained.take().is_some() {
+                self.explaining = None;
                 return;
             }
             if !self.state.others().is_empty() {
@@ -55,6 +60,10 @@ impl App {
             },
             Request::SelectAlso(items, how) => self.select_also(&items, how),
             Request::Others(others) => state.several = others,
+            Request::Explain(at) => self.explain_pixel(ctx, at),
+            Request::EndExplaining => {
+                (self.explaining, state.explained, state.explaining) = (None, None, false);
+            }
             Request::AimAt(point) => self.aim_at(point),
             Request::SelectPolygon(polygon) => {
                 let mut view = state.view.clone();
@@ -140,7 +149,14 @@ impl App {
             Ok(Intent::Gizmo) => self.state.gizmo ^= true,
             Ok(Intent::TypeAmount) => self.type_amount(ctx),
             Ok(Intent::Others(others)) => self.state.several = others,
-            Ok(Intent::AimByClick) => self.state.aiming ^= true,
+            Ok(Intent::AimByClick) => {
+                self.state.aiming ^= true;
+                self.state.explaining = false;
+            }
+            Ok(Intent::Explain) => {
+                self.state.explaining ^= true;
+                self.state.aiming = false;
+            }
             Ok(Intent::ChangeKeyboardOwner) => Keyboard::change_owner(ctx),
         }
     }

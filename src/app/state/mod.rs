@@ -16,7 +16,7 @@ use crate::base::image::Size;
 use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
 use crate::lab::cost::{Costs, Explained};
-use crate::render::Damage;
+use crate::render::{Damage, PixelColor};
 use crate::scene::{
     Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Sides, View,
 };
@@ -58,6 +58,10 @@ pub struct State {
     pub several: Others,
     /// Whether the next click into the picture aims the selected light.
     pub aiming: bool,
+    /// Whether the next click into the picture explains a pixel.
+    pub explaining: bool,
+    /// The pixel that is explained.
+    pub explained: Option<Arc<ExplainedPixel>>,
     /// How large the interface is; 1 is the system's size.
     pub zoom: f32,
     /// Whether the window is so narrow that panels are folded.
@@ -230,6 +234,34 @@ pub struct Measured {
     pub settings: Settings,
 }
 
+/// A pixel that is explained, and the picture that it belongs to.
+#[derive(Clone, Debug)]
+pub struct ExplainedPixel {
+    /// Column and row, from the upper left.
+    pub at: [usize; 2],
+    /// What there is to draw.
+    pub scene: Scene,
+    /// How it is looked at.
+    pub view: View,
+    /// How exactly it is drawn.
+    pub settings: Settings,
+    /// The size of the picture.
+    pub size: Size,
+    /// The explanation; `None` if the pixel is outside of the picture.
+    pub explained: Option<PixelColor>,
+}
+
+impl ExplainedPixel {
+    /// Whether the picture is still the one that was explained.
+    #[must_use]
+    pub fn is_of(&self, state: &State, size: Size) -> bool {
+        let Self { scene, view, settings, .. } = self;
+        self.size == size
+            && (settings, view) == (&state.settings, &state.view)
+            && *scene == state.scene
+    }
+}
+
 impl State {
     /// The state of a new scene, without history.
     #[must_use]
@@ -251,6 +283,8 @@ impl State {
             gizmo: true,
             several: Others::default(),
             aiming: false,
+            explaining: false,
+            explained: None,
             zoom: 1.0,
             narrow: false,
             theme: ThemePreference::System,

@@ -185,7 +185,9 @@ impl Viewport {
                 purpose => purpose,
             };
             let at = self.pixel(at);
-            if state.lab.picking && purpose == Purpose::Select {
+            if state.explaining && purpose == Purpose::Select {
+                requests.push(Request::Explain(at));
+            } else if state.lab.picking && purpose == Purpose::Select {
                 requests.push(Request::Lab(LabRequest::Attribute(at)));
             } else {
                 worker.pick(Pick { at, purpose });

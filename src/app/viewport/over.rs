@@ -26,6 +26,23 @@ impl Over {
 }
 
 impl Viewport {
+    /// Marks the pixel that is explained.
+    fn explained_ui(&self, ui: &Ui, rect: Rect, state: &State) {
+        let Some(explained) = &state.explained else { return };
+        let at = self.point(explained.at);
+        let painter = ui.painter().with_clip_rect(rect);
+        for (width, color) in
+            [(3.5, egui::Color32::from_black_alpha(170)), (1.5, egui::Color32::WHITE)]
+        {
+            let stroke = egui::Stroke::new(width, color);
+            painter.circle_stroke(at, 6.0, stroke);
+            for way in [egui::vec2(1.0, 0.0), egui::vec2(0.0, 1.0)] {
+                painter.line_segment([at + way * 6.0, at + way * 13.0], stroke);
+                painter.line_segment([at - way * 6.0, at - way * 13.0], stroke);
+            }
+        }
+    }
+
     /// Draws the gizmo, what a drag of it does, and the box that is drawn.
     fn handles_ui(&self, ui: &Ui, rect: Rect, response: &Response, over: &Over) {
         let grab = self.mouse.grab();
@@ -74,7 +91,7 @@ impl Viewport {
                 let items = self.items_in(state, over, area);
                 Some(Some(Request::SelectAlso(items, Also::Only)))
             }
-            (Purpose::Select, None) if !state.aiming && !state.lab.picking => {
+            (Purpose::Select, None) if !state.aiming && !state.lab.picking && !state.explaining => {
                 let [free, _] = marks::lights_at(&over.marks, at);
                 let first = *free.first()?;
                 let pixel = self.pixel(at);
@@ -156,6 +173,12 @@ impl Viewport {
         } else if let Some(name) = light.and_then(|light| state.name(light)) {
             plate_ui(ui, rect, egui::Align2::RIGHT_BOTTOM, name.to_owned());
         }
+        if state.explaining {
+            let text = "Click a pixel to explain it; Esc cancels".to_owned();
+            plate_ui(ui, rect, egui::Align2::CENTER_TOP, text);
+            ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
+        }
+        self.explained_ui(ui, rect, state);
         if state.aiming {
             let text = "Click where the light shall shine; Esc cancels".to_owned();
             plate_ui(ui, rect, egui::Align2::CENTER_TOP, text);

@@ -13,6 +13,7 @@ mod blocks;
 mod clamp_to_triangle;
 pub(crate) mod colors;
 pub(crate) mod context;
+pub(crate) mod explain;
 mod face_colors;
 mod far_texture;
 pub(crate) mod fragments;

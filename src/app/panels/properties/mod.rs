@@ -38,7 +38,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ItemId::Light(id) => light::show(ui, state, requests, id),
         });
     });
-    several::spread(state, &others, &mut requests[asked..]);
+    several::spread(ui, state, &others, &mut requests[asked..]);
 }
 
 fn title(ui: &mut Ui, state: &State, item: ItemId) {

@@ -4,6 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::actions::Request;
 use crate::app::state::State;
+use crate::app::widgets::number::set_mixed;
 use crate::edit::{placement, several as together};
 use crate::scene::{ItemId, LightKind, Scene};
 
@@ -27,14 +28,17 @@ pub(super) fn note_ui(ui: &mut Ui, state: &State, item: ItemId) -> Vec<ItemId> {
     } else {
         ui.weak(format!("Mixed: {}", differ.join(", ")));
     }
+    let numbers = others.iter().flat_map(|other| numbers(&state.scene, item, *other));
+    set_mixed(ui.ctx(), numbers.collect());
     others
 }
 
 /// Lets every change that the panel asks for set all of them.
-pub(super) fn spread(state: &State, others: &[ItemId], requests: &mut [Request]) {
+pub(super) fn spread(ui: &Ui, state: &State, others: &[ItemId], requests: &mut [Request]) {
     if others.is_empty() {
         return;
     }
+    set_mixed(ui.ctx(), Vec::new());
     for request in requests {
         if let Request::Change { command, label, .. } = request {
             let one = command.clone();
@@ -42,6 +46,46 @@ pub(super) fn spread(state: &State, others: &[ItemId], requests: &mut [Request])
             *label = format!("{label} and {} more", others.len());
         }
     }
+}
+
+/// The names of the fields whose numbers differ between two items of a kind.
+fn numbers(scene: &Scene, first: ItemId, other: ItemId) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut vector = |name: &str, a: glam::DVec3, b: glam::DVec3| {
+        for (i, letter) in ["X", "Y", "Z"].into_iter().enumerate() {
+            if (a[i] - b[i]).abs() > 1e-9 * a[i].abs().max(1.0) {
+                names.push(format!("{name} {letter}"));
+            }
+        }
+    };
+    match (first, other) {
+        (ItemId::Object(a), ItemId::Object(b)) => {
+            let at = |id| scene.objects.get(id).map(|object| *object.placement.now());
+            if let (Some(a), Some(b)) = (at(a), at(b)) {
+                vector("Position", placement::translation(&a), placement::translation(&b));
+                vector("Rotation", placement::turn_degrees(&a), placement::turn_degrees(&b));
+                vector("Scale", placement::scale(&a), placement::scale(&b));
+            }
+        }
+        (ItemId::Camera(a), ItemId::Camera(b)) => {
+            let at = |id| scene.cameras.get(id).map(|camera| camera.pose.now().eye);
+            if let (Some(a), Some(b)) = (at(a), at(b)) {
+                vector("Position", a, b);
+            }
+        }
+        (ItemId::Light(a), ItemId::Light(b)) => {
+            let (Some(a), Some(b)) = (scene.lights.get(a), scene.lights.get(b)) else {
+                return names;
+            };
+            for (i, name) in ["Red", "Green", "Blue"].into_iter().enumerate() {
+                if a.color.0[i] != b.color.0[i] {
+                    names.push(format!("{name} as a number"));
+                }
+            }
+        }
+        _ => {}
+    }
+    names
 }
 
 /// The properties in which items differ from the first, by their names in the panel.

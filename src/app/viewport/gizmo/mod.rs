@@ -95,7 +95,7 @@ pub(crate) struct Gizmo {
 impl Gizmo {
     /// The gizmo of the selected item, if it is shown.
     pub(super) fn new(state: &State, rect: Rect, size: Size) -> Option<Self> {
-        if !state.gizmo || !state.shows_overlays() || state.aiming {
+        if !state.gizmo || !state.shows_overlays() || state.aiming || state.explaining {
             return None;
         }
         let gizmo = Self::of(state, rect, size)?;
