@@ -16,7 +16,7 @@ use crate::scene::{
 pub struct Pivot {
     /// What they do.
     pub kind: Transformation,
-    /// Where they stand, in the world.
+    /// Their place in the world.
     pub origin: DVec3,
     /// The frame's axes in the world, as long as its units.
     pub axes: DMat3,

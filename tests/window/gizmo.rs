@@ -25,7 +25,7 @@ fn place(editor: &Editor) -> DVec3 {
     placement(editor).w_axis.truncate()
 }
 
-/// Where the selected ship's origin is seen: at (-100, 0, 0) from (0, 0, 400).
+/// The place in the window of the selected ship's origin: (-100, 0, 0) seen from (0, 0, 400).
 fn middle(editor: &Editor) -> Pos2 {
     let rect = editor.picture();
     let half = rect.size().min_elem() / 2.0;

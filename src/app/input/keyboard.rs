@@ -140,7 +140,7 @@ impl Keyboard {
         let Some((action, chord)) = found else { return };
         let info = action.info();
         let acts = match owner {
-            Owner::Viewport => self.letters == Letters::Ask || chord == Chord::Named(Key::Escape),
+            Owner::Viewport => self.letters == Letters::Act || chord == Chord::Named(Key::Escape),
             Owner::Panel => chord.is_global(),
             // A text field has an undo of its own.
             Owner::Text => chord.is_global() && info.group != Group::Edit,
@@ -165,7 +165,7 @@ impl Keyboard {
 pub(crate) enum Letters {
     /// They ask for actions.
     #[default]
-    Ask,
+    Act,
     /// They steer, and ask for nothing.
     Steer,
     /// They are an amount for a handle, and ask for nothing.

@@ -170,7 +170,7 @@ impl Viewport {
         let letters = match (self.mouse.is_flying(), self.mouse.is_typing()) {
             (true, _) => Letters::Steer,
             (false, true) => Letters::Type,
-            (false, false) => Letters::Ask,
+            (false, false) => Letters::Act,
         };
         Keyboard::set_viewport(ui.ctx(), id, letters);
         let projection = Projection::new(state, rect, size);

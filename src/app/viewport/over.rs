@@ -103,7 +103,7 @@ impl Viewport {
         }
     }
 
-    /// The items of which something lies in a part of the window.
+    /// The items that reach into a part of the window.
     fn items_in(&self, state: &State, over: &Over, area: Rect) -> Vec<ItemId> {
         let Some((rect, size)) = self.place else { return Vec::new() };
         let onto = Projection::new(state, rect, size);

@@ -55,7 +55,7 @@ pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<O
     found.into_iter().map(|(_, id)| id).collect()
 }
 
-/// The visible objects of which a vertex lies in a part of the window.
+/// The visible objects with a vertex in a part of the window.
 pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Vec<ObjectId> {
     let shown = state.scene.objects.iter().filter(|(_, object)| object.visible);
     let touches = |object: &Object| {

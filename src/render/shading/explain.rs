@@ -1,8 +1,8 @@
 //! What one pixel shows, and the light that its colour is made of.
 //!
 //! The pixel is shaded again by the code that shaded the picture, one light at a time, in the
-//! picture's own arithmetic. So the terms are those of the picture bit for bit; what their sum loses
-//! by rounding is a term of its own, and with it they add up to the colour exactly.
+//! picture's own arithmetic. So the terms are those of the picture bit for bit; what their sum
+//! loses by rounding is a term of its own, and with it they add up to the colour exactly.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,5 @@
-//! The properties of several selected items: what differs among them is said, and a change sets all.
+//! The properties of several selected items: what differs among them is said, and a change sets all
+//! of them.
 
 use egui::{RichText, Ui};
 

@@ -1,6 +1,6 @@
 //! The gizmo: handles over the picture that move, rotate or scale the selected item.
 //!
-//! It has the same size on the screen wherever the item is, and lies over everything. Its parts are
+//! It has the same size on the screen at every distance, and lies over everything. Its parts are
 //! lines, squares and rings of the window; the part that is under the pointer is found among them.
 //! A press on a part that becomes no drag stays a click into the picture.
 
@@ -25,7 +25,8 @@ const LENGTH: f32 = 84.0;
 /// A press this near to a line is on it.
 const REACH: f32 = 6.0;
 
-/// Where the squares of planes stand along both axes, and half of their side, in parts of an axis.
+/// The middle of the squares of planes along both axes, and half of their side, in parts of an
+/// axis.
 const PLANE: [f64; 2] = [0.32, 0.09];
 
 /// The radius of the handle in the middle, in points.

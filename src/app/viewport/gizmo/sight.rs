@@ -99,7 +99,7 @@ impl Sight {
 }
 
 impl Ray {
-    /// Where it meets the plane through `at`, across `normal`.
+    /// The point in which it meets the plane through `at`, across `normal`.
     pub(crate) fn on_plane(&self, at: DVec3, normal: DVec3) -> Option<DVec3> {
         let slope = self.along.dot(normal);
         let way = (at - self.from).dot(normal) / slope;
