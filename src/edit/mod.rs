@@ -24,6 +24,7 @@ pub mod several;
 pub mod shapes;
 pub mod steps;
 pub mod transform;
+pub mod turntable;
 
 pub use gesture::{Gesture, GesturePhase};
 pub use history::History;

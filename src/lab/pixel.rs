@@ -111,6 +111,9 @@ pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
     };
     lines.extend(rows(scene, explained).iter().map(|row| line(&row.label, row.value)));
     lines.push(line("sum", explained.color.map(|x| x * 255.0)));
+    if explained.linear {
+        lines.push("  linear light: encoded in sRGB before it is rounded".to_owned());
+    }
     let [r, g, b] = explained.bytes;
     lines.push(format!("  {:<34}{r:>10}{g:>10}{b:>10}", "clamped and rounded"));
     lines

@@ -18,6 +18,7 @@ mod palette;
 mod panels;
 mod plan;
 mod properties;
+mod refining;
 mod regions;
 mod several;
 mod shapes;

@@ -63,8 +63,12 @@ fn explained_ui(
     }
     ui.separator();
     sum_ui(ui, pixel, explained);
-    if pixel.settings.samples.count() > 1 {
-        let count = pixel.settings.samples.count();
+    if explained.linear {
+        ui.weak("Linear light: encoded in sRGB before it is rounded.");
+    }
+    let samples = state.refined_to().unwrap_or(pixel.settings.samples);
+    if samples.count() > 1 {
+        let count = samples.count();
         ui.weak(format!(
             "The picture has the mean of {count} samples; this is the centre's light."
         ));

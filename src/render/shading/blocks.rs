@@ -10,7 +10,7 @@ use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::surface::{Out, Shader};
 use super::texels::PlacedTexture;
-use super::textured::sampler;
+use super::textured::{Placed, TexelSource};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
@@ -67,6 +67,7 @@ impl<T: ShadingNumber> Shader<T> {
             Pipeline::Shaded(shaded) => {
                 shaded.texture.is_none()
                     && !shaded.vertex_colors
+                    && !shaded.extras.reads_texels()
                     && plan.variants.rounding != Rounding::Dithered
                     && (shaded.light.is_none() || plan.light_at == LightAt::Face)
             }
@@ -96,7 +97,9 @@ impl<T: ShadingNumber> Shader<T> {
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return false;
         };
-        let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
+        let mixed = shaded.light.is_some()
+            && plan.light_at == LightAt::Vertex
+            && !plan.variants.are_linear();
         if !mixed || group.draw.back == Back::Red || plan.variants.mixes_one_by_one() {
             return false;
         }
@@ -130,31 +133,33 @@ impl<T: ShadingNumber> Shader<T> {
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
         let has_variant = plan.variants.locates_one_by_one()
             || plan.variants.root_variant().is_some()
-            || plan.variants.rounding != Rounding::Nearest;
+            || plan.variants.rounding != Rounding::Nearest
+            || plan.variants.are_linear();
         if (is_lit && !pixels)
             || shaded.vertex_colors
+            || !shaded.extras.is_empty()
             || has_variant
             || group.draw.back == Back::Red
         {
             return false;
         }
         let texture = shaded.texture.as_deref();
-        let mips = shaded.texture.as_ref().and_then(|texture| terms.mips_of(texture));
-        let sampler = texture.and_then(|texture| sampler(context, texture, mips));
+        let source = shaded.texture.as_ref().map(|it| TexelSource::of_colors(context, it));
+        let sampler = source.and_then(|source| source.sampler(context));
         let new = self.take(context, group, true);
         if let Some(texture) = texture {
             let Some(sampler) = &sampler else { return false };
             if new {
                 self.place_texture(context, group, texture, sampler);
             }
-            if self.placement.known & 1 == 0 {
+            if self.placed.placement.known & 1 == 0 {
                 // The other way fetches what it needs.
                 self.attributes.forget();
                 return false;
             }
         }
         let cut = self.cut_weights(context, group);
-        let Self { tile, attributes, batch, placement, far, .. } = self;
+        let Self { tile, attributes, batch, placed: Placed { placement, far }, .. } = self;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
         if !needs_positions {

@@ -37,6 +37,8 @@ pub struct PixelColor {
     pub rounding: [f64; 3],
     /// The colour before it is clamped to 0 to 1 and rounded to a byte.
     pub color: [f64; 3],
+    /// Whether the sum is linear light, which is encoded in sRGB before it is rounded.
+    pub linear: bool,
     /// The bytes of the picture.
     pub bytes: [u8; 3],
 }
@@ -99,6 +101,9 @@ pub enum Part {
     Diffuse,
     /// I Ks (R.V)^Ns.
     Specular,
+    /// What the surface adds to its colour whatever the lights: emission, and ambient light that
+    /// has a map of its own.
+    Emission,
     /// Light of the corners, interpolated: of all lights together.
     Corners,
 }
@@ -115,6 +120,7 @@ impl Part {
             Self::Ambient => "ambient",
             Self::Diffuse => "diffuse",
             Self::Specular => "specular",
+            Self::Emission => "emission",
             Self::Corners => "light of the corners",
         }
     }
@@ -152,7 +158,15 @@ pub(crate) fn explain<T: ShadingNumber>(
     let plain = |part, [r, g, b, _]: [u8; 4]| {
         let value = [r, g, b].map(|byte| f64::from(byte) / 255.0);
         let terms = vec![Term { part, light: None, value, ray: None }];
-        PixelColor { at, surface: None, terms, rounding: [0.0; 3], color: value, bytes: [r, g, b] }
+        PixelColor {
+            at,
+            surface: None,
+            terms,
+            rounding: [0.0; 3],
+            color: value,
+            linear: false,
+            bytes: [r, g, b],
+        }
     };
     let ShadingContext { level, plan, frame, .. } = *context;
     match seen(visibility.word(level, x, y)) {
@@ -188,6 +202,8 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         // What first_color left: the light of the pixel, and its texel.
         let of_all = [first(&self.shader.batch.diffuse), first(&self.shader.batch.specular)];
         let texel = first(&self.shader.texels);
+        let glow = first(&self.shader.maps.glow);
+        let drawn = self.shader.batch.clone();
         let mut surface = self.place();
         let red = surface.back && self.group.draw.back == Back::Red;
         let shaded = match &plan.pipelines[self.group.pipeline as usize] {
@@ -197,26 +213,33 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
                 let value = bytes.map(|byte| f64::from(byte) / 255.0);
                 let terms = vec![Term { part, light: None, value, ray: None }];
                 let (surface, at) = (Some(surface), self.at);
-                return PixelColor { at, surface, terms, rounding: [0.0; 3], color: value, bytes };
+                let (rounding, linear) = ([0.0; 3], false);
+                return PixelColor { at, surface, terms, rounding, color: value, linear, bytes };
             }
         };
-        let textured = shaded.texture.is_some() || shaded.vertex_colors;
+        let extras = &shaded.extras;
+        let textured = shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels();
         let tint = shaded.tint.map(|x| T::from_f64(x).into());
         surface.own = if textured { texel } else { tint };
         surface.light_at = shaded.light.is_some().then_some(plan.light_at);
-        let (terms, color) = match (&shaded.light, plan.light_at) {
+        let (mut terms, mut color) = match (&shaded.light, plan.light_at) {
             (None, _) => {
                 let term = Term { part: Part::Unlit, light: None, value: surface.own, ray: None };
                 (vec![term], surface.own)
             }
             (Some(_), LightAt::Vertex) => self.of_corners(&mut surface, textured, of_all),
             (Some(stages), LightAt::Pixel | LightAt::Sample | LightAt::Face) => {
-                self.of_lights(&mut surface, shaded, stages)
+                self.of_lights(&mut surface, (shaded, stages), &drawn)
             }
         };
+        if extras.glows().next().is_some() {
+            terms.push(Term { part: Part::Emission, light: None, value: glow, ray: None });
+            color = plus(color, glow);
+        }
         let sum = terms.iter().fold([0.0; 3], |sum, term| plus(sum, term.value));
         let rounding = [0, 1, 2].map(|i| color[i] - sum[i]);
-        PixelColor { at: self.at, surface: Some(surface), terms, rounding, color, bytes }
+        let linear = plan.variants.are_linear();
+        PixelColor { at: self.at, surface: Some(surface), terms, rounding, color, linear, bytes }
     }
 
     /// Where the point is. Afterwards the batch holds its position and its normal.
@@ -258,8 +281,8 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
     fn of_lights(
         &mut self,
         surface: &mut SurfacePoint,
-        shaded: &Shaded,
-        stages: &[Stage],
+        (shaded, stages): (&Shaded, &[Stage]),
+        drawn: &Batch<T>,
     ) -> (Vec<Term>, [f64; 3]) {
         let Self { context, group, shader, .. } = self;
         let ShadingContext { level, plan, lit, terms: of, .. } = **context;
@@ -273,8 +296,14 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
             surface.normal = world.direction(vec3(&batch.normal));
             surface.to_eye = world.direction(vec3(&batch.to_eye));
         }
+        let lit_places = shader.tile.light(plan, group.pipeline, shaded).needs_positions;
+        if !by_face && lit_places {
+            // With normals that bumps have bent, and exponents from a map.
+            shader.batch.clone_from(drawn);
+            surface.normal = World::new(plan).direction(vec3(&shader.batch.normal));
+        }
         let lights = of.of(group.pipeline);
-        let (mut terms, mut sums) = (Vec::new(), Batch::<T>::default());
+        let mut terms = Vec::new();
         let evaluated = |i: &usize| {
             by_face || kept.as_ref().is_none_or(|kept| kept.iter().any(|at| *at as usize == *i))
         };
@@ -290,9 +319,21 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         for i in (0..stages.len()).filter(evaluated) {
             run(&stages[i..=i], &lights[i..=i], level, &mut shader.batch);
         }
-        sums.clone_from(&shader.batch);
-        sums.len = 1;
-        (terms, reflect(context, &sums, surface.own))
+        shader.batch.len = 1;
+        // A map of Ks multiplies all highlights together.
+        let (own, mapped) = (first(&shader.batch.specular), first(&drawn.specular));
+        for term in terms.iter_mut().filter(|term| term.part == Part::Specular) {
+            for i in (0..3).filter(|i| own[*i] != mapped[*i] && own[*i] != 0.0 && !by_face) {
+                term.value[i] *= mapped[i] / own[i];
+            }
+        }
+        if !by_face {
+            for (row, value) in shader.batch.specular.iter_mut().zip(mapped) {
+                row[0] = T::from_f64(value);
+            }
+        }
+        let color = reflect(context, &shader.batch, surface.own);
+        (terms, color)
     }
 
     /// The light of vertices, which was interpolated when its lights were added up already.

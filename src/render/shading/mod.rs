@@ -10,6 +10,7 @@
 mod barycentric_variants;
 pub(crate) mod barycentrics;
 mod blocks;
+mod bumps;
 mod clamp_to_triangle;
 pub(crate) mod colors;
 pub(crate) mod context;
@@ -18,6 +19,7 @@ mod face_colors;
 mod far_texture;
 pub(crate) mod fragments;
 mod full_blocks;
+mod glow;
 mod groups;
 mod interpolate;
 pub(crate) mod interpolated;
