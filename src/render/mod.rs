@@ -43,6 +43,7 @@ pub use damage::{Change, Damage, DamageCause};
 pub use frame::FramePlan;
 pub use plan::{Class, Effect, EffectState, EffectUse, explain_frame, plan_everything, plan_frame};
 pub use renderer::{Cancelled, Hit, Renderer};
+pub use shading::explain::{LightRay, Part, PixelColor, SurfacePoint, Term};
 pub use timings::Timings;
 pub use unseen::{Unseen, unseen};
 pub use without_ground::without_ground;

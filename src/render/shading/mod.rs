@@ -18,6 +18,7 @@ mod bumps;
 mod clamp_to_triangle;
 pub(crate) mod colors;
 pub(crate) mod context;
+pub(crate) mod explain;
 mod face_colors;
 mod far_texture;
 pub(crate) mod fragments;
