@@ -214,6 +214,10 @@ pub(crate) struct Seeing {
     /// The slots of the lights that are on, as "0,2"; all others are off. "none" for darkness
     #[arg(long, value_name = "SLOTS", value_parser = slots)]
     pub(crate) lights: Option<Slots>,
+    /// The slots of the lights that cast shadows, as "1,3"; the others cast none. "all" for all
+    /// that can, "none*" for none
+    #[arg(long, value_name = "SLOTS", value_parser = shadow_slots)]
+    pub(crate) shadows: Option<ShadowSlots>,
     /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name such as "white"
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     pub(crate) background: Option<Color>,
@@ -268,6 +272,15 @@ const UP_AXES: [(&str, UpAxis); 6] = {
     }
     axes
 };
+
+/// The lights that cast shadows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum ShadowSlots {
+    /// Every light that can.
+    All,
+    /// Those in these slots.
+    These(Slots),
+}
 
 /// The slots of the lights that are on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -357,6 +370,13 @@ fn slots(text: &str) -> Result<Slots, String> {
     let slots: Option<BTreeSet<u32>> =
         text.split(',').map(|part| part.trim().parse().ok()).collect();
     slots.map(Slots).ok_or_else(|| "write numbers with commas between, or none".to_owned())
+}
+
+fn shadow_slots(text: &str) -> Result<ShadowSlots, String> {
+    if text == "all" {
+        return Ok(ShadowSlots::All);
+    }
+    slots(text).map(ShadowSlots::These).map_err(|reason| format!("{reason}, or all"))
 }
 
 fn material(text: &str) -> Result<MaterialChoice, String> {

@@ -10,6 +10,7 @@ use crate::accuracy::Settings;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
+use crate::edit::several::Others;
 use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
@@ -41,6 +42,14 @@ pub enum Request {
     Lab(LabRequest),
     /// Selects an item, and makes its kind the subject.
     Select(ItemId),
+    /// Selects these items too, or no longer; the last of them becomes the one that keys act on.
+    SelectAlso(Vec<ItemId>, Also),
+    /// Selects these items beside the one that the keys act on.
+    Others(Others),
+    /// Explains this pixel of the picture.
+    Explain([usize; 2]),
+    /// Closes the explanation of a pixel.
+    EndExplaining,
     /// Aims the selected light at a point of the world.
     AimAt(DVec3),
     /// Selects a polygon of the selected object while polygons are shown one at a time.
@@ -77,6 +86,17 @@ pub enum Request {
     EndGreeting,
     /// Says in the status line why a request was refused.
     Refuse(String),
+}
+
+/// How items are added to the selection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Also {
+    /// One that is selected is selected no longer.
+    Toggle,
+    /// They alone are selected.
+    Only,
+    /// They are selected too.
+    Add,
 }
 
 impl From<Action> for Request {
@@ -127,7 +147,7 @@ pub enum LabRequest {
     Sampled(bool),
     /// The next click picks a pixel, or does not.
     Pick(bool),
-    /// Explain this pixel.
+    /// Attribute the error of this pixel.
     Attribute([usize; 2]),
     /// Show this beside the plots.
     Side(Side),

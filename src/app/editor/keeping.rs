@@ -60,6 +60,7 @@ impl App {
         self.state.overlays = preferences.overlays;
         self.state.layout = Layout::of_shares(&preferences.shares);
         Keyboard::set_keymap(ctx, Keymap::of_names(&preferences.keys));
+        self.state.gizmo = preferences.gizmo;
         let Preferences { refines, refined, budget_ms, .. } = preferences;
         self.state.drawing = DrawingChoices { refines, refined, budget_ms };
         self.state.recent.clone_from(&preferences.recent);
@@ -253,6 +254,7 @@ fn preferences_now(ctx: &Context, state: &State, before: &Preferences) -> Prefer
             ThemePreference::Dark => Theme::Dark,
         },
         panels: Panels { cheat_sheet: false, ..state.panels },
+        gizmo: state.gizmo,
         scale,
         window: size.map(whole).or(before.window),
         maximized,

@@ -4,6 +4,7 @@
 //! writes the scene.
 
 mod comparing;
+mod explaining;
 mod files;
 mod first_models;
 mod keeping;
@@ -12,6 +13,7 @@ mod making;
 mod measuring;
 mod requests;
 mod scenes;
+mod selecting;
 mod unseen;
 
 use std::collections::VecDeque;
@@ -29,7 +31,7 @@ use crate::app::drawing::motion::{Happening, Motion};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::input::keyboard::Keyboard;
-use crate::app::panels::{self, notices};
+use crate::app::panels::{self, notices, pixel};
 use crate::app::shell::{Editor, Parent};
 use crate::app::state::State;
 use crate::app::state::layout::NARROW;
@@ -37,6 +39,7 @@ use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
 use crate::scene::{Scene, Steps, View};
+use explaining::Explaining;
 use keeping::Keeping;
 use laboratory::Work;
 use making::Making;
@@ -64,6 +67,8 @@ pub struct App {
     worker: Option<Worker<Purpose>>,
     /// The running measurement of effects.
     pub(crate) measuring: Option<Measuring>,
+    /// The pixel that is being explained.
+    pub(crate) explaining: Option<Explaining>,
     /// Whether the window is closing.
     leaving: bool,
     /// Whether the picture is changing.
@@ -99,6 +104,7 @@ impl App {
             comparison: Comparison::default(),
             worker: None,
             measuring: None,
+            explaining: None,
             leaving: false,
             motion: Motion::default(),
             moved_at: None,
@@ -162,6 +168,7 @@ impl App {
         arrangement.greeting_ui(ui, &self.state, &mut requests);
         arrangement.splitters_ui(ui, &self.state, &mut requests);
         notices::show(&ctx, &self.state, &self.loading, &self.making.tasks, &mut requests);
+        pixel::show(&ctx, &self.state, place, &mut requests);
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
 
@@ -189,6 +196,7 @@ impl App {
         self.hear_making(&ctx);
         self.hear_searches();
         self.hear_measuring();
+        self.hear_explaining(&ctx);
         self.hear_laboratory(&ctx);
         self.compare(&ctx);
         self.take_dropped(&ctx);

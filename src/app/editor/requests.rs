@@ -15,6 +15,7 @@ use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::input::keymap::Keymap;
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
+use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, aiming, items};
 use crate::scene::{Command, ItemId, Subject, View};
 
@@ -27,10 +28,19 @@ impl App {
                 return requests.into_iter().for_each(|request| self.answer(ctx, request));
             }
             if std::mem::take(&mut self.state.aiming)
+                || std::mem::take(&mut self.state.explaining)
                 || std::mem::take(&mut self.state.lab.picking)
                 || std::mem::take(&mut self.state.panels.cheat_sheet)
                 || self.state.renaming.take().is_some()
             {
+                return;
+            }
+            if self.state.explained.take().is_some() {
+                self.explaining = None;
+                return;
+            }
+            if !self.state.others().is_empty() {
+                self.state.several = Others::default();
                 return;
             }
         }
@@ -51,6 +61,12 @@ impl App {
                 Ok(selection) => self.select(selection, Gesture::Whole),
                 Err(refusal) => self.refuse(refusal.to_string()),
             },
+            Request::SelectAlso(items, how) => self.select_also(&items, how),
+            Request::Others(others) => state.several = others,
+            Request::Explain(at) => self.explain_pixel(ctx, at),
+            Request::EndExplaining => {
+                (self.explaining, state.explained, state.explaining) = (None, None, false);
+            }
             Request::AimAt(point) => self.aim_at(point),
             Request::SelectPolygon(polygon) => {
                 let mut view = state.view.clone();
@@ -111,7 +127,7 @@ impl App {
         match resolve(action, &self.state, self.state.phase(gesture)) {
             Err(refusal) => self.refuse(refusal.to_string()),
             Ok(Intent::Change(command)) => self.change(command, gesture, &label),
-            Ok(Intent::Add(command, subject)) => self.add(command, subject, &label),
+            Ok(Intent::Add(command, subject)) => self.add_all(command, subject, &label),
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
             Ok(Intent::Settings(settings)) => self.state.settings = settings,
@@ -141,7 +157,17 @@ impl App {
             Ok(Intent::Palette) => self.state.palette ^= true,
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
             Ok(Intent::Overlays) => self.state.overlays ^= true,
-            Ok(Intent::AimByClick) => self.state.aiming ^= true,
+            Ok(Intent::Gizmo) => self.state.gizmo ^= true,
+            Ok(Intent::TypeAmount) => self.type_amount(ctx),
+            Ok(Intent::Others(others)) => self.state.several = others,
+            Ok(Intent::AimByClick) => {
+                self.state.aiming ^= true;
+                self.state.explaining = false;
+            }
+            Ok(Intent::Explain) => {
+                self.state.explaining ^= true;
+                self.state.aiming = false;
+            }
             Ok(Intent::ChangeKeyboardOwner(way)) => Keyboard::change_owner(ctx, way),
         }
     }
@@ -206,7 +232,7 @@ impl App {
         selection::settle(&self.state.scene, &mut self.state.view);
     }
 
-    fn select(&mut self, selection: Selection, gesture: Gesture) {
+    pub(crate) fn select(&mut self, selection: Selection, gesture: Gesture) {
         if let Some(command) = selection.command {
             self.change(command, gesture, "Aim the camera");
         }

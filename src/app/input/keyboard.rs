@@ -31,8 +31,10 @@ pub struct Press {
 #[derive(Debug, Default)]
 pub(crate) struct Keyboard {
     viewport: Option<Id>,
-    /// While the viewport flies, letters steer and ask for nothing.
-    steering: bool,
+    /// What letters and numbers do over the viewport.
+    letters: Letters,
+    /// What was typed while they are [`Letters::Type`]; Enter is a new line, Backspace itself.
+    typed: String,
     down: BTreeSet<Key>,
     /// While Alt is down, typed text may belong to a menu or another layer of the layout.
     alt: bool,
@@ -55,11 +57,16 @@ impl Keyboard {
         let _ = ctx.plugin_or_default::<Self>();
     }
 
-    /// Tells it which widget is the viewport, and whether letters steer it.
-    pub(crate) fn set_viewport(ctx: &Context, viewport: Id, steering: bool) {
+    /// Tells it which widget is the viewport, and what letters do there.
+    pub(crate) fn set_viewport(ctx: &Context, viewport: Id, letters: Letters) {
         let handle = ctx.plugin_or_default::<Self>();
         let mut keyboard = handle.lock();
-        (keyboard.viewport, keyboard.steering) = (Some(viewport), steering);
+        (keyboard.viewport, keyboard.letters) = (Some(viewport), letters);
+    }
+
+    /// What was typed for a handle since this was last asked.
+    pub(crate) fn take_typed(ctx: &Context) -> String {
+        std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().typed)
     }
 
     /// The keys of all actions.
@@ -133,6 +140,11 @@ impl Keyboard {
                 return true;
             }
         }
+        let types = self.letters == Letters::Type && owner == Owner::Viewport;
+        if types && matches!(key, Key::Enter | Key::Backspace) {
+            self.typed.push(if key == Key::Enter { '\n' } else { '\u{8}' });
+            return true;
+        }
         let chord = |chord: &Chord| chord.is_pressed_by(key, modifiers);
         self.ask(owner, chord);
         let own = matches!(
@@ -155,7 +167,7 @@ impl Keyboard {
         let Some((action, chord)) = found else { return };
         let info = action.info();
         let acts = match owner {
-            Owner::Viewport => !self.steering || chord == Chord::Named(Key::Escape),
+            Owner::Viewport => self.letters == Letters::Act || chord == Chord::Named(Key::Escape),
             Owner::Panel => chord.is_global(),
             // A text field has an undo of its own.
             Owner::Text => chord.is_global() && info.group != Group::Edit,
@@ -173,6 +185,18 @@ impl Keyboard {
         };
         self.waiting.push(Press { action, chord, gesture });
     }
+}
+
+/// What letters and numbers do over the viewport.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Letters {
+    /// They ask for actions.
+    #[default]
+    Act,
+    /// They steer, and ask for nothing.
+    Steer,
+    /// They are an amount for a handle, and ask for nothing.
+    Type,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -213,7 +237,9 @@ impl egui::Plugin for Keyboard {
                 true
             }
             Event::Text(text) => {
-                if !self.alt {
+                if self.letters == Letters::Type && owner == Owner::Viewport {
+                    self.typed.push_str(text);
+                } else if !self.alt {
                     self.ask(owner, |chord| matches!(chord, Chord::Text(sign) if sign == text));
                 }
                 true

@@ -7,6 +7,7 @@ mod menu_bar;
 pub(crate) mod notices;
 mod outline;
 mod palette;
+pub(crate) mod pixel;
 mod plan;
 mod properties;
 mod splitters;

@@ -38,6 +38,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         section(ui, "Light", true, |ui| {
             slots_ui(ui, state, requests);
+            action_switch(ui, state, requests, Action::ToggleAllShadows);
             normals_ui(ui, state, requests);
             for axis in AXES.iter().filter(|axis| is_of_light(axis)) {
                 axis_ui(ui, axis, state, requests);

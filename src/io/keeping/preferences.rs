@@ -27,6 +27,8 @@ pub struct Preferences {
     pub theme: Theme,
     /// Which panels are open.
     pub panels: Panels,
+    /// Whether handles to move, rotate and scale the selection lie over the picture.
+    pub gizmo: bool,
     /// The zoom of the interface: 1 is the system's.
     pub scale: f32,
     /// The inner width and height of the window in points, if it was ever open.
@@ -67,6 +69,7 @@ impl Default for Preferences {
         Self {
             theme: Theme::System,
             panels: Panels::DEFAULT,
+            gizmo: true,
             scale: 1.0,
             window: None,
             maximized: false,
