@@ -175,7 +175,7 @@ impl ViewportRenderer {
         }
         let applicable = applicable(snapshot);
         let begun = (self.clock)();
-        let measured = self.quality.to_measure(applicable, snapshot.budget);
+        let measured = self.quality.unmeasured(applicable, snapshot.budget);
         if let Some(reduction) = measured.filter(|_| snapshot.view.coarse_while_moving) {
             if self.finer.redraw(&planned(snapshot, reduction), wanted).is_err() {
                 return Finer::Disturbed;

@@ -113,7 +113,7 @@ fn escaped(name: &str) -> String {
 fn binary(mut text: Vec<u8>, mut buffer: Vec<u8>) -> Result<Vec<u8>, String> {
     text.resize(text.len().next_multiple_of(4), b' ');
     buffer.resize(buffer.len().next_multiple_of(4), 0);
-    let length = |bytes: usize| u32::try_from(bytes).map_err(|_| "it is too large".to_owned());
+    let length = |bytes: usize| u32::try_from(bytes).map_err(|_large| "it is too large".to_owned());
     let whole = length(12 + 8 + text.len() + 8 + buffer.len())?;
     let mut file = Vec::with_capacity(12 + 16 + text.len() + buffer.len());
     file.extend(b"glTF");
