@@ -22,6 +22,9 @@ fn refined_to(editor: &mut Editor, refined: Samples) {
 
 fn rest(editor: &mut Editor) {
     editor.settle();
+    // Two changes within a moment are a motion, which a slow machine draws with less.
+    editor.harness.run_steps(15);
+    editor.settle();
     editor.harness.state().wait_until_refined();
     editor.harness.run_steps(2);
 }

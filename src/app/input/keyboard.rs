@@ -62,6 +62,8 @@ impl Keyboard {
         let handle = ctx.plugin_or_default::<Self>();
         let mut keyboard = handle.lock();
         (keyboard.viewport, keyboard.letters) = (Some(viewport), letters);
+        drop(keyboard);
+        regions::go_further(ctx, viewport);
     }
 
     /// What was typed for a handle since this was last asked.

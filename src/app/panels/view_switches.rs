@@ -44,10 +44,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
                 axis_ui(ui, axis, state, requests);
             }
         });
-        section(ui, "Accuracy", true, |ui| {
-            settings_ui(ui, state, requests);
-            drawing_ui(ui, state, requests);
-        });
+        section(ui, "Accuracy", true, |ui| settings_ui(ui, state, requests));
+        section(ui, "Still and moving", true, |ui| drawing_ui(ui, state, requests));
     });
 }
 
@@ -235,7 +233,11 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if let Some(clicked) = row(ui, "Accuracy", |ui| choices_in_rows(ui, &presets)) {
         requests.push(Request::Settings(ACCURACY_PRESETS[clicked].of(&now)));
     }
-    for axis in AXES.iter().filter(|axis| !is_of_light(axis)) {
+    for (i, axis) in AXES.iter().filter(|axis| !is_of_light(axis)).enumerate() {
+        // No control is far from the beginning of a region of the keyboard.
+        if i == AXES.len() / 2 {
+            regions::begin(ui, "more axes");
+        }
         axis_ui(ui, axis, state, requests);
     }
 }

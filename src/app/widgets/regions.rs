@@ -24,6 +24,8 @@ struct Regions {
     /// The region that the keyboard is to go to, and the one that it went to last.
     target: Option<Id>,
     current: Option<Id>,
+    /// What had the keyboard before it was taken back, and the place of the region it was taken to.
+    back: Option<(Id, usize)>,
 }
 
 fn key() -> Id {
@@ -87,12 +89,41 @@ pub(crate) fn go(ctx: &Context, viewport: Id, way: Way) {
             }
         };
         regions.target = next.map(|region| region.id);
+        let place = next.and_then(|next| regions.shown.iter().position(|it| it.id == next.id));
+        regions.back = focused.zip(place).filter(|_| way == Way::Back);
         regions.target.is_none()
     });
     if to_viewport {
         ctx.memory_mut(|memory| memory.request_focus(viewport));
     }
     ctx.request_repaint();
+}
+
+/// A region whose first control is that of the next one has none of its own: on the way back, the
+/// keyboard goes further. Called in each frame after all regions were shown.
+pub(crate) fn go_further(ctx: &Context, viewport: Id) {
+    let focused = ctx.memory(|memory| memory.focused());
+    let beyond = ctx.data_mut(|data| {
+        let regions: &mut Regions = data.get_temp_mut_or_default(key());
+        if regions.target.is_some() {
+            return None;
+        }
+        let (before, place) = regions.back.take()?;
+        if focused != Some(before) {
+            return None;
+        }
+        let next =
+            place.checked_sub(1).and_then(|place| Some((place, regions.shown.get(place)?.id)));
+        regions.target = next.map(|(_, id)| id);
+        regions.back = next.map(|(place, _)| (before, place));
+        Some(next.is_none())
+    });
+    if beyond == Some(true) {
+        ctx.memory_mut(|memory| memory.request_focus(viewport));
+    }
+    if beyond.is_some() {
+        ctx.request_repaint();
+    }
 }
 
 impl Regions {
