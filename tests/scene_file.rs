@@ -77,6 +77,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         surface: Surface::Texture,
         texture: Some(Shared::new(texture)),
         tint: Color([1, 2, 3]),
+        opacity: 0.375,
         sides: Sides::Two,
         file_normals: false,
         edge_color: Color([4, 5, 6]),
