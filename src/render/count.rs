@@ -194,7 +194,11 @@ impl FramePlan {
         };
         let mirrors = stages.iter().any(|stage| stage.highlight != Form::Plain);
         for stage in stages {
-            counts.add(Effect::Light(self.light_ids[stage.light as usize]), item, pixels);
+            let id = self.light_ids[stage.light as usize];
+            counts.add(Effect::Light(id), item, pixels);
+            if self.shadows.source(stage.light).is_some() {
+                counts.add(Effect::Shadows(id), item, pixels);
+            }
         }
         let features = [
             (Effect::Highlights, mirrors),

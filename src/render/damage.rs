@@ -41,6 +41,8 @@ pub enum DamageCause {
     Background,
     /// The settings of accuracy changed.
     Settings,
+    /// A light that casts shadows changed, or something that casts them.
+    Shadows,
     /// The order of draws changed, which decides between equal depths.
     Order,
     /// These items changed; the list is empty if the picture stays as it is.
@@ -152,6 +154,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         clip_from_view,
         line_width,
         lights: _,
+        shadows,
         draws: _,
         pipelines: _,
         leave_out,
@@ -176,6 +179,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         () if moved => Some(DamageCause::Camera),
         () if settings => Some(DamageCause::Settings),
         () if *background != before.background => Some(DamageCause::Background),
+        () if !shadows.is_same(&before.shadows) => Some(DamageCause::Shadows),
         () => None,
     }
 }
@@ -299,6 +303,8 @@ impl Compared<'_> {
                     && after.iter().zip(before).all(|(after, before)| {
                         after.effect.name == before.effect.name
                             && after.highlight == before.highlight
+                            && self.after.shadows.source(after.light).is_some()
+                                == self.before.shadows.source(before.light).is_some()
                             && after.is_mapped == before.is_mapped
                             && alike_lights(
                                 &self.after.lights[after.light as usize],

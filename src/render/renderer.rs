@@ -11,6 +11,7 @@ use std::sync::Mutex;
 use fearless_simd::Level;
 
 use super::shading::context::ShadingContext;
+use super::shading::explain::{PixelColor, explain};
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Painter, TileSums, bounds_of};
 use crate::accuracy::Arithmetic;
@@ -22,12 +23,14 @@ use crate::render::damage::{Damage, DamageCause};
 use crate::render::frame::{FramePlan, Rules};
 use crate::render::plan::uses::EffectUse;
 use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::tile::Visibility;
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::raster::{depth_format, visibility_buffer};
 use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::render::screen::tiles::{BLOCK_PIXELS, TILE, TILE_SIDE, block_at, tiles_of};
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
+use crate::render::shadow::tracer::Tracer;
 use crate::render::tile_layers::TileLayers;
 use crate::render::timings::{Laps, Timings};
 use crate::scene::ItemId;
@@ -280,15 +283,54 @@ impl Renderer {
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
+    /// What the last picture shows in column `x` of row `y`, and what its colour is made of. A
+    /// pixel of several samples is explained by the light at its centre.
+    #[must_use]
+    pub fn explain(&mut self, x: usize, y: usize) -> Option<PixelColor> {
+        self.build_again();
+        let plan = self.plan.as_ref()?;
+        let Size { width, height } = plan.size;
+        if x >= width || y >= height {
+            return None;
+        }
+        plan.prepare();
+        let at = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
+        Some(match plan.arithmetic {
+            Arithmetic::F32 => self.explain_in::<f32>(plan, at),
+            Arithmetic::F64 => self.explain_in::<f64>(plan, at),
+        })
+    }
+
+    fn explain_in<T: ShadingNumber>(&self, plan: &FramePlan, at: [i32; 2]) -> PixelColor {
+        let (mut terms, mut lit) = (LightTerms::<T>::default(), Lit::<T>::default());
+        terms.prepare(plan);
+        lit.prepare(plan);
+        let (level, frame) = (self.level, &self.frame);
+        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms, tracer: None };
+        let [columns, _] = tiles_of(plan.size);
+        let tile = usize::try_from(at[1] / TILE * columns + at[0] / TILE).expect("not negative");
+        let bounds = bounds_of(tile, plan.size);
+        let mut visibility = Visibility::default();
+        visibility.draw(level, plan, frame, (tile, bounds));
+        explain(&context, &mut visibility, bounds, at)
+    }
+
     /// Marks the pixels at which the last picture shows an item, also through transparent ones: a
     /// flag for each pixel, row by row from the top.
     #[must_use]
     pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
+        self.pixels_of_any(&[item])
+    }
+
+    /// Marks the pixels at which the last picture shows any of these items, as
+    /// [`Self::pixels_of`].
+    #[must_use]
+    pub fn pixels_of_any(&mut self, items: &[ItemId]) -> Vec<bool> {
         let mut pixels = vec![false; self.seen_size().area()];
         self.look(|renderer, plan, at, _, words| {
             pixels[at] = words.iter().any(|word| {
                 let seen = renderer.seen(plan, *word);
-                seen.is_some_and(|(draw, _)| plan.draws[draw as usize].item == item)
+                seen.is_some_and(|(draw, _)| items.contains(&plan.draws[draw as usize].item))
             });
             ControlFlow::Continue(())
         });
@@ -401,7 +443,9 @@ impl Renderer {
         terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let context = ShadingContext { level, plan, frame, lit, terms };
+        let tracer = Tracer::new(plan);
+        let tracer = tracer.as_ref();
+        let context = ShadingContext { level, plan, frame, lit, terms, tracer };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self

@@ -25,6 +25,7 @@ const INTERPOLATION: &str = "Interpolation";
 const LIGHT: &str = "Light";
 const COLOUR: &str = "Colour";
 const CAMERA: &str = "Camera";
+const SHADOWS: &str = "Shadows";
 const UNDO: &str = "Undo";
 const SURFACES: &str = "Surfaces";
 const FILES: &str = "Files and scale";
@@ -110,6 +111,15 @@ pub(crate) static CASES: &[Case] = &[
     case(65, FILES, "Z", "odd faces in files read past the end, or are filled wrongly"),
     case(66, FILES, "R", "a scene in millimetres looks other than one in kilometres"),
     case(67, FILES, "I", "nothing at all, and very much, are not drawn"),
+    case(68, SHADOWS, "D", "light leaks in under a cube on the ground, or the ground speckles"),
+    case(69, SHADOWS, "I", "rays pass through the edges and corners of a closed body"),
+    case(70, SHADOWS, "I", "the surface under a lamp puts everything else in shadow"),
+    case(71, SHADOWS, "D", "far from the origin a thin gap has no shadow, or all is shadow"),
+    case(72, SHADOWS, "D", "thin leaves shade themselves, or not what lies close below"),
+    case(73, SHADOWS, "R", "a mirrored body casts no shadow"),
+    case(74, SHADOWS, "I", "a light inside of a closed body shines through it"),
+    case(75, SHADOWS, "R", "a bias that suits one unit of length is wrong in another"),
+    case(76, SHADOWS, "I", "triangles of one plane shade each other"),
     case(80, TRANSPARENCY, "R", "which of two sheets in one plane is in front depends on the list"),
     case(81, TRANSPARENCY, "D", "sheets that cut through each other are wholly before or behind"),
     case(82, TRANSPARENCY, "I", "opacity 0 leaves a trace, and opacity 1 lets something through"),

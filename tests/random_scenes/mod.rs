@@ -195,6 +195,7 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
         let attenuation = |constant, linear, quadratic| Attenuation { constant, linear, quadratic };
         Light {
             on: rng.percent(75),
+            shadows: rng.percent(40),
             color: Color(color),
             attenuation: rng.one_of(&[
                 Attenuation::default(),

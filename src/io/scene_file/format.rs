@@ -166,6 +166,8 @@ pub(super) struct FileLight {
     pub(super) color: [u8; 3],
     #[serde(default)]
     pub(super) attenuation: Attenuation,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) shadows: bool,
     pub(super) kind: FileLightKind,
 }
 

@@ -233,6 +233,7 @@ fn read_light(light: &FileLight) -> Result<Light, String> {
         on: light.on,
         color: Color(light.color),
         attenuation: light.attenuation,
+        shadows: light.shadows,
         kind,
     })
 }

@@ -132,7 +132,7 @@ fn file_camera(id: u32, camera: &Camera, folder: &Path) -> Result<FileCamera, St
 }
 
 fn file_light(id: u32, light: &Light) -> FileLight {
-    let Light { name, slot, on, color, attenuation, kind } = light;
+    let Light { name, slot, on, color, attenuation, shadows, kind } = light;
     let kind = match kind {
         LightKind::Ambient => FileLightKind::Ambient,
         LightKind::Sun { direction } => {
@@ -150,7 +150,8 @@ fn file_light(id: u32, light: &Light) -> FileLight {
         },
     };
     let (slot, on, color, attenuation) = (*slot, *on, color.0, *attenuation);
-    FileLight { id, name: name.clone(), slot, on, color, attenuation, kind }
+    let shadows = *shadows;
+    FileLight { id, name: name.clone(), slot, on, color, attenuation, shadows, kind }
 }
 
 fn file_owner(owner: &SpotOwner) -> FileOwner {

@@ -2,11 +2,13 @@
 
 pub(crate) mod draw;
 pub(crate) mod extras;
+pub(crate) mod shadows;
 pub(crate) mod variants;
 
 use glam::{DMat4, DVec3};
 
 use self::draw::{Draw, Pipeline};
+use self::shadows::Shadows;
 use self::variants::Variants;
 use super::lights::ViewLight;
 use crate::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Transparency};
@@ -50,6 +52,8 @@ pub struct FramePlan {
     pub(crate) lights: Vec<ViewLight>,
     /// The ids of the lights, in the same order.
     pub(crate) light_ids: Vec<LightId>,
+    /// Which lights cast shadows, and what casts them.
+    pub(crate) shadows: Shadows,
     /// What is drawn, in the order that decides between equal depths.
     pub(crate) draws: Vec<Draw>,
     /// The distinct pipelines of all draws.
@@ -90,6 +94,7 @@ impl FramePlan {
     /// of them themselves: see [`together`](crate::base::work_stealing::together).
     pub(crate) fn prepare(&self) {
         self.draws.iter().for_each(|draw| draw.prepare(self));
+        self.shadows.prepare();
     }
 
     /// Whether any surface is transparent.

@@ -14,6 +14,7 @@ mod planner;
 mod planning;
 mod range;
 mod rules;
+mod shadows;
 mod surfaces;
 pub(crate) mod tile;
 mod turning;
@@ -27,6 +28,7 @@ use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectState, EffectUse, Thing};
 use self::view_lights::view_lights;
 use crate::accuracy::{Arithmetic, LeaveOut, LightAt, LightValues, Samples, Settings, Shot};
+use crate::render::frame::shadows::Shadows;
 use crate::render::frame::variants::Variants;
 use crate::render::frame::{Eye, FramePlan, Rules};
 use crate::scene::Projection;
@@ -88,6 +90,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         line_width: if view.wide_lines { 2 } else { 1 },
         lights: Vec::new(),
         light_ids: Vec::new(),
+        shadows: Shadows::default(),
         draws: Vec::new(),
         pipelines: Vec::new(),
         // How faint light shows in linear values depends on what else is there.
@@ -110,6 +113,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     });
     let shining = view_lights(&mut into, scene, view, &observer);
     let planner = Planner { shot, observer, shining };
+    planner.add_shadows(&mut into);
     planner.add_objects(&mut into);
     if view.marks {
         planner.add_marks(&mut into);

@@ -48,7 +48,7 @@ impl Planner<'_> {
     }
 
     /// Whether objects whose spheres are outside the view are skipped: nothing of them can be
-    /// seen, and nobody asks why.
+    /// seen, and no one asks why.
     fn culls_spheres(&self, into: &Planning) -> bool {
         let view = &self.shot.view;
         into.plan.rules == Rules::Applied
@@ -68,6 +68,11 @@ impl Planner<'_> {
         } else {
             None
         }
+    }
+
+    /// Whether the view shows an object.
+    pub(super) fn is_asked_for(&self, id: ObjectId, object: &Object) -> bool {
+        self.not_asked_for(id, object).is_none()
     }
 
     fn add_object(&self, into: &mut Planning, item: ItemId, object: &Object) {

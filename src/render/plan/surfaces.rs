@@ -39,7 +39,7 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    fn thing(&self) -> Option<uses::Thing> {
+    pub(super) fn thing(&self) -> Option<uses::Thing> {
         Some(uses::Thing { item: self.item, name: self.object.name.clone() })
     }
 }
@@ -228,7 +228,8 @@ impl Planner<'_> {
     ) -> Vec<Stage> {
         let mut stages = Vec::new();
         let mut no_highlight = Some("no light is on it");
-        for Shining { id, name, effect, light, .. } in &self.shining {
+        for shining in &self.shining {
+            let Shining { id, name, effect, light, .. } = shining;
             let source = into.plan.lights[*light as usize];
             // Bumps turn normals any way.
             let turning = ground.turning.as_ref().filter(|_| !is_bumpy);
@@ -243,6 +244,7 @@ impl Planner<'_> {
                 state: reason.map_or(EffectState::ON, EffectState::exact),
                 pixels: None,
             });
+            self.note_shadows(into, ground, shining, reason);
             if reason.is_some() {
                 continue;
             }

@@ -13,6 +13,8 @@ pub enum Effect {
     Surfaces,
     /// A light.
     Light(LightId),
+    /// The shadows in a light.
+    Shadows(LightId),
     /// The highlights of all lights.
     Highlights,
     /// Positions and normals at every pixel.
@@ -52,6 +54,7 @@ impl Effect {
         match self {
             Self::Surfaces => "Surfaces",
             Self::Light(_) => "Light",
+            Self::Shadows(_) => "Shadows",
             Self::Highlights => "Highlights",
             Self::Normals => "Normals at pixels",
             Self::Texture => "Textures",

@@ -18,6 +18,10 @@ impl FramePlan {
                 let index = self.light_ids.iter().position(|light| *light == id)?;
                 plan.for_each_light(|stages| stages.retain(|stage| stage.light as usize != index));
             }
+            Effect::Shadows(id) => {
+                let index = self.light_ids.iter().position(|light| *light == id)?;
+                *plan.shadows.sources.get_mut(index)? = None;
+            }
             Effect::Highlights => plan.for_each_light(|stages| {
                 stages.iter_mut().for_each(|stage| stage.highlight = Form::Plain);
             }),
