@@ -116,16 +116,16 @@ fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
 
 #[test]
 fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
-    use FindingKind::{MendedTransparency, Translucent, Transparent};
+    use FindingKind::{MendedTransparency, Transparent};
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "Tr 1.0"]), (1.0, vec![(MendedTransparency, 3)]));
     // Unused materials say nothing of the convention.
-    let unused = vec![(MendedTransparency, 2), (Translucent, 1)];
+    let unused = vec![(MendedTransparency, 2)];
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "d 0.5"]), (1.0, unused));
     assert_eq!(with_tr(["Tr 1.0", "Tr 0", "Tr 0"]), (0.0, vec![(Transparent, 1)]));
     assert_eq!(with_tr(["Tr 1.0", "d 1", "d 1"]), (0.0, vec![(Transparent, 1)]));
     assert_eq!(with_tr(["d 0", "d 0", "d 0"]), (0.0, vec![(Transparent, 3)]));
-    let mixed = vec![(Transparent, 2), (Translucent, 1)];
-    assert_eq!(with_tr(["Tr 1", "Tr 0.9", "Tr 0.1"]), (0.0, mixed));
+    assert_eq!(with_tr(["Tr 1", "Tr 0.9", "Tr 0.1"]), (0.0, vec![(Transparent, 1)]));
+    assert_eq!(with_tr(["Tr 0.75", "Tr 0.9", "Tr 0.1"]), (0.25, Vec::new()));
 }
 
 #[test]

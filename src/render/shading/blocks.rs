@@ -136,10 +136,13 @@ impl<T: ShadingNumber> Shader<T> {
             || plan.variants.root_variant().is_some()
             || plan.variants.rounding != Rounding::Nearest
             || plan.variants.are_linear();
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let is_shaded = plan.shadows.any_of(stages);
         if (is_lit && !pixels)
             || shaded.vertex_colors
             || !shaded.extras.is_empty()
             || has_variant
+            || is_shaded
             || group.draw.back == Back::Red
         {
             return false;
