@@ -23,6 +23,7 @@ use crate::render::damage::{Damage, DamageCause};
 use crate::render::frame::{FramePlan, Rules};
 use crate::render::plan::uses::EffectUse;
 use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::raster::tile::Visibility;
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::raster::{depth_format, visibility_buffer};
 use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
@@ -305,7 +306,7 @@ impl Renderer {
         terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms };
+        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms, tracer: None };
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(at[1] / TILE * columns + at[0] / TILE).expect("not negative");
         let bounds = bounds_of(tile, plan.size);

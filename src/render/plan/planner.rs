@@ -48,7 +48,7 @@ impl Planner<'_> {
     }
 
     /// Whether objects whose spheres are outside the view are skipped: nothing of them can be
-    /// seen, and nobody asks why.
+    /// seen, and no one asks why.
     fn culls_spheres(&self, into: &Planning) -> bool {
         let view = &self.shot.view;
         into.plan.rules == Rules::Applied

@@ -310,14 +310,14 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         for i in (0..stages.len()).filter(evaluated) {
             let batch = &mut shader.batch;
             batch.darken();
-            run(&stages[i..=i], &lights[i..=i], level, batch);
+            run(&stages[i..=i], &lights[i..=i], level, batch, None);
             let parts = [first(&batch.diffuse), first(&batch.specular)];
             terms.extend(light_terms(plan, &stages[i], batch, parts, surface.own));
         }
         // All together, in the order of the picture.
         shader.batch.darken();
         for i in (0..stages.len()).filter(evaluated) {
-            run(&stages[i..=i], &lights[i..=i], level, &mut shader.batch);
+            run(&stages[i..=i], &lights[i..=i], level, &mut shader.batch, None);
         }
         shader.batch.len = 1;
         // A map of Ks multiplies all highlights together.
