@@ -1,8 +1,8 @@
 //! Tilts the normals of pixels by maps of heights or normals.
 //!
 //! In tangent space, with T along u, B along v and N across the surface, the normal is that of the
-//! map, or (-g dh/du, -g dh/dv, 1) with the slopes of heights h per texel and their factor g: a white
-//! texel is g texels high. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978.
+//! map, or (-g dh/du, -g dh/dv, 1) with the slopes of heights h per texel and their factor g: a
+//! white texel is g texels high. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978.
 //!
 //! T and B come from one of two places:
 //!
