@@ -8,9 +8,9 @@ use super::full_blocks::{BlockLight, Blocks, Canvas, ROW};
 use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
+use super::map_texels::{TexelSource, TexturePlacement};
 use super::surface::{Out, Shader};
 use super::texels::PlacedTexture;
-use super::textured::{Placed, TexelSource};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
@@ -163,7 +163,8 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
         let cut = self.cut_weights(context, group);
-        let Self { tile, attributes, batch, placed: Placed { placement, far }, .. } = self;
+        let Self { tile, attributes, batch, placed: TexturePlacement { placement, far }, .. } =
+            self;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
         if !needs_positions {

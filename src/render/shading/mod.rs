@@ -31,6 +31,8 @@ mod layers;
 pub(crate) mod light;
 pub(crate) mod light_terms;
 mod lit_points;
+mod map_rows;
+mod map_texels;
 mod opacity;
 pub(crate) mod painter;
 pub(crate) mod quantize;

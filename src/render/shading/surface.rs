@@ -14,16 +14,16 @@ use super::context::ShadingContext;
 use super::face_colors::FaceColors;
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
-use super::glow::MapRows;
 use super::groups::{Group, group_of, one_group};
 use super::interpolate::{Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
 use super::lit_points::place_fragments;
+use super::map_rows::MapRows;
+use super::map_texels::{Points, TexturePlacement};
 use super::quantize::{Finish, Quantize, SurfaceColor};
 use super::rounding::{QuantizeWithThresholds, thresholds};
 use super::shadows::{BatchShadows, place_faces};
-use super::textured::{Placed, Points};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
@@ -52,7 +52,7 @@ pub(crate) struct Shader<T> {
     /// For rays of shadows.
     rays: RayScratch,
     /// The positions of the triangles on their texture.
-    pub(super) placed: Placed,
+    pub(super) placed: TexturePlacement,
     pub(crate) texels: Rows<T>,
     /// For surfaces with further maps, or light of their own.
     pub(super) maps: Box<MapRows<T>>,
@@ -91,7 +91,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             barycentrics: Barycentrics::default(),
             batch: Batch::default(),
             rays: RayScratch::default(),
-            placed: Placed::default(),
+            placed: TexturePlacement::default(),
             texels: [[T::default(); BATCH]; 3],
             maps: Box::default(),
             colors: Colors::default(),
