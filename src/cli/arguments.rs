@@ -16,6 +16,7 @@ use super::talk::Talk;
 use super::turntable::Turntable;
 use super::values::{color, size, threads};
 use super::verify::Verify;
+use marraztu::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
 use marraztu::app::Shell;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
@@ -59,6 +60,9 @@ pub(crate) struct Arguments {
         ("software", Shell::Software),
     ]))]
     pub(crate) shell: Option<Shell>,
+    /// The accuracy to begin with: draft, default, exact, ancestor-a, ancestor-b
+    #[arg(long, hide_possible_values = true, value_name = "CHOICE", value_parser = preset)]
+    pub(crate) preset: Option<&'static AccuracyPreset>,
 }
 
 /// The commands that run without a window.
@@ -322,6 +326,13 @@ fn out_help() -> String {
 
 fn texture_help() -> String {
     format!("A texture for the objects: {}", io::texture_formats())
+}
+
+fn preset(text: &str) -> Result<&'static AccuracyPreset, String> {
+    AccuracyPreset::named(text).ok_or_else(|| {
+        let words: Vec<&str> = ACCURACY_PRESETS.iter().map(|preset| preset.word).collect();
+        format!("there are {}", words.join(", "))
+    })
 }
 
 /// Checks the name before anything is drawn, which may take long.

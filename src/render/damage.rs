@@ -148,6 +148,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         lit_by_sample,
         shift: _,
         filter,
+        transparency,
         variants,
         view_from_world,
         clip_from_view,
@@ -168,6 +169,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         || *samples != before.samples
         || *lit_by_sample != before.lit_by_sample
         || *filter != before.filter
+        || *transparency != before.transparency
         || *variants != before.variants
         || *line_width != before.line_width
         || *leave_out != before.leave_out
@@ -200,6 +202,7 @@ impl Compared<'_> {
             view_from_normal,
             mirrored,
             back,
+            culls_opaque,
             normals,
             normal_source,
             part_pipelines,
@@ -214,6 +217,7 @@ impl Compared<'_> {
             || *mirrored != before.mirrored;
         let shape = !Shared::same(model, &before.model)
             || *back != before.back
+            || *culls_opaque != before.culls_opaque
             || *polygons != before.polygons
             || *filled != before.filled
             || !alike_lines(lines, &before.lines)
@@ -230,11 +234,15 @@ impl Compared<'_> {
         }
     }
 
-    /// Whether other parts are drawn, or the alpha test of a part changed.
+    /// Whether other parts are drawn, or a part has an alpha test or is transparent and was not
+    /// before, or the other way round.
     fn kinds(&self, after: &[Option<u32>], before: &[Option<u32>]) -> bool {
-        let kinds = |plan: &FramePlan, parts: &[Option<u32>]| -> Vec<Option<bool>> {
-            let cutout = |pipeline: u32| plan.pipelines[pipeline as usize].is_cutout();
-            parts.iter().map(|pipeline| pipeline.map(cutout)).collect()
+        let kinds = |plan: &FramePlan, parts: &[Option<u32>]| -> Vec<Option<[bool; 2]>> {
+            let kind = |pipeline: u32| {
+                let pipeline = &plan.pipelines[pipeline as usize];
+                [pipeline.is_cutout(), pipeline.opacity().is_some()]
+            };
+            parts.iter().map(|pipeline| pipeline.map(kind)).collect()
         };
         kinds(self.after, after) != kinds(self.before, before)
     }
@@ -276,6 +284,7 @@ impl Compared<'_> {
             tint,
             texture,
             cutout,
+            opacity,
             opacity_map,
             extras,
         } = after;
@@ -313,6 +322,7 @@ impl Compared<'_> {
             && *vertex_colors == before.vertex_colors
             && alike(tint, &before.tint)
             && alike(cutout.as_slice(), before.cutout.as_slice())
+            && alike(opacity.as_slice(), before.opacity.as_slice())
             && extras.are_alike(&before.extras)
     }
 }

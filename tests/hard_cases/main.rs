@@ -31,4 +31,5 @@ mod light;
 mod shadows;
 mod surfaces;
 mod textures;
+mod transparency;
 mod undo;

@@ -5,6 +5,7 @@
 //! only some tiles need is culled tile by tile, when their depths are known (`TilePlan`).
 
 mod bounded;
+mod cover;
 pub(crate) mod features;
 mod helpers;
 mod maps;
@@ -82,6 +83,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         lit_by_sample: by_sample && settings.samples != Samples::One,
         shift: [0; 2],
         filter: settings.filter,
+        transparency: settings.transparency,
         variants: Variants::of(settings),
         view_from_world: observer.view_from_world,
         clip_from_view: observer.clip_from_view,

@@ -23,6 +23,8 @@ pub enum Effect {
     Texture,
     /// The alpha test of textures.
     AlphaTest,
+    /// Transparent surfaces.
+    Transparency,
     /// The colours of vertices.
     VertexColors,
     /// Light of the surface's own.
@@ -57,6 +59,7 @@ impl Effect {
             Self::Normals => "Normals at pixels",
             Self::Texture => "Textures",
             Self::AlphaTest => "Holes of textures",
+            Self::Transparency => "Transparency",
             Self::VertexColors => "Vertex colours",
             Self::Emission => "Emission",
             Self::Maps => "Maps of Ka, Ks, Ns",

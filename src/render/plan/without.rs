@@ -32,8 +32,11 @@ impl FramePlan {
                 }
             }),
             Effect::AlphaTest => plan.for_each_shaded(|shaded| {
-                (shaded.cutout, shaded.opacity_map) = (None, None);
+                if shaded.cutout.is_some() {
+                    (shaded.cutout, shaded.opacity_map) = (None, None);
+                }
             }),
+            Effect::Transparency => plan.for_each_shaded(|shaded| shaded.opacity = None),
             Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
             Effect::Emission => plan.for_each_shaded(|shaded| shaded.extras.emission = None),
             Effect::Maps => plan.for_each_shaded(|shaded| {

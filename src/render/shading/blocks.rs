@@ -99,6 +99,7 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let mixed = shaded.light.is_some()
             && plan.light_at == LightAt::Vertex
+            && shaded.extras.is_empty()
             && !plan.variants.are_linear();
         if !mixed || group.draw.back == Back::Red || plan.variants.mixes_one_by_one() {
             return false;

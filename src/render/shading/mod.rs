@@ -6,15 +6,19 @@
 //! vertex (`light`) if they see
 //! the light (`shadows`), and multiplies with the colour of the surface (`textured`). `quantize`
 //! converts the result to bytes, and `resolve` averages samples. Blocks that one triangle covers
-//! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`).
+//! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`). Blocks
+//! that transparent triangles reach are coloured layer by layer (`layers`), each with its
+//! `opacity`, which `blend` lays over what is behind.
 
 mod barycentric_variants;
 pub(crate) mod barycentrics;
+mod blend;
 mod blocks;
 mod bumps;
 mod clamp_to_triangle;
 pub(crate) mod colors;
 pub(crate) mod context;
+pub(crate) mod explain;
 mod face_colors;
 mod far_texture;
 pub(crate) mod fragments;
@@ -23,9 +27,11 @@ mod glow;
 mod groups;
 mod interpolate;
 pub(crate) mod interpolated;
+mod layers;
 pub(crate) mod light;
 pub(crate) mod light_terms;
 mod lit_points;
+mod opacity;
 pub(crate) mod painter;
 pub(crate) mod quantize;
 mod resolve;

@@ -7,6 +7,7 @@
 
 use super::barycentric_variants::locate_by_variant;
 use super::barycentrics::Barycentrics;
+use super::blend::Blend;
 use super::bumps::bend;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
@@ -66,6 +67,8 @@ pub(crate) enum Out<'a, 'b> {
     Tile(&'a mut Canvas<'b>, usize),
     /// The sums over several samples.
     Sums(&'a mut Sums),
+    /// What is behind a layer.
+    Layer(&'a mut Blend),
 }
 
 /// The result of interpolating the light of vertices.
@@ -166,7 +169,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         self.colors.form = match out {
             Out::Tile(..) => Form::Pixels,
-            Out::Sums(_) => Form::Parts,
+            Out::Sums(_) | Out::Layer(_) => Form::Parts,
         };
         self.colors.linear = context.plan.variants.are_linear();
         self.group(context, group);
@@ -175,6 +178,13 @@ impl<T: ShadingNumber> Shader<T> {
             Out::Sums(sums) => {
                 let Fragments { len, pixels, shares, .. } = &self.fragments;
                 sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
+            }
+            Out::Layer(blend) => {
+                let opacities = self.opacities(context, group);
+                let pixels = &self.fragments.pixels[..self.fragments.len];
+                for (i, (place, opacity)) in pixels.iter().zip(opacities).enumerate() {
+                    blend.put(usize::from(*place), self.colors.part(i), opacity);
+                }
             }
         }
     }
@@ -255,7 +265,10 @@ impl<T: ShadingNumber> Shader<T> {
         let ShadingContext { level, plan, .. } = *context;
         let draw = group.draw;
         let extras = &shaded.extras;
-        let textured = shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels();
+        // A map of opacity is read where the fragments are.
+        let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
+        let textured =
+            shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
         let rounding = plan.variants.rounding;
         // Every pixel has its own colour.
         let each = textured || rounding == Rounding::Dithered;
@@ -419,7 +432,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let Self { fragments, attributes, barycentrics, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
-        let stored = !plan.variants.are_linear();
+        let stored = !plan.variants.are_linear() && shaded.extras.is_empty();
         if colored && stored && plan.variants.rounding == Rounding::Nearest {
             mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors));
             return Mixture::Bytes;
