@@ -25,7 +25,7 @@ const NEAR: f32 = 1.0 / 128.0;
 /// A triangle that needs the alpha test.
 #[derive(Debug)]
 pub(crate) struct AlphaTest<'a> {
-    weights: Weights<'a>,
+    weights: Weights,
     uvs: Uvs,
     texture: &'a Texture,
     opacity: f64,
@@ -54,7 +54,7 @@ impl<'a> AlphaTest<'a> {
         let uvs = uvs(draw, number)?;
         let placement = ExactPlacement::new(uvs, texture);
         Some(Self {
-            weights: Weights::new(plan, draw, frame.corners_of(plan, index), number, shift),
+            weights: Weights::new(plan, draw, frame.corners_of(index), number, shift),
             uvs,
             texture,
             opacity: *opacity,

@@ -9,6 +9,7 @@ use fearless_simd::{
 };
 
 use super::bins::LargeTriangle;
+use super::depth_format::Format;
 use super::large::Touched;
 use super::visibility_buffer::put_rows;
 use crate::base::math::each;
@@ -152,7 +153,7 @@ impl<S: Simd> Medium<S> {
     /// Draws the triangle into those rows of a block that `area` reaches into, for the sample with
     /// this offset. `area` is in pixels from the tile's first.
     #[inline(always)]
-    pub(crate) fn draw(
+    pub(crate) fn draw<D: Format>(
         &self,
         simd: S,
         (block, shift): (usize, [i32; 2]),
@@ -174,7 +175,7 @@ impl<S: Simd> Medium<S> {
                 let second = self.second + gain[1] + below * self.down[1];
                 let third = self.third + gain[2] + below * self.down[2];
                 let depth = self.depths(simd, second, third);
-                put_rows(simd, covered, depth, self.number, &mut pairs[pair as usize % 4]);
+                put_rows::<S, D>(simd, covered, depth, self.number, &mut pairs[pair as usize % 4]);
             }
         }
     }

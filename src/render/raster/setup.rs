@@ -10,13 +10,14 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16,
 use super::bins::{Bins, LargeTriangle};
 use super::hits::PACK;
 use super::queue::{Pack, SMALL};
+use super::rule::Rule;
 use super::small;
 use super::vertices::{fetch, fetch_vertices};
 use crate::base::image::Size;
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw, Pipeline};
 use crate::render::screen::clip::{Screen, ScreenVertex};
-use crate::render::screen::coverage::{PixelBox, SUBPIXELS, doubled_area};
+use crate::render::screen::coverage::{Grid, PixelBox, doubled_area};
 use crate::render::screen::sample_positions::FOUR;
 use crate::scene::{DrawOrder, DrawTriangle};
 
@@ -34,13 +35,15 @@ pub(crate) struct Setup<'a> {
     pub(crate) base: u32,
     /// Whether some triangles are not drawn or need the alpha test, so that each has to be checked.
     pub(crate) choosy: bool,
+    /// The vertices in pixels, before they were snapped, if the rule of coverage needs them.
+    pub(crate) unsnapped: &'a [[f32; 2]],
 }
 
 /// How a triangle is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Not,
-    UnsnappedTriangle,
+    Plain,
     Cutout,
 }
 
@@ -57,16 +60,17 @@ impl<'a> Setup<'a> {
                 pipeline.is_none_or(|pipeline| pipelines[pipeline as usize].is_cutout())
             });
         let screen = Screen::new(draw.clip_from_object, size);
-        Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
+        let order = draw.model.mesh.draw_order();
+        Self { draw, order, vertices, screen, base, choosy, unsnapped: &[] }
     }
 
-    /// The same for vertices relative to a sample with this offset in subpixels.
-    pub(crate) fn seen_from(self, shift: [i32; 2]) -> Self {
-        Self { screen: self.screen.seen_from(shift), ..self }
+    /// The same for vertices relative to a sample with this offset in 1/256 pixel, on a grid.
+    pub(crate) fn seen_from(self, shift: [i32; 2], grid: Grid) -> Self {
+        Self { screen: self.screen.on(grid).seen_from(grid.offset(shift)), ..self }
     }
 
     /// Sets up some of the draw's triangles into bins.
-    pub(crate) fn run(
+    pub(crate) fn run<R: Rule>(
         &self,
         level: Level,
         triangles: &[DrawTriangle],
@@ -74,14 +78,14 @@ impl<'a> Setup<'a> {
         bins: &mut Bins,
     ) {
         if bins.sample_positions.are_many() {
-            dispatch!(level, simd => self.all::<_, FOUR>(simd, triangles, pipelines, bins));
+            dispatch!(level, simd => self.all::<_, R, FOUR>(simd, triangles, pipelines, bins));
         } else {
-            dispatch!(level, simd => self.all::<_, 1>(simd, triangles, pipelines, bins));
+            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, pipelines, bins));
         }
     }
 
     #[inline(always)]
-    fn all<S: Simd, const N: usize>(
+    fn all<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle],
@@ -90,18 +94,18 @@ impl<'a> Setup<'a> {
     ) {
         let (whole, rest) = triangles.as_chunks::<PACK>();
         for sixteen in whole {
-            self.sixteen::<S, N>(simd, sixteen, PACK, pipelines, bins);
+            self.sixteen::<S, R, N>(simd, sixteen, PACK, pipelines, bins);
         }
         if let Some(last) = rest.last() {
             let mut sixteen = [*last; PACK];
             sixteen[..rest.len()].copy_from_slice(rest);
-            self.sixteen::<S, N>(simd, &sixteen, rest.len(), pipelines, bins);
+            self.sixteen::<S, R, N>(simd, &sixteen, rest.len(), pipelines, bins);
         }
     }
 
     /// Sets up the first `count` of sixteen triangles.
     #[inline(always)]
-    fn sixteen<S: Simd, const N: usize>(
+    fn sixteen<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
@@ -115,12 +119,13 @@ impl<'a> Setup<'a> {
         let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
 
-        let half = SUBPIXELS / 2;
-        let [least, most] = bins.sample_positions.reach::<N>();
-        let left = (low_x + (half - 1 - most[0])) >> 8;
-        let right = ((high_x - (half + least[0])) >> 8) + 1;
-        let top = (low_y + (half - 1 - most[1])) >> 8;
-        let bottom = ((high_y - (half + least[1])) >> 8) + 1;
+        let (half, log2) = (R::GRID.parts() / 2, R::GRID.parts().trailing_zeros());
+        let [least, most] = R::reach(bins.sample_positions.reach::<N>());
+        let (least, most) = (R::GRID.offset(least), R::GRID.offset(most));
+        let left = (low_x + (half - 1 - most[0])) >> log2;
+        let right = ((high_x - (half + least[0])) >> log2) + 1;
+        let top = (low_y + (half - 1 - most[1])) >> log2;
+        let bottom = ((high_y - (half + least[1])) >> log2) + 1;
         let [width, height] = bins.hits.extent();
         let seen = left.simd_lt(right)
             & top.simd_lt(bottom)
@@ -146,15 +151,21 @@ impl<'a> Setup<'a> {
                 |lane| triangles[lane].row(),
             );
             let number = number + self.base.cast_signed();
-            let pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
+            let mut pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
+            if R::UNSNAPPED && R::SMALL {
+                for corner in 0..3 {
+                    let [x, y] = self.unsnapped_corners(simd, triangles, corner);
+                    (pack[2 * corner], pack[2 * corner + 1]) = (x, y);
+                }
+            }
             let side = (right - left).max(bottom - top);
-            self.sort::<S, N>(simd, triangles, &pack, (plain, side), pipelines, bins);
+            self.sort::<S, R, N>(simd, triangles, &pack, (plain, side), pipelines, bins);
         }
         let mut odd = odd.to_bitmask();
         while odd != 0 {
             let lane = odd.trailing_zeros() as usize;
             odd &= odd - 1;
-            self.add_odd::<N>(&triangles[lane], pipelines, bins);
+            self.add_odd::<R, N>(&triangles[lane], pipelines, bins);
         }
     }
 
@@ -174,10 +185,30 @@ impl<'a> Setup<'a> {
         )
     }
 
+    /// x and y of one corner of sixteen triangles, in pixels and before they were snapped, as bits.
+    #[inline(always)]
+    fn unsnapped_corners<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        corner: usize,
+    ) -> [i32x16<S>; 2] {
+        let last = self.unsnapped.len().saturating_sub(1);
+        let [x, y, _, _] = fetch(
+            simd,
+            #[inline(always)]
+            |lane| {
+                let [x, y] = self.unsnapped[(triangles[lane].vertices[corner] as usize).min(last)];
+                [x.to_bits().cast_signed(), y.to_bits().cast_signed(), 0, 0]
+            },
+        );
+        [x, y]
+    }
+
     /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
     /// small ones, or to the large ones.
     #[inline(always)]
-    fn sort<S: Simd, const N: usize>(
+    fn sort<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
@@ -193,7 +224,7 @@ impl<'a> Setup<'a> {
             cutout = kinds[1];
         }
         let mut above = 0;
-        for (queue, limit) in SMALL.into_iter().enumerate() {
+        for (queue, limit) in SMALL.into_iter().enumerate().filter(|_| R::SMALL) {
             let some = plain & side.simd_gt(above) & side.simd_le(limit);
             above = limit;
             let count = some.to_bitmask().count_ones() as usize;
@@ -202,7 +233,7 @@ impl<'a> Setup<'a> {
             }
             bins.drawn += count;
             if bins.queues[queue].add(pack, some, count) {
-                small::draw_full::<S, N>(simd, queue, bins);
+                small::draw_full::<S, R, N>(simd, queue, bins);
             }
         }
         let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
@@ -211,10 +242,12 @@ impl<'a> Setup<'a> {
             large &= large - 1;
             let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
             let number = self.base + triangles[lane].number;
-            let at = each(corners, |corner| corner.at());
-            let bounds = PixelBox::reached(at, bins.sample_positions.reach::<N>());
             let cutout = cutout >> lane & 1 != 0;
-            bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
+            if R::UNSNAPPED {
+                let own = each(triangles[lane].vertices, |i| self.unsnapped[i as usize]);
+                bins.unsnapped.push(own);
+            }
+            add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
         }
     }
 
@@ -232,7 +265,7 @@ impl<'a> Setup<'a> {
             left &= left - 1;
             match self.kind(triangles[lane].number, pipelines) {
                 Kind::Not => {}
-                Kind::UnsnappedTriangle => kinds[0] |= 1 << lane,
+                Kind::Plain => kinds[0] |= 1 << lane,
                 Kind::Cutout => kinds[1] |= 1 << lane,
             }
         }
@@ -240,7 +273,7 @@ impl<'a> Setup<'a> {
     }
 
     /// Adds a triangle that has to be clipped, or whose area needs 64 bits.
-    fn add_odd<const N: usize>(
+    fn add_odd<R: Rule, const N: usize>(
         &self,
         triangle: &DrawTriangle,
         pipelines: &[Pipeline],
@@ -251,11 +284,20 @@ impl<'a> Setup<'a> {
             return;
         }
         let vertices = triangle.vertices.map(|vertex| self.vertices[vertex as usize]);
-        let pieces = if vertices.iter().all(ScreenVertex::is_inside) {
-            vertices.to_vec()
+        let (mut pieces, mut unsnapped) = (Vec::new(), Vec::new());
+        if vertices.iter().all(ScreenVertex::is_inside) {
+            pieces.extend(vertices);
+            if R::UNSNAPPED {
+                unsnapped.extend(triangle.vertices.map(|i| self.unsnapped[i as usize]));
+            }
         } else {
-            self.screen.cut(self.clip_corners(triangle.vertices))
-        };
+            for clip in self.screen.cut(self.clip_corners(triangle.vertices)) {
+                pieces.push(self.screen.piece(clip));
+                if R::UNSNAPPED {
+                    unsnapped.push(self.screen.pixels_seen(clip));
+                }
+            }
+        }
         for i in 2..pieces.len() {
             let corners = [pieces[0], pieces[i - 1], pieces[i]];
             let area = doubled_area(corners.map(|corner| corner.at()));
@@ -265,9 +307,10 @@ impl<'a> Setup<'a> {
             }
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
-            let at = corners.map(|corner| corner.at());
-            let bounds = PixelBox::reached(at, bins.sample_positions.reach::<N>());
-            bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
+            if R::UNSNAPPED {
+                bins.unsnapped.push([unsnapped[0], unsnapped[i - 1], unsnapped[i]]);
+            }
+            add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
         }
     }
 
@@ -285,19 +328,27 @@ impl<'a> Setup<'a> {
         match self.draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize] {
             None => Kind::Not,
             Some(pipeline) if pipelines[pipeline as usize].is_cutout() => Kind::Cutout,
-            Some(_) => Kind::UnsnappedTriangle,
+            Some(_) => Kind::Plain,
         }
     }
 }
 
+/// Adds a triangle that is not small, or not drawn with small ones.
+#[inline(always)]
+fn add_large<R: Rule, const N: usize>(triangle: LargeTriangle, bins: &mut Bins) {
+    let at = each(triangle.corners, |corner| corner.at());
+    let reach = R::reach(bins.sample_positions.reach::<N>());
+    bins.add_large(triangle, PixelBox::reached_on(R::GRID, at, reach));
+}
+
 /// Draws the small triangles that are still waiting.
-pub(crate) fn finish(level: Level, bins: &mut Bins) {
+pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins) {
     let many = bins.sample_positions.are_many();
     dispatch!(level, simd => {
         for queue in 0..SMALL.len() {
             match many {
-                true => small::draw_rest::<_, FOUR>(simd, queue, bins),
-                false => small::draw_rest::<_, 1>(simd, queue, bins),
+                true => small::draw_rest::<_, R, FOUR>(simd, queue, bins),
+                false => small::draw_rest::<_, R, 1>(simd, queue, bins),
             }
         }
     });

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::fragments::Fragments;
 use super::triangle_attributes::{TriangleAttributes, picked};
-use crate::render::simd::{BATCH, Kernel, Lanes, Number, Vec3};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
 /// The barycentric coordinates of a list of fragments.
 #[derive(Debug)]
@@ -40,51 +40,131 @@ impl<T: Number> Barycentrics<T> {
     }
 }
 
-/// Makes linear coordinates perspective-correct.
-pub(super) struct Perspective<'a, T, const PAGES: usize> {
+/// How coordinates that are linear on the screen become the weights of corners.
+pub(crate) trait Method: Copy {
+    /// The weights of the second and the third corner, and w.
+    fn weights<M: Lanes>(self, lanes: M, linear: [M::R; 2], by_w: Vec3<M::R>) -> ([M::R; 2], M::R);
+}
+
+/// With perspective:
+///
+///   m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and 1 / the sum, which is the
+///   pixel's own w.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Perspective;
+
+impl Method for Perspective {
+    #[inline(always)]
+    fn weights<M: Lanes>(
+        self,
+        lanes: M,
+        [second, third]: [M::R; 2],
+        by_w: Vec3<M::R>,
+    ) -> ([M::R; 2], M::R) {
+        let w = distance(lanes, [second, third], by_w);
+        let Vec3([_, w1, w2]) = by_w;
+        ([second * w1 * w, third * w2 * w], w)
+    }
+}
+
+/// As they are. The distance is exact nevertheless: what is lit, is lit where it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Affine;
+
+impl Method for Affine {
+    #[inline(always)]
+    fn weights<M: Lanes>(self, lanes: M, linear: [M::R; 2], by_w: Vec3<M::R>) -> ([M::R; 2], M::R) {
+        (linear, distance(lanes, linear, by_w))
+    }
+}
+
+/// w at a pixel.
+#[inline(always)]
+fn distance<M: Lanes>(
+    lanes: M,
+    [second, third]: [M::R; 2],
+    Vec3([w0, w1, w2]): Vec3<M::R>,
+) -> M::R {
+    lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0))
+}
+
+/// Evaluates an expression with the method of an interpolation. Spans of sixteen pixels begin with
+/// perspective.
+macro_rules! with_method {
+    ($interpolation:expr, $method:ident => $what:expr) => {
+        match $interpolation {
+            $crate::accuracy::Interpolation::Affine => {
+                let $method = $crate::render::shading::barycentrics::Affine;
+                $what
+            }
+            $crate::accuracy::Interpolation::Perspective
+            | $crate::accuracy::Interpolation::EverySixteen => {
+                let $method = $crate::render::shading::barycentrics::Perspective;
+                $what
+            }
+        }
+    };
+}
+pub(crate) use with_method;
+
+/// Clamps linear coordinates of pixels whose centres lie outside of their triangles: negative ones
+/// count as 0, and the sum stays 1.
+pub(super) struct Clamp<'a, T> {
+    pub(super) len: usize,
+    pub(super) linear: &'a mut [[T; BATCH]; 2],
+}
+
+impl<T: Number> Kernel<T> for Clamp<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { len, linear: [second_row, third_row] } = self;
+        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
+        for at in (0..len).step_by(M::LANES) {
+            let (second, third) = (lanes.load(second_row, at), lanes.load(third_row, at));
+            let first = Real::max(one - second - third, zero);
+            let (second, third) = (Real::max(second, zero), Real::max(third, zero));
+            let per = one / (first + second + third);
+            lanes.store(second * per, second_row, at);
+            lanes.store(third * per, third_row, at);
+        }
+    }
+}
+
+/// Makes linear coordinates the weights of corners.
+pub(super) struct Weigh<'a, T, I, const PAGES: usize> {
+    pub(super) method: I,
     pub(super) fragments: &'a Fragments,
     pub(super) attributes: &'a TriangleAttributes<T>,
     pub(super) to: &'a mut Barycentrics<T>,
 }
 
-impl<T: Number, const PAGES: usize> Kernel<T> for Perspective<'_, T, PAGES> {
+impl<T: Number, I: Method, const PAGES: usize> Kernel<T> for Weigh<'_, T, I, PAGES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { fragments, attributes, to } = self;
+        let Self { method, fragments, attributes, to } = self;
         for at in (0..fragments.len).step_by(M::LANES) {
             let slots = lanes.slots(&fragments.slots, at);
             let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
             let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
-            to.put(lanes, at, linear, by_w);
+            to.put(method, lanes, at, linear, by_w);
         }
     }
 }
 
 impl<T: Number> Barycentrics<T> {
-    /// Makes linear coordinates perspective-correct.
+    /// Stores the weights that belong to linear coordinates.
     #[inline(always)]
     pub(super) fn put<M: Lanes<Number = T>>(
         &mut self,
+        method: impl Method,
         lanes: M,
         at: usize,
         linear: [M::R; 2],
         by_w: Vec3<M::R>,
     ) {
-        let (weights, w) = with_perspective(lanes, linear, by_w);
+        let (weights, w) = method.weights(lanes, linear, by_w);
         lanes.store(w, &mut self.w, at);
         lanes.store(weights[0], &mut self.weights[0], at);
         lanes.store(weights[1], &mut self.weights[1], at);
     }
-}
-
-/// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and 1 / the sum, which is the
-/// pixel's own w.
-#[inline(always)]
-pub(crate) fn with_perspective<M: Lanes>(
-    lanes: M,
-    [second, third]: [M::R; 2],
-    Vec3([w0, w1, w2]): Vec3<M::R>,
-) -> ([M::R; 2], M::R) {
-    let w = lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
-    ([second * w1 * w, third * w2 * w], w)
 }

@@ -4,7 +4,7 @@
 //! fragments; everything else is coloured like other blocks.
 
 use super::context::ShadingContext;
-use super::full_blocks::{BlockLight, Blocks, Canvas, ROW};
+use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, ROW};
 use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
@@ -12,9 +12,18 @@ use super::surface::{Out, Shader};
 use super::texels::PlacedTexture;
 use super::textured::sampler;
 use super::triangle_attributes::TriangleAttributes;
-use crate::accuracy::{LightAt, Rounding};
+use crate::accuracy::{Interpolation, LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
 use crate::render::screen::weights::HomogeneousWeights;
+
+/// How the corners of a triangle are weighted in this frame.
+fn by<'a, T>(
+    context: &'a ShadingContext<'_, T>,
+    cut: Option<&'a HomogeneousWeights>,
+) -> Corners<'a> {
+    let interpolation = context.plan.variants.interpolation;
+    Corners { cut, interpolation, thresholds: context.terms.thresholds() }
+}
 
 impl<T: ShadingNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers fully.
@@ -97,7 +106,8 @@ impl<T: ShadingNumber> Shader<T> {
             return false;
         };
         let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
-        if !mixed || group.draw.back == Back::Red || plan.variants.mixes_one_by_one() {
+        let in_spans = plan.variants.interpolation == Interpolation::EverySixteen;
+        if !mixed || group.draw.back == Back::Red || in_spans {
             return false;
         }
         let tables = lit.tables(group.draw_index, group.pipeline);
@@ -109,7 +119,7 @@ impl<T: ShadingNumber> Shader<T> {
             self.attributes.spread(level);
         }
         let cut = self.cut_weights(context, group);
-        T::mix_blocks(level, &self.attributes, blocks, cut.as_ref(), canvas)
+        T::mix_blocks(level, &self.attributes, blocks, by(context, cut.as_ref()), canvas)
     }
 
     /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
@@ -128,22 +138,18 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let is_lit = shaded.light.is_some();
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
-        let has_variant = plan.variants.locates_one_by_one()
-            || plan.variants.root_variant().is_some()
-            || plan.variants.rounding != Rounding::Nearest;
-        if (is_lit && !pixels)
-            || shaded.vertex_colors
-            || has_variant
-            || group.draw.back == Back::Red
-        {
+        let in_spans = plan.variants.interpolation == Interpolation::EverySixteen;
+        if (is_lit && !pixels) || in_spans || group.draw.back == Back::Red {
             return false;
         }
         let texture = shaded.texture.as_deref();
         let mips = shaded.texture.as_ref().and_then(|texture| terms.mips_of(texture));
         let sampler = texture.and_then(|texture| sampler(context, texture, mips));
+        if texture.is_some() && sampler.is_none() {
+            return false;
+        }
         let new = self.take(context, group, true);
-        if let Some(texture) = texture {
-            let Some(sampler) = &sampler else { return false };
+        if let Some((texture, sampler)) = texture.zip(sampler.as_ref()) {
             if new {
                 self.place_texture(context, group, texture, sampler);
             }
@@ -153,8 +159,11 @@ impl<T: ShadingNumber> Shader<T> {
                 return false;
             }
         }
+        if new && shaded.vertex_colors {
+            self.take_vertex_colors(group);
+        }
         let cut = self.cut_weights(context, group);
-        let Self { tile, attributes, batch, placement, far, .. } = self;
+        let Self { tile, attributes, batch, placement, far, vertex_colors, .. } = self;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
         if !needs_positions {
@@ -164,10 +173,12 @@ impl<T: ShadingNumber> Shader<T> {
             attributes.spread(level);
         }
         let light = BlockLight {
-            cut: cut.as_ref(),
+            by: by(context, cut.as_ref()),
             look: needs_positions.then(|| Look::new(plan, group.draw)),
+            roots: plan.variants.root_variant(),
             tint: shaded.tint.map(T::from_f64),
             texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, far, sampler }),
+            vertex_colors: shaded.vertex_colors.then_some(vertex_colors),
             lights,
             terms: terms.of(group.pipeline),
         };

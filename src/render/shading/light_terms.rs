@@ -1,13 +1,14 @@
 //! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and mip
 //! maps. Those of the last picture are reused.
 
-use crate::accuracy::Filter;
+use super::rounding::block_thresholds;
+use crate::accuracy::{Filter, Rounding};
 use crate::base::Shared;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Pipeline, Shaded};
 use crate::render::lights::{LightTerm, PhongMaterial};
-use crate::render::simd::Number;
 use crate::render::simd::power::{Power, Tables};
+use crate::render::simd::{BATCH, Number};
 use crate::render::texture::mips::Mips;
 use crate::scene::Texture;
 
@@ -18,12 +19,25 @@ pub(crate) struct LightTerms<T> {
     tables: Tables,
     /// Mip maps, if the filter needs them.
     mips: Vec<Mips>,
+    /// The rounding thresholds of a block's pixels.
+    thresholds: Option<(Rounding, [f32; BATCH])>,
+}
+
+impl<T> LightTerms<T> {
+    /// The rounding thresholds of a block's pixels; only after [`prepare`](Self::prepare).
+    pub(crate) fn thresholds(&self) -> &[f32; BATCH] {
+        self.thresholds.as_ref().map_or(&[0.5; BATCH], |(_, thresholds)| thresholds)
+    }
 }
 
 impl<T: Number> LightTerms<T> {
     /// Prepares the light terms and mip maps of a plan.
     pub(crate) fn prepare(&mut self, plan: &FramePlan) {
         self.prepare_mips(plan);
+        let rounding = plan.variants.rounding;
+        if self.thresholds.is_none_or(|(known, _)| known != rounding) {
+            self.thresholds = Some((rounding, block_thresholds(rounding)));
+        }
         self.terms.resize_with(plan.pipelines.len(), Vec::new);
         for (terms, pipeline) in self.terms.iter_mut().zip(&plan.pipelines) {
             terms.clear();

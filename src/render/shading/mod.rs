@@ -7,7 +7,6 @@
 //! converts the result to bytes, and `resolve` averages samples. Blocks that one triangle covers
 //! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`).
 
-mod barycentric_variants;
 pub(crate) mod barycentrics;
 mod blocks;
 mod clamp_to_triangle;
@@ -26,6 +25,7 @@ pub(crate) mod painter;
 pub(crate) mod quantize;
 mod resolve;
 pub(crate) mod rounding;
+mod spans;
 pub(crate) mod surface;
 mod texels;
 mod textured;

@@ -5,7 +5,6 @@
 //! ([`Batch`]), and converted to bytes. With flat shading, light is evaluated once for each face of
 //! the block, and no barycentric coordinates are computed.
 
-use super::barycentric_variants::locate_by_variant;
 use super::barycentrics::Barycentrics;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
@@ -14,7 +13,7 @@ use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
-use super::interpolate::{Mixed, mix, surface_samples};
+use super::interpolate::{CornerValues, Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
 use super::quantize::{Quantize, SurfaceColor};
@@ -49,6 +48,8 @@ pub(crate) struct Shader<T> {
     /// Those among them that f32 is not enough for.
     pub(super) far: Vec<FarTexture>,
     pub(crate) texels: Rows<T>,
+    /// The vertex colours of the triangles.
+    pub(super) vertex_colors: CornerValues<T>,
     colors: Colors,
     faces: FaceColors,
 }
@@ -67,8 +68,6 @@ pub(crate) enum Out<'a, 'b> {
 enum Mixture {
     /// The bytes of the pixels.
     Bytes,
-    /// Their colours, as diffuse light.
-    Colors,
     /// Diffuse and specular light.
     Light,
 }
@@ -84,6 +83,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             placement: Placement::default(),
             far: Vec::new(),
             texels: [[T::default(); BATCH]; 3],
+            vertex_colors: [[[T::default(); SLOTS]; 3]; 3],
             colors: Colors::default(),
             faces: FaceColors::default(),
         }
@@ -257,7 +257,6 @@ impl<T: ShadingNumber> Shader<T> {
         let by_face = self.fragments.count <= FEW_FACES
             && !each
             && matches!(light, Some((LightAt::Face, _)))
-            && rounding == Rounding::Nearest
             && draw.back != Back::Red
             && self.colors.form == Form::Pixels;
         let numbers = &self.fragments.numbers[..self.fragments.count];
@@ -268,19 +267,9 @@ impl<T: ShadingNumber> Shader<T> {
         let new = self.take(context, group, located);
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
-            if plan.variants.locates_one_by_one() {
-                let corners = context.frame.corners_of(plan, group.draw_index);
-                locate_by_variant(
-                    plan.variants,
-                    &self.fragments,
-                    &self.attributes,
-                    corners,
-                    &mut self.barycentrics,
-                );
-            }
         }
         self.batch.len = self.fragments.len;
-        let mut tint = shaded.tint;
+        let tint = shaded.tint;
         match light {
             None => {}
             Some((LightAt::Pixel | LightAt::Sample, _)) => {
@@ -288,7 +277,6 @@ impl<T: ShadingNumber> Shader<T> {
             }
             Some((LightAt::Vertex, _)) => match self.mix_light(context, group, shaded, new) {
                 Mixture::Bytes => return,
-                Mixture::Colors => tint = [1.0; 3],
                 Mixture::Light => {}
             },
             Some((LightAt::Face, stages)) => self.light_faces(context, group, stages, each),
@@ -332,8 +320,8 @@ impl<T: ShadingNumber> Shader<T> {
         let order = corners.then(|| draw.model.mesh.draw_order());
         let new = self.attributes.take(&self.fragments, order, draw_index, base);
         if new {
-            let vertices = frame.vertices_of(plan, draw_index);
-            self.attributes.find_sides(draw, plan, frame.corners_of(plan, draw_index));
+            let vertices = frame.corners_of(draw_index);
+            self.attributes.find_sides(draw, plan, vertices);
             if located {
                 self.attributes.locate(level, draw, plan, vertices);
             }
@@ -382,16 +370,13 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let Self { fragments, attributes, barycentrics, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
-        if colored && plan.variants.rounding == Rounding::Nearest {
-            mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors));
+        if colored {
+            let thresholds = &thresholds(plan.variants.rounding, fragments);
+            mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors, thresholds));
             return Mixture::Bytes;
         }
         mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
         batch.len = fragments.len;
-        if colored {
-            batch.specular = [[T::default(); BATCH]; 3];
-            return Mixture::Colors;
-        }
         attributes.carry_light(
             group.draw,
             #[inline(always)]

@@ -1,13 +1,15 @@
 //! The colour of a surface, pixel by pixel: texture, vertex colours and tint.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::dispatch;
 
 use super::context::ShadingContext;
 use super::far_texture::FarTexture;
 use super::groups::Group;
+use super::interpolate::multiply;
 use super::interpolated::ShadingNumber;
 use super::surface::Shader;
-use super::texels::{PlacedTexture, TextureSamples, color, footprint, steps};
+use super::texels::{PlacedTexture, TextureSamples, footprint, steps};
+use crate::base::math::each;
 use crate::render::frame::draw::Shaded;
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
@@ -26,7 +28,7 @@ pub(super) fn sampler<'a, T>(
 ) -> Option<Sampler<'a>> {
     let levels = mips.map_or(std::slice::from_ref(texture), Mips::levels);
     let plan = context.plan;
-    Sampler::new(levels, plan.filter).filter(|_| !plan.variants.locates_one_by_one())
+    Sampler::new(levels, plan.filter)
 }
 
 impl<T: ShadingNumber> Shader<T> {
@@ -51,7 +53,12 @@ impl<T: ShadingNumber> Shader<T> {
             }
         }
         if shaded.vertex_colors {
-            self.multiply_vertex_colors(context.level, group);
+            if new {
+                self.take_vertex_colors(group);
+            }
+            let Self { fragments, attributes, barycentrics, texels, vertex_colors, .. } = self;
+            let at = (context.level, attributes.count);
+            multiply(at, fragments, vertex_colors, barycentrics, texels);
         }
     }
 
@@ -155,19 +162,18 @@ impl<T: ShadingNumber> Shader<T> {
         });
     }
 
-    /// Multiplies by the vertex colours.
-    fn multiply_vertex_colors(&mut self, level: Level, group: &Group<'_>) {
-        let Self { fragments, attributes, barycentrics, texels, .. } = self;
-        let mut colors = [[[0.0; 3]; 3]; SLOTS];
-        for (colors, number) in colors.iter_mut().zip(&attributes.numbers[..attributes.count]) {
-            *colors = group.draw.model.mesh.triangle_colors(*number);
-        }
-        dispatch!(level, _ => for i in 0..fragments.len {
-            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
-            let color = color(colors[slot], barycentrics.weights(i));
-            for (row, part) in texels.iter_mut().zip(color) {
-                row[i] = row[i] * T::from_f64(part);
+    /// Fetches the vertex colours at the corners of the triangles of the list.
+    pub(super) fn take_vertex_colors(&mut self, group: &Group<'_>) {
+        let Self { attributes, vertex_colors, .. } = self;
+        let mesh = &group.draw.model.mesh;
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            let [a, b, c] = each(mesh.triangle_colors(*number), |color| each(color, f64::from));
+            for part in 0..3 {
+                let row = [a[part], b[part] - a[part], c[part] - a[part]];
+                for (values, value) in vertex_colors.iter_mut().zip(row) {
+                    values[part][slot] = T::from_f64(value);
+                }
             }
-        });
+        }
     }
 }
