@@ -174,6 +174,7 @@ fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
             diffuse: [0.5; 3],
             specular: [0.6; 3],
             exponent: 40.0,
+            emission: [0.0; 3],
         });
     });
     let suns =
@@ -296,6 +297,7 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
             diffuse: [0.9; 3],
             specular: [0.0; 3],
             exponent: 1.0,
+            emission: [0.0; 3],
         });
     });
     for projection in [Projection::Perspective, Projection::Orthographic] {

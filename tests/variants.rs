@@ -23,7 +23,13 @@ const SECOND: ObjectId = ObjectId(11);
 /// Light alone, which every surface sends back as it is.
 fn matt(color: [f64; 3]) -> MaterialChoice {
     let [diffuse, specular] = [[0.0; 3]; 2];
-    MaterialChoice::Own(Material { ambient: color, diffuse, specular, exponent: 1.0 })
+    MaterialChoice::Own(Material {
+        ambient: color,
+        diffuse,
+        specular,
+        exponent: 1.0,
+        emission: [0.0; 3],
+    })
 }
 
 fn unmarked(view: View) -> View {
@@ -75,7 +81,8 @@ fn highlights_are_as_wrong_as_their_powers() {
     let mut scene = opened.scene;
     edit(&mut scene, ObjectId(1), |object| {
         let [ambient, diffuse] = [[0.0; 3]; 2];
-        let material = Material { ambient, diffuse, specular: [1.0; 3], exponent: 76.8 };
+        let material =
+            Material { ambient, diffuse, specular: [1.0; 3], exponent: 76.8, emission: [0.0; 3] };
         object.material = MaterialChoice::Own(material);
     });
     let picture = |power| {
@@ -116,7 +123,8 @@ fn normals_transformed_by_the_objects_own_matrix_lean_by_79_degrees() {
     let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0) * press)]);
     edit(&mut scene, FIRST, |object| {
         let [ambient, specular] = [[0.0; 3]; 2];
-        let material = Material { ambient, diffuse: [1.0; 3], specular, exponent: 1.0 };
+        let material =
+            Material { ambient, diffuse: [1.0; 3], specular, exponent: 1.0, emission: [0.0; 3] };
         object.material = MaterialChoice::Own(material);
     });
     let lit: Vec<LightId> = scene.lights.iter().map(|(id, _)| id).collect();

@@ -1,5 +1,6 @@
-//! Benchmarks of scenes of many objects: `objects/N` draws a frame, `objects/insert/N` inserts them
-//! into a scene, `objects/move/N` is one command on one of them, with the editor's work after it.
+//! Benchmarks of scenes of many objects: `objects/N` draws a frame, `objects/100 in view of N` a
+//! frame that has the others out of view, `objects/insert/N` inserts them into a scene,
+//! `objects/move/N` is one command on one of them, with the editor's work after it.
 
 use criterion::{BenchmarkId, Criterion};
 use glam::{DMat4, DVec3};
@@ -46,6 +47,27 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         });
         group.bench_function(BenchmarkId::from_parameter(count), |b| stage.measure(b));
     }
+    for count in [SEEN, 10_000] {
+        let stage = mostly_outside(&quad, count);
+        let name = format!("{SEEN} in view of {count}");
+        group.bench_function(BenchmarkId::from_parameter(name), |b| stage.measure(b));
+    }
+}
+
+/// How many objects are in view where most are not.
+const SEEN: u32 = 100;
+
+/// A scene of `count` objects, of which all but [`SEEN`] are behind the camera.
+fn mostly_outside(quad: &Shared<Model>, count: u32) -> Stage {
+    let mut stage = Stage::new(quad, FULL);
+    let mut objects = objects(quad, count);
+    for object in objects.iter_mut().skip(SEEN as usize) {
+        let behind = DMat4::from_translation(DVec3::Z * 100.0);
+        object.placement = Tracked::new(behind * *object.placement.now());
+    }
+    let command = items::insert_objects(&stage.scene, objects);
+    command.apply(&mut stage.scene).expect("they fit");
+    stage
 }
 
 /// Squares side by side, each with a different material.

@@ -8,8 +8,8 @@ mod shot;
 pub use axes::{AXES, Axis, AxisKind, Choice, Lesson, uncapitalized};
 pub use presets::{ACCURACY_PRESETS, AccuracyPreset};
 pub use settings::{
-    Arithmetic, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt, NormalMatrix,
-    Normalising, Rounding, Samples, Settings, SpecularForm, SpecularPower, Subpixels,
-    VertexArithmetic,
+    Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
+    LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, SpecularForm,
+    SpecularPower, Subpixels, Tangents, VertexArithmetic,
 };
 pub use shot::Shot;

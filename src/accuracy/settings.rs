@@ -40,6 +40,14 @@ pub struct Settings {
     pub depth: DepthFormat,
     /// How vertex attributes are interpolated across a triangle.
     pub interpolation: Interpolation,
+    /// How the tangents that bumps are laid along are found.
+    pub tangents: Tangents,
+    /// How the maps of bumps are filtered.
+    #[serde(rename = "bumps")]
+    pub bump_filter: BumpFilter,
+    /// In which values light is computed.
+    #[serde(rename = "values")]
+    pub light_values: LightValues,
 }
 
 impl Settings {
@@ -276,4 +284,35 @@ pub enum Interpolation {
     /// With perspective.
     #[default]
     Perspective,
+}
+
+/// How the tangents that bumps are laid along are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Tangents {
+    /// At each pixel, from the gradients of the texture coordinates on its triangle.
+    Pixel,
+    /// At vertices, by MikkTSpace, interpolated between them.
+    #[default]
+    Vertex,
+}
+
+/// How the maps of bumps are filtered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum BumpFilter {
+    /// The nearest texel.
+    Nearest,
+    /// A mean of the texels that a pixel covers, from mipmaps.
+    #[default]
+    Trilinear,
+}
+
+/// In which values light is computed. The two are different models: neither is an error of the
+/// other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum LightValues {
+    /// In those that colours are stored in.
+    #[default]
+    Stored,
+    /// In linear sRGB: colours are decoded, and pictures are encoded.
+    Linear,
 }

@@ -1,7 +1,8 @@
 //! Colours, as bytes and as factors.
 //!
 //! Colours are display values throughout: a byte from 0 to 255 stands for a factor from 0 to 1, and
-//! no curve is applied on the way in or out.
+//! no curve is applied on the way in or out, unless light is computed in linear sRGB: then
+//! [`linear`] decodes colours and [`encoded`] encodes pictures.
 
 use serde::{Deserialize, Serialize};
 
@@ -46,9 +47,43 @@ pub fn byte(factor: f64) -> u8 {
     (factor.min(1.0) * 255.0 + 0.5) as u8
 }
 
+/// The linear value of an sRGB colour, from 0 to 1 for values from 0 to 1:
+///
+///   c / 12.92 up to 0.04045,   ((c + 0.055) / 1.055)^2.4 above
+///
+/// Values above 1 follow the same curve; NaN and values below 0 give 0. IEC 61966-2-1:1999.
+#[must_use]
+pub fn linear(stored: f64) -> f64 {
+    let stored = stored.max(0.0);
+    if stored <= 0.04045 { stored / 12.92 } else { libm::pow((stored + 0.055) / 1.055, 2.4) }
+}
+
+/// The sRGB colour of a linear value: the inverse of [`linear`].
+#[must_use]
+pub fn encoded(linear: f64) -> f64 {
+    let linear = linear.max(0.0);
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn linear_light_keeps_black_white_and_every_byte() {
+        for value in 0..=255_u8 {
+            let stored = f64::from(value) / 255.0;
+            assert_eq!(byte(encoded(linear(stored))), value);
+        }
+        assert_eq!((linear(0.0), linear(1.0), encoded(0.0)), (0.0, 1.0, 0.0));
+        // From outside: the middle between black and white light is 188, and 18% grey is 118.
+        assert_eq!((byte(encoded(0.5)), byte(encoded(0.18))), (188, 118));
+        assert_eq!((linear(f64::NAN), linear(-1.0), encoded(-1.0)), (0.0, 0.0, 0.0));
+    }
 
     #[test]
     fn a_byte_becomes_a_factor_and_the_same_byte_again() {

@@ -7,11 +7,13 @@ use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
 use super::accuracy::Accuracy;
+use super::export::Export;
 use super::keys::Keys;
 use super::lab::Lab;
 use super::plan::Plan;
 use super::stage::is_standard;
 use super::talk::Talk;
+use super::turntable::Turntable;
 use super::values::{color, size, threads};
 use super::verify::Verify;
 use marraztu::app::Shell;
@@ -38,6 +40,8 @@ Examples:
   marraztu teapot.obj                       open the editor with a model
   marraztu render teapot.obj                draw a model into teapot.png
   marraztu render --out first.png           draw the first scene
+  marraztu turntable teapot.obj             draw a model from all around into teapot.gif
+  marraztu export --out first.glb           write the first scene as glTF
   marraztu info teapot.obj                  describe a file, and what is wrong with it
 
 Exit status: 0 on success, 1 if something failed, 2 for invalid arguments."
@@ -62,6 +66,10 @@ pub(crate) struct Arguments {
 pub(crate) enum Headless {
     /// Draw a picture into a file: the same pixels that the editor shows
     Render(Box<Render>),
+    /// Draw the scene from all around: a GIF, an animated PNG, or numbered pictures
+    Turntable(Box<Turntable>),
+    /// Write the scene for other programs, as OBJ with MTL or as glTF
+    Export(Export),
     /// Explain which effects a frame uses, which are left out and why, and what they cost
     Plan(Box<Plan>),
     /// Describe files: shape, parts, materials, and what is wrong with them
@@ -97,6 +105,9 @@ pub(crate) struct Render {
     #[arg(short, long, value_name = "FILE", help = out_help())]
     #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
     pub(crate) out: Option<PathBuf>,
+    /// Leave the ground out: the picture has an alpha channel
+    #[arg(long)]
+    pub(crate) transparent: bool,
     #[command(flatten)]
     pub(crate) picture: PictureArguments,
 }

@@ -6,6 +6,7 @@
 mod accuracy;
 mod arguments;
 mod bar;
+mod export;
 mod failure;
 mod info;
 mod keys;
@@ -16,6 +17,7 @@ mod render;
 mod stage;
 mod talk;
 mod target;
+mod turntable;
 mod values;
 mod verify;
 
@@ -35,6 +37,8 @@ pub(crate) fn run() -> ExitCode {
     };
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
+        Some(Headless::Turntable(arguments)) => turntable::turntable(&arguments),
+        Some(Headless::Export(arguments)) => export::export(&arguments),
         Some(Headless::Info(arguments)) => info::info(&arguments),
         Some(Headless::Keys(arguments)) => keys::keys(&arguments),
         Some(Headless::Plan(arguments)) => plan::plan(&arguments),

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use marraztu::accuracy::Shot;
+use marraztu::base::image::Picture;
 use marraztu::edit::{framing, items, lighting};
 use marraztu::io::{self, Progress};
 use marraztu::render::plan_frame;
-use marraztu::render::{Renderer, Unseen, unseen};
+use marraztu::render::{Renderer, Unseen, unseen, without_ground};
 use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
 
 use super::accuracy::Accuracy;
@@ -29,20 +30,31 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
         object.model.mesh.draw_as_filed();
     }
     let shot = stage.shot(arguments.picture.size);
-    let plan = plan_frame(&shot);
     let mut renderer = Renderer::default();
+    if arguments.transparent {
+        let picture = without_ground(&mut renderer, &shot)?;
+        drop(bar);
+        return written(arguments, &target, &picture);
+    }
+    let plan = plan_frame(&shot);
     renderer.render_watched(&plan, &|done, all| {
         // Nothing cancels this.
         let _ = progress.reached(done, all);
     });
     drop(bar);
     tell_unseen(&mut renderer, &shot);
-    target.write(renderer.picture())?;
-    if let (None, Target::File(path)) = (&arguments.out, &target) {
-        note(&format_args!("the picture is in {}", path.display()));
-    }
+    written(arguments, &target, renderer.picture())?;
     // The process ends here: freeing a million vertices first would only take time.
     std::mem::forget((stage, plan, renderer));
+    Ok(())
+}
+
+/// Writes the picture, and notes its place if nobody has named it.
+fn written(arguments: &Render, target: &Target, picture: &Picture) -> Result<(), Failure> {
+    target.write(picture)?;
+    if let (None, Target::File(path)) = (&arguments.out, target) {
+        note(&format_args!("the picture is in {}", path.display()));
+    }
     Ok(())
 }
 

@@ -79,7 +79,7 @@ impl Target {
 }
 
 /// The name of the scene or first model with .png, in the current folder.
-fn default_name(files: &[PathBuf]) -> PathBuf {
+pub(super) fn default_name(files: &[PathBuf]) -> PathBuf {
     let named = || files.iter().filter(|file| !is_standard(file));
     let file = named().find(|file| is_scene(file)).or_else(|| named().next());
     let name = file.and_then(|file| file.file_name()).map(Path::new);

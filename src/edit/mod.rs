@@ -22,6 +22,7 @@ mod set_transform;
 pub mod shapes;
 pub mod steps;
 pub mod transform;
+pub mod turntable;
 
 pub use gesture::{Gesture, GesturePhase};
 pub use history::History;

@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use glam::{DMat4, DVec3};
 
+use super::dimples;
 use super::obj::parse;
 use super::progress::Progress;
 use super::texture::own_picture;
@@ -61,6 +62,10 @@ pub fn cam_model() -> Shared<Model> {
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
     if let Some(shape) = Shape::named(name) {
         return Some(shape.model());
+    }
+    if name == dimples::NAME {
+        static DIMPLES: OnceLock<Shared<Model>> = OnceLock::new();
+        return Some(get_or_compute(&DIMPLES, dimples::model).clone());
     }
     let all = [&CAM, &X_WING, &R_FALKE, &BALL, &CUSHION, &PLATE, &WHEEL];
     all.into_iter().find(|asset| asset.name == name).map(Asset::model)

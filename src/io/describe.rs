@@ -221,14 +221,21 @@ fn describe_material(material: &FileMaterial) -> String {
         color(m.specular),
         short(m.exponent)
     );
+    if m.emission != [0.0; 3] {
+        let _ = write!(text, ", Ke {}", color(m.emission));
+    }
+    if material.unlit {
+        text.push_str(", not lit");
+    }
     if material.opacity < 1.0 {
         let _ = write!(text, ", d {}", short(material.opacity));
         text.push_str(if material.opacity < 0.5 { " (draws nothing)" } else { " (drawn opaque)" });
     }
-    if let Some(texture) = &material.texture {
+    let maps = material.maps.iter().map(|(kind, map)| (kind.statement(), &map.texture));
+    for (word, texture) in material.texture.iter().map(|it| ("texture", it)).chain(maps) {
         let size = texture.picture.size();
         let name = super::error::short_name(&texture.source);
-        let _ = write!(text, ", texture {name} ({} x {})", size.width, size.height);
+        let _ = write!(text, ", {word} {name} ({} x {})", size.width, size.height);
     }
     text
 }

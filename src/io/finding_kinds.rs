@@ -158,6 +158,18 @@ kinds! {
     MendedExponent:
         "material \"@\": Ns is missing or below 1, and is taken as 1",
         "# materials: Ns is missing or below 1, and is taken as 1";
+    /// Ke := 1 with a map.
+    MendedEmission:
+        "material \"@\": Ke is missing beside map_Ke, and is taken as 1",
+        "# materials: Ke is missing beside map_Ke, and is taken as 1";
+    /// Ks := 1 with a map.
+    MendedMapped:
+        "material \"@\": Ks is missing beside map_Ks, and is taken as 1",
+        "# materials: Ks is missing beside map_Ks, and is taken as 1";
+    /// An illumination model that is not drawn.
+    Illumination:
+        "material \"@\": illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction",
+        "# materials: illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction";
     /// A colour or an opacity outside 0 to 1.
     MendedRange:
         "material \"@\": a value is outside 0 to 1 and is clamped",
@@ -174,10 +186,14 @@ kinds! {
     Translucent:
         "material \"@\" is partly transparent and is drawn opaque: there is no blending",
         "# materials are partly transparent and are drawn opaque: there is no blending";
-    /// A map other than `map_Kd`.
+    /// A map of a kind that is not drawn.
     MapUnused:
-        "a statement \"@\" is ignored: map_Kd is the only texture that is drawn",
-        "# statements \"@\" are ignored: map_Kd is the only texture that is drawn";
+        "a statement \"@\" is ignored: maps of this kind are not drawn",
+        "# statements \"@\" are ignored: maps of this kind are not drawn";
+    /// An option of a map that is not applied.
+    MapOption:
+        "the option \"@\" of a map is ignored",
+        "the option \"@\" of # maps is ignored";
     /// A texture that is not there.
     TextureMissing: "the texture \"@\" was not found", "the texture \"@\" was not found";
     /// More textures than are read.
@@ -216,6 +232,9 @@ impl FindingKind {
                 | Self::MendedSpecular
                 | Self::MendedExponent
                 | Self::MendedRange
+                | Self::MendedEmission
+                | Self::MendedMapped
+                | Self::Illumination
                 | Self::MendedTransparency
                 | Self::Transparent
                 | Self::Translucent

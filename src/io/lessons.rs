@@ -11,6 +11,7 @@ use super::scene_file::{Opened, SceneFileError, open_text};
 /// The scenes, by the names that [`crate::accuracy::Lesson::scene`] has.
 const LESSONS: &[(&str, &str)] = &[
     ("ball", include_str!("../../assets/lessons/ball.marraztu")),
+    ("dimples", include_str!("../../assets/lessons/dimples.marraztu")),
     ("dusk", include_str!("../../assets/lessons/dusk.marraztu")),
     ("faint", include_str!("../../assets/lessons/faint.marraztu")),
     ("far", include_str!("../../assets/lessons/far.marraztu")),

@@ -3,10 +3,13 @@
 //! Files come from elsewhere, so nothing in them may stop the program. A file is either refused
 //! with one reason, or loaded with a list of everything that was mended in it.
 
+mod animation;
 mod assets;
 mod describe;
+mod dimples;
 mod error;
 mod examples;
+mod export;
 mod finding_kinds;
 mod findings;
 mod input;
@@ -23,10 +26,12 @@ mod replace;
 mod scene_file;
 mod texture;
 
+pub use animation::{Animation, AnimationFormat, AnimationWriter};
 pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
 pub use describe::{describe, shape};
 pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, is_example};
+pub use export::{EXPORT_ENDINGS, Exported, check_export_target, export};
 pub use findings::{Finding, FindingKind, joined};
 pub use input::Input;
 pub use keeping::{Abandoned, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved};

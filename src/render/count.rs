@@ -188,6 +188,9 @@ impl FramePlan {
             (Effect::Texture, shaded.texture.is_some()),
             (Effect::AlphaTest, shaded.cutout.is_some()),
             (Effect::VertexColors, shaded.vertex_colors),
+            (Effect::Emission, shaded.extras.emission.is_some()),
+            (Effect::Maps, shaded.extras.has_maps()),
+            (Effect::Bumps, shaded.extras.bump.is_some()),
         ];
         for (effect, _) in features.into_iter().filter(|(_, there)| *there) {
             counts.add(effect, item, pixels);

@@ -17,7 +17,7 @@ use crate::render::frame::draw::{Draw, Lines, Pipeline, Shaded};
 use crate::render::lights::{PhongMaterial, ViewLight};
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::{TILE, tiles_of};
-use crate::scene::ItemId;
+use crate::scene::{ItemId, Texture};
 
 /// The tiles that are painted again, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -272,18 +272,25 @@ impl Compared<'_> {
             tint,
             texture,
             cutout,
+            opacity_map,
+            extras,
         } = after;
-        let textures = match (texture, &before.texture) {
+        let alike_maps = |after: &Option<Shared<Texture>>, before: &Option<Shared<Texture>>| match (
+            after, before,
+        ) {
             (Some(after), Some(before)) => Shared::same(after, before),
             (None, None) => true,
             _ => false,
         };
+        let textures =
+            alike_maps(texture, &before.texture) && alike_maps(opacity_map, &before.opacity_map);
         let stages = match (light, &before.light) {
             (Some(after), Some(before)) => {
                 after.len() == before.len()
                     && after.iter().zip(before).all(|(after, before)| {
                         after.effect.name == before.effect.name
                             && after.highlight == before.highlight
+                            && after.is_mapped == before.is_mapped
                             && alike_lights(
                                 &self.after.lights[after.light as usize],
                                 &self.before.lights[before.light as usize],
@@ -300,6 +307,7 @@ impl Compared<'_> {
             && *vertex_colors == before.vertex_colors
             && alike(tint, &before.tint)
             && alike(cutout.as_slice(), before.cutout.as_slice())
+            && extras.are_alike(&before.extras)
     }
 }
 

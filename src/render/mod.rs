@@ -16,8 +16,8 @@
 //! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there
 //!   to the visibility buffer.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
-//! * `renderer`, `damage`, `count`, `unseen`: draw plans, and answer questions about what was
-//!   drawn.
+//! * `renderer`, `damage`, `count`, `unseen`, `without_ground`: draw plans, and answer questions
+//!   about what was drawn.
 
 mod count;
 mod damage;
@@ -33,6 +33,7 @@ pub mod simd;
 mod texture;
 mod timings;
 mod unseen;
+mod without_ground;
 
 pub use damage::{Change, Damage, DamageCause};
 pub use frame::FramePlan;
@@ -40,3 +41,4 @@ pub use plan::{Class, Effect, EffectState, EffectUse, explain_frame, plan_everyt
 pub use renderer::{Cancelled, Hit, Renderer};
 pub use timings::Timings;
 pub use unseen::{Unseen, unseen};
+pub use without_ground::without_ground;

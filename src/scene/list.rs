@@ -9,8 +9,9 @@
 //! neighbours; if no label is left, all items are relabelled: Dietz and Sleator, "Two Algorithms
 //! for Maintaining Order in a List", STOC 1987.
 
+use std::any::Any;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use imbl::ordmap::DiffItem;
 use imbl::{OrdMap, Vector};
@@ -26,7 +27,12 @@ const NEAR: u64 = 1 << 16;
 pub struct List<K, T> {
     entries: Vector<Entry<K, T>>,
     labels: OrdMap<K, i64>,
+    derived: Kept,
 }
+
+/// A value that was computed from a list.
+#[derive(Clone, Default)]
+struct Kept(Arc<OnceLock<Arc<dyn Any + Send + Sync>>>);
 
 /// An item with its label.
 #[derive(Debug)]
@@ -44,7 +50,11 @@ impl<K: Copy, T> Clone for Entry<K, T> {
 
 impl<K: Copy, T> Clone for List<K, T> {
     fn clone(&self) -> Self {
-        Self { entries: self.entries.clone(), labels: self.labels.clone() }
+        Self {
+            entries: self.entries.clone(),
+            labels: self.labels.clone(),
+            derived: self.derived.clone(),
+        }
     }
 }
 
@@ -56,7 +66,7 @@ impl<K: Copy + Ord + fmt::Debug, T: fmt::Debug> fmt::Debug for List<K, T> {
 
 impl<K, T> Default for List<K, T> {
     fn default() -> Self {
-        Self { entries: Vector::new(), labels: OrdMap::new() }
+        Self { entries: Vector::new(), labels: OrdMap::new(), derived: Kept::default() }
     }
 }
 
@@ -109,6 +119,19 @@ impl<K: Copy + Ord, T> List<K, T> {
         self.entries.iter().map(|entry| (entry.id, &*entry.item))
     }
 
+    /// The item at a position, counted from 0, with its id.
+    #[must_use]
+    pub fn at(&self, at: usize) -> Option<(K, &T)> {
+        self.entries.get(at).map(|entry| (entry.id, &*entry.item))
+    }
+
+    /// What `compute` makes of the list: computed once, and kept by all copies until they change.
+    /// A list keeps one value, so all callers have to ask for the same.
+    pub(super) fn derived<D: Any + Send + Sync>(&self, compute: impl FnOnce(&Self) -> D) -> Arc<D> {
+        let kept = self.derived.0.get_or_init(|| Arc::new(compute(self)));
+        Arc::clone(kept).downcast().expect("all callers ask for the same")
+    }
+
     /// All ids, first to last.
     pub fn ids(&self) -> impl DoubleEndedIterator<Item = K> + ExactSizeIterator {
         self.entries.iter().map(|entry| entry.id)
@@ -152,6 +175,7 @@ impl<K: Copy + Ord, T> List<K, T> {
 
     /// Inserts an item before the one at `at`; past the end means last.
     pub(super) fn insert(&mut self, at: usize, id: K, item: T) {
+        self.derived = Kept::default();
         let at = at.min(self.len());
         let label = self.free_label(at).unwrap_or_else(|| {
             self.label_anew();
@@ -188,6 +212,7 @@ impl<K: Copy + Ord, T: Clone> List<K, T> {
     /// Replaces the item with this id, and returns the old one.
     pub(super) fn replace(&mut self, id: K, item: T) -> Option<T> {
         let at = self.position(id)?;
+        self.derived = Kept::default();
         let entry = self.entries.get_mut(at)?;
         Some(Arc::unwrap_or_clone(std::mem::replace(&mut entry.item, Arc::new(item))))
     }
@@ -195,6 +220,7 @@ impl<K: Copy + Ord, T: Clone> List<K, T> {
     /// Removes the item with this id, and returns it with its position.
     pub(super) fn remove(&mut self, id: K) -> Option<(usize, T)> {
         let at = self.position(id)?;
+        self.derived = Kept::default();
         self.labels.remove(&id);
         Some((at, Arc::unwrap_or_clone(self.entries.remove(at).item)))
     }

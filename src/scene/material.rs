@@ -13,6 +13,13 @@ pub struct Material {
     pub specular: [f64; 3],
     /// The exponent of the highlight: Ns, at least 0.
     pub exponent: f64,
+    /// Light of its own, which no lamp changes: Ke. It may be more than 1.
+    #[serde(default, skip_serializing_if = "is_dark")]
+    pub emission: [f64; 3],
+}
+
+fn is_dark(emission: &[f64; 3]) -> bool {
+    *emission == [0.0; 3]
 }
 
 /// A material with its name.
@@ -88,7 +95,7 @@ impl TryFrom<String> for PresetId {
 
 const fn preset(name: &'static str, rows: [[f64; 3]; 3], exponent: f64) -> Preset {
     let [ambient, diffuse, specular] = rows;
-    Preset { name, material: Material { ambient, diffuse, specular, exponent } }
+    Preset { name, material: Material { ambient, diffuse, specular, exponent, emission: [0.0; 3] } }
 }
 
 /// The nineteen materials, in the order of the picker.

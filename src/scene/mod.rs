@@ -12,6 +12,8 @@ mod mesh;
 mod model;
 mod object;
 mod shapes;
+mod spheres;
+mod surface_map;
 mod tracked;
 pub mod triangulate;
 mod view;
@@ -36,6 +38,8 @@ pub use model::{
 };
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use shapes::Shape;
+pub use spheres::Spheres;
+pub use surface_map::{MapKind, SurfaceMap, SurfaceMaps};
 pub use tracked::Tracked;
 pub use view::{
     Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Material, Mesh};
+use super::{Material, Mesh, SurfaceMaps};
 use crate::base::image::Picture;
 use crate::base::{Shared, color::Color};
 
@@ -234,6 +234,10 @@ pub struct FileMaterial {
     pub opacity: f64,
     /// `map_Kd`, if its file was found.
     pub texture: Option<Shared<Texture>>,
+    /// Its other maps whose files were found.
+    pub maps: SurfaceMaps,
+    /// Whether Kd alone is shown, whatever the light: `illum 0`.
+    pub unlit: bool,
 }
 
 /// A picture for a surface, and how it is laid over it.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-use super::{MaterialChoice, Model, PresetId, Texture, Tracked};
+use super::{MapKind, MaterialChoice, Model, PresetId, SurfaceMap, SurfaceMaps, Texture, Tracked};
 use crate::base::math::{self, Axis};
 use crate::base::{Shared, color::Color};
 
@@ -187,10 +187,14 @@ impl Object {
             MaterialChoice::File => file.map_or(1.0, |file| file.opacity),
             _ => 1.0,
         };
+        let of_file = self.material == MaterialChoice::File;
         PartLook {
             material,
             opacity,
+            unlit: of_file && file.is_some_and(|file| file.unlit),
             texture: texture.filter(|_| self.surface != Surface::Material),
+            maps: file.map(|file| &file.maps).filter(|_| self.surface != Surface::Material),
+            of_file,
         }
     }
 }
@@ -202,6 +206,21 @@ pub struct PartLook<'a> {
     pub material: super::Material,
     /// `d` of the file's material.
     pub opacity: f64,
+    /// Whether Kd alone is shown, whatever the light: `illum 0` of the file's material.
+    pub unlit: bool,
     /// The texture that it shows, if it shows one.
     pub texture: Option<&'a Shared<Texture>>,
+    /// The maps that it shows.
+    maps: Option<&'a SurfaceMaps>,
+    /// Whether the material is the file's, whose `d` its map goes with.
+    of_file: bool,
+}
+
+impl<'a> PartLook<'a> {
+    /// A map that it shows. The file's maps lie over whatever material is chosen, as its texture
+    /// does, except for `map_d`, which goes with the `d` of the file's material.
+    #[must_use]
+    pub fn map(&self, kind: MapKind) -> Option<&'a SurfaceMap> {
+        self.maps?.get(&kind).filter(|_| kind != MapKind::Opacity || self.of_file)
+    }
 }

@@ -55,6 +55,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "damage",
             "renderer",
             "unseen",
+            "without_ground",
         ],
     ),
     (
@@ -90,6 +91,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "lights",
             "motion",
             "framing",
+            "turntable",
             "lighting",
             "steps",
             "shapes",

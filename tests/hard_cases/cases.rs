@@ -26,6 +26,7 @@ const LIGHT: &str = "Light";
 const COLOUR: &str = "Colour";
 const CAMERA: &str = "Camera";
 const UNDO: &str = "Undo";
+const SURFACES: &str = "Surfaces";
 const FILES: &str = "Files and scale";
 
 /// Checks the quick round of a claim; `cargo test --test proofs` checks any number of cases.
@@ -108,6 +109,14 @@ pub(crate) static CASES: &[Case] = &[
     case(65, FILES, "Z", "odd faces in files read past the end, or are filled wrongly"),
     case(66, FILES, "R", "a scene in millimetres looks other than one in kilometres"),
     case(67, FILES, "I", "nothing at all, and very much, are not drawn"),
+    case(90, SURFACES, "D", "bumps on the mirrored half of a model are dents"),
+    case(91, SURFACES, "R", "bumps break at a seam of the texture coordinates"),
+    case(92, SURFACES, "I", "texture coordinates without area divide by 0 and turn the surface black"),
+    case(93, SURFACES, "R", "bumps of no height change the last bit, or cost time"),
+    case(94, SURFACES, "R", "a flat map of normals tilts everything by half a step"),
+    case(95, SURFACES, "Z", "what shines by itself is dimmed by light that is not there"),
+    case(96, COLOUR, "Z", "black and white do not survive decoding and encoding"),
+    case(97, COLOUR, "Z", "the middle between black and white is too dark"),
 ];
 
 #[test]
@@ -117,9 +126,9 @@ fn every_case_has_a_row_and_a_test_with_its_number() {
     for entry in std::fs::read_dir(folder).unwrap() {
         sources += &std::fs::read_to_string(entry.unwrap().path()).unwrap();
     }
-    for (number, row) in (1..=67).zip(CASES) {
+    for (number, row) in (1..=67).chain(90..=97).zip(CASES) {
         assert_eq!(row.number, number);
         assert!(sources.contains(&format!("fn case_{number}_")), "case {number} has no test");
     }
-    assert_eq!(CASES.len(), 67);
+    assert_eq!(CASES.len(), 75);
 }

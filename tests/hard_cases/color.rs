@@ -17,6 +17,7 @@ fn glowing(ambient: [f64; 3], lights: &[Color]) -> (Scene, View) {
             diffuse: [0.0; 3],
             specular: [0.0; 3],
             exponent: 1.0,
+            emission: [0.0; 3],
         });
     });
     let light = |(color, id): (&Color, u32)| {

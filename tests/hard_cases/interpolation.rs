@@ -265,7 +265,13 @@ fn case_40_the_same_light_at_all_corners_stays_that_light() {
         let (mut scene, view) = scene(&[(face, DMat4::IDENTITY)]);
         edit(&mut scene, ObjectId(10), |object| {
             let (ambient, none) = ([factor; 3], [0.0; 3]);
-            let dull = Material { ambient, diffuse: none, specular: none, exponent: 1.0 };
+            let dull = Material {
+                ambient,
+                diffuse: none,
+                specular: none,
+                exponent: 1.0,
+                emission: [0.0; 3],
+            };
             object.material = MaterialChoice::Own(dull);
         });
         let settings = Settings { light: LightAt::Vertex, ..Settings::default() };

@@ -45,6 +45,7 @@ fn stuff(matter: &OracleMaterial) -> MaterialChoice {
         diffuse: [matter.diffuse; 3],
         specular: [matter.specular; 3],
         exponent: matter.exponent,
+        emission: [0.0; 3],
     })
 }
 
@@ -549,6 +550,7 @@ fn case_50_the_order_of_lights_does_not_show() {
         diffuse: [0.11, 0.13, 0.17],
         specular: [0.07, 0.05, 0.09],
         exponent: 9.0,
+        emission: [0.0; 3],
     };
     edit(&mut scene, ObjectId(10), |object| object.material = MaterialChoice::Own(material));
     with_lamps(&mut scene, &lamps);

@@ -28,5 +28,6 @@ mod files_and_scale;
 mod geometry;
 mod interpolation;
 mod light;
+mod surfaces;
 mod textures;
 mod undo;

@@ -1,14 +1,16 @@
 //! The list of a frame's effects is what the frame does.
 
+use glam::{DMat4, DQuat, DVec3};
 use marraztu::accuracy::Shot;
 use marraztu::accuracy::{LeaveOut, Settings};
 use marraztu::base::image::Size;
+use marraztu::edit::items;
 use marraztu::io;
 use marraztu::lab::cost;
 use marraztu::render::explain_frame;
 use marraztu::render::plan_frame;
 use marraztu::render::{Class, Effect, EffectState, Renderer};
-use marraztu::scene::{Fill, ItemId, LightKind, Scene, View};
+use marraztu::scene::{Command, Fill, Item, ItemId, LightKind, Scene, Tracked, View};
 
 use crate::random_scenes::random_scene;
 
@@ -44,6 +46,52 @@ fn every_pixel_that_shows_something_is_counted_once_under_surfaces() {
             assert_eq!(counted, seen as u64, "scene {seed}");
         }
     }
+}
+
+#[test]
+fn a_plan_is_the_same_whether_its_decisions_are_explained_or_not() {
+    for seed in 0..2_000 {
+        let it = random_scene(seed);
+        let shot = Shot::new(&it.scene, &it.view, &it.settings, it.size);
+        assert!(plan_frame(&shot) == explain_frame(&shot).0, "scene {seed}");
+    }
+}
+
+#[test]
+fn of_many_objects_about_the_observer_exactly_those_in_view_are_planned() {
+    let (mut scene, view) = first();
+    let original = scene.objects.iter().next().expect("there is one").1.clone();
+    let around = (0..400_u32).map(|i| {
+        let direction = DQuat::from_rotation_y(f64::from(i) * 2.399_963) * DVec3::Z;
+        let place =
+            DVec3::new(0.0, f64::from(i) - 200.0, 400.0) + direction * f64::from(i % 40) * 50.0;
+        let mut object = original.clone();
+        object.placement = Tracked::new(DMat4::from_translation(place));
+        object
+    });
+    items::insert_objects(&scene, around.collect()).apply(&mut scene).expect("they fit");
+    let settings = Settings::default();
+    let drawn = |scene: &Scene| {
+        let shot = Shot::new(scene, &view, &settings, SIZE);
+        let (explained, plan) = (explain_frame(&shot).0, plan_frame(&shot));
+        assert!(plan == explained);
+        let shown = explain_frame(&shot).1;
+        shown.iter().filter(|one| one.effect == Effect::Surfaces && one.state.is_on()).count()
+    };
+    let before = drawn(&scene);
+    assert!((20..200).contains(&before), "{before}");
+    // What was out of view comes into it: nothing of what was computed before is used.
+    let id = scene.objects.ids().last().expect("there is one");
+    let mut moved = scene.objects.get(id).expect("it is there").clone();
+    let far = DVec3::new(0.0, 5_000.0, 0.0);
+    moved.placement = Tracked::new(DMat4::from_translation(far));
+    Command::Replace(Item::Object(id, Box::new(moved.clone())))
+        .apply(&mut scene)
+        .expect("it is there");
+    let without = drawn(&scene);
+    moved.placement = Tracked::new(DMat4::IDENTITY);
+    Command::Replace(Item::Object(id, Box::new(moved))).apply(&mut scene).expect("it is there");
+    assert_eq!(drawn(&scene), without + 1);
 }
 
 #[test]

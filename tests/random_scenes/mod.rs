@@ -9,7 +9,10 @@ pub(crate) mod shapes;
 use glam::{DMat3, DMat4, DVec3};
 
 use marraztu::accuracy::Shot;
-use marraztu::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Settings, SpecularForm};
+use marraztu::accuracy::{
+    Arithmetic, BumpFilter, Filter, LeaveOut, LightAt, LightValues, Samples, Settings,
+    SpecularForm, Tangents,
+};
 use marraztu::base::image::Size;
 use marraztu::base::rng::Rng;
 use marraztu::base::{color::Color, math};
@@ -141,7 +144,10 @@ fn object(rng: &mut Rng) -> Object {
         1 => MaterialChoice::Preset(rng.one_of(&PresetId::all().collect::<Vec<_>>())),
         _ => MaterialChoice::Own(shapes::material(rng)),
     };
-    let model = rng.one_of(shapes());
+    let mut model = rng.one_of(shapes());
+    if rng.percent(20) {
+        model = shapes::mapped(rng);
+    }
     let scale = match rng.index(10) {
         // Around the camera: its faces are clipped.
         0 => DVec3::splat(400.0),
@@ -290,6 +296,14 @@ fn settings(rng: &mut Rng) -> Settings {
         filter: rng.one_of(&[Filter::Nearest, Filter::Bilinear]),
         specular: rng.one_of(&[SpecularForm::Reflection, SpecularForm::HalfVector]),
         leave_out: LeaveOut::Unseen,
+        tangents: rng.one_of(&[Tangents::Vertex, Tangents::Pixel]),
+        bump_filter: rng.one_of(&[BumpFilter::Nearest, BumpFilter::Trilinear]),
+        light_values: rng.one_of(&[
+            LightValues::Stored,
+            LightValues::Stored,
+            LightValues::Stored,
+            LightValues::Linear,
+        ]),
         ..Settings::default()
     };
     // Rarely, since it shades every sample.

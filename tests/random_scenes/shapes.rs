@@ -8,8 +8,8 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::base::once::get_or_compute;
 use marraztu::base::rng::Rng;
 use marraztu::scene::{
-    FileMaterial, LoadOptions, Material, Mesh, MeshSource, Model, NONE, Part, SourceCorner,
-    Texture, Wrap,
+    FileMaterial, LoadOptions, MapKind, Material, Mesh, MeshSource, Model, NONE, Part,
+    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Wrap,
 };
 
 /// Coefficients on both sides of what can be left out.
@@ -138,15 +138,27 @@ fn two_parts() -> Shared<Model> {
             .collect(),
         ..one
     };
-    let dull =
-        Material { ambient: [0.1; 3], diffuse: [0.7, 0.4, 0.2], specular: [0.0; 3], exponent: 1.0 };
-    let shiny =
-        Material { ambient: [0.0; 3], diffuse: [0.0; 3], specular: [0.9; 3], exponent: 20.0 };
+    let dull = Material {
+        ambient: [0.1; 3],
+        diffuse: [0.7, 0.4, 0.2],
+        specular: [0.0; 3],
+        exponent: 1.0,
+        emission: [0.0; 3],
+    };
+    let shiny = Material {
+        ambient: [0.0; 3],
+        diffuse: [0.0; 3],
+        specular: [0.9; 3],
+        exponent: 20.0,
+        emission: [0.0; 3],
+    };
     let file = |name: &str, material, opacity| FileMaterial {
         name: name.to_owned(),
         material,
         opacity,
         texture: None,
+        maps: SurfaceMaps::new(),
+        unlit: false,
     };
     model("two parts", source, vec![file("dull", dull, 1.0), file("shiny", shiny, 0.6)])
 }
@@ -173,7 +185,46 @@ pub(crate) fn material(rng: &mut Rng) -> Material {
     };
     let (ambient, diffuse, specular) = (row(), row(), row());
     let exponent = rng.one_of(&[0.0, 1.0, 5.0, 32.0, 128.0, 1000.0]);
-    Material { ambient, diffuse, specular, exponent }
+    let emission =
+        if rng.percent(70) { [0.0; 3] } else { [0; 3].map(|_| rng.one_of(&[0.0, 0.2, 3.0])) };
+    Material { ambient, diffuse, specular, exponent, emission }
+}
+
+/// Random maps, each with a random chance.
+pub(crate) fn maps(rng: &mut Rng) -> SurfaceMaps {
+    let mut maps = SurfaceMaps::new();
+    for kind in MapKind::ALL {
+        if rng.percent(35) {
+            let texture = texture(rng);
+            maps.insert(kind, SurfaceMap { texture, gain: rng.one_of(&[0.0, 1.0, -2.5]) });
+        }
+    }
+    maps
+}
+
+/// A sheet of two squares, one of them mirrored on the texture, with random maps.
+pub(crate) fn mapped(rng: &mut Rng) -> Shared<Model> {
+    let one = square_source();
+    let behind = one.positions.iter().map(|[x, y, z]| [x + 0.5, y + 0.25, z - 0.5]);
+    let mirrored = [1, 0, 3, 2];
+    let uv = |i: u32| if i < 4 { i } else { mirrored[i as usize - 4] };
+    let source = MeshSource {
+        positions: one.positions.iter().copied().chain(behind).collect(),
+        corners: (0..8).map(|i| SourceCorner { position: i, uv: uv(i), normal: NONE }).collect(),
+        arities: vec![4, 4],
+        polygon_parts: vec![0, 0],
+        parts: vec![Part { name: "mapped".to_owned(), material: Some(0) }],
+        ..one
+    };
+    let file = FileMaterial {
+        name: "mapped".to_owned(),
+        material: material(rng),
+        opacity: rng.one_of(&[1.0, 1.0, 0.7]),
+        texture: rng.percent(50).then(|| texture(rng)),
+        maps: maps(rng),
+        unlit: rng.percent(10),
+    };
+    model("mapped", source, vec![file])
 }
 
 /// A texture of a few texels, with holes or without.

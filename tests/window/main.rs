@@ -17,5 +17,6 @@ mod palette;
 mod panels;
 mod plan;
 mod properties;
+mod refining;
 mod regions;
 mod shapes;

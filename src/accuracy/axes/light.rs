@@ -1,8 +1,10 @@
 //! The axes of light: shading, arithmetic, powers, normalisation, faint light, highlights.
 
-use super::sense::{has_even_power, has_several_samples, if_any, is_lit, is_mirroring};
+use super::sense::{has_even_power, has_several_samples, if_any, is_lit, is_mirroring, is_there};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::accuracy::{Arithmetic, LeaveOut, LightAt, Normalising, SpecularForm, SpecularPower};
+use crate::accuracy::{
+    Arithmetic, LeaveOut, LightAt, LightValues, Normalising, SpecularForm, SpecularPower,
+};
 
 pub(super) const SHADING: Axis = Axis {
     key: "shading",
@@ -193,5 +195,34 @@ pub(super) const SPECULAR: Axis = Axis {
         shows: "On the rim of a shiny ball lit from behind, and in the size of every highlight.",
         scene: "ball",
         choice: Some("half-vector"),
+    },
+};
+
+pub(super) const VALUES: Axis = Axis {
+    key: "values",
+    label: "Light values",
+    phrase: "light in {} values",
+    what: "In which values light is computed",
+    kind: AxisKind::Model,
+    choices: &[
+        choice!("stored" "Stored" light_values = LightValues::Stored,
+            "Colours are used as they are stored, as the ancestors did.",
+            "a model, not scored"),
+        choice!("linear" "Linear" light_values = LightValues::Linear,
+            "Colours are decoded from sRGB, light is added in linear values, pictures are encoded.",
+            "a model, not scored"),
+    ],
+    sense: |scene, view| if_any(scene, view, is_there, "nothing is shown"),
+    lesson: Lesson {
+        title: "Half of the light is not half of the byte",
+        what: "A byte of a picture is not an amount of light: sRGB gives dark colours more bytes, \
+            as the eye does. Light adds up in linear values only.",
+        coarse: "Neither is an error of the other here: colours used as stored are the ancestors' \
+            look, with soft shading that darkens early. In linear values the middle between black \
+            and white is the byte 188.",
+        shows: "On the ball's shading from the lit to the dark side, and in the width of the \
+            highlight.",
+        scene: "ball",
+        choice: Some("linear"),
     },
 };

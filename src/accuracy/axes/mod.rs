@@ -128,8 +128,11 @@ pub const AXES: &[Axis] = &[
     geometry::INTERPOLATION,
     geometry::STRETCHED,
     texture::FILTER,
+    texture::BUMPS,
     picture::ROUNDING,
     light::SPECULAR,
+    texture::TANGENTS,
+    light::VALUES,
 ];
 
 impl Axis {

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use crate::accuracy::{Samples, Settings};
 use crate::base::math::power_of_two_near;
-use crate::scene::{Object, ObjectId, Scene, Surface, View};
+use crate::scene::{MapKind, Object, ObjectId, Scene, Surface, View};
 
 /// The objects that are shown.
 fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> {
@@ -39,6 +39,13 @@ pub(super) fn is_lit(object: &Object, _: u32) -> bool {
 
 pub(super) fn is_textured(object: &Object, part: u32) -> bool {
     !object.model.mesh.uvs().is_empty() && object.part_look(part).texture.is_some()
+}
+
+/// Whether it is lit, and has a map of heights or normals.
+pub(super) fn has_bumps(object: &Object, part: u32) -> bool {
+    let look = object.part_look(part);
+    let mapped = [MapKind::Bump, MapKind::Normal].iter().any(|kind| look.map(*kind).is_some());
+    is_lit(object, part) && mapped && !object.model.mesh.uvs().is_empty()
 }
 
 pub(super) fn is_mirroring(object: &Object, part: u32) -> bool {

@@ -95,7 +95,13 @@ fn a_filter_changes_nothing_without_a_texture_nor_a_highlight_without_ks() {
         materials: Vec::new(),
         edge_color: None,
     });
-    let dull = Material { ambient: [0.1; 3], diffuse: [0.5; 3], specular: [0.0; 3], exponent: 1.0 };
+    let dull = Material {
+        ambient: [0.1; 3],
+        diffuse: [0.5; 3],
+        specular: [0.0; 3],
+        exponent: 1.0,
+        emission: [0.0; 3],
+    };
     let mut scene = Scene::with_camera(Camera {
         name: String::new(),
         visible: true,

@@ -1,8 +1,8 @@
-//! The axis of texture filters.
+//! The axes of textures and bumps.
 
-use super::sense::{if_any, is_textured};
+use super::sense::{has_bumps, if_any, is_textured};
 use super::{Axis, AxisKind, Choice, Lesson};
-use crate::accuracy::Filter;
+use crate::accuracy::{BumpFilter, Filter, Tangents};
 
 pub(super) const FILTER: Axis = Axis {
     key: "filter",
@@ -33,5 +33,61 @@ pub(super) const FILTER: Axis = Axis {
             that a pixel covers many texels.",
         scene: "plate",
         choice: None,
+    },
+};
+
+pub(super) const BUMPS: Axis = Axis {
+    key: "bumps",
+    label: "Bump filter",
+    phrase: "{} bump filter",
+    what: "How maps of heights and normals are filtered",
+    kind: AxisKind::Scored,
+    choices: &[
+        choice!("nearest" "Nearest" bump_filter = BumpFilter::Nearest,
+            "The nearest texel: one height or normal for each.",
+            "up to the difference between neighbouring texels"),
+        choice!("trilinear" "Trilinear" bump_filter = BumpFilter::Trilinear,
+            "A mean of the texels that a pixel covers, from mipmaps.",
+            "from afar, the roughness that the mean has lost"),
+    ],
+    sense: |scene, view| if_any(scene, view, has_bumps, "nothing that is shown has bumps"),
+    lesson: Lesson {
+        title: "Why bumps glitter from afar",
+        what: "A map of bumps is read like a texture, but what it changes is the direction of \
+            light: a small difference between texels can switch a highlight on.",
+        coarse: "With the nearest texel, bumps fall into facets from near. From afar a pixel \
+            takes one slope of many, and glitters as the view moves.",
+        shows: "On the flanks of the dimples, and where the grooves are finer than a pixel.",
+        scene: "dimples",
+        choice: None,
+    },
+};
+
+pub(super) const TANGENTS: Axis = Axis {
+    key: "tangents",
+    label: "Tangents",
+    phrase: "tangents at each {}",
+    what: "Where the tangents that bumps are laid along come from",
+    kind: AxisKind::Model,
+    choices: &[
+        choice!("pixel" "Pixel" tangents = Tangents::Pixel,
+            "The gradients of the texture coordinates on the triangle, at each pixel.",
+            "a model, not scored"),
+        choice!("vertex" "Vertex" tangents = Tangents::Vertex,
+            "MikkTSpace at vertices, interpolated: what normal maps are made for.",
+            "a model, not scored"),
+    ],
+    sense: |scene, view| if_any(scene, view, has_bumps, "nothing that is shown has bumps"),
+    lesson: Lesson {
+        title: "Which way is along the texture",
+        what: "A bump leans along the texture's axes, which have a direction on each triangle. \
+            MikkTSpace averages it at vertices and interpolates; without that, each triangle \
+            uses its own.",
+        coarse: "Neither is an error of the other: a map of normals is right with the tangents \
+            that it was made for. With those of each triangle, bumps may kink along the edges of \
+            a coarse mesh.",
+        shows: "Along the edges of the polygons near the poles of the ball.",
+        scene: "dimples",
+        choice: Some("pixel"),
     },
 };

@@ -16,6 +16,8 @@ pub enum Chord {
     Either(Key),
     /// A key that types nothing.
     Named(Key),
+    /// A key that types nothing, with Shift.
+    Shifted(Key),
     /// A sign, by the text typed.
     Text(&'static str),
     /// With Ctrl (Cmd on a Mac).
@@ -38,6 +40,7 @@ impl Chord {
             Self::Upper(wanted) => wanted == key && plain && shift,
             Self::Either(wanted) => wanted == key && plain,
             Self::Named(wanted) => wanted == key && plain && !shift,
+            Self::Shifted(wanted) => wanted == key && plain && shift,
             Self::Text(_) => false,
             Self::Command(wanted) => wanted == key && command && !alt && !shift,
             Self::CommandShift(wanted) => wanted == key && command && !alt && shift,
@@ -49,7 +52,7 @@ impl Chord {
     pub const fn is_global(self) -> bool {
         match self {
             Self::Command(_) | Self::CommandShift(_) => true,
-            Self::Named(key) => matches!(key, Key::F1 | Key::F6 | Key::F12),
+            Self::Named(key) | Self::Shifted(key) => matches!(key, Key::F1 | Key::F6 | Key::F12),
             Self::Lower(_) | Self::Upper(_) | Self::Either(_) | Self::Text(_) => false,
         }
     }
@@ -74,6 +77,7 @@ impl Chord {
             Self::Upper(key) => letter(key),
             Self::Named(Key::Escape) => "Esc".to_owned(),
             Self::Named(key) => key.name().to_owned(),
+            Self::Shifted(key) => format!("Shift+{}", key.name()),
             Self::Text(sign) => sign.to_owned(),
             Self::Command(key) => format!("{}+{}", command_key(), key.name()),
             Self::CommandShift(key) => format!("{}+Shift+{}", command_key(), key.name()),

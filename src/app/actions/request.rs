@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::table::Action;
 use crate::accuracy::Settings;
-use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::app::state::layout::Layout;
+use crate::app::state::{DrawingChoices, State};
 use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
@@ -34,6 +34,8 @@ pub enum Request {
     View(Box<View>),
     /// A change of how exactly pictures are drawn.
     Settings(Settings),
+    /// A change of how the window draws beyond that.
+    Drawing(DrawingChoices),
     /// Something of the laboratory.
     Lab(LabRequest),
     /// Selects an item, and makes its kind the subject.
@@ -56,6 +58,8 @@ pub enum Request {
     Details(usize),
     /// Gives up loading the file that stands at this place.
     CancelLoading(usize),
+    /// Gives up making the file that stands at this place.
+    CancelMaking(usize),
     /// Puts away the notice that stands at this place.
     PutAway(usize),
     /// Shows the unsaved work that is offered at this place.

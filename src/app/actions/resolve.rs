@@ -8,8 +8,9 @@ use egui::ThemePreference;
 
 use super::table::Action;
 use crate::accuracy::{LeaveOut, Settings};
-use crate::app::state::State;
 use crate::app::state::layout::{Layout, Side};
+use crate::app::state::{DrawingChoices, State};
+use crate::app::widgets::regions::Way;
 use crate::base::math::Axis;
 use crate::edit::framing::Side as LookSide;
 use crate::edit::lights::{APERTURE_STEP, Channel};
@@ -36,6 +37,8 @@ pub(crate) enum Intent {
     Select(Box<Selection>),
     /// Other settings of accuracy.
     Settings(Settings),
+    /// The window draws in another way beyond the settings.
+    Drawing(DrawingChoices),
     /// Other panels are shown.
     Panels(Panels),
     /// The window is divided differently among its panels.
@@ -65,7 +68,7 @@ pub(crate) enum Intent {
     /// The next click into the picture aims the selected light.
     AimByClick,
     /// The keyboard goes to the panels, or back to the viewport.
-    ChangeKeyboardOwner,
+    ChangeKeyboardOwner(Way),
 }
 
 /// What an action does with files, most of it by asking for one.
@@ -77,7 +80,11 @@ pub(crate) enum FileIntent {
     Save,
     SaveAs,
     SavePicture,
+    PictureOptions,
+    Turntable,
+    Export,
     CopyPicture,
+    NewAncestor,
     Quit,
 }
 
@@ -116,6 +123,13 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::SaveAs => file(FileIntent::SaveAs),
         Action::SavePicture => file(FileIntent::SavePicture),
         Action::CopyPicture => file(FileIntent::CopyPicture),
+        Action::PictureOptions => file(FileIntent::PictureOptions),
+        Action::SaveTurntable => {
+            let visible = scene.objects.iter().any(|(_, object)| object.visible);
+            if visible { file(FileIntent::Turntable) } else { Err(Refusal::NothingToFrame) }
+        }
+        Action::ExportScene => file(FileIntent::Export),
+        Action::NewAncestor => file(FileIntent::NewAncestor),
         Action::Quit => file(FileIntent::Quit),
 
         Action::Undo if state.history.position() == 0 => Err(Refusal::NothingDone),
@@ -196,6 +210,10 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
         Action::ToggleOverlays => Ok(Intent::Overlays),
         Action::ToggleCoarse => viewed(state, |view| view.coarse_while_moving ^= true),
+        Action::ToggleRefine => {
+            let refines = !state.drawing.refines;
+            Ok(Intent::Drawing(DrawingChoices { refines, ..state.drawing }))
+        }
         Action::ToggleLightNormals => {
             viewed(state, |view| view.normals = other(view.normals, Normals::Vertex, Normals::Face))
         }
@@ -239,7 +257,8 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::BlueUp => color(Channel::Blue, 1),
         Action::BlueDown => color(Channel::Blue, -1),
 
-        Action::ToPanels => Ok(Intent::ChangeKeyboardOwner),
+        Action::ToPanels => Ok(Intent::ChangeKeyboardOwner(Way::On)),
+        Action::ToPanelsBack => Ok(Intent::ChangeKeyboardOwner(Way::Back)),
         Action::Palette => Ok(Intent::Palette),
         Action::LargerText => zoom(state, 0.1),
         Action::SmallerText => zoom(state, -0.1),
@@ -398,6 +417,7 @@ impl Action {
             Self::AimByClick => state.aiming,
             Self::Palette => state.palette,
             Self::ToggleCoarse => view.coarse_while_moving,
+            Self::ToggleRefine => state.drawing.refines,
             Self::ToggleLightNormals => view.normals == Normals::Face,
             Self::ToggleProjection => view.projection == Projection::Orthographic,
             Self::ToggleObserver => view.observer == Observer::Object,
@@ -416,7 +436,8 @@ impl Action {
             Self::New | Self::Open | Self::Load | Self::Save | Self::SaveAs | Self::SavePicture => {
                 return None;
             }
-            Self::CopyPicture => return None,
+            Self::CopyPicture | Self::PictureOptions | Self::SaveTurntable => return None,
+            Self::ExportScene | Self::NewAncestor | Self::ToPanelsBack => return None,
             Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
             Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
                 return None;

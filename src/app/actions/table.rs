@@ -7,7 +7,7 @@
 use egui::Key;
 
 use super::chord::Chord;
-use super::chord::Chord::{Command, CommandShift, Either, Lower, Named, Text, Upper};
+use super::chord::Chord::{Command, CommandShift, Either, Lower, Named, Shifted, Text, Upper};
 
 /// How an action appears.
 #[derive(Clone, Copy, Debug)]
@@ -126,6 +126,9 @@ actions! {
     New File ONCE [Command(Key::N)]
         "New scene" "Starts over with the default scene."
         "reset empty start over clear";
+    NewAncestor File ONCE []
+        "New ancestor's scene" "Starts over with the first scene as ancestor A drew it."
+        "reset first points preset history original";
     Open File ONCE [Command(Key::O)]
         "Open scene..." "Opens a scene file instead of this scene."
         "project file import";
@@ -141,6 +144,16 @@ actions! {
     SavePicture File ONCE [Named(Key::F12)]
         "Save picture..." "Saves the picture in the viewport as PNG, JPEG, WebP or PPM."
         "screenshot render export image png capture snapshot photo";
+    PictureOptions File ONCE [Shifted(Key::F12)]
+        "Save picture with options..."
+        "Asks for size, samples, a transparent ground and overlays, and saves a picture."
+        "screenshot render resolution size transparent alpha large print wallpaper";
+    SaveTurntable File ONCE []
+        "Save turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
+        "animation gif apng video movie spin rotate frames orbit";
+    ExportScene File ONCE []
+        "Export scene..." "Writes the scene for other programs, as OBJ with MTL or as glTF."
+        "save obj mtl gltf glb blender three convert";
     CopyPicture File ONCE [CommandShift(Key::C)]
         "Copy picture" "Copies the picture in the viewport to the clipboard."
         "screenshot clipboard image capture snapshot";
@@ -295,6 +308,10 @@ actions! {
     ToggleCoarse Show ONCE []
         "Coarser while moving" "Draws slow scenes at reduced quality while something moves."
         "quality fast preview performance resolution";
+    ToggleRefine Show ONCE []
+        "Refine when still"
+        "Refines the picture to more samples per pixel while nothing happens."
+        "antialiasing smooth edges samples progressive quality sharp";
     ToggleLightNormals Show ONCE [Either(Key::I)]
         "Flat shading (face normals)"
         "Lights polygons with face normals instead of vertex normals."
@@ -406,6 +423,10 @@ actions! {
         "Keyboard to the panels"
         "Moves keyboard focus from region to region; Esc returns it to the viewport."
         "focus next region tab";
+    ToPanelsBack Window ONCE [Shifted(Key::F6)]
+        "Keyboard back"
+        "Moves keyboard focus to the region before; from the first one to the viewport."
+        "focus previous region tab";
     ToggleOutline Window ONCE []
         "Outline" "Shows or hides the list of objects, cameras and lights."
         "tree hierarchy list scene layers";

@@ -10,6 +10,7 @@ use egui::{Context, Id, Modal, Ui};
 
 use super::browser::{Browser, Choice, Mode};
 use super::material_dialog::{self, MaterialChoices, MaterialDialog};
+use super::picture_dialog::{PictureChoices, PictureDialog};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::take_focus;
 use crate::io;
@@ -29,6 +30,12 @@ pub(crate) enum Wanted {
     SceneTo(Option<After>),
     /// Where to save the picture.
     PictureTo,
+    /// Where to save the picture with options.
+    PictureWithOptionsTo,
+    /// Where to save the turntable.
+    TurntableTo,
+    /// Where to export the scene.
+    ExportTo,
     /// A texture for this object.
     Texture(ObjectId),
     /// A texture for the model whose material is being chosen.
@@ -42,6 +49,8 @@ pub(crate) enum Wanted {
 pub(crate) enum After {
     Quit,
     New,
+    /// The first scene, drawn as ancestor A drew it.
+    NewAncestor,
     Open(Option<PathBuf>),
     /// Recover the unsaved work that is offered at this place.
     Recover(usize),
@@ -60,6 +69,8 @@ pub(crate) enum Answer {
     Discard(After),
     /// This material.
     Material(Box<MaterialDialog>, MaterialChoices),
+    /// A picture or a turntable with these options.
+    Picture(PictureChoices),
     /// A texture is wanted for the model whose material is being chosen.
     ChooseTexture,
 }
@@ -91,6 +102,7 @@ enum Dialog {
     Browser(Wanted, Box<Browser>),
     Unsaved(After),
     Material(Box<MaterialDialog>),
+    Picture(Box<PictureDialog>),
     Fault(String),
     Details(String, Vec<String>),
 }
@@ -116,6 +128,16 @@ impl Dialogs {
     /// Asks for a material.
     pub(crate) fn ask_material(&mut self, dialog: MaterialDialog) {
         self.open.push(Dialog::Material(Box::new(dialog)));
+    }
+
+    /// Whether a dialog of the window's own is open.
+    pub(crate) const fn is_open(&self) -> bool {
+        !self.open.is_empty()
+    }
+
+    /// Asks for the options of a picture or a turntable.
+    pub(crate) fn ask_picture(&mut self, choices: PictureChoices) {
+        self.open.push(Dialog::Picture(Box::new(PictureDialog::new(choices))));
     }
 
     /// Sets the texture of the model whose material is being chosen.
@@ -199,18 +221,37 @@ impl Dialogs {
         match dialog {
             Dialog::Browser(wanted, _) => Some(match end {
                 End::File(path) => self.chosen(wanted, vec![path]),
-                End::Cancelled | End::Save | End::Discard | End::Material(_) | End::Asked => {
-                    Answer::NoFile(wanted)
-                }
+                End::Cancelled
+                | End::Save
+                | End::Discard
+                | End::Material(_)
+                | End::Picture(_)
+                | End::Asked => Answer::NoFile(wanted),
             }),
             Dialog::Unsaved(after) => match end {
                 End::Save => Some(Answer::Save(after)),
                 End::Discard => Some(Answer::Discard(after)),
-                End::Cancelled | End::File(_) | End::Material(_) | End::Asked => None,
+                End::Cancelled | End::File(_) | End::Material(_) | End::Picture(_) | End::Asked => {
+                    None
+                }
             },
             Dialog::Material(dialog) => match end {
                 End::Material(choices) => Some(Answer::Material(dialog, choices)),
-                End::Cancelled | End::File(_) | End::Save | End::Discard | End::Asked => None,
+                End::Cancelled
+                | End::File(_)
+                | End::Save
+                | End::Discard
+                | End::Picture(_)
+                | End::Asked => None,
+            },
+            Dialog::Picture(_) => match end {
+                End::Picture(choices) => Some(Answer::Picture(choices)),
+                End::Cancelled
+                | End::File(_)
+                | End::Save
+                | End::Discard
+                | End::Material(_)
+                | End::Asked => None,
             },
             Dialog::Fault(_) | Dialog::Details(..) => None,
         }
@@ -266,7 +307,14 @@ impl Wanted {
             Self::Model => ("Load a model", Mode::Open, models()),
             Self::Scene => ("Open a scene", Mode::Open, scenes()),
             Self::SceneTo(_) => ("Save the scene", Mode::Save, scenes()),
-            Self::PictureTo => ("Save the picture", Mode::Save, pictures()),
+            Self::PictureTo | Self::PictureWithOptionsTo => {
+                ("Save the picture", Mode::Save, pictures())
+            }
+            Self::TurntableTo => ("Save the turntable", Mode::Save, vec!["gif", "png"]),
+            Self::ExportTo => {
+                let endings = io::EXPORT_ENDINGS;
+                ("Export the scene", Mode::Save, vec![endings[2], endings[1], endings[0]])
+            }
             Self::Texture(_) | Self::TextureOfModel => {
                 ("Choose a texture", Mode::Open, io::texture_endings())
             }
@@ -282,6 +330,7 @@ enum End {
     Save,
     Discard,
     Material(MaterialChoices),
+    Picture(PictureChoices),
     /// It stays open, and a texture is chosen.
     Asked,
 }
@@ -298,6 +347,10 @@ impl Dialog {
                 material_dialog::End::Taken(choices) => End::Material(choices),
                 material_dialog::End::Texture => End::Asked,
                 material_dialog::End::Cancelled => End::Cancelled,
+            }),
+            Self::Picture(dialog) => dialog.ui(ui).map(|end| match end {
+                Some(choices) => End::Picture(choices),
+                None => End::Cancelled,
             }),
             Self::Fault(sentence) => {
                 ui.set_max_width(420.0);
@@ -332,7 +385,9 @@ fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
     ui.heading("Save the scene?");
     ui.label(match after {
         After::Quit => "It has unsaved changes, which are lost unless you save them.",
-        After::New => "A new scene will replace this one, which has unsaved changes.",
+        After::New | After::NewAncestor => {
+            "A new scene will replace this one, which has unsaved changes."
+        }
         After::Recover(_) => "Recovered work will replace this scene, which has unsaved changes.",
         After::Open(_) => "Another scene will replace this one, which has unsaved changes.",
     });

@@ -4,3 +4,4 @@ pub(crate) mod browser;
 pub(crate) mod dialogs;
 pub(crate) mod loading;
 pub(crate) mod material_dialog;
+pub(crate) mod picture_dialog;

@@ -2,6 +2,9 @@
 
 pub(crate) mod adaptive_quality;
 pub(crate) mod border;
+pub(crate) mod motion;
+pub(crate) mod reduction;
+pub(crate) mod refinement;
 pub(crate) mod snapshot;
 pub(crate) mod viewport_renderer;
 pub(crate) mod worker;

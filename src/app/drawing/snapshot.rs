@@ -1,6 +1,8 @@
 //! Everything that a picture of the viewport depends on.
 
-use crate::accuracy::Settings;
+use std::time::Duration;
+
+use crate::accuracy::{Samples, Settings};
 use crate::base::image::Size;
 use crate::scene::{ItemId, Scene, View};
 
@@ -13,6 +15,10 @@ pub(crate) struct Snapshot {
     pub(crate) size: Size,
     /// Whether the scene is moving, so that the picture may be drawn at reduced quality.
     pub(crate) moving: bool,
+    /// The time that a picture may take while the scene is moving.
+    pub(crate) budget: Duration,
+    /// The samples per pixel that the picture is refined to while nothing happens.
+    pub(crate) refined: Option<Samples>,
     /// Whether to explain the effects of the picture.
     pub(crate) explain: bool,
     /// The item whose border is wanted with the picture.
@@ -22,7 +28,7 @@ pub(crate) struct Snapshot {
 impl Snapshot {
     /// Whether another snapshot differs in more than the time.
     pub(crate) fn differs_from(&self, other: &Self) -> bool {
-        let Self { scene, view, settings, size, moving: _, explain: _, outlined: _ } = self;
+        let Self { scene, view, settings, size, moving: _, .. } = self;
         let view = |of: &View| View { time: view.time, ..of.clone() };
         (*settings, *size) != (other.settings, other.size)
             || *scene != other.scene

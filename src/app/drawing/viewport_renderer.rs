@@ -8,10 +8,12 @@ use std::time::{Duration, Instant};
 
 use egui::ColorImage;
 
-use super::adaptive_quality::{AdaptiveQuality, Applicable, Attempt, Reduction};
+use super::adaptive_quality::{AdaptiveQuality, Attempt};
 use super::border::Border;
+use super::reduction::{Applicable, Reduction};
+use super::refinement::{difference, next_samples};
 use super::snapshot::Snapshot;
-use crate::accuracy::Shot;
+use crate::accuracy::{Samples, Shot};
 use crate::base::image::{Picture, Size};
 use crate::lab::cost::{self, Explained};
 use crate::render::plan_frame;
@@ -27,8 +29,25 @@ pub(crate) struct Drawn {
     pub(crate) triangles: usize,
     /// How its quality is reduced.
     pub(crate) reduction: Reduction,
+    /// The measured error of that, in steps of a byte.
+    pub(crate) lost: Option<f64>,
+    /// The samples per pixel, if it is the last picture refined.
+    pub(crate) refined: Option<Samples>,
     /// What was redrawn, and why.
     pub(crate) changes: Damage,
+}
+
+/// What was done while nothing happened.
+#[derive(Debug)]
+pub(crate) enum Finer {
+    /// There is nothing more to do.
+    Done,
+    /// Something else was wanted meanwhile.
+    Disturbed,
+    /// A reduction was measured.
+    Measured,
+    /// The picture is refined.
+    Refined(Box<Drawn>),
 }
 
 /// What is wanted while a frame is drawn.
@@ -46,6 +65,10 @@ pub(crate) enum Asked {
 #[derive(Debug)]
 pub(crate) struct ViewportRenderer {
     renderer: Renderer,
+    /// Draws what is not picked in: refined pictures, and reductions that are measured.
+    finer: Renderer,
+    /// The samples per pixel that the last picture is refined to.
+    refined: Option<Samples>,
     /// The clock; tests use one of their own.
     clock: fn() -> Instant,
     quality: AdaptiveQuality,
@@ -64,6 +87,8 @@ impl ViewportRenderer {
     pub(crate) fn new(clock: fn() -> Instant) -> Self {
         Self {
             renderer: Renderer::default(),
+            finer: Renderer::default(),
+            refined: None,
             clock,
             quality: AdaptiveQuality::default(),
             shown: None,
@@ -83,16 +108,17 @@ impl ViewportRenderer {
         let mut plan = planned(wanted, Reduction::NONE);
         let mut changes = self.renderer.damage(&plan);
         let share = share(&changes);
-        let reduction = self.quality.choose(wanted.moving, share, applicable(wanted));
+        let reduction =
+            self.quality.choose(wanted.moving, share, applicable(wanted), wanted.budget);
         if reduction != Reduction::NONE && !changes.is_nothing() {
             plan = planned(wanted, reduction);
             changes = self.renderer.damage(&plan);
         }
         if changes.is_nothing() {
-            return None;
+            return self.unrefined(wanted, changes);
         }
         let expected = self.quality.expected(reduction, share);
-        let attempt = Attempt { reduction, expected, second: self.gave_up };
+        let attempt = Attempt { reduction, expected, second: self.gave_up, budget: wanted.budget };
         let clock = self.clock;
         let wanted = || match asked() {
             Asked::This => true,
@@ -105,23 +131,70 @@ impl ViewportRenderer {
             self.quality.record_given_up(share, clock().duration_since(begun));
             return None;
         }
-        let [first, second, _] = &mut self.images;
-        let free = if Arc::get_mut(first).is_some() { 0 } else { 1 };
-        if free == 1 && Arc::get_mut(second).is_none() {
-            *second = Arc::default();
-        }
-        show(self.renderer.picture(), Arc::make_mut(&mut self.images[free]));
-        self.images.swap(free, 2);
-        self.shown = Some(reduction);
+        present(&mut self.images, self.renderer.picture());
+        (self.shown, self.refined) = (Some(reduction), None);
         let time = clock().duration_since(begun);
         self.quality.record(reduction, share, time);
-        Some(Drawn {
+        Some(self.drawn(time, changes))
+    }
+
+    /// What is shown now.
+    fn drawn(&self, time: Duration, changes: Damage) -> Drawn {
+        let reduction = self.shown.unwrap_or_default();
+        Drawn {
             image: Arc::clone(&self.images[2]),
             time,
             triangles: self.renderer.triangles_drawn(),
             reduction,
+            lost: self.quality.error(reduction),
+            refined: self.refined,
             changes,
-        })
+        }
+    }
+
+    /// The picture as it was before it was refined, if it is refined further than is wanted now.
+    fn unrefined(&mut self, wanted: &Snapshot, changes: Damage) -> Option<Drawn> {
+        let refined = self.refined?;
+        if wanted.refined.is_some_and(|most| most.count() >= refined.count()) {
+            return None;
+        }
+        self.refined = None;
+        present(&mut self.images, self.renderer.picture());
+        Some(self.drawn(Duration::ZERO, changes))
+    }
+
+    /// Does a part of what there is to do while nothing happens, unless `wanted` returns false:
+    /// measures a reduction if pictures of this scene come too late, or refines the last picture.
+    pub(crate) fn refine(
+        &mut self,
+        snapshot: &Snapshot,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Finer {
+        if snapshot.moving || self.gave_up || self.shown != Some(Reduction::NONE) {
+            return Finer::Done;
+        }
+        let applicable = applicable(snapshot);
+        let begun = (self.clock)();
+        let measured = self.quality.to_measure(applicable, snapshot.budget);
+        if let Some(reduction) = measured.filter(|_| snapshot.view.coarse_while_moving) {
+            if self.finer.redraw(&planned(snapshot, reduction), wanted).is_err() {
+                return Finer::Disturbed;
+            }
+            let time = (self.clock)().duration_since(begun);
+            let error = difference(self.renderer.picture(), self.finer.picture(), reduction.shrink);
+            self.quality.measured(reduction, time, error);
+            return Finer::Measured;
+        }
+        let Some(samples) = next_samples(snapshot, self.refined) else { return Finer::Done };
+        let settings = crate::accuracy::Settings { samples, ..snapshot.settings };
+        let shot = Shot::new(&snapshot.scene, &snapshot.view, &settings, snapshot.size);
+        let Ok(changes) = self.finer.redraw(&plan_frame(&shot), wanted) else {
+            return Finer::Disturbed;
+        };
+        present(&mut self.images, self.finer.picture());
+        self.refined = Some(samples);
+        let time = (self.clock)().duration_since(begun);
+        Finer::Refined(Box::new(self.drawn(time, changes)))
     }
 
     /// Explains the effects of the last finished picture; `None` if that is not wanted or has not
@@ -146,8 +219,8 @@ impl ViewportRenderer {
 
     /// The hit at a pixel of the picture at full size.
     pub(crate) fn hit(&mut self, [x, y]: [usize; 2]) -> Option<Hit> {
-        let [x, y] = if self.shown?.half_size { [x / 2, y / 2] } else { [x, y] };
-        self.renderer.hit(x, y)
+        let by = self.shown?.shrink.factor();
+        self.renderer.hit(x / by, y / by)
     }
 }
 
@@ -185,6 +258,17 @@ impl ViewportRenderer {
     }
 }
 
+/// Copies a picture into an image that nobody holds, and makes that the last one.
+fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {
+    let [first, second, _] = images;
+    let free = if Arc::get_mut(first).is_some() { 0 } else { 1 };
+    if free == 1 && Arc::get_mut(second).is_none() {
+        *second = Arc::default();
+    }
+    show(picture, Arc::make_mut(&mut images[free]));
+    images.swap(free, 2);
+}
+
 /// Copies opaque pixels; those are the same with and without multiplication by alpha.
 fn show(picture: &Picture, image: &mut ColorImage) {
     let Size { width, height } = picture.size();
@@ -207,6 +291,7 @@ mod tests {
     use std::cell::Cell;
     use std::sync::OnceLock;
 
+    use super::super::reduction::Shrink;
     use super::*;
     use crate::accuracy::Settings;
     use crate::app::drawing::border::Run;
@@ -216,8 +301,9 @@ mod tests {
 
     fn snapshot(size: Size) -> Snapshot {
         let (scene, view) = io::default_scene();
+        let budget = Duration::from_millis(33);
         let (settings, moving, explain, outlined) = (Settings::default(), false, false, None);
-        Snapshot { scene, view, settings, size, moving, explain, outlined }
+        Snapshot { scene, view, settings, size, moving, budget, refined: None, explain, outlined }
     }
 
     /// The same in another colour, for which everything has to be drawn.
@@ -293,15 +379,17 @@ mod tests {
         let still = snapshot(Size::new(161, 120));
         let first = renderer.draw(&still, &this).unwrap();
         assert_eq!((first.reduction, first.image.size), (Reduction::NONE, [161, 120]));
-        for i in 0..9 {
+        for i in 0..11 {
             let moving = Snapshot { moving: true, ..recolored(&still, i) };
             let drawn = renderer.draw(&moving, &this).unwrap();
             // Every frame takes 40 ms: each reduction is tried twice, and no one helps.
-            let words = ["light per vertex", "half size", "light per vertex, half size", ""];
-            let step = usize::from(i / 2).min(3);
+            let half = "light per vertex, half size";
+            let words =
+                ["light per vertex", "half size", half, "light per vertex, quarter size", ""];
+            let step = usize::from(i / 2).min(4);
             assert_eq!(drawn.reduction.words(), words[step], "frame {i}");
-            let half = drawn.reduction.half_size;
-            assert_eq!(drawn.image.size, if half { [81, 60] } else { [161, 120] });
+            let sizes = [[161, 120], [81, 60], [41, 30]];
+            assert_eq!(drawn.image.size, sizes[drawn.reduction.shrink as usize]);
             assert_eq!(drawn.time, Duration::from_millis(40));
         }
         let last = renderer.draw(&still, &this).unwrap();
@@ -327,7 +415,7 @@ mod tests {
             moving = recolored(&moving, gray);
             drawn = renderer.draw(&moving, &this);
         }
-        assert!(drawn.unwrap().reduction.half_size);
+        assert_eq!(drawn.unwrap().reduction.shrink, Shrink::Half);
         let [half_count, half_x, half_y] = places(&mut renderer);
         // As many pixels in the same place, but for the border.
         let near = |a: usize, b: usize, by: usize| a.abs_diff(b) <= by;

@@ -3,20 +3,26 @@
 //! Only the newest snapshot is drawn; a slow frame may be cancelled for it (see
 //! [`adaptive_quality`](super::adaptive_quality)). Picks are answered from the last finished
 //! picture before the next one is started: that is the one the user clicked on.
+//!
+//! While nothing is wanted, the last picture is refined, step by step; every request and every
+//! event of the window ends that at once. When all steps are done, the thread sleeps.
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::border::Border;
 use super::snapshot::Snapshot;
-use super::viewport_renderer::{Asked, Drawn, ViewportRenderer};
+use super::viewport_renderer::{Asked, Drawn, Finer, ViewportRenderer};
 use crate::lab::cost::Explained;
 use crate::render::Hit;
 use crate::scene::ItemId;
+
+/// The time without events after which the picture is refined.
+const QUIET: Duration = Duration::from_millis(120);
 
 /// A pick: which item is seen at a pixel, and the purpose of the question.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +36,8 @@ pub(crate) struct Pick<P> {
 pub(crate) struct News<P> {
     pub(crate) border: Option<Border>,
     pub(crate) drawn: Option<Drawn>,
+    /// The same picture with more samples per pixel; it follows `drawn`.
+    pub(crate) refined: Option<Drawn>,
     /// The border that was wanted with the picture, if it was drawn anew.
     pub(crate) outline: Option<Option<Border>>,
     pub(crate) explained: Option<Arc<Explained>>,
@@ -51,6 +59,8 @@ struct Shared<P> {
     changed: Condvar,
     /// Whether a newer picture is wanted; asked between tiles.
     newer: AtomicBool,
+    /// Whether anything was wanted or happened since refining began; asked between tiles.
+    disturbed: AtomicBool,
     /// Whether the worker is to stop.
     over: AtomicBool,
 }
@@ -64,6 +74,10 @@ struct Desk<P> {
     news: News<P>,
     busy: bool,
     closed: bool,
+    /// Whether nothing is left to refine.
+    settled: bool,
+    /// When refining may begin.
+    quiet_at: Instant,
 }
 
 impl<P: Copy + Send + 'static> Worker<P> {
@@ -71,10 +85,16 @@ impl<P: Copy + Send + 'static> Worker<P> {
     pub(crate) fn start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let news = News::none();
         let (wanted, picks, border) = (None, VecDeque::new(), None);
-        let desk = Desk { wanted, picks, border, news, busy: false, closed: false };
-        let (newer, over) = (AtomicBool::new(false), AtomicBool::new(false));
-        let shared =
-            Arc::new(Shared { desk: Mutex::new(desk), changed: Condvar::new(), newer, over });
+        let (settled, quiet_at) = (true, Instant::now());
+        let (busy, closed) = (false, false);
+        let desk = Desk { wanted, picks, border, news, busy, closed, settled, quiet_at };
+        let shared = Arc::new(Shared {
+            desk: Mutex::new(desk),
+            changed: Condvar::new(),
+            newer: AtomicBool::new(false),
+            disturbed: AtomicBool::new(false),
+            over: AtomicBool::new(false),
+        });
         let theirs = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
             .name("painter".to_owned())
@@ -90,6 +110,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.last = Some(snapshot.clone());
         let mut desk = self.shared.lock();
         desk.wanted = Some(snapshot);
+        self.shared.disturb(&mut desk);
         self.shared.newer.store(true, Ordering::Relaxed);
         drop(desk);
         self.shared.changed.notify_all();
@@ -108,14 +129,25 @@ impl<P: Copy + Send + 'static> Worker<P> {
 
     /// Picks a pixel of the last picture.
     pub(crate) fn pick(&self, pick: Pick<P>) {
-        self.shared.lock().picks.push_back(pick);
+        let mut desk = self.shared.lock();
+        desk.picks.push_back(pick);
+        self.shared.disturbed.store(true, Ordering::Relaxed);
+        drop(desk);
         self.shared.changed.notify_all();
     }
 
     /// Asks for the border of an item in the last picture.
     pub(crate) fn border(&self, item: ItemId) {
-        self.shared.lock().border = Some(item);
+        let mut desk = self.shared.lock();
+        desk.border = Some(item);
+        self.shared.disturbed.store(true, Ordering::Relaxed);
+        drop(desk);
         self.shared.changed.notify_all();
+    }
+
+    /// Something happens in the window: refining gives way.
+    pub(crate) fn stir(&self) {
+        self.shared.disturb(&mut self.shared.lock());
     }
 
     /// The results since the last call.
@@ -128,6 +160,14 @@ impl<P: Copy + Send + 'static> Worker<P> {
     pub(crate) fn wait(&self) {
         let mut desk = self.shared.lock();
         while desk.busy || desk.has_work() {
+            desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Waits until nothing is left to refine, too.
+    pub(crate) fn wait_until_refined(&self) {
+        let mut desk = self.shared.lock();
+        while desk.busy || desk.has_work() || !desk.settled {
             desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
         }
     }
@@ -147,8 +187,8 @@ impl<P> Drop for Worker<P> {
 
 impl<P> News<P> {
     const fn none() -> Self {
-        let (border, drawn, outline, explained) = (None, None, None, None);
-        Self { border, drawn, outline, explained, picked: Vec::new(), failed: false }
+        let (border, drawn, refined, outline, explained) = (None, None, None, None, None);
+        Self { border, drawn, refined, outline, explained, picked: Vec::new(), failed: false }
     }
 }
 
@@ -162,26 +202,63 @@ impl<P> Shared<P> {
     fn lock(&self) -> MutexGuard<'_, Desk<P>> {
         self.desk.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
+    /// Ends refining, until nothing has happened for a while.
+    fn disturb(&self, desk: &mut Desk<P>) {
+        desk.quiet_at = Instant::now() + QUIET;
+        self.disturbed.store(true, Ordering::Relaxed);
+    }
+
+    /// Waits for work, or for the time to refine; `None` if the desk is closed.
+    fn next(&self) -> Option<Work<P>> {
+        let mut desk = self.lock();
+        desk.busy = false;
+        self.changed.notify_all();
+        loop {
+            if desk.closed {
+                return None;
+            }
+            if desk.has_work() {
+                desk.busy = true;
+                self.newer.store(false, Ordering::Relaxed);
+                let picks = std::mem::take(&mut desk.picks);
+                return Some(Work::Asked(picks, desk.border.take(), desk.wanted.take()));
+            }
+            if desk.settled {
+                desk = self.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+                continue;
+            }
+            let rest = desk.quiet_at.saturating_duration_since(Instant::now());
+            if rest.is_zero() {
+                self.disturbed.store(false, Ordering::Relaxed);
+                return Some(Work::Refine);
+            }
+            let waited = self.changed.wait_timeout(desk, rest);
+            desk = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+}
+
+/// What the thread does next.
+enum Work<P> {
+    /// Answers picks, outlines an item, draws a picture.
+    Asked(VecDeque<Pick<P>>, Option<ItemId>, Option<Snapshot>),
+    /// Refines the last picture by a step.
+    Refine,
 }
 
 /// Draws and answers until the desk is closed.
 fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
     let mut painter = ViewportRenderer::new(Instant::now);
+    let mut last = None;
     let mut outlined = None;
-    loop {
-        let (picks, border, wanted) = {
-            let mut desk = shared.lock();
-            desk.busy = false;
-            shared.changed.notify_all();
-            while !desk.has_work() && !desk.closed {
-                desk = shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+    while let Some(work) = shared.next() {
+        let (picks, border, wanted) = match work {
+            Work::Asked(picks, border, wanted) => (picks, border, wanted),
+            Work::Refine => {
+                refine(shared, wake, &mut painter, last.as_ref());
+                continue;
             }
-            if desk.closed {
-                return;
-            }
-            desk.busy = true;
-            shared.newer.store(false, Ordering::Relaxed);
-            (std::mem::take(&mut desk.picks), desk.border.take(), desk.wanted.take())
         };
         let picked: Vec<_> = picks.into_iter().map(|pick| (pick, painter.hit(pick.at))).collect();
         let border = border.and_then(|item| painter.border(item));
@@ -193,37 +270,76 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
             wake();
         }
         let Some(wanted) = wanted else { continue };
-        let asked = || match shared.over.load(Ordering::Relaxed) {
-            true => Asked::Nothing,
-            false if shared.newer.load(Ordering::Relaxed) => Asked::Newer,
-            false => Asked::This,
-        };
-        // A fault of the renderer costs a picture, not the user's work.
-        match catch_unwind(AssertUnwindSafe(|| painter.draw(&wanted, &asked))) {
-            Ok(drawn) => {
-                let another = wanted.outlined != outlined && !painter.was_given_up();
-                if drawn.is_some() || another {
-                    // Of this very picture, so that it never lags behind.
-                    let outline = wanted.outlined.and_then(|item| painter.border(item));
-                    outlined = wanted.outlined;
-                    let mut desk = shared.lock();
-                    desk.news.drawn = drawn.or(desk.news.drawn.take());
-                    desk.news.outline = Some(outline);
-                    drop(desk);
-                    wake();
-                }
-            }
-            Err(_) => {
-                painter = ViewportRenderer::new(Instant::now);
-                shared.lock().news.failed = true;
-                wake();
-                continue;
-            }
+        if !draw(shared, wake, &mut painter, &wanted, &mut outlined) {
+            painter = ViewportRenderer::new(Instant::now);
+            last = None;
+            continue;
         }
+        shared.lock().settled = false;
         // After the picture, so that it is not delayed.
         if let Ok(Some(explained)) = catch_unwind(AssertUnwindSafe(|| painter.explain(&wanted))) {
             shared.lock().news.explained = Some(explained);
             wake();
+        }
+        last = Some(wanted);
+    }
+}
+
+/// Draws a picture. Returns false if the renderer failed: a fault of its own costs a picture, not
+/// the user's work.
+fn draw<P: Copy + Send>(
+    shared: &Shared<P>,
+    wake: &impl Fn(),
+    painter: &mut ViewportRenderer,
+    wanted: &Snapshot,
+    outlined: &mut Option<ItemId>,
+) -> bool {
+    let asked = || match shared.over.load(Ordering::Relaxed) {
+        true => Asked::Nothing,
+        false if shared.newer.load(Ordering::Relaxed) => Asked::Newer,
+        false => Asked::This,
+    };
+    let Ok(drawn) = catch_unwind(AssertUnwindSafe(|| painter.draw(wanted, &asked))) else {
+        shared.lock().news.failed = true;
+        wake();
+        return false;
+    };
+    let another = wanted.outlined != *outlined && !painter.was_given_up();
+    if drawn.is_some() || another {
+        // Of this very picture, so that it never lags behind.
+        let outline = wanted.outlined.and_then(|item| painter.border(item));
+        *outlined = wanted.outlined;
+        let mut desk = shared.lock();
+        if drawn.is_some() {
+            (desk.news.drawn, desk.news.refined) = (drawn, None);
+        }
+        desk.news.outline = Some(outline);
+        drop(desk);
+        wake();
+    }
+    true
+}
+
+/// Refines the last picture by a step, unless something else is wanted meanwhile.
+fn refine<P: Copy + Send>(
+    shared: &Shared<P>,
+    wake: &impl Fn(),
+    painter: &mut ViewportRenderer,
+    last: Option<&Snapshot>,
+) {
+    let go_on =
+        || !shared.disturbed.load(Ordering::Relaxed) && !shared.over.load(Ordering::Relaxed);
+    let step = || last.map_or(Finer::Done, |last| painter.refine(last, &go_on));
+    match catch_unwind(AssertUnwindSafe(step)) {
+        Ok(Finer::Refined(drawn)) => {
+            shared.lock().news.refined = Some(*drawn);
+            wake();
+        }
+        Ok(Finer::Disturbed | Finer::Measured) => {}
+        // A picture that cannot be refined is still a picture.
+        Ok(Finer::Done) | Err(_) => {
+            let mut desk = shared.lock();
+            desk.settled = !desk.has_work();
         }
     }
 }

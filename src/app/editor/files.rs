@@ -9,7 +9,7 @@ use egui::Context;
 
 use super::App;
 use super::unseen::out_of_sight;
-use crate::accuracy::Shot;
+use crate::accuracy::{AccuracyPreset, Settings, Shot};
 use crate::app::documents::dialogs::{After, Answer, Wanted};
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
@@ -51,6 +51,7 @@ impl App {
             Answer::Save(after) => self.save(ctx, Some(after)),
             Answer::Discard(after) => self.after(ctx, after),
             Answer::Material(dialog, choices) => self.take_material(ctx, *dialog, choices),
+            Answer::Picture(choices) => self.take_picture(ctx, choices),
             Answer::ChooseTexture => self.ask_file(ctx, Wanted::TextureOfModel, ""),
         }
     }
@@ -72,6 +73,16 @@ impl App {
             Wanted::PictureTo => {
                 if let Some(path) = paths.next() {
                     self.save_picture(&path);
+                }
+            }
+            Wanted::PictureWithOptionsTo | Wanted::TurntableTo => {
+                if let Some(path) = paths.next() {
+                    self.make_picture(ctx, path);
+                }
+            }
+            Wanted::ExportTo => {
+                if let Some(path) = paths.next() {
+                    self.export_scene(ctx, path);
                 }
             }
             Wanted::Scene => {
@@ -292,13 +303,22 @@ impl App {
         self.state.tell(Some(format!("Copied a picture of {width} x {height} pixels")));
     }
 
+    /// The picture that the viewport shows.
+    #[must_use]
+    pub fn shown_picture(&self) -> Option<Picture> {
+        self.viewport.image().and_then(|image| viewport_renderer::picture(image))
+    }
+
     /// The picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
         let State { scene, view, settings, statistics, .. } = &self.state;
-        if statistics.reduction == Reduction::NONE {
-            return self.viewport.image().and_then(|image| viewport_renderer::picture(image));
+        if statistics.reduction == Reduction::NONE && statistics.refined == self.state.refined_to()
+        {
+            return self.shown_picture();
         }
-        let plan = plan_frame(&Shot::new(scene, view, settings, self.viewport.size()?));
+        let samples = self.state.refined_to().unwrap_or(settings.samples);
+        let settings = Settings { samples, ..*settings };
+        let plan = plan_frame(&Shot::new(scene, view, &settings, self.viewport.size()?));
         Some(Renderer::default().render(&plan).clone())
     }
 
@@ -309,6 +329,13 @@ impl App {
             After::New => {
                 let (scene, view) = io::default_scene();
                 self.replace(State::new(scene, view));
+            }
+            After::NewAncestor => {
+                let (scene, view) = io::default_scene();
+                let preset = AccuracyPreset::named("ancestor-a");
+                let settings = Settings::default();
+                let settings = preset.map_or(settings, |preset| preset.of(&settings));
+                self.replace(State { settings, ..State::new(scene, view) });
             }
             After::Recover(at) => self.recover(ctx, at),
             After::Open(Some(path)) => self.open_scene(ctx, path),
@@ -323,13 +350,13 @@ impl App {
 
     /// As [`Self::replace`]; gives what was there.
     pub(crate) fn swap(&mut self, state: State) -> State {
-        let State { panels, theme, .. } = self.state;
+        let State { panels, theme, drawing, .. } = self.state;
         let statistics = self.state.statistics.clone();
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
         self.end_measuring();
         self.first_steps = None;
-        let new = State { panels, theme, statistics, recent, recoverable, ..state };
+        let new = State { panels, theme, drawing, statistics, recent, recoverable, ..state };
         std::mem::replace(&mut self.state, new)
     }
 }

@@ -12,7 +12,7 @@ use egui::{Context, ThemePreference};
 
 use super::App;
 use crate::app::documents::loading::{Fetched, Opening};
-use crate::app::state::{Notice, State};
+use crate::app::state::{DrawingChoices, Notice, State};
 use crate::app::widgets::text::file_name;
 use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Theme, Unsaved};
 use crate::scene::{Panels, Scene};
@@ -54,6 +54,8 @@ impl App {
         ctx.set_zoom_factor(preferences.scale);
         self.state.theme = theme;
         self.state.panels = preferences.panels;
+        let Preferences { refines, refined, budget_ms, .. } = preferences;
+        self.state.drawing = DrawingChoices { refines, refined, budget_ms };
         self.state.recent.clone_from(&preferences.recent);
         self.state.notices.extend(said.map(notice));
         let offered = Abandoned::all(&folders);
@@ -248,6 +250,9 @@ fn preferences_now(ctx: &Context, state: &State, before: &Preferences) -> Prefer
         scale,
         window: size.map(whole).or(before.window),
         maximized,
+        refines: state.drawing.refines,
+        refined: state.drawing.refined,
+        budget_ms: state.drawing.budget_ms,
         recent: state.recent.clone(),
     }
 }

@@ -7,7 +7,6 @@ use egui::Context;
 
 use super::App;
 use crate::accuracy::Shot;
-use crate::app::drawing::snapshot::Snapshot;
 use crate::app::state::Measured;
 use crate::app::tasks::{Outcome, Task};
 use crate::lab::cost::{self, Costs};
@@ -19,7 +18,7 @@ const BUDGET: Duration = Duration::from_secs(3);
 #[derive(Debug)]
 pub(crate) struct Measuring {
     task: Task<Costs>,
-    of: Snapshot,
+    of: Shot,
 }
 
 impl Drop for Measuring {
@@ -38,12 +37,10 @@ impl App {
         let Some(size) = self.viewport.size() else { return };
         let (scene, view) = (self.state.scene.clone(), self.state.view.clone());
         let settings = self.state.settings;
-        let of =
-            Snapshot { scene, view, settings, size, moving: false, explain: true, outlined: None };
+        let of = Shot::new(&scene, &view, &settings, size);
         let theirs = of.clone();
         let task = Task::start(ctx, "measure effects".to_owned(), move |progress| {
-            let of = Shot::new(&theirs.scene, &theirs.view, &theirs.settings, theirs.size);
-            cost::measure(&of, BUDGET, || progress.is_cancelled())
+            cost::measure(&theirs, BUDGET, || progress.is_cancelled())
         });
         match task {
             Ok(task) => {
@@ -68,7 +65,7 @@ impl App {
         match costs {
             Some(_) if cancelled => {}
             Some(costs) => {
-                let Snapshot { scene, view, settings, .. } = of;
+                let Shot { scene, view, settings, .. } = of;
                 let measured = Measured { costs, scene, view, settings };
                 self.state.plan.costs = Some(Arc::new(measured));
             }

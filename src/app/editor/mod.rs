@@ -8,6 +8,7 @@ mod files;
 mod first_models;
 mod keeping;
 mod laboratory;
+mod making;
 mod measuring;
 mod requests;
 mod scenes;
@@ -23,7 +24,7 @@ use egui::{Context, UiBuilder, ViewportCommand};
 use crate::app::actions::{Action, Request};
 use crate::app::documents::dialogs::{After, Dialogs};
 use crate::app::documents::loading::{Loading, Queued, Waiting};
-use crate::app::drawing::adaptive_quality::{Happening, Motion};
+use crate::app::drawing::motion::{Happening, Motion};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::input::keyboard::Keyboard;
@@ -37,6 +38,7 @@ use crate::app::widgets::number::take_bad_text;
 use crate::scene::{Scene, Steps, View};
 use keeping::Keeping;
 use laboratory::Work;
+use making::Making;
 use measuring::Measuring;
 use unseen::Search;
 
@@ -47,6 +49,8 @@ pub struct App {
     pub(crate) dialogs: Dialogs,
     pub(crate) loading: Vec<Loading>,
     pub(crate) searches: Vec<Search>,
+    /// Files that are being made.
+    pub(crate) making: Making,
     /// Files that wait to be read.
     pub(crate) queued: VecDeque<Queued>,
     /// A scene that waits for the user to locate its missing models.
@@ -85,6 +89,7 @@ impl App {
             dialogs: Dialogs::default(),
             loading: Vec::new(),
             searches: Vec::new(),
+            making: Making::default(),
             queued: VecDeque::new(),
             waiting: None,
             viewport: Viewport::default(),
@@ -134,7 +139,7 @@ impl App {
             }
         }
         arrangement.splitters_ui(ui, &self.state, &mut requests);
-        notices::show(&ctx, &self.state, &self.loading, &mut requests);
+        notices::show(&ctx, &self.state, &self.loading, &self.making.tasks, &mut requests);
         let answer = self.dialogs.ui(&ctx);
         let pressed = Action::pressed(&ctx);
 
@@ -158,6 +163,7 @@ impl App {
             self.take_answer(&ctx, answer);
         }
         self.hear_loading(&ctx);
+        self.hear_making(&ctx);
         self.hear_searches();
         self.hear_measuring();
         self.hear_laboratory(&ctx);
@@ -174,6 +180,14 @@ impl App {
     pub fn wait_for_picture(&self) {
         if let Some(worker) = &self.worker {
             worker.wait();
+        }
+    }
+
+    /// Waits until the picture is refined as far as it will be.
+    /// The next frame shows it.
+    pub fn wait_until_refined(&self) {
+        if let Some(worker) = &self.worker {
+            worker.wait_until_refined();
         }
     }
 
@@ -210,6 +224,9 @@ impl App {
             if let Some(explained) = &news.explained {
                 self.state.plan.explained = Some(Arc::clone(explained));
             }
+            if let Some(refined) = &news.refined {
+                self.state.statistics.refined = refined.refined;
+            }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, requests);
             if failed {
@@ -239,9 +256,14 @@ impl App {
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
         let explain = self.state.panels.plan;
         let outlined = self.state.outlined();
-        let moving = false;
-        let mut wanted = Snapshot { scene, view, settings, size, moving, explain, outlined };
+        let budget = Duration::from_millis(self.state.drawing.budget_ms.into());
+        let (moving, refined) = (false, self.state.refined_to());
+        let mut wanted =
+            Snapshot { scene, view, settings, size, moving, budget, refined, explain, outlined };
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
+        if held || ctx.input(|input| !input.events.is_empty()) {
+            worker.stir();
+        }
         let changed = worker.last().is_none_or(|last| wanted.differs_from(last));
         // An animated scene is always being drawn.
         let drawing = worker.is_drawing() && !self.state.is_animated();

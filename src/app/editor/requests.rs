@@ -10,6 +10,7 @@ use super::App;
 use crate::app::actions::{Action, Chord, FileIntent, Intent, Request, resolve};
 use crate::app::documents::dialogs::{After, Wanted};
 use crate::app::documents::material_dialog::MaterialDialog;
+use crate::app::documents::picture_dialog::Purpose;
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
@@ -43,6 +44,7 @@ impl App {
             Request::Change { command, gesture, label } => self.change(command, gesture, &label),
             Request::View(view) => self.show_view(*view),
             Request::Settings(settings) => state.settings = settings,
+            Request::Drawing(choices) => state.drawing = choices,
             Request::Lab(request) => self.answer_lab(ctx, request),
             Request::Select(id) => match selection::pick(&state.scene, &state.view, id) {
                 Ok(selection) => self.select(selection, Gesture::Whole),
@@ -83,6 +85,11 @@ impl App {
                     loading.task.progress.cancel();
                 }
             }
+            Request::CancelMaking(at) => {
+                if let Some(task) = self.making.tasks.get(at) {
+                    task.progress.cancel();
+                }
+            }
             Request::Recover(at) => self.unless_unsaved(ctx, After::Recover(at)),
             Request::DiscardWork(at) => self.discard_work(at),
             Request::Layout(layout) => state.layout = layout,
@@ -105,6 +112,7 @@ impl App {
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
             Ok(Intent::Settings(settings)) => self.state.settings = settings,
+            Ok(Intent::Drawing(choices)) => self.state.drawing = choices,
             Ok(Intent::Panels(panels)) => self.state.panels = panels,
             Ok(Intent::Layout(layout)) => self.state.layout = layout,
             Ok(Intent::Theme(theme)) => {
@@ -131,7 +139,7 @@ impl App {
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
             Ok(Intent::Overlays) => self.state.overlays ^= true,
             Ok(Intent::AimByClick) => self.state.aiming ^= true,
-            Ok(Intent::ChangeKeyboardOwner) => Keyboard::change_owner(ctx),
+            Ok(Intent::ChangeKeyboardOwner(way)) => Keyboard::change_owner(ctx, way),
         }
     }
 
@@ -161,6 +169,10 @@ impl App {
             FileIntent::SaveAs => self.save_as(ctx, None),
             FileIntent::CopyPicture => self.copy_picture(ctx),
             FileIntent::SavePicture => self.ask_file(ctx, Wanted::PictureTo, "picture.png"),
+            FileIntent::PictureOptions => self.ask_picture(Purpose::Picture),
+            FileIntent::Turntable => self.ask_picture(Purpose::Turntable),
+            FileIntent::Export => self.ask_file(ctx, Wanted::ExportTo, "scene.glb"),
+            FileIntent::NewAncestor => self.unless_unsaved(ctx, After::NewAncestor),
         }
     }
 

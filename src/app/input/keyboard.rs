@@ -10,7 +10,8 @@ use std::collections::BTreeSet;
 use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 
 use crate::app::actions::{Action, Chord, Group};
-use crate::app::widgets::{gestures, regions};
+use crate::app::widgets::gestures;
+use crate::app::widgets::regions::{self, Way};
 use crate::edit::Gesture;
 
 /// A press of a key that asks for something.
@@ -72,11 +73,11 @@ impl Keyboard {
         ctx.plugin_or_default::<Self>().lock().left_by_escape = true;
     }
 
-    /// From region to region, and back to the viewport.
-    pub(crate) fn change_owner(ctx: &Context) {
+    /// From region to region, and to the viewport after the last or before the first.
+    pub(crate) fn change_owner(ctx: &Context, way: Way) {
         let viewport = ctx.plugin_or_default::<Self>().lock().viewport;
         if let Some(viewport) = viewport {
-            regions::go_on(ctx, viewport);
+            regions::go(ctx, viewport, way);
         }
     }
 

@@ -5,11 +5,22 @@ use egui::{Align2, Area, Context, Frame, Id, Order, Ui, vec2};
 use crate::app::actions::Request;
 use crate::app::documents::loading::Loading;
 use crate::app::state::{Notice, Offer, State};
+use crate::app::tasks::Task;
 use crate::edit::Gesture;
 
 /// Shows them at the top of the picture; their requests are added to `requests`.
-pub(crate) fn show(ctx: &Context, state: &State, loading: &[Loading], requests: &mut Vec<Request>) {
-    if loading.is_empty() && state.notices.is_empty() && state.recoverable.is_empty() {
+pub(crate) fn show<T>(
+    ctx: &Context,
+    state: &State,
+    loading: &[Loading],
+    making: &[Task<T>],
+    requests: &mut Vec<Request>,
+) {
+    if loading.is_empty()
+        && making.is_empty()
+        && state.notices.is_empty()
+        && state.recoverable.is_empty()
+    {
         return;
     }
     let corner = Area::new(Id::unique("notices"))
@@ -18,7 +29,12 @@ pub(crate) fn show(ctx: &Context, state: &State, loading: &[Loading], requests: 
     corner.show(ctx, |ui| {
         ui.set_max_width(420.0);
         for (at, loading) in loading.iter().enumerate() {
-            Frame::popup(ui.style()).show(ui, |ui| loading_ui(ui, at, loading, requests));
+            let cancel = Request::CancelLoading(at);
+            Frame::popup(ui.style()).show(ui, |ui| task_ui(ui, &loading.task, cancel, requests));
+        }
+        for (at, task) in making.iter().enumerate() {
+            let cancel = Request::CancelMaking(at);
+            Frame::popup(ui.style()).show(ui, |ui| task_ui(ui, task, cancel, requests));
         }
         for (at, work) in state.recoverable.iter().enumerate() {
             Frame::popup(ui.style()).show(ui, |ui| recoverable_ui(ui, at, work, requests));
@@ -34,13 +50,13 @@ pub(crate) fn show(ctx: &Context, state: &State, loading: &[Loading], requests: 
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
-fn loading_ui(ui: &mut Ui, at: usize, loading: &Loading, requests: &mut Vec<Request>) {
-    ui.label(&loading.task.label);
+fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Vec<Request>) {
+    ui.label(&task.label);
     ui.horizontal(|ui| {
-        let fraction = loading.task.progress.fraction() as f32;
+        let fraction = task.progress.fraction() as f32;
         ui.add(egui::ProgressBar::new(fraction).desired_width(220.0).show_percentage());
         if ui.button("Cancel").clicked() {
-            requests.push(Request::CancelLoading(at));
+            requests.push(cancel);
         }
     });
     // The bar has to move although nothing else does.

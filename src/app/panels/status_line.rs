@@ -95,12 +95,25 @@ fn parts(state: &State) -> Vec<String> {
     });
     let statistics = &state.statistics;
     if statistics.reduction != Reduction::NONE {
-        parts.push(format!("while moving: {}", statistics.reduction.words()));
+        let lost = statistics.lost.map(|lost| format!(" (error {lost:.1} of 255)"));
+        let lost = lost.unwrap_or_default();
+        parts.push(format!("while moving: {}{lost}", statistics.reduction.words()));
     }
+    parts.extend(refined(state));
     if statistics.pictures > 0 {
         parts.push(format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0));
     }
     parts
+}
+
+/// How far the picture is refined.
+fn refined(state: &State) -> Option<String> {
+    let most = state.refined_to().filter(|_| state.statistics.pictures > 0)?;
+    let now = state.statistics.refined.unwrap_or(state.settings.samples);
+    Some(match now.count() < most.count() {
+        true => format!("refining: {} of {} samples", now.count(), most.count()),
+        false => format!("refined: {} samples", now.count()),
+    })
 }
 
 /// What is drawn otherwise than at first: polygon by polygon, as a wireframe, the selection alone.
@@ -254,8 +267,9 @@ mod tests {
         state.statistics.pictures = 1;
         assert!(!parts(&state).join(BETWEEN).contains("moving"));
         state.statistics.reduction.vertex_light = true;
-        state.statistics.reduction.half_size = true;
-        let said = "  |  while moving: light per vertex, half size  |  0.0 ms";
+        state.statistics.reduction.shrink = crate::app::state::Shrink::Half;
+        state.statistics.lost = Some(3.14);
+        let said = "  |  while moving: light per vertex, half size (error 3.1 of 255)  |  0.0 ms";
         assert!(parts(&state).join(BETWEEN).ends_with(said));
     }
 

@@ -2,10 +2,10 @@
 
 use egui::{Id, ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis};
+use crate::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Samples};
 use crate::app::actions::{Action, Group, Request, change};
 use crate::app::input::buttons::{action_choice, action_switch};
-use crate::app::state::State;
+use crate::app::state::{DrawingChoices, State};
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{self, Choice, choices, choices_in_rows, row, section};
@@ -43,7 +43,10 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
                 axis_ui(ui, axis, state, requests);
             }
         });
-        section(ui, "Accuracy", true, |ui| settings_ui(ui, state, requests));
+        section(ui, "Accuracy", true, |ui| {
+            settings_ui(ui, state, requests);
+            drawing_ui(ui, state, requests);
+        });
     });
 }
 
@@ -235,6 +238,44 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         axis_ui(ui, axis, state, requests);
     }
 }
+
+/// What the window does beyond the settings: it refines, and keeps a budget of time.
+fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    let now = state.drawing;
+    let label = |samples: &Samples| format!("{} samples", samples.count());
+    let labels: Vec<String> = Samples::ALL[1..].iter().map(label).collect();
+    let hint = "The samples per pixel that the window refines its picture to while nothing \
+        happens. Files and the laboratory keep the setting above.";
+    let off = Choice::new("Refined to", "Off", !now.refines, hint);
+    let on = Samples::ALL[1..].iter().zip(&labels).map(|(samples, label)| {
+        Choice::new("Refined to", label, now.refines && now.refined == *samples, hint)
+    });
+    let all: Vec<Choice<'_>> = std::iter::once(off).chain(on).collect();
+    match row(ui, "When still", |ui| choices_in_rows(ui, &all)) {
+        Some(0) => requests.push(Request::Drawing(DrawingChoices { refines: false, ..now })),
+        Some(clicked) => {
+            let refined = Samples::ALL[clicked];
+            requests.push(Request::Drawing(DrawingChoices { refines: true, refined, ..now }));
+        }
+        None => {}
+    }
+    let hint = "The time that a picture may take while something moves. If it takes longer, the \
+        window gives up accuracy: of what it has measured of this scene, the most exact picture \
+        that keeps the time.";
+    let labels = BUDGETS.map(|ms| format!("{ms} ms"));
+    let all: Vec<Choice<'_>> = BUDGETS
+        .iter()
+        .zip(&labels)
+        .map(|(ms, label)| Choice::new("Time while moving", label, now.budget_ms == *ms, hint))
+        .collect();
+    if let Some(clicked) = row(ui, "Moving", |ui| choices_in_rows(ui, &all)) {
+        let budget_ms = BUDGETS[clicked];
+        requests.push(Request::Drawing(DrawingChoices { budget_ms, ..now }));
+    }
+}
+
+/// Milliseconds: 60, 30 and 10 pictures a second.
+const BUDGETS: [u16; 3] = [16, 33, 100];
 
 /// Whether an axis stands among the switches of light: how things are shaded, where they shine.
 fn is_of_light(axis: &Axis) -> bool {

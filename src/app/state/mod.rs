@@ -9,8 +9,9 @@ use std::time::Duration;
 
 use egui::ThemePreference;
 
-use crate::accuracy::Settings;
-pub use crate::app::drawing::adaptive_quality::Reduction;
+use crate::accuracy::{Samples, Settings};
+pub use crate::app::drawing::reduction::{Reduction, Shrink};
+use crate::app::drawing::refinement::can_refine;
 use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
 use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
@@ -31,6 +32,8 @@ pub struct State {
     pub view: View,
     /// The settings of accuracy.
     pub settings: Settings,
+    /// How the window draws beyond what the settings say.
+    pub drawing: DrawingChoices,
     /// The history of changes.
     pub history: History,
     /// The scene's file, if it has one.
@@ -71,6 +74,25 @@ pub struct State {
     pub(crate) gesture: Gesture,
     /// How many changes it has had.
     pub(crate) repeats: u32,
+}
+
+/// How the window draws beyond what the settings of accuracy say: a preference of the user's, which
+/// neither files nor the laboratory know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawingChoices {
+    /// Whether the picture is refined while nothing happens.
+    pub refines: bool,
+    /// The samples per pixel that it is refined to.
+    pub refined: Samples,
+    /// The milliseconds that a picture may take while something moves.
+    pub budget_ms: u16,
+}
+
+impl Default for DrawingChoices {
+    /// Without refining: the program's window does what the preferences say.
+    fn default() -> Self {
+        Self { refines: false, refined: Samples::Sixteen, budget_ms: 33 }
+    }
 }
 
 /// A message to the user.
@@ -167,6 +189,10 @@ pub struct Statistics {
     pub triangles: usize,
     /// How its quality is reduced.
     pub reduction: Reduction,
+    /// The measured error of that: the root mean square, in steps of a byte.
+    pub lost: Option<f64>,
+    /// The samples per pixel that it is refined to.
+    pub refined: Option<Samples>,
     /// What was redrawn, and why.
     pub changes: Option<Damage>,
 }
@@ -180,6 +206,8 @@ impl Default for Statistics {
             rate: 0,
             triangles: 0,
             reduction: Reduction::NONE,
+            lost: None,
+            refined: None,
             changes: None,
         }
     }
@@ -196,6 +224,8 @@ impl Statistics {
             rate,
             triangles: drawn.triangles,
             reduction: drawn.reduction,
+            lost: drawn.lost,
+            refined: drawn.refined,
             changes: Some(drawn.changes.clone()),
         };
     }
@@ -233,6 +263,7 @@ impl State {
             scene,
             view,
             settings: Settings::default(),
+            drawing: DrawingChoices::default(),
             history: History::default(),
             path: None,
             message: None,
@@ -266,6 +297,17 @@ impl State {
     #[must_use]
     pub fn shows_overlays(&self) -> bool {
         self.overlays && self.lab.compare == laboratory::Compare::Off
+    }
+
+    /// The samples per pixel that the picture is refined to while nothing happens; `None` if it is
+    /// shown as the settings say. Comparisons and measurements are of the settings alone.
+    #[must_use]
+    pub fn refined_to(&self) -> Option<Samples> {
+        let DrawingChoices { refines, refined, .. } = self.drawing;
+        let is_alone = self.lab.compare == laboratory::Compare::Off && self.lab.running.is_none();
+        let more = refined.count() > self.settings.samples.count();
+        let wanted = refines && is_alone && more && !self.is_animated();
+        (wanted && can_refine(&self.settings)).then_some(refined)
     }
 
     /// The item whose outline is drawn over the picture: the one that the keys act on.

@@ -20,8 +20,8 @@ use egui::{
 use glam::DMat4;
 
 use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::drawing::border::Border;
 use crate::app::drawing::worker::{News, Pick, Worker};
-use crate::app::drawing::{border::Border, viewport_renderer::Drawn};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::state::State;
 use crate::app::widgets::plate::plate_ui;
@@ -121,7 +121,13 @@ impl Viewport {
             self.outline = outline;
         }
         if let Some(drawn) = news.drawn {
-            self.take(ctx, drawn);
+            self.take(ctx, drawn.image);
+            // A new picture may show another item there; the old hit is the best guess until then.
+            self.stale = true;
+            self.asked = None;
+        }
+        if let Some(refined) = news.refined {
+            self.take(ctx, refined.image);
         }
     }
 
@@ -277,8 +283,7 @@ impl Viewport {
         }
     }
 
-    fn take(&mut self, ctx: &Context, drawn: Drawn) {
-        let image = drawn.image;
+    fn take(&mut self, ctx: &Context, image: Arc<ColorImage>) {
         let nearest = TextureOptions::NEAREST;
         match &mut self.texture {
             Some(texture) if texture.size() == image.size => {
@@ -290,9 +295,6 @@ impl Viewport {
             }
         }
         self.image = Some(image);
-        // A new picture may show another item there; the old hit is the best guess until then.
-        self.stale = true;
-        self.asked = None;
     }
 
     /// The pixel of the picture under a point of the window.

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, Mesh, Rect, Ui, vec2};
 
 use crate::app::drawing::border::Border;
-use crate::app::state::State;
+use crate::app::state::{Shrink, State};
 use crate::app::widgets::plate::plate_ui;
 use crate::app::widgets::text::grouped;
 use crate::render::{Change, Damage, DamageCause};
@@ -23,7 +23,7 @@ pub(crate) fn statistics_ui(ui: &Ui, state: &State, rect: Rect) {
         statistics.time.as_secs_f64() * 1e3,
         statistics.size.width,
         statistics.size.height,
-        if statistics.reduction.half_size { ", each shown as four" } else { "" },
+        shown_as(statistics.reduction.shrink),
         statistics.changes.as_ref().map_or_else(String::new, |changes| redrawn(state, changes)),
         shown().count(),
         sum(|mesh| mesh.positions().len()),
@@ -32,6 +32,15 @@ pub(crate) fn statistics_ui(ui: &Ui, state: &State, rect: Rect) {
         sum(|mesh| mesh.triangle_count()),
     );
     plate_ui(ui, rect, Align2::LEFT_TOP, text);
+}
+
+/// How large the pixels of a smaller picture are shown.
+const fn shown_as(shrink: Shrink) -> &'static str {
+    match shrink {
+        Shrink::Whole => "",
+        Shrink::Half => ", each shown as four",
+        Shrink::Quarter => ", each shown as sixteen",
+    }
 }
 
 /// The maximum number of names in a reason.

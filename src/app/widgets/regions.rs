@@ -59,15 +59,32 @@ pub(crate) fn begin(ui: &Ui, name: impl Hash + std::fmt::Debug) {
     }
 }
 
-/// Takes the keyboard to the region after the one that has it; after the last, to `viewport`.
-pub(crate) fn go_on(ctx: &Context, viewport: Id) {
+/// Forwards or backwards through the regions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// To the next one.
+    On,
+    /// To the one before.
+    Back,
+}
+
+/// Takes the keyboard to the region after or before the one that has it; beyond the ends, to
+/// `viewport`.
+pub(crate) fn go(ctx: &Context, viewport: Id, way: Way) {
     let focused = ctx.memory(|memory| memory.focused()).filter(|id| *id != viewport);
     let place = focused.and_then(|id| ctx.read_response(id)).map(|response| response.rect);
     let to_viewport = ctx.data_mut(|data| {
         let regions: &mut Regions = data.get_temp_mut_or_default(key());
-        let next = match focused {
-            None => regions.shown.first(),
-            Some(_) => regions.holding(place).and_then(|here| regions.shown.get(here + 1)),
+        let next = match (focused, way) {
+            (None, Way::On) => regions.shown.first(),
+            (None, Way::Back) => regions.shown.last(),
+            (Some(_), Way::On) => {
+                regions.holding(place).and_then(|here| regions.shown.get(here + 1))
+            }
+            (Some(_), Way::Back) => {
+                let here = regions.holding(place).and_then(|here| here.checked_sub(1));
+                here.and_then(|before| regions.shown.get(before))
+            }
         };
         regions.target = next.map(|region| region.id);
         regions.target.is_none()

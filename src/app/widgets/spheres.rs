@@ -235,6 +235,7 @@ mod tests {
             diffuse: [0.8, 0.0, 0.0],
             specular: [0.0; 3],
             exponent: 1.0,
+            emission: [0.0; 3],
         };
         let image = image(&mut scene, &mut renderer, red, 32);
         let at = |x: usize, y: usize| image.pixels[y * 32 + x];

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{Lock, OwnFolders, made};
+use crate::accuracy::Samples;
 use crate::io::error::reason;
 use crate::io::replace::{Worth, replace};
 use crate::scene::Panels;
@@ -31,6 +32,12 @@ pub struct Preferences {
     pub window: Option<[f32; 2]>,
     /// Whether the window fills the screen.
     pub maximized: bool,
+    /// Whether the window refines its picture while nothing happens.
+    pub refines: bool,
+    /// The samples per pixel that it is refined to.
+    pub refined: Samples,
+    /// The milliseconds that a picture may take while something moves.
+    pub budget_ms: u16,
     /// The models and scenes opened or saved last, the latest first.
     pub recent: Vec<PathBuf>,
 }
@@ -55,6 +62,9 @@ impl Default for Preferences {
             scale: 1.0,
             window: None,
             maximized: false,
+            refines: true,
+            refined: Samples::Sixteen,
+            budget_ms: 33,
             recent: Vec::new(),
         }
     }
@@ -127,6 +137,7 @@ impl Preferences {
             self.scale = 1.0;
         }
         self.window = self.window.filter(|size| size.iter().all(|x| sound(*x, 100.0, 20_000.0)));
+        self.budget_ms = self.budget_ms.clamp(1, 1000);
         self.recent.truncate(MOST_RECENT);
         self
     }

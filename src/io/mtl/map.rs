@@ -1,4 +1,4 @@
-//! The arguments of `map_Kd`: a file's name, with options before or after it.
+//! The arguments of a map: a file's name, with options before or after it.
 
 use super::statement;
 use crate::io::obj::lines::decode;
@@ -12,12 +12,26 @@ pub(super) struct Map {
     pub(super) wrap: Wrap,
     pub(super) offset: [f64; 2],
     pub(super) scale: [f64; 2],
+    /// `-bm`.
+    pub(super) gain: f64,
+    /// Options that would change the picture and are ignored.
+    pub(super) ignored: Vec<&'static str>,
 }
+
+/// Options that would change the picture and are ignored, with the number of their arguments:
+/// turbulence, base and gain of the texels, the channel of a scalar map, boosted sharpness.
+const IGNORED: [(&str, usize); 4] = [("-t", 3), ("-mm", 2), ("-imfchan", 1), ("-boost", 1)];
 
 /// Parses the arguments; `None` if there is no name.
 pub(super) fn map(rest: &[u8]) -> Option<Map> {
-    let mut map =
-        Map { name: String::new(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
+    let mut map = Map {
+        name: String::new(),
+        wrap: Wrap::Repeat,
+        offset: [0.0; 2],
+        scale: [1.0; 2],
+        gain: 1.0,
+        ignored: Vec::new(),
+    };
     let text = decode(rest);
     let words = words_with_places(&text);
     // The range of the name: blanks inside it are kept.
@@ -52,7 +66,12 @@ impl Map {
             }
             given.len()
         };
-        Some(match word.to_ascii_lowercase().as_str() {
+        let word = word.to_ascii_lowercase();
+        if let Some((option, most)) = IGNORED.iter().find(|(option, _)| *option == word) {
+            self.ignored.push(option);
+            return Some(if *option == "-imfchan" { 1 } else { numbers(*most).len() });
+        }
+        Some(match word.as_str() {
             "-clamp" => {
                 let on = following.first().is_some_and(|(_, word)| word.eq_ignore_ascii_case("on"));
                 self.wrap = if on { Wrap::Clamp } else { Wrap::Repeat };
@@ -60,10 +79,13 @@ impl Map {
             }
             "-o" => set(&mut self.offset, &numbers(3)),
             "-s" => set(&mut self.scale, &numbers(3)),
-            "-t" => numbers(3).len(),
-            "-mm" => numbers(2).len(),
-            "-bm" | "-boost" | "-texres" => numbers(1).len(),
-            "-blendu" | "-blendv" | "-cc" | "-imfchan" | "-type" | "-colorspace" => 1,
+            "-bm" => {
+                let given = numbers(1);
+                self.gain = given.first().copied().unwrap_or(self.gain);
+                given.len()
+            }
+            "-texres" => numbers(1).len(),
+            "-blendu" | "-blendv" | "-cc" | "-type" | "-colorspace" => 1,
             _ => return None,
         })
     }
@@ -83,12 +105,25 @@ mod tests {
     #[test]
     fn options_of_a_map_stand_before_or_after_a_name_with_blanks() {
         let map = |text: &str| map(text.as_bytes());
-        let plain =
-            Map { name: "a  b.png".into(), wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] };
+        let plain = Map {
+            name: "a  b.png".into(),
+            wrap: Wrap::Repeat,
+            offset: [0.0; 2],
+            scale: [1.0; 2],
+            gain: 1.0,
+            ignored: Vec::new(),
+        };
         assert_eq!(map("a  b.png"), Some(plain.clone()));
         assert_eq!(
             map("-clamp on -o 0.1 -s 2 3 0 -mm 0 1 -imfchan r a  b.png -bm 1.5 # x"),
-            Some(Map { wrap: Wrap::Clamp, offset: [0.1, 0.0], scale: [2.0, 3.0], ..plain })
+            Some(Map {
+                wrap: Wrap::Clamp,
+                offset: [0.1, 0.0],
+                scale: [2.0, 3.0],
+                gain: 1.5,
+                ignored: vec!["-mm", "-imfchan"],
+                ..plain
+            })
         );
         assert_eq!(map("-s 1 1 1"), None);
     }

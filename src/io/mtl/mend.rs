@@ -6,13 +6,13 @@
 use super::Statements;
 use crate::base::Shared;
 use crate::io::findings::{FindingKind, Findings};
-use crate::scene::{FileMaterial, Material, Texture};
+use crate::scene::{FileMaterial, MapKind, Material, SurfaceMaps, Texture};
 
 impl Statements {
     /// The material, with missing and invalid values replaced.
     pub(super) fn mended(
         self,
-        texture: Option<Shared<Texture>>,
+        (texture, maps): (Option<Shared<Texture>>, SurfaceMaps),
         findings: &mut Findings,
     ) -> FileMaterial {
         let mut note = |kind| findings.add(kind, &self.name, Some(self.line));
@@ -26,8 +26,30 @@ impl Statements {
             note(FindingKind::MendedExponent);
         }
         let opacity = self.mended_opacity(&mut note);
-        let material = Material { ambient, diffuse, specular, exponent };
-        FileMaterial { name: self.name, material, opacity, texture }
+        let emission = self.mended_emission(&mut note);
+        if self.illumination.is_some_and(|model| ![0.0, 1.0, 2.0].contains(&model)) {
+            note(FindingKind::Illumination);
+        }
+        let unlit = self.illumination == Some(0.0);
+        let material = Material { ambient, diffuse, specular, exponent, emission };
+        FileMaterial { name: self.name, material, opacity, texture, maps, unlit }
+    }
+
+    /// Light may be stronger than white, but not below 0.
+    fn mended_emission(&self, note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
+        let Some(given) = self.emission else {
+            // A map that is named counts, whether it was found or not.
+            let is_mapped = self.maps.contains_key(&MapKind::Emission);
+            if is_mapped {
+                note(FindingKind::MendedEmission);
+            }
+            return [if is_mapped { 1.0 } else { 0.0 }; 3];
+        };
+        let within = given.map(|x| x.max(0.0));
+        if within != given {
+            note(FindingKind::MendedRange);
+        }
+        within
     }
 
     fn mended_diffuse(&self, note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
@@ -61,6 +83,10 @@ impl Statements {
         let unlit = self.illumination.is_some_and(|model| model == 0.0 || model == 1.0);
         match self.specular {
             Some(specular) if !unlit => clamped(specular, note),
+            None if !unlit && self.maps.contains_key(&MapKind::Specular) => {
+                note(FindingKind::MendedMapped);
+                [1.0; 3]
+            }
             given => {
                 if given != Some([0.0; 3]) {
                     note(FindingKind::MendedSpecular);

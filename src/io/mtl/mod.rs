@@ -21,7 +21,7 @@ use super::read::{MOST_WORDS, is_utf_16, read, utf_8};
 use super::texture::{Pictures, Read};
 use crate::base::Shared;
 use crate::base::image::Picture;
-use crate::scene::{FileMaterial, NONE, Texture, Wrap};
+use crate::scene::{FileMaterial, MapKind, NONE, SurfaceMap, Texture, Wrap};
 
 /// The most texels of all textures of a model: 2 GB.
 const MOST_TEXELS: usize = 1 << 29;
@@ -72,10 +72,13 @@ struct Statements {
     diffuse: Option<[f64; 3]>,
     specular: Option<[f64; 3]>,
     exponent: Option<f64>,
+    emission: Option<[f64; 3]>,
     opacity: Option<f64>,
     transparency: Option<f64>,
     illumination: Option<f64>,
     map: Option<(u32, Map)>,
+    /// The other maps.
+    maps: BTreeMap<MapKind, (u32, Map)>,
 }
 
 impl<'a> Library<'a> {
@@ -156,9 +159,18 @@ impl<'a> Library<'a> {
             findings.add(FindingKind::MaterialTwice, &statements.name, Some(statements.line));
             return;
         }
-        let texture = statements.map.as_ref().and_then(|(line, map)| {
+        let mut read = |(line, map): &(u32, Map)| {
+            for option in &map.ignored {
+                findings.add(FindingKind::MapOption, option, Some(*line));
+            }
             self.texture(map, folders, &mut |kind, name| findings.add(kind, name, Some(*line)))
+        };
+        let texture = statements.map.as_ref().and_then(&mut read);
+        let maps = statements.maps.iter().filter_map(|(kind, map)| {
+            let (texture, gain) = (read(map)?, map.1.gain);
+            Some((*kind, SurfaceMap { texture, gain }))
         });
+        let maps = maps.collect();
         let place = u32::try_from(self.materials.len()).unwrap_or(NONE);
         self.places.insert(statements.name.clone(), place);
         self.origins.push(Origin {
@@ -166,7 +178,7 @@ impl<'a> Library<'a> {
             line: statements.line,
             hidden_by_tr: statements.opacity.is_none() && statements.transparency == Some(1.0),
         });
-        self.materials.push(statements.mended(texture, findings));
+        self.materials.push(statements.mended((texture, maps), findings));
     }
 
     fn texture(
@@ -194,7 +206,7 @@ impl<'a> Library<'a> {
             return Some(texture.clone());
         }
         let picture = self.picture(&path, note)?;
-        let Map { wrap, offset, scale, .. } = *map;
+        let &Map { wrap, offset, scale, .. } = map;
         let texture = Shared::new(Texture { source: path, picture, wrap, offset, scale });
         self.textures.insert(key, texture.clone());
         Some(texture)
@@ -264,25 +276,44 @@ impl Statements {
             }
             b"tr" => read = set(&mut self.transparency, statement::opacity(rest)),
             b"illum" => read = set(&mut self.illumination, statement::exponent(rest)),
+            b"ke" => read = set(&mut self.emission, statement::emission(rest)),
             b"map_kd" => {
                 let map = map(rest).map(|map| (line.number, map));
                 read = set(&mut self.map, map);
             }
-            b"bump" | b"disp" | b"decal" | b"refl" | b"norm" => {
+            b"disp" | b"decal" | b"refl" => {
                 findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
             }
             b"map_aat" => {}
+            _ if let Some(kind) = kind_of(&plain) => match map(rest) {
+                Some(map) => _ = self.maps.insert(kind, (line.number, map)),
+                None => read = false,
+            },
             _ if plain.starts_with(b"map_") => {
                 findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
             }
-            // Emission, refraction, filters, sharpness, and physically based shading.
-            b"ke" | b"kt" | b"ni" | b"tf" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc"
-            | b"pcr" | b"aniso" | b"anisor" => {}
+            // Refraction, filters, sharpness, and physically based shading.
+            b"kt" | b"ni" | b"tf" | b"sharpness" | b"pr" | b"pm" | b"ps" | b"pc" | b"pcr"
+            | b"aniso" | b"anisor" => {}
             _ => findings.add(FindingKind::Unknown, &decode(keyword), Some(line.number)),
         }
         if !read {
             findings.add(FindingKind::MtlNumber, &decode(keyword), Some(line.number));
         }
+    }
+}
+
+/// What a statement maps, by its keyword in lower case.
+fn kind_of(keyword: &[u8]) -> Option<MapKind> {
+    match keyword {
+        b"map_ka" => Some(MapKind::Ambient),
+        b"map_ks" => Some(MapKind::Specular),
+        b"map_ns" => Some(MapKind::Exponent),
+        b"map_d" => Some(MapKind::Opacity),
+        b"map_ke" => Some(MapKind::Emission),
+        b"bump" | b"map_bump" => Some(MapKind::Bump),
+        b"norm" | b"map_norm" | b"map_kn" => Some(MapKind::Normal),
+        _ => None,
     }
 }
 
@@ -318,7 +349,7 @@ mod tests {
             read("newmtl red\nKa .1 0 0\nKd 0.5 0 0\nKs 1 1 1\nNs 20\nd 1\nillum 2\n");
         assert_eq!(findings, []);
         assert_eq!(red.name, "red");
-        let Material { ambient, diffuse, specular, exponent } = red.material;
+        let Material { ambient, diffuse, specular, exponent, .. } = red.material;
         assert_eq!([ambient, diffuse, specular], [[0.1, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0; 3]]);
         assert_eq!((exponent, red.opacity), (20.0, 1.0));
     }

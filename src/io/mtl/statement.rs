@@ -24,6 +24,11 @@ pub(super) fn specular(rest: &[u8]) -> Option<[f64; 3]> {
     finite(material("Ks", &color(rest)?)?.specular?)
 }
 
+/// `Ke r g b`, which tobj does not know; one number stands for all three.
+pub(super) fn emission(rest: &[u8]) -> Option<[f64; 3]> {
+    specular(rest)
+}
+
 /// `Ns x`. Also for `illum x`, where tobj reads whole numbers only.
 pub(super) fn exponent(rest: &[u8]) -> Option<f64> {
     single(words(rest).next()?)

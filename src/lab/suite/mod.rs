@@ -36,7 +36,7 @@ pub const SUITE: &[SuiteScene] = &[
     SuiteScene {
         word: "pixels",
         what: "one lit triangle over the whole picture",
-        axes: &["arithmetic", "normalising", "faint", "rounding"],
+        axes: &["arithmetic", "normalising", "faint", "rounding", "values"],
         make: scenes::pixels,
     },
     SuiteScene {
@@ -74,6 +74,12 @@ pub const SUITE: &[SuiteScene] = &[
         what: "pairs of surfaces 0.001 apart, from 2 to 2000 units away",
         axes: &["depth"],
         make: scenes::depth,
+    },
+    SuiteScene {
+        word: "bumps",
+        what: "balls with a map of heights, near and far",
+        axes: &["bumps", "tangents"],
+        make: scenes::bumps,
     },
     SuiteScene {
         word: "first",

@@ -13,7 +13,7 @@ use glam::{DMat4, DVec3};
 
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
-use crate::io::{default_scene, empty_scene};
+use crate::io::{default_scene, empty_scene, own_model};
 use crate::scene::{
     Camera, Light, LightId, LightKind, List, LoadOptions, Material, MaterialChoice, Mesh,
     MeshSource, Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner,
@@ -88,7 +88,13 @@ fn ball(rings: u32) -> Shared<Model> {
 
 fn shiny(color: [f64; 3], exponent: f64) -> MaterialChoice {
     let [ambient, diffuse] = [0.15, 0.55].map(|part| color.map(|c| c * part));
-    MaterialChoice::Own(Material { ambient, diffuse, specular: [0.8; 3], exponent })
+    MaterialChoice::Own(Material {
+        ambient,
+        diffuse,
+        specular: [0.8; 3],
+        exponent,
+        emission: [0.0; 3],
+    })
 }
 
 fn object(model: Shared<Model>, material: MaterialChoice, placement: DMat4) -> Object {
@@ -251,4 +257,16 @@ pub(super) fn depth(_: u32) -> (Scene, View) {
         }
     }
     stage(plates, DVec3::ZERO)
+}
+
+/// Balls with a map of heights, the farther ones with many texels in a pixel.
+pub(super) fn bumps(_: u32) -> (Scene, View) {
+    let model = own_model("dimples").expect("the program has it");
+    let balls = (0..9).map(|i| {
+        let far = f64::from(i / 3);
+        let at = DVec3::new(f64::from(i % 3) - 1.0, 0.6 - 0.6 * far, 0.0) * (90.0 + 60.0 * far);
+        let placement = DMat4::from_translation(at - DVec3::Z * (200.0 * far));
+        object(model.clone(), MaterialChoice::File, placement)
+    });
+    stage(balls.collect(), DVec3::new(0.0, 0.0, 260.0))
 }

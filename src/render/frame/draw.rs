@@ -6,7 +6,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use glam::{DMat3, DMat4};
 
 use super::FramePlan;
-use crate::accuracy::LightAt;
+use super::extras::Extras;
+use crate::accuracy::{LightAt, Tangents};
 use crate::base::{Shared, color::Color};
 use crate::render::lights::{self, LightRow, PhongMaterial};
 use crate::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
@@ -58,9 +59,12 @@ impl Draw {
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
+        let is_bumpy = shaded.iter().any(|shaded| shaded.extras.bump.is_some());
+        let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
         let Lines { edges, face_normals, .. } = self.lines;
         for (what, needed) in [
             (Derived::DrawOrder, true),
+            (Derived::Tangents(self.normal_source), at_vertices),
             (Derived::PolygonOf, true),
             (Derived::EdgeOrder, edges),
             (Derived::Facets, flat),
@@ -134,7 +138,9 @@ impl Pipeline {
         }));
         key.extend(shaded.texture.as_ref().map(|_| "texture".to_owned()));
         key.extend(shaded.cutout.map(|_| "holes".to_owned()));
+        key.extend(shaded.opacity_map.as_ref().map(|_| "opacity map".to_owned()));
         key.extend(shaded.vertex_colors.then(|| "vertex colours".to_owned()));
+        key.extend(shaded.extras.key().map(str::to_owned));
         key.join(" + ")
     }
 
@@ -179,6 +185,10 @@ pub(crate) struct Shaded {
     /// For the alpha test: the material's opacity, if the texture's alpha may bring it below one
     /// half.
     pub(crate) cutout: Option<f64>,
+    /// The map of the material's opacity, which is multiplied with it for the alpha test.
+    pub(crate) opacity_map: Option<Shared<Texture>>,
+    /// Light of its own, and further maps.
+    pub(crate) extras: Extras,
 }
 
 impl Shaded {
@@ -195,6 +205,8 @@ impl Shaded {
             tint,
             texture,
             cutout,
+            opacity_map,
+            extras,
         } = self;
         let PhongMaterial { ambient, diffuse, specular, exponent, floor, least_cosine } = material;
         for color in [ambient, diffuse, specular, tint] {
@@ -206,11 +218,13 @@ impl Shaded {
             (stage.effect.name, stage.light).hash(hasher);
         }
         texture.as_ref().map(|texture| &texture.source).hash(hasher);
+        opacity_map.as_ref().map(|map| &map.source).hash(hasher);
+        extras.hash_into(hasher);
     }
 }
 
 /// The bits of a number, the same for 0 and -0, which are equal.
-fn bits(x: f64) -> u64 {
+pub(super) fn bits(x: f64) -> u64 {
     (x + 0.0).to_bits()
 }
 
@@ -221,22 +235,26 @@ pub(crate) struct Stage {
     /// The index of its light in the plan.
     pub(crate) light: u32,
     pub(crate) highlight: Form,
+    /// Whether a map multiplies the exponent of its highlight.
+    pub(crate) is_mapped: bool,
 }
 
 impl Stage {
     /// The light shader, compiled for the stage's highlight.
     pub(crate) const fn variant(&self) -> &'static lights::Variant {
-        match self.highlight {
-            Form::Plain => &self.effect.plain,
-            Form::Reflection => &self.effect.reflection,
-            Form::HalfVector => &self.effect.half_vector,
+        match (self.highlight, self.is_mapped) {
+            (Form::Plain, _) => &self.effect.plain,
+            (Form::Reflection, false) => &self.effect.reflection,
+            (Form::HalfVector, false) => &self.effect.half_vector,
+            (Form::Reflection, true) => &self.effect.mapped_reflection,
+            (Form::HalfVector, true) => &self.effect.mapped_half_vector,
         }
     }
 }
 
 impl PartialEq for Stage {
     fn eq(&self, other: &Self) -> bool {
-        let key = |stage: &Self| (stage.effect.name, stage.light, stage.highlight);
+        let key = |stage: &Self| (stage.effect.name, stage.light, stage.highlight, stage.is_mapped);
         key(self) == key(other)
     }
 }
@@ -255,6 +273,7 @@ pub(crate) enum Form {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::frame::extras::Glow;
 
     fn shaded(change: impl FnOnce(&mut Shaded)) -> u64 {
         let mut shaded = Shaded {
@@ -268,6 +287,8 @@ mod tests {
             tint: [1.0; 3],
             texture: None,
             cutout: None,
+            opacity_map: None,
+            extras: Extras::default(),
         };
         change(&mut shaded);
         Pipeline::Shaded(shaded).fingerprint()
@@ -284,10 +305,13 @@ mod tests {
             shaded(|shaded| shaded.tint[2] = 0.5),
             shaded(|shaded| shaded.cutout = Some(1.0)),
             shaded(|shaded| shaded.vertex_colors = true),
+            shaded(|shaded| {
+                shaded.extras.emission = Some(Glow { color: [0.0, 0.0, 0.5], map: None });
+            }),
             Pipeline::Flat(Color::WHITE).fingerprint(),
             Pipeline::Flat(Color::BACK_FACE).fingerprint(),
         ];
         let all: BTreeSet<u64> = others.into_iter().chain([plain]).collect();
-        assert_eq!(all.len(), 9);
+        assert_eq!(all.len(), 10);
     }
 }

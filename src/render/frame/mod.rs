@@ -1,6 +1,7 @@
 //! What a frame draws, as plain data. Nothing here makes a decision or touches a pixel.
 
 pub(crate) mod draw;
+pub(crate) mod extras;
 pub(crate) mod variants;
 
 use glam::DMat4;

@@ -5,11 +5,20 @@
 //! there, and nothing at a pixel.
 
 use crate::accuracy::{
-    Coverage, DepthFormat, Interpolation, Normalising, Rounding, Settings, SpecularPower,
-    Subpixels, VertexArithmetic,
+    BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LightValues, Normalising, Rounding,
+    Settings, SpecularPower, Subpixels, Tangents, VertexArithmetic,
 };
 use crate::render::screen::coverage::Grid;
 use crate::render::simd::Number;
+
+/// How bytes of texels become numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Decoding {
+    /// As they are stored.
+    Stored,
+    /// Decoded from sRGB.
+    Linear,
+}
 
 /// The variants of a frame's stages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,6 +39,12 @@ pub(crate) struct Variants {
     pub(crate) depth: DepthFormat,
     /// How attributes are interpolated.
     pub(crate) interpolation: Interpolation,
+    /// How the tangents of bumps are found.
+    pub(crate) tangents: Tangents,
+    /// How the maps of bumps are filtered.
+    bump_filter: BumpFilter,
+    /// In which values light is computed.
+    pub(crate) light_values: LightValues,
 }
 
 impl Variants {
@@ -44,6 +59,30 @@ impl Variants {
             coverage: settings.coverage,
             depth: settings.depth,
             interpolation: settings.interpolation,
+            tangents: settings.tangents,
+            bump_filter: settings.bump_filter,
+            light_values: settings.light_values,
+        }
+    }
+
+    /// How colours are decoded before light is computed.
+    pub(crate) const fn decoding(&self) -> Decoding {
+        match self.light_values {
+            LightValues::Stored => Decoding::Stored,
+            LightValues::Linear => Decoding::Linear,
+        }
+    }
+
+    /// Whether light is computed in linear values.
+    pub(crate) fn are_linear(&self) -> bool {
+        self.light_values == LightValues::Linear
+    }
+
+    /// The filter of the maps of bumps.
+    pub(crate) const fn bump_filter(&self) -> Filter {
+        match self.bump_filter {
+            BumpFilter::Nearest => Filter::Nearest,
+            BumpFilter::Trilinear => Filter::Trilinear,
         }
     }
 

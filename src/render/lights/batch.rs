@@ -14,6 +14,8 @@ pub struct Batch<T> {
     pub normal: [[T; BATCH]; 3],
     /// The directions to the observer, of length 1: V.
     pub to_eye: [[T; BATCH]; 3],
+    /// What a map multiplies the exponents of their highlights with, if there is one.
+    pub exponent: [T; BATCH],
     /// Light that is multiplied with the colour of the surface: ambient and diffuse.
     pub diffuse: [[T; BATCH]; 3],
     /// Light that keeps its own colour: specular.
@@ -23,7 +25,15 @@ pub struct Batch<T> {
 impl<T: Copy + Default> Default for Batch<T> {
     fn default() -> Self {
         let zero = [[T::default(); BATCH]; 3];
-        Self { len: 0, position: zero, normal: zero, to_eye: zero, diffuse: zero, specular: zero }
+        Self {
+            len: 0,
+            position: zero,
+            normal: zero,
+            to_eye: zero,
+            exponent: [T::default(); BATCH],
+            diffuse: zero,
+            specular: zero,
+        }
     }
 }
 
@@ -55,6 +65,8 @@ pub struct Sample<R> {
     pub normal: Vec3<R>,
     /// See [`Batch::to_eye`].
     pub to_eye: Vec3<R>,
+    /// See [`Batch::exponent`].
+    pub exponent: R,
 }
 
 /// The light that one light shader reflects from a position to the observer.

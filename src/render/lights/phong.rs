@@ -130,6 +130,8 @@ const GATHERED_FLOOR: f64 = -24.0;
 
 /// The form of a specular highlight.
 pub trait Highlight {
+    /// Whether the exponent differs from position to position: see [`Sample::exponent`].
+    const IS_MAPPED: bool = false;
     /// The cosine whose power is the highlight, if there is one; `n_l` is N.L, more than 0.
     fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R>;
 }
@@ -165,6 +167,19 @@ impl Highlight for HalfVector {
     #[inline(always)]
     fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, _: R) -> Option<R> {
         Some(sample.normal.dot(to_light.plus(sample.to_eye).unit()))
+    }
+}
+
+/// A form of highlight whose exponent is multiplied by a map.
+#[derive(Debug)]
+pub(super) struct Mapped<H>(std::marker::PhantomData<H>);
+
+impl<H: Highlight> Highlight for Mapped<H> {
+    const IS_MAPPED: bool = true;
+
+    #[inline(always)]
+    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R> {
+        H::cosine(sample, to_light, n_l)
     }
 }
 
@@ -207,9 +222,15 @@ pub(super) fn phong<M: Lanes, H: Highlight>(
     let mut specular = None;
     if let Some(cosine) = H::cosine(sample, to_light, n_l) {
         let lit = n_l.if_more(lanes.lift(GRAZING), cosine, zero);
-        if lanes.any_more(lit, lanes.set(term.least_cosine)) {
+        // A map can widen the highlight to any cosine.
+        let least = if H::IS_MAPPED { zero } else { lanes.set(term.least_cosine) };
+        if lanes.any_more(lit, least) {
             // Rounding can bring a cosine above 1.
-            let power = Real::min(lit, lanes.lift(1.0)).power(&term.highlight);
+            let cosine = Real::min(lit, lanes.lift(1.0));
+            let power = match H::IS_MAPPED {
+                true => cosine.power_times(&term.highlight, sample.exponent),
+                false => cosine.power(&term.highlight),
+            };
             specular = Some(set(lanes, term.specular).times(weakened(power, strength)));
         }
     }

@@ -6,7 +6,8 @@ use fearless_simd::Level;
 
 use super::batch::{Batch, Reflected, Sample, add, load};
 use super::phong::{
-    HalfVector, Highlight, LightTerm, Nothing, PhongMaterial, Reflection, ViewLight, max_channel,
+    HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
+    max_channel,
 };
 use super::region::Region;
 use super::turning::Turning;
@@ -92,6 +93,10 @@ pub struct LightRow {
     pub reflection: Variant,
     /// With [`HalfVector`].
     pub half_vector: Variant,
+    /// With [`Reflection`] and a map of its exponent.
+    pub mapped_reflection: Variant,
+    /// With [`HalfVector`] and a map of its exponent.
+    pub mapped_half_vector: Variant,
 }
 
 impl LightRow {
@@ -109,6 +114,8 @@ impl LightRow {
             plain: variant::<E, Nothing>(),
             reflection: variant::<E, Reflection>(),
             half_vector: variant::<E, HalfVector>(),
+            mapped_reflection: variant::<E, Mapped<Reflection>>(),
+            mapped_half_vector: variant::<E, Mapped<HalfVector>>(),
         }
     }
 }
@@ -141,6 +148,10 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
                 position: load(lanes, &batch.position, at),
                 normal: load(lanes, &batch.normal, at),
                 to_eye: load(lanes, &batch.to_eye, at),
+                exponent: match H::IS_MAPPED {
+                    true => lanes.load(&batch.exponent, at),
+                    false => lanes.lift(1.0),
+                },
             };
             let Some(reflected) = E::shade::<M, H>(lanes, sample, self.term) else {
                 continue;

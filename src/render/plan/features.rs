@@ -7,9 +7,9 @@ use std::borrow::Cow;
 
 use super::planning::{Planner, Planning};
 use super::uses::{Effect, EffectState, EffectUse, Thing};
-use crate::accuracy::{Filter, LightAt, Settings};
+use crate::accuracy::{Filter, LightAt, Settings, Tangents};
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
-use crate::scene::{ItemId, Normals, Object, Sides, Surface};
+use crate::scene::{ItemId, MapKind, Normals, Object, Sides, Surface};
 
 /// What a row reads.
 struct Facts<'a> {
@@ -30,6 +30,9 @@ const FEATURES: &[Feature] = &[
     Feature(Effect::Texture, texture),
     Feature(Effect::AlphaTest, holes),
     Feature(Effect::VertexColors, vertex_colors),
+    Feature(Effect::Emission, emission),
+    Feature(Effect::Maps, maps),
+    Feature(Effect::Bumps, bumps),
     Feature(Effect::BackFaces, back_faces),
     Feature(Effect::Edges, |it| switched(it.draw.lines.edges)),
     Feature(Effect::FaceNormals, |it| switched(it.draw.lines.face_normals.is_some())),
@@ -135,7 +138,73 @@ fn texture(it: &Facts<'_>) -> EffectState {
 fn holes(it: &Facts<'_>) -> EffectState {
     let textured = it.shaded.iter().any(|shaded| shaded.texture.is_some());
     let left_out = if textured { "every texel is opaque" } else { "no texture" };
+    if let Some(on) = any(it, |shaded| shaded.opacity_map.is_some(), "with map_d".into()) {
+        return on;
+    }
     any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(EffectState::exact(left_out))
+}
+
+/// Whether a part of the object names a map of one of these kinds.
+fn names(it: &Facts<'_>, kinds: &[MapKind]) -> bool {
+    let parts = u32::try_from(it.object.model.mesh.parts().len()).unwrap_or(u32::MAX);
+    let named = |part: u32| kinds.iter().any(|kind| it.object.part_look(part).map(*kind).is_some());
+    (0..parts).any(named)
+}
+
+fn emission(it: &Facts<'_>) -> EffectState {
+    let mapped = any(
+        it,
+        |shaded| shaded.extras.emission.as_ref().is_some_and(|glow| glow.map.is_some()),
+        "Ke times map_Ke".into(),
+    );
+    let plain = any(it, |shaded| shaded.extras.emission.is_some(), "Ke".into());
+    let left_out = match it.object.surface {
+        _ if !it.draw.filled => "edges only",
+        Surface::Texture => "the texture is shown, not lit",
+        Surface::Material | Surface::TextureAndLight => "Ke is 0",
+    };
+    mapped.or(plain).unwrap_or(EffectState::exact(left_out))
+}
+
+fn maps(it: &Facts<'_>) -> EffectState {
+    let rows: [(&str, fn(&Shaded) -> bool); 3] = [
+        ("map_Ka", |shaded| shaded.extras.ambient.is_some()),
+        ("map_Ks", |shaded| shaded.extras.specular.is_some()),
+        ("map_Ns", |shaded| shaded.extras.exponent.is_some()),
+    ];
+    let on = rows.iter().filter(|(_, is)| it.shaded.iter().any(|shaded| is(shaded)));
+    let on: Vec<&str> = on.map(|(name, _)| *name).collect();
+    if !on.is_empty() {
+        return EffectState::On(on.join(", ").into());
+    }
+    let named = names(it, &[MapKind::Ambient, MapKind::Specular, MapKind::Exponent]);
+    EffectState::exact(match it.settings.light {
+        _ if !it.draw.filled => "edges only",
+        _ if !named => "the file has none",
+        _ if it.object.model.mesh.uvs().is_empty() => "the file places none",
+        LightAt::Face | LightAt::Vertex => "no light at pixels reads them",
+        LightAt::Pixel | LightAt::Sample => "no light reads them",
+    })
+}
+
+fn bumps(it: &Facts<'_>) -> EffectState {
+    let heights = |shaded: &Shaded| shaded.extras.bump.as_ref().is_some_and(|it| it.gain.is_some());
+    let tangents = match it.settings.tangents {
+        Tangents::Vertex => "tangents at vertices",
+        Tangents::Pixel => "tangents at pixels",
+    };
+    let normals =
+        any(it, |shaded| shaded.extras.bump.is_some(), format!("normals, {tangents}").into());
+    let heights = any(it, heights, format!("heights, {tangents}").into());
+    let left_out = match it.settings.light {
+        _ if !it.draw.filled => "edges only",
+        _ if !names(it, &[MapKind::Bump, MapKind::Normal]) => "the file has none",
+        _ if it.object.model.mesh.uvs().is_empty() => "the file places none",
+        LightAt::Face => "light is evaluated at faces",
+        LightAt::Vertex => "light is evaluated at vertices",
+        LightAt::Pixel | LightAt::Sample => "no light reads them, or their -bm is 0",
+    };
+    heights.or(normals).unwrap_or(EffectState::exact(left_out))
 }
 
 fn vertex_colors(it: &Facts<'_>) -> EffectState {

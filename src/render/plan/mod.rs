@@ -7,6 +7,7 @@
 mod bounded;
 pub(crate) mod features;
 mod helpers;
+mod maps;
 mod observer;
 mod planner;
 mod planning;
@@ -24,7 +25,7 @@ use self::planning::{Planner, Planning};
 use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectState, EffectUse, Thing};
 use self::view_lights::view_lights;
-use crate::accuracy::{Arithmetic, LightAt, Samples, Settings, Shot};
+use crate::accuracy::{Arithmetic, LeaveOut, LightAt, LightValues, Samples, Settings, Shot};
 use crate::render::frame::variants::Variants;
 use crate::render::frame::{Eye, FramePlan, Rules};
 use crate::scene::Projection;
@@ -87,10 +88,24 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         light_ids: Vec::new(),
         draws: Vec::new(),
         pipelines: Vec::new(),
-        leave_out: settings.leave_out,
+        // How faint light shows in linear values depends on what else is there.
+        leave_out: match settings.light_values {
+            LightValues::Stored => settings.leave_out,
+            LightValues::Linear => LeaveOut::Unseen,
+        },
         rules,
     };
     let mut into = Planning::new(plan, notes);
+    into.notes.add(|| EffectUse {
+        effect: Effect::LinearLight,
+        name: Effect::LinearLight.label().to_owned(),
+        on: None,
+        state: match settings.light_values {
+            LightValues::Linear => EffectState::On("colours decoded, pictures encoded".into()),
+            LightValues::Stored => EffectState::exact("colours are used as they are stored"),
+        },
+        pixels: None,
+    });
     let shining = view_lights(&mut into, scene, view, &observer);
     let planner = Planner { shot, observer, shining };
     planner.add_objects(&mut into);

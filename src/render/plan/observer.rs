@@ -7,7 +7,7 @@ use crate::base::image::Size;
 use crate::base::math;
 use crate::render::lights::region::Region;
 use crate::render::screen::clip::Screen;
-use crate::scene::{Lens, Projection};
+use crate::scene::{Lens, Projection, Spheres};
 
 /// The distance of the far plane in units of view space: at least this, and less than twice this.
 const FAR: f64 = 1024.0;
@@ -85,6 +85,23 @@ impl ObserverSpace {
             || beyond(&|p| p.w - p.z)
     }
 
+    /// The view's planes for spheres in the world, each moved outwards as for [`Self::misses`].
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+    pub(super) fn spheres_outside(&self) -> SpherePlanes {
+        let rows = (self.clip_from_view * self.view_from_world).transpose();
+        let [x, y, z, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
+        let aside = |pixels: usize| 1.0 + 2.0 * LINE / pixels as f64;
+        let (wx, wy) = (w * aside(self.size.width), w * aside(self.size.height));
+        let sizes = [x, y, z, w].map(|row| row.abs());
+        let sum = sizes.into_iter().sum::<DVec4>();
+        SpherePlanes {
+            planes: [wx + x, wx - x, wy + y, wy - y, z, w - z]
+                .map(|plane| (plane, plane.truncate().length())),
+            per_distance: MARGIN * sum.truncate().max_element(),
+            fixed: MARGIN * sum.w,
+        }
+    }
+
     /// Whether a box lies so far inside the clipping planes that nothing in it is clipped.
     pub(super) fn holds(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
         let screen = Screen::new(clip_from_object, self.size);
@@ -116,6 +133,32 @@ impl ObserverSpace {
         across.max(2.0 / (height as f64 * self.clip_from_view.y_axis.y))
     }
 }
+
+/// The planes of a view in the world, whose inside is positive.
+#[derive(Debug)]
+pub(super) struct SpherePlanes {
+    /// Each with the length of its normal.
+    planes: [(DVec4, f64); 6],
+    /// The margin for rounding: this much for each unit of distance from the origin,
+    per_distance: f64,
+    /// and this much everywhere.
+    fixed: f64,
+}
+
+impl SpherePlanes {
+    /// Whether sphere `i` lies wholly outside one of the planes.
+    pub(super) fn misses(&self, spheres: &Spheres, i: usize) -> bool {
+        let [x, y, z] = math::each([0, 1, 2], |axis| spheres.centres[axis][i]);
+        let radius = spheres.radii[i];
+        let far = x.abs() + y.abs() + z.abs() + radius;
+        let margin = far * self.per_distance + self.fixed;
+        let centre = DVec4::new(x, y, z, 1.0);
+        self.planes.iter().any(|(plane, length)| plane.dot(centre) + length * radius < -margin)
+    }
+}
+
+/// More than the margin of [`ObserverSpace::misses`], so that both agree.
+const MARGIN: f64 = 1e-8;
 
 /// How many pixels beside its position a line may be drawn: half of its width, and half a pixel of
 /// rounding.

@@ -14,6 +14,7 @@ use super::turning::turning_of;
 use super::uses::{self, EffectState, EffectUse};
 use crate::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
 use crate::base::{Shared, color::Color, math};
+use crate::render::frame::Rules;
 use crate::render::frame::draw::{Back, Draw, Lines, Pipeline};
 use crate::render::frame::variants::Variants;
 use crate::render::lights::region::Region;
@@ -30,14 +31,30 @@ struct Placement {
 impl Planner<'_> {
     /// Adds objects, the oldest first.
     pub(super) fn add_objects(&self, into: &mut Planning) {
-        let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
-        objects.sort_by_key(|(id, _)| *id);
-        for (id, object) in objects {
+        let scene = &self.shot.scene;
+        let spheres = scene.objects.spheres();
+        let outside = self.culls_spheres(into).then(|| self.observer.spheres_outside());
+        for (i, place) in spheres.places.iter().enumerate() {
+            if outside.as_ref().is_some_and(|planes| planes.misses(&spheres, i)) {
+                continue;
+            }
+            let (id, object) = scene.objects.at(*place as usize).expect("a sphere for each object");
             match self.not_asked_for(id, object) {
                 Some(reason) => left_out(into, ItemId::Object(id), &object.name, reason),
                 None => self.add_object(into, ItemId::Object(id), object),
             }
         }
+    }
+
+    /// Whether objects whose spheres are outside the view are skipped: nothing of them can be
+    /// seen, and nobody asks why.
+    fn culls_spheres(&self, into: &Planning) -> bool {
+        let view = &self.shot.view;
+        into.plan.rules == Rules::Applied
+            && !into.notes.are_wanted()
+            && !into.plan.variants.has_geometry_variant()
+            && !view.face_normals
+            && !view.vertex_normals
     }
 
     /// The reason why the view does not show an object, if there is one.

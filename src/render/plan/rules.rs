@@ -95,8 +95,10 @@ impl Thing<'_> {
 /// A texture on a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TexturedSurface<'a> {
-    /// The texture.
-    pub texture: &'a Texture,
+    /// The texture, if there is one.
+    pub texture: Option<&'a Texture>,
+    /// The map of its opacity, if there is one.
+    pub opacity_map: Option<&'a Texture>,
     /// What its alpha is multiplied with. If the product is below one half, the alpha test fails.
     pub opacity: f64,
 }
@@ -105,7 +107,14 @@ impl TexturedSurface<'_> {
     /// Whether each of its texels passes the alpha test, and so anything interpolated between them.
     #[must_use]
     pub(crate) fn passes_everywhere(&self) -> bool {
-        f64::from(self.texture.picture.least_alpha()) / 255.0 * self.opacity >= 0.5
+        let least = |byte: u8| f64::from(byte) / 255.0;
+        let texture = self.texture.map_or(1.0, |texture| least(texture.picture.least_alpha()));
+        let map = self.opacity_map.map_or(1.0, |map| match map.picture.least_alpha() {
+            // Its brightness counts, which may be 0.
+            255 => 0.0,
+            alpha => least(alpha),
+        });
+        texture * map * self.opacity >= 0.5
     }
 }
 
@@ -165,6 +174,16 @@ impl Rules {
     /// Whether the alpha test of a texture is left out.
     pub(super) fn alpha_test(self, it: &TexturedSurface<'_>) -> Verdict {
         self.verdict(|| because(it.passes_everywhere(), "it has no holes"))
+    }
+
+    /// Whether light of a surface's own is left out.
+    pub(super) fn emission(self, color: [f64; 3]) -> Verdict {
+        self.verdict(|| because(color == [0.0; 3], "Ke is 0"))
+    }
+
+    /// Whether bumps of heights are left out.
+    pub(super) fn bumps(self, gain: f64) -> Verdict {
+        self.verdict(|| because(gain == 0.0, "its -bm is 0"))
     }
 
     /// The verdict of a rule, if rules apply.

@@ -4,18 +4,23 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use super::bounded;
+use super::maps::{decoded, emission, holds_same_alpha, mapped, mapped_ambient};
 use super::planning::{Planner, Planning, Shining};
 use super::rules::{LitSurface, Reading, TexturedSurface};
 use super::uses::{self, Class, Effect, EffectState, EffectUse};
 use crate::accuracy::{Arithmetic, LeaveOut, LightAt, SpecularForm};
 use crate::base::image::{Picture, Size};
 use crate::base::once::get_or_compute;
-use crate::base::{Shared, color::Color};
+use crate::base::{
+    Shared,
+    color::{self, Color},
+};
 use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
+use crate::render::frame::extras::Extras;
 use crate::render::lights::PhongMaterial;
 use crate::render::lights::region::Region;
 use crate::render::lights::turning::Turning;
-use crate::scene::{ItemId, Object, PartLook, Surface, Texture, Wrap};
+use crate::scene::{ItemId, MapKind, Object, PartLook, Surface, Texture, Wrap};
 
 /// What the surfaces of an object have in common.
 #[derive(Debug)]
@@ -61,9 +66,13 @@ impl Planner<'_> {
         part: u32,
     ) -> Option<u32> {
         let object = ground.object;
-        let look = object.part_look(part);
+        let mut look = object.part_look(part);
         if look.opacity < 0.5 {
             return None;
+        }
+        let linear = into.plan.variants.are_linear();
+        if linear {
+            look.material = decoded(&look.material);
         }
         if !ground.seen {
             return Some(into.pipeline(Pipeline::Flat(Color([0; 3]))));
@@ -75,22 +84,43 @@ impl Planner<'_> {
             Some(_) => None,
             None => texture.or_else(|| Some(white()).filter(|_| !mesh.uvs().is_empty())),
         };
-        let has_holes = |texture: &&Shared<Texture>| {
-            rules.alpha_test(&TexturedSurface { texture, opacity: look.opacity }).is_none()
+        let opacity_map = mapped(ground, &look, MapKind::Opacity).map(|map| &map.texture);
+        let opacity_map = opacity_map.filter(|map| !holds_same_alpha(texture, map));
+        let surface = TexturedSurface {
+            texture: texture.map(|texture| &**texture),
+            opacity_map: opacity_map.map(|map| &**map),
+            opacity: look.opacity,
         };
+        let is_textured = texture.is_some() || opacity_map.is_some();
+        let has_holes = is_textured && rules.alpha_test(&surface).is_none();
         let colored = object.surface != Surface::Material;
+        let mut tint = if colored { object.tint.factors() } else { [1.0; 3] };
+        if linear {
+            tint = tint.map(color::linear);
+        }
+        let lit = self.lit(into, ground, &look, texture);
+        if look.unlit && object.surface != Surface::Texture {
+            tint = std::array::from_fn(|i| tint[i] * lit.material.diffuse[i]);
+        }
         let shaded = Shaded {
             vertex_colors: colored && !mesh.colors().is_empty(),
-            tint: if colored { object.tint.factors() } else { [1.0; 3] },
+            tint,
             texture: texture.cloned(),
-            cutout: texture.filter(has_holes).map(|_| look.opacity),
-            ..self.lit(into, ground, &look)
+            cutout: has_holes.then_some(look.opacity),
+            opacity_map: opacity_map.filter(|_| has_holes).cloned(),
+            ..lit
         };
         Some(into.pipeline(Pipeline::Shaded(shaded)))
     }
 
     /// The light of a material.
-    fn lit(&self, into: &mut Planning, ground: &Ground<'_>, look: &PartLook<'_>) -> Shaded {
+    fn lit(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        look: &PartLook<'_>,
+        texture: Option<&Shared<Texture>>,
+    ) -> Shaded {
         let material = coefficients(look);
         let floor = self.floor(into, ground.region.as_ref(), &material);
         let mut material = material.with_floor(floor, self.shot.settings.power);
@@ -105,21 +135,32 @@ impl Planner<'_> {
             tint: [1.0; 3],
             texture: None,
             cutout: None,
+            opacity_map: None,
+            extras: Extras::default(),
         };
         if ground.object.surface == Surface::Texture {
             return shaded;
         }
-        let mut stages = self.stages(into, ground, &material);
-        if self.shot.settings.leave_out == LeaveOut::HalfStep {
+        shaded.extras.emission = emission(into.plan.rules, ground, look);
+        if look.unlit {
+            return shaded;
+        }
+        let bump = self.bump(into.plan.rules, ground, look);
+        let mut stages = self.stages(into, (ground, bump.is_some()), &material);
+        shaded.extras.ambient =
+            mapped_ambient(into, ground, (look, texture), &material, &mut stages);
+        if into.plan.leave_out == LeaveOut::HalfStep {
             shaded.dropped = self.thin(into, ground, &material, &mut stages);
             (material, shaded.cut_off) = self.cut(into, ground, material, &mut stages);
         }
         shaded.material = material;
+        self.map_highlights(ground, look, &mut shaded.extras, &mut stages);
         shaded.needs_positions = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
+        shaded.extras.bump = bump.filter(|_| shaded.needs_positions);
         // Light is culled tile by tile if some light has a limited reach, or may be too faint in
         // some tiles.
         shaded.tiled = ground.tiled
-            && (self.shot.settings.leave_out == LeaveOut::HalfStep
+            && (into.plan.leave_out == LeaveOut::HalfStep
                 || stages.iter().any(|stage| stage.effect.has_reach));
         shaded.light = Some(stages);
         shaded
@@ -148,7 +189,9 @@ impl Planner<'_> {
             LightAt::Face | LightAt::Vertex => 1.0,
             LightAt::Pixel | LightAt::Sample => lit().map(arriving).fold(1.0, f64::max),
         };
-        let deeper = |floor: f64| (floor - libm::log2(strongest * arriving)).max(LOWEST);
+        // The curve of sRGB is steepest at black: it multiplies differences by 12.92.
+        let steepest = if into.plan.variants.are_linear() { 12.92 } else { 1.0 };
+        let deeper = |floor: f64| (floor - libm::log2(strongest * arriving * steepest)).max(LOWEST);
         if self.shot.settings.arithmetic == Arithmetic::F64 {
             return deeper(-24.0);
         }
@@ -163,14 +206,16 @@ impl Planner<'_> {
     fn stages(
         &self,
         into: &mut Planning,
-        ground: &Ground<'_>,
+        (ground, is_bumpy): (&Ground<'_>, bool),
         material: &PhongMaterial,
     ) -> Vec<Stage> {
         let mut stages = Vec::new();
         let mut no_highlight = Some("no light is on it");
         for Shining { id, name, effect, light, .. } in &self.shining {
             let source = into.plan.lights[*light as usize];
-            let (region, turning) = (ground.region.as_ref(), ground.turning.as_ref());
+            // Bumps turn normals any way.
+            let turning = ground.turning.as_ref().filter(|_| !is_bumpy);
+            let region = ground.region.as_ref();
             let meeting = LitSurface { effect, light: &source, material, region, turning };
             let rules = &into.plan.rules;
             let reason = rules.reflection(&meeting).or_else(|| rules.object(&meeting));
@@ -193,7 +238,7 @@ impl Planner<'_> {
                 SpecularForm::Reflection => Form::Reflection,
                 SpecularForm::HalfVector => Form::HalfVector,
             };
-            stages.push(Stage { effect, light: *light, highlight });
+            stages.push(Stage { effect, light: *light, highlight, is_mapped: false });
         }
         into.notes.add(|| self.note_highlights(ground, no_highlight.map(EffectState::exact)));
         stages
@@ -277,7 +322,7 @@ impl Planner<'_> {
 const LOWEST: f64 = -60.0;
 
 /// The largest coefficient and exponent: far beyond any other light, and it fits f32.
-const LARGEST: f64 = 1e30;
+pub(super) const LARGEST: f64 = 1e30;
 
 /// The Phong material of a part. A file may hold any number: NaN counts as 0, and exponents below 0
 /// are raised to 0.

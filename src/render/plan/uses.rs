@@ -23,6 +23,14 @@ pub enum Effect {
     AlphaTest,
     /// The colours of vertices.
     VertexColors,
+    /// Light of the surface's own.
+    Emission,
+    /// The maps of Ka, Ks and Ns.
+    Maps,
+    /// Maps of heights or normals.
+    Bumps,
+    /// Light in linear sRGB.
+    LinearLight,
     /// Back faces.
     BackFaces,
     /// The edges of polygons.
@@ -47,6 +55,10 @@ impl Effect {
             Self::Texture => "Textures",
             Self::AlphaTest => "Holes of textures",
             Self::VertexColors => "Vertex colours",
+            Self::Emission => "Emission",
+            Self::Maps => "Maps of Ka, Ks, Ns",
+            Self::Bumps => "Bumps",
+            Self::LinearLight => "Linear light",
             Self::BackFaces => "Back faces",
             Self::Edges => "Edges",
             Self::FaceNormals => "Face normals",
@@ -152,6 +164,11 @@ pub(super) struct Notes {
 impl Notes {
     pub(super) fn wanted() -> Self {
         Self { wanted: true, ..Self::default() }
+    }
+
+    /// Whether decisions are noted.
+    pub(super) const fn are_wanted(&self) -> bool {
+        self.wanted
     }
 
     /// Notes a decision. What is on for one part of an object is on for the object.

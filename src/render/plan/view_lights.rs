@@ -6,7 +6,7 @@ use super::observer::ObserverSpace;
 use super::planning::{Planning, Shining};
 use super::rules::LightFacts;
 use super::uses::{Effect, EffectState, EffectUse};
-use crate::base::math;
+use crate::base::{color, math};
 use crate::render::lights::{self, LightRow, ViewLight};
 use crate::scene::{Aim, Attenuation, LightKind, Scene, View};
 
@@ -18,6 +18,7 @@ pub(super) fn view_lights(
     observer: &ObserverSpace,
 ) -> Vec<Shining> {
     let mut shining = Vec::new();
+    let linear = into.plan.variants.are_linear();
     // The oldest first, as with objects, so that the order of the list does not change the last bit
     // of a sum.
     let mut lights: Vec<_> = scene.lights.iter().collect();
@@ -45,7 +46,11 @@ pub(super) fn view_lights(
         let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
         into.plan.light_ids.push(id);
         into.plan.lights.push(ViewLight {
-            color: if shines { light.color.factors() } else { [0.0; 3] },
+            color: match (shines, linear) {
+                (false, _) => [0.0; 3],
+                (true, false) => light.color.factors(),
+                (true, true) => light.color.factors().map(color::linear),
+            },
             position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
             attenuation,

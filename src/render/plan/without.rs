@@ -2,6 +2,7 @@
 
 use super::rules::Reading;
 use super::uses::Effect;
+use crate::accuracy::LightValues;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Back, Form, Pipeline, Shaded};
 use crate::scene::ItemId;
@@ -22,10 +23,24 @@ impl FramePlan {
             }),
             Effect::Texture => plan.for_each_shaded(|shaded| {
                 shaded.texture = None;
-                shaded.cutout = None;
+                if shaded.opacity_map.is_none() {
+                    shaded.cutout = None;
+                }
             }),
-            Effect::AlphaTest => plan.for_each_shaded(|shaded| shaded.cutout = None),
+            Effect::AlphaTest => plan.for_each_shaded(|shaded| {
+                (shaded.cutout, shaded.opacity_map) = (None, None);
+            }),
             Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
+            Effect::Emission => plan.for_each_shaded(|shaded| shaded.extras.emission = None),
+            Effect::Maps => plan.for_each_shaded(|shaded| {
+                shaded.extras.ambient.iter_mut().for_each(|ambient| ambient.map = None);
+                (shaded.extras.specular, shaded.extras.exponent) = (None, None);
+                for stage in shaded.light.iter_mut().flatten() {
+                    stage.is_mapped = false;
+                }
+            }),
+            Effect::Bumps => plan.for_each_shaded(|shaded| shaded.extras.bump = None),
+            Effect::LinearLight => plan.variants.light_values = LightValues::Stored,
             Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Culled),
             Effect::Edges => plan.draws.iter_mut().for_each(|draw| draw.lines.edges = false),
             Effect::FaceNormals => {

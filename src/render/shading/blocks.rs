@@ -10,7 +10,7 @@ use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::surface::{Out, Shader};
 use super::texels::PlacedTexture;
-use super::textured::sampler;
+use super::textured::{Placed, TexelSource};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{Interpolation, LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
@@ -76,6 +76,7 @@ impl<T: ShadingNumber> Shader<T> {
             Pipeline::Shaded(shaded) => {
                 shaded.texture.is_none()
                     && !shaded.vertex_colors
+                    && !shaded.extras.reads_texels()
                     && plan.variants.rounding != Rounding::Dithered
                     && (shaded.light.is_none() || plan.light_at == LightAt::Face)
             }
@@ -105,7 +106,9 @@ impl<T: ShadingNumber> Shader<T> {
         let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
             return false;
         };
-        let mixed = shaded.light.is_some() && plan.light_at == LightAt::Vertex;
+        let mixed = shaded.light.is_some()
+            && plan.light_at == LightAt::Vertex
+            && !plan.variants.are_linear();
         let in_spans = plan.variants.interpolation == Interpolation::EverySixteen;
         if !mixed || group.draw.back == Back::Red || in_spans {
             return false;
@@ -138,13 +141,15 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let is_lit = shaded.light.is_some();
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
-        let in_spans = plan.variants.interpolation == Interpolation::EverySixteen;
-        if (is_lit && !pixels) || in_spans || group.draw.back == Back::Red {
+        let otherwise = plan.variants.interpolation == Interpolation::EverySixteen
+            || plan.variants.are_linear()
+            || !shaded.extras.is_empty();
+        if (is_lit && !pixels) || otherwise || group.draw.back == Back::Red {
             return false;
         }
         let texture = shaded.texture.as_deref();
-        let mips = shaded.texture.as_ref().and_then(|texture| terms.mips_of(texture));
-        let sampler = texture.and_then(|texture| sampler(context, texture, mips));
+        let source = shaded.texture.as_ref().map(|it| TexelSource::of_colors(context, it));
+        let sampler = source.and_then(|source| source.sampler());
         if texture.is_some() && sampler.is_none() {
             return false;
         }
@@ -153,17 +158,18 @@ impl<T: ShadingNumber> Shader<T> {
             if new {
                 self.place_texture(context, group, texture, sampler);
             }
-            if self.placement.known & 1 == 0 {
+            if self.placed.placement.known & 1 == 0 {
                 // The other way fetches what it needs.
                 self.attributes.forget();
                 return false;
             }
         }
         if new && shaded.vertex_colors {
-            self.take_vertex_colors(group);
+            self.take_vertex_colors(group, plan.variants.decoding());
         }
         let cut = self.cut_weights(context, group);
-        let Self { tile, attributes, batch, placement, far, vertex_colors, .. } = self;
+        let Self { tile, attributes, batch, placed, vertex_colors, .. } = self;
+        let Placed { placement, far } = placed;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
         if !needs_positions {

@@ -5,6 +5,10 @@
 //! rounded down, and these are added as integers. So the sum does not depend on its order, and the
 //! mean of equal colours is the byte that each of them would be.
 
+use std::sync::OnceLock;
+
+use crate::base::color::linear;
+use crate::base::once::get_or_compute;
 use crate::render::screen::tiles::BLOCK_PIXELS;
 use crate::render::simd::{BATCH, Lanes, Vec3};
 
@@ -22,6 +26,8 @@ pub(crate) enum Form {
 #[derive(Debug)]
 pub(crate) struct Colors {
     pub(crate) form: Form,
+    /// Whether fixed-point numbers are linear values, which are encoded when they are added up.
+    pub(crate) linear: bool,
     /// Red, green, blue and 255 in the order of memory.
     pub(crate) pixels: [u32; BATCH],
     /// Red, green and blue, in fixed point.
@@ -33,7 +39,7 @@ const BITS: u32 = 16;
 
 impl Default for Colors {
     fn default() -> Self {
-        Self { form: Form::Pixels, pixels: [0; BATCH], parts: [[0; BATCH]; 3] }
+        Self { form: Form::Pixels, linear: false, pixels: [0; BATCH], parts: [[0; BATCH]; 3] }
     }
 }
 
@@ -43,7 +49,11 @@ impl Colors {
     pub(crate) fn store<M: Lanes>(&mut self, lanes: M, color: Vec3<M::R>, at: usize) {
         match self.form {
             Form::Pixels => lanes.store_pixels(color, &mut self.pixels, at),
-            Form::Parts => lanes.store_parts(color, lanes.lift(0.5), &mut self.parts, at),
+            Form::Parts => {
+                // Linear values are rounded when they are encoded.
+                let half = if self.linear { 0.0 } else { 0.5 };
+                lanes.store_parts(color, lanes.lift(half), &mut self.parts, at);
+            }
         }
     }
 
@@ -68,7 +78,7 @@ impl Colors {
             Form::Pixels => self.pixels.fill(u32::from_le_bytes(color)),
             Form::Parts => {
                 for (row, byte) in self.parts.iter_mut().zip(color) {
-                    row.fill(parts(byte));
+                    row.fill(parts(byte, self.linear));
                 }
             }
         }
@@ -80,7 +90,7 @@ impl Colors {
             Form::Pixels => self.pixels[i] = u32::from_le_bytes(color),
             Form::Parts => {
                 for (row, byte) in self.parts.iter_mut().zip(color) {
-                    row[i] = parts(byte);
+                    row[i] = parts(byte, self.linear);
                 }
             }
         }
@@ -102,29 +112,73 @@ impl Colors {
     }
 }
 
-/// A byte in fixed point, in the middle of its step.
-const fn parts(byte: u8) -> u32 {
-    ((byte as u32) << BITS) + (1 << (BITS - 1))
+/// A byte in fixed point: in the middle of its step, or its linear value.
+fn parts(byte: u8, linear: bool) -> u32 {
+    if linear {
+        return linear_parts().of_bytes[usize::from(byte)];
+    }
+    (u32::from(byte) << BITS) + (1 << (BITS - 1))
+}
+
+/// Linear values in fixed point: 255 times 2^16 is white.
+#[derive(Debug)]
+struct LinearParts {
+    /// The value of each byte.
+    of_bytes: [u32; 256],
+    /// The least value that is encoded as each byte but the first.
+    least: [u32; 255],
+}
+
+fn linear_parts() -> &'static LinearParts {
+    static TABLE: OnceLock<LinearParts> = OnceLock::new();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "from 0 to 255 x 2^16"
+    )]
+    get_or_compute(&TABLE, || {
+        let parts = |stored: f64| linear(stored / 255.0) * 255.0 * f64::from(1_u32 << BITS);
+        LinearParts {
+            of_bytes: std::array::from_fn(|byte| parts(byte as f64).round() as u32),
+            least: std::array::from_fn(|byte| parts(byte as f64 + 0.5).ceil() as u32),
+        }
+    })
+}
+
+/// Computes the tables of linear values, so that threads compute none while they draw.
+pub(crate) fn prepare_linear() {
+    linear_parts();
+}
+
+/// The byte that a linear value in fixed point is encoded as.
+fn encoded_byte(value: u32) -> u32 {
+    let least = &linear_parts().least;
+    u32::try_from(least.partition_point(|least| *least <= value)).unwrap_or(255)
 }
 
 /// The colours of a block's pixels, added up over their samples: at most 2^6 samples, each below
 /// 2^24.
 #[derive(Clone, Debug)]
-pub(crate) struct Sums([[u32; 4]; BLOCK_PIXELS]);
-
-impl Default for Sums {
-    fn default() -> Self {
-        Self([[0; 4]; BLOCK_PIXELS])
-    }
+pub(crate) struct Sums {
+    sums: [[u32; 4]; BLOCK_PIXELS],
+    /// Whether they are sums of linear values.
+    linear: bool,
 }
 
 impl Sums {
+    /// No samples yet, of colours as they are stored or of linear values.
+    pub(crate) const fn new(linear: bool) -> Self {
+        Self { sums: [[0; 4]; BLOCK_PIXELS], linear }
+    }
+
     /// Adds a colour to a pixel of the block, weighted by the number of samples that show it.
     #[inline(always)]
     pub(crate) fn add(&mut self, place: usize, color: [u8; 4], samples: i32) {
-        let sum = &mut self.0[place % BLOCK_PIXELS];
+        let linear = self.linear;
+        let sum = &mut self.sums[place % BLOCK_PIXELS];
         for (sum, byte) in sum.iter_mut().zip(color) {
-            *sum += parts(byte) * samples.cast_unsigned();
+            *sum += parts(byte, linear) * samples.cast_unsigned();
         }
     }
 
@@ -138,7 +192,7 @@ impl Sums {
     pub(crate) fn add_all(&mut self, colors: &Colors, pixels: &[u8], samples: &[i32]) {
         let [red, green, blue] = &colors.parts;
         for (i, (place, samples)) in pixels.iter().zip(samples).enumerate() {
-            let sum = &mut self.0[usize::from(*place) % BLOCK_PIXELS];
+            let sum = &mut self.sums[usize::from(*place) % BLOCK_PIXELS];
             let samples = samples.cast_unsigned();
             let i = i % BATCH;
             sum[0] += red[i] * samples;
@@ -151,8 +205,14 @@ impl Sums {
     #[inline(always)]
     pub(crate) fn means(&self, log2: u32) -> [u32; BLOCK_PIXELS] {
         let shift = BITS + log2;
+        if self.linear {
+            return self.sums.map(|[r, g, b, _]| {
+                let [r, g, b] = [r, g, b].map(|sum| encoded_byte(sum >> log2));
+                r | g << 8 | b << 16 | 255 << 24
+            });
+        }
         std::array::from_fn(|i| {
-            let [r, g, b, _] = self.0[i];
+            let [r, g, b, _] = self.sums[i];
             r >> shift | (g >> shift) << 8 | (b >> shift) << 16 | 255 << 24
         })
     }
@@ -194,7 +254,7 @@ mod tests {
             });
             let [pixels, colors] = both(&numbers);
             for (samples, log2) in [(4, 2), (64, 6)] {
-                let mut sums = Sums::default();
+                let mut sums = Sums::new(false);
                 sums.add_all(&colors, &indices, &[samples / 4; BATCH]);
                 sums.add_all(&colors, &indices, &[samples / 4 * 3; BATCH]);
                 assert_eq!(sums.means(log2), pixels.pixels, "{numbers:?}");
@@ -208,10 +268,23 @@ mod tests {
     }
 
     #[test]
+    fn a_mean_of_linear_values_is_that_of_light_and_each_byte_comes_back() {
+        for byte in 0..=255_u8 {
+            let mut sums = Sums::new(true);
+            sums.add_everywhere([byte; 4], 64);
+            assert_eq!(sums.means(6)[5], u32::from_le_bytes([byte, byte, byte, 255]));
+        }
+        let mut sums = Sums::new(true);
+        sums.add_everywhere([0; 4], 2);
+        sums.add_everywhere([255; 4], 2);
+        assert_eq!(sums.means(2)[0], u32::from_le_bytes([188, 188, 188, 255]));
+    }
+
+    #[test]
     fn a_mean_is_that_of_all_bytes_with_halves_rounded_up() {
         for (few, many) in [(0, 255), (17, 18), (255, 254), (3, 3)] {
             for share in 0..=4 {
-                let mut sums = Sums::default();
+                let mut sums = Sums::new(false);
                 sums.add_everywhere([few; 4], share);
                 sums.add_everywhere([many; 4], 4 - share);
                 let sum = i32::from(few) * share + i32::from(many) * (4 - share);

@@ -21,6 +21,7 @@ use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{BATCH, Lanes as _, Sixteen, VariantLanes, Vec3};
+use crate::render::texture::lanes::Stored;
 
 /// The pixels of a tile, in rows that begin `stride` pixels apart.
 #[derive(Debug)]
@@ -388,7 +389,7 @@ fn lit<S: Simd>(
                             Some(far) => far.of_two_rows(simd, [x, y]),
                             None => texture.position(simd, &OfFirst, way),
                         };
-                        let texel = texture.texel(simd, &OfFirst, (way, w), position);
+                        let texel = texture.texel::<S, Stored>(simd, &OfFirst, (way, w), position);
                         own = product(own, texel);
                     }
                     if let Some(values) = vertex_colors {

@@ -235,7 +235,7 @@ impl<T: Number> Look<T> {
         } else {
             (Vec3([x * w, y * w, -w]), Vec3([-x, -y, one]).unit())
         };
-        Sample { position, normal, to_eye }
+        Sample { position, normal, to_eye, exponent: one }
     }
 }
 

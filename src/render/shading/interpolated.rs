@@ -12,12 +12,13 @@ use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::accuracy::{Coverage, Interpolation};
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
-use crate::render::frame::variants::Variants;
+use crate::render::frame::variants::{Decoding, Variants};
 use crate::render::lights::{Batch, Light, Rows, set};
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::weights::{HomogeneousWeights, barycentric, cut_place};
 use crate::render::simd::gather::{SLOTS, paged, pick};
 use crate::render::simd::{Lanes as _, Sixteen};
+use crate::render::texture::lanes::{Linear, Stored};
 
 /// Numbers in which attributes are interpolated.
 pub(crate) trait Interpolated: AttributeNumber {
@@ -58,6 +59,13 @@ pub(crate) trait Interpolated: AttributeNumber {
     /// Multiplies the colours of fragments by those of a texture, if that can be done sixteen
     /// pixels at a time. Returns the slots, a bit for each, of the triangles that it was done for.
     fn multiply_texels(
+        level: Level,
+        count: usize,
+        samples: &TextureSamples<'_, Self>,
+        to: &mut Rows<Self>,
+    ) -> u64;
+    /// The slopes of heights at fragments, as [`TextureSamples::slopes`], likewise.
+    fn find_slopes(
         level: Level,
         count: usize,
         samples: &TextureSamples<'_, Self>,
@@ -210,6 +218,10 @@ impl Interpolated for f64 {
     ) -> u64 {
         0
     }
+
+    fn find_slopes(_: Level, _: usize, _: &TextureSamples<'_, Self>, _: &mut Rows<Self>) -> u64 {
+        0
+    }
 }
 
 impl Interpolated for f32 {
@@ -275,7 +287,24 @@ impl Interpolated for f32 {
         samples: &TextureSamples<'_, Self>,
         to: &mut Rows<Self>,
     ) -> u64 {
-        paged!(count, PAGES => dispatch!(level, simd => samples.multiply::<_, PAGES>(simd, to)));
+        match samples.decoding {
+            Decoding::Stored => paged!(count, PAGES => {
+                dispatch!(level, simd => samples.multiply::<_, Stored, PAGES>(simd, to));
+            }),
+            Decoding::Linear => paged!(count, PAGES => {
+                dispatch!(level, simd => samples.multiply::<_, Linear, PAGES>(simd, to));
+            }),
+        }
+        samples.texture.placement.known
+    }
+
+    fn find_slopes(
+        level: Level,
+        count: usize,
+        samples: &TextureSamples<'_, Self>,
+        to: &mut Rows<Self>,
+    ) -> u64 {
+        paged!(count, PAGES => dispatch!(level, simd => samples.slopes::<_, PAGES>(simd, to)));
         samples.texture.placement.known
     }
 }

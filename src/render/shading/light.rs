@@ -143,7 +143,7 @@ impl<T: ShadingNumber> Table<T> {
     /// Clears the table for a draw.
     fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
         let count = place_count(draw).div_ceil(BATCH);
-        let colored = shaded.texture.is_none() && !shaded.vertex_colors;
+        let colored = shaded.texture.is_none() && !shaded.vertex_colors && shaded.extras.is_empty();
         self.tint = colored.then(|| shaded.tint.map(T::from_f64));
         self.diffuse.clear();
         self.diffuse.resize_with(count, OnceLock::new);

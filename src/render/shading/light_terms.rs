@@ -1,14 +1,17 @@
 //! Prepares a plan for shading: light terms in the shading arithmetic, tables of powers, and mip
 //! maps. Those of the last picture are reused.
 
+use super::colors::prepare_linear;
 use super::rounding::block_thresholds;
 use crate::accuracy::{Filter, Rounding};
 use crate::base::Shared;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Pipeline, Shaded};
+use crate::render::frame::variants::Decoding;
 use crate::render::lights::{LightTerm, PhongMaterial};
 use crate::render::simd::power::{Power, Tables};
-use crate::render::simd::{BATCH, Number};
+use crate::render::simd::{BATCH, Encoding, Number};
+use crate::render::texture::lanes::prepare_decoding;
 use crate::render::texture::mips::Mips;
 use crate::scene::Texture;
 
@@ -21,6 +24,8 @@ pub(crate) struct LightTerms<T> {
     mips: Vec<Mips>,
     /// The rounding thresholds of a block's pixels.
     thresholds: Option<(Rounding, [f32; BATCH])>,
+    /// How colours are encoded, if they are linear.
+    encoding: Option<Encoding>,
 }
 
 impl<T> LightTerms<T> {
@@ -33,6 +38,11 @@ impl<T> LightTerms<T> {
 impl<T: Number> LightTerms<T> {
     /// Prepares the light terms and mip maps of a plan.
     pub(crate) fn prepare(&mut self, plan: &FramePlan) {
+        self.encoding = plan.variants.are_linear().then(Encoding::new);
+        if self.encoding.is_some() {
+            prepare_decoding();
+            prepare_linear();
+        }
         self.prepare_mips(plan);
         let rounding = plan.variants.rounding;
         if self.thresholds.is_none_or(|(known, _)| known != rounding) {
@@ -56,31 +66,49 @@ impl<T: Number> LightTerms<T> {
     /// Prepares mip maps, and reuses those of the last picture.
     fn prepare_mips(&mut self, plan: &FramePlan) {
         let before = std::mem::take(&mut self.mips);
-        if plan.filter != Filter::Trilinear {
-            return;
-        }
         let mut before: Vec<Option<Mips>> = before.into_iter().map(Some).collect();
         for pipeline in &plan.pipelines {
-            let Pipeline::Shaded(Shaded { texture: Some(texture), .. }) = pipeline else {
-                continue;
-            };
-            if self.mips_of(texture).is_none() {
-                let is_it = |mips: &&mut Option<Mips>| {
-                    mips.as_ref().is_some_and(|mips| mips.are_of(texture))
-                };
-                let known = before.iter_mut().find(is_it).and_then(Option::take);
-                self.mips.push(known.unwrap_or_else(|| Mips::new(texture)));
+            let Pipeline::Shaded(shaded) = pipeline else { continue };
+            for (texture, decoding) in mipped(plan, shaded) {
+                if self.mips_of(texture, decoding).is_none() {
+                    let is_it = |mips: &&mut Option<Mips>| {
+                        mips.as_ref().is_some_and(|mips| mips.are_of(texture, decoding))
+                    };
+                    let known = before.iter_mut().find(is_it).and_then(Option::take);
+                    self.mips.push(known.unwrap_or_else(|| Mips::new(texture, decoding)));
+                }
             }
         }
     }
 
     /// The mip maps of a texture, if the filter needs them.
-    pub(crate) fn mips_of(&self, texture: &Shared<Texture>) -> Option<&Mips> {
-        self.mips.iter().find(|mips| mips.are_of(texture))
+    pub(crate) fn mips_of(&self, texture: &Shared<Texture>, decoding: Decoding) -> Option<&Mips> {
+        self.mips.iter().find(|mips| mips.are_of(texture, decoding))
+    }
+
+    /// How colours are encoded, if they are linear.
+    pub(crate) const fn encoding(&self) -> Option<&Encoding> {
+        self.encoding.as_ref()
     }
 
     /// The light terms of a pipeline.
     pub(crate) fn of(&self, pipeline: u32) -> &[LightTerm<T>] {
         &self.terms[pipeline as usize]
     }
+}
+
+/// The textures of a surface that are read from mip maps, and how these are averaged.
+fn mipped<'a>(
+    plan: &FramePlan,
+    shaded: &'a Shaded,
+) -> impl Iterator<Item = (&'a Shared<Texture>, Decoding)> {
+    let extras = &shaded.extras;
+    let decoding = plan.variants.decoding();
+    let colors = shaded.texture.iter().chain(extras.colors()).map(move |it| (it, decoding));
+    let numbers = extras.exponent.iter().map(|it| (it, Decoding::Stored));
+    let bumps = extras.bump.iter().map(|bump| (&bump.map, Decoding::Stored));
+    let filtered = plan.filter == Filter::Trilinear;
+    let bumps_filtered = plan.variants.bump_filter() == Filter::Trilinear;
+    let of_frame = colors.chain(numbers).filter(move |_| filtered);
+    of_frame.chain(bumps.filter(move |_| bumps_filtered))
 }

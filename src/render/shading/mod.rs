@@ -9,6 +9,7 @@
 
 pub(crate) mod barycentrics;
 mod blocks;
+mod bumps;
 mod clamp_to_triangle;
 pub(crate) mod colors;
 pub(crate) mod context;
@@ -16,6 +17,7 @@ mod face_colors;
 mod far_texture;
 pub(crate) mod fragments;
 mod full_blocks;
+mod glow;
 mod groups;
 mod interpolate;
 pub(crate) mod interpolated;

@@ -176,7 +176,7 @@ impl<T: ShadingNumber> Painter<T> {
         if samples.compare(context.level, planes) {
             return shader.block(context, &planes[0], corner, (canvas, at));
         }
-        let mut sums = Sums::default();
+        let mut sums = Sums::new(context.plan.variants.are_linear());
         let shows = shader.add_samples(context, (samples, planes), corner, &mut sums);
         canvas.put(at, &sums.means(FOUR.ilog2()));
         shows
@@ -209,7 +209,7 @@ impl<T: ShadingNumber> Painter<T> {
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
-        to.resize(BLOCK_PIXELS, Sums::default());
+        to.resize(BLOCK_PIXELS, Sums::new(plan.variants.are_linear()));
         if !frame.sample_positions().are_many() {
             return self.add_picture(context, tile, &mut to);
         }

@@ -6,18 +6,20 @@
 //! the block, and no barycentric coordinates are computed.
 
 use super::barycentrics::Barycentrics;
+use super::bumps::bend;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
 use super::face_colors::FaceColors;
-use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
+use super::glow::MapRows;
 use super::groups::{Group, group_of, one_group};
 use super::interpolate::{CornerValues, Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
-use super::quantize::{Quantize, SurfaceColor};
+use super::quantize::{Finish, Quantize, SurfaceColor};
 use super::rounding::{QuantizeWithThresholds, thresholds};
+use super::textured::{Placed, Points};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
@@ -29,7 +31,6 @@ use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
-use crate::render::texture::placement::Placement;
 
 /// The number of faces in a block up to which their colours are remembered.
 const FEW_FACES: usize = 16;
@@ -44,12 +45,12 @@ pub(crate) struct Shader<T> {
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
     /// The positions of the triangles on their texture.
-    pub(crate) placement: Placement,
-    /// Those among them that f32 is not enough for.
-    pub(super) far: Vec<FarTexture>,
+    pub(super) placed: Placed,
     pub(crate) texels: Rows<T>,
     /// The vertex colours of the triangles.
     pub(super) vertex_colors: CornerValues<T>,
+    /// For surfaces with further maps, or light of their own.
+    pub(super) maps: Box<MapRows<T>>,
     colors: Colors,
     faces: FaceColors,
 }
@@ -68,6 +69,8 @@ pub(crate) enum Out<'a, 'b> {
 enum Mixture {
     /// The bytes of the pixels.
     Bytes,
+    /// Their colours, as diffuse light: they are encoded after this.
+    Colors,
     /// Diffuse and specular light.
     Light,
 }
@@ -80,10 +83,10 @@ impl<T: ShadingNumber> Default for Shader<T> {
             attributes: TriangleAttributes::default(),
             barycentrics: Barycentrics::default(),
             batch: Batch::default(),
-            placement: Placement::default(),
-            far: Vec::new(),
+            placed: Placed::default(),
             texels: [[T::default(); BATCH]; 3],
             vertex_colors: [[[T::default(); SLOTS]; 3]; 3],
+            maps: Box::default(),
             colors: Colors::default(),
             faces: FaceColors::default(),
         }
@@ -161,6 +164,7 @@ impl<T: ShadingNumber> Shader<T> {
             Out::Tile(..) => Form::Pixels,
             Out::Sums(_) => Form::Parts,
         };
+        self.colors.linear = context.plan.variants.are_linear();
         self.group(context, group);
         match out {
             Out::Tile(canvas, at) => self.copy(canvas, *at),
@@ -246,7 +250,8 @@ impl<T: ShadingNumber> Shader<T> {
     fn shaded(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>, shaded: &Shaded) {
         let ShadingContext { level, plan, .. } = *context;
         let draw = group.draw;
-        let textured = shaded.texture.is_some() || shaded.vertex_colors;
+        let extras = &shaded.extras;
+        let textured = shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels();
         let rounding = plan.variants.rounding;
         // Every pixel has its own colour.
         let each = textured || rounding == Rounding::Dithered;
@@ -269,7 +274,7 @@ impl<T: ShadingNumber> Shader<T> {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
         }
         self.batch.len = self.fragments.len;
-        let tint = shaded.tint;
+        let mut tint = shaded.tint;
         match light {
             None => {}
             Some((LightAt::Pixel | LightAt::Sample, _)) => {
@@ -277,6 +282,7 @@ impl<T: ShadingNumber> Shader<T> {
             }
             Some((LightAt::Vertex, _)) => match self.mix_light(context, group, shaded, new) {
                 Mixture::Bytes => return,
+                Mixture::Colors => tint = [1.0; 3],
                 Mixture::Light => {}
             },
             Some((LightAt::Face, stages)) => self.light_faces(context, group, stages, each),
@@ -284,14 +290,27 @@ impl<T: ShadingNumber> Shader<T> {
         if textured {
             self.texels(context, group, shaded, new);
         }
-        let Self { batch, texels, colors, .. } = self;
+        let glows = extras.glows().next().is_some();
+        if !extras.is_empty() {
+            self.map_highlights(context, group, shaded, new);
+            if glows {
+                self.find_glow(context, group, shaded, new);
+            }
+        }
+        let encoding = context.terms.encoding();
+        let Self { batch, texels, colors, maps, .. } = self;
         let own = if textured {
             SurfaceColor::Texels(texels)
         } else {
             SurfaceColor::Tint(tint.map(T::from_f64))
         };
         let lit = light.is_some();
-        if rounding == Rounding::Nearest {
+        if glows || encoding.is_some() {
+            let thresholds =
+                (rounding != Rounding::Nearest).then(|| thresholds(rounding, &self.fragments));
+            let (glow, thresholds) = (glows.then_some(&maps.glow), thresholds.as_ref());
+            T::run(level, Finish { batch, lit, own, glow, thresholds, encoding, colors });
+        } else if rounding == Rounding::Nearest {
             T::run(level, Quantize { batch, lit, own, colors });
         } else {
             let thresholds = &thresholds(rounding, &self.fragments);
@@ -338,7 +357,10 @@ impl<T: ShadingNumber> Shader<T> {
         new: bool,
     ) {
         let ShadingContext { level, plan, terms, .. } = *context;
-        let Self { tile, fragments, attributes, barycentrics, batch, .. } = self;
+        if shaded.extras.exponent.is_some() {
+            self.map_exponents(context, group, shaded, new);
+        }
+        let Self { tile, fragments, attributes, barycentrics, batch, maps, .. } = self;
         let light = tile.light(plan, group.pipeline, shaded);
         if light.needs_positions {
             if new {
@@ -346,6 +368,10 @@ impl<T: ShadingNumber> Shader<T> {
                 attributes.spread(level);
             }
             surface_samples(level, (plan, group.draw), fragments, attributes, barycentrics, batch);
+            if let Some(bump) = &shaded.extras.bump {
+                let points = Points { fragments, attributes, barycentrics };
+                bend(context, group, &points, (bump, new), (maps, batch));
+            }
         } else {
             // The attributes were not fetched, so the next block must not reuse them.
             attributes.forget();
@@ -370,13 +396,17 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let Self { fragments, attributes, barycentrics, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
-        if colored {
+        if colored && !plan.variants.are_linear() {
             let thresholds = &thresholds(plan.variants.rounding, fragments);
             mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors, thresholds));
             return Mixture::Bytes;
         }
         mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
         batch.len = fragments.len;
+        if colored {
+            batch.specular = [[T::default(); BATCH]; 3];
+            return Mixture::Colors;
+        }
         attributes.carry_light(
             group.draw,
             #[inline(always)]

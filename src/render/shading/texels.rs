@@ -9,13 +9,15 @@ use super::fragments::Fragments;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
+use crate::render::frame::variants::Decoding;
 use crate::render::lights::{Rows, load, store};
 use crate::render::screen::coverage::doubled_area;
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Lanes as _, Real, Sixteen, Vec3};
-use crate::render::texture::lanes::Sampler;
+use crate::render::texture::lanes::{Decode, Sampler, Stored};
 use crate::render::texture::placement::{Placement, Steps};
+use crate::render::texture::sample::brightness;
 use crate::render::texture::uv::Uvs;
 
 /// A texture on the triangles of a list.
@@ -33,14 +35,19 @@ pub(crate) struct TextureSamples<'a, T> {
     pub(crate) fragments: &'a Fragments,
     pub(crate) barycentrics: &'a Barycentrics<T>,
     pub(crate) texture: PlacedTexture<'a>,
+    pub(crate) decoding: Decoding,
 }
 
 impl TextureSamples<'_, f32> {
     /// Multiplies colours by the texels of all fragments; those of triangles whose placement is not
     /// known get arbitrary factors.
     #[inline(always)]
-    pub(crate) fn multiply<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut Rows<f32>) {
-        let Self { fragments, barycentrics, texture } = *self;
+    pub(crate) fn multiply<S: Simd, D: Decode, const PAGES: usize>(
+        &self,
+        simd: S,
+        to: &mut Rows<f32>,
+    ) {
+        let Self { fragments, barycentrics, texture, .. } = *self;
         let lanes = Sixteen(simd);
         for at in (0..fragments.len).step_by(16) {
             let slots = OfSlots::<S, PAGES>(lanes.slots(&fragments.slots, at));
@@ -52,8 +59,35 @@ impl TextureSamples<'_, f32> {
             if !texture.far.is_empty() {
                 position = self.far_positions(simd, at, position);
             }
-            let texel = texture.texel(simd, &slots, (way, w), position);
+            let texel = texture.texel::<S, D>(simd, &slots, (way, w), position);
             store(lanes, product(load(lanes, to, at), texel), to, at);
+        }
+    }
+
+    /// The slopes of heights at all fragments, per texel along u and v, in the first two rows.
+    #[inline(always)]
+    pub(crate) fn slopes<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut Rows<f32>) {
+        let Self { fragments, barycentrics, texture, .. } = *self;
+        let lanes = Sixteen(simd);
+        for at in (0..fragments.len).step_by(16) {
+            let slots = OfSlots::<S, PAGES>(lanes.slots(&fragments.slots, at));
+            let second = lanes.load(&barycentrics.weights[0], at);
+            let third = lanes.load(&barycentrics.weights[1], at);
+            let w = lanes.load(&barycentrics.w, at);
+            let way = texture.way(simd, &slots, [second, third]);
+            let mut position = texture.position(simd, &slots, way);
+            if !texture.far.is_empty() {
+                position = self.far_positions(simd, at, position);
+            }
+            let [x, y] = position;
+            let mut heights = [x; 4];
+            let beside = [[x + 1.0, y], [x - 1.0, y], [x, y + 1.0], [x, y - 1.0]];
+            for (height, position) in heights.iter_mut().zip(beside) {
+                *height = brightness(texture.texel::<S, Stored>(simd, &slots, (way, w), position));
+            }
+            let [right, left, above, below] = heights;
+            lanes.store((right - left) * 0.5, &mut to[0], at);
+            lanes.store((above - below) * 0.5, &mut to[1], at);
         }
     }
 }
@@ -116,14 +150,14 @@ impl PlacedTexture<'_> {
     /// Red, green and blue, as factors, at sixteen positions on the texture, these texels from the
     /// first corner and with this w.
     #[inline(always)]
-    pub(crate) fn texel<S: Simd>(
+    pub(crate) fn texel<S: Simd, D: Decode>(
         &self,
         simd: S,
         of: &impl Triangles<S>,
         at: ([f32x16<S>; 2], f32x16<S>),
         position: [f32x16<S>; 2],
     ) -> Vec3<f32x16<S>> {
-        self.sampler.sample(
+        self.sampler.sample::<S, D>(
             simd,
             position,
             #[inline(always)]

@@ -34,6 +34,9 @@ pub trait Real:
     /// The power of `self`, which is from 0 to 1; 0 if it is below the floor, or `self` is 0.
     #[must_use]
     fn power(self, power: &Power) -> Self;
+    /// The same with the exponent times `factor`, by the default of the arithmetic.
+    #[must_use]
+    fn power_times(self, power: &Power, factor: Self) -> Self;
 
     /// The larger of two numbers; `other` if `self` is NaN.
     #[inline(always)]
@@ -72,6 +75,15 @@ impl Real for f64 {
             return 0.0;
         }
         let result = libm::pow(self, power.exponent);
+        if result > power.least { result } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn power_times(self, power: &Power, factor: Self) -> Self {
+        if self.is_nan() || self <= 0.0 {
+            return 0.0;
+        }
+        let result = libm::pow(self, power.exponent * factor);
         if result > power.least { result } else { 0.0 }
     }
 }

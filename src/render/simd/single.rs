@@ -51,7 +51,7 @@ fn single_reciprocal_root<R: Single>(x: R) -> R {
 fn single_power<R: Single>(x: R, power: &Power) -> R {
     match power.whole {
         Some(n) => whole_power(x, n, power),
-        None => any_power(x, power),
+        None => any_power(x, x.lift(power.exponent), power),
     }
 }
 
@@ -82,7 +82,7 @@ fn whole_power<R: Single>(x: R, n: u32, power: &Power) -> R {
 /// with the polynomials of `logf` and `exp2f` in Moshier's Cephes library. Since the error of ln m
 /// is relative to ln m, and not to 1, the power is accurate for x near 1 however large n is.
 #[inline(always)]
-fn any_power<R: Single>(x: R, power: &Power) -> R {
+fn any_power<R: Single>(x: R, exponent: R, power: &Power) -> R {
     const EXPONENTIAL: [f64; 7] = [
         1.535_336_188_319_5e-4,
         1.339_887_440_266_574e-3,
@@ -92,7 +92,7 @@ fn any_power<R: Single>(x: R, power: &Power) -> R {
         6.931_472_028_550_42e-1,
         1.0,
     ];
-    let log2 = binary_logarithm(x) * x.lift(power.exponent);
+    let log2 = binary_logarithm(x) * exponent;
     // Clamped to the exponents of f32; results below the floor are discarded in the end.
     let clamped = Real::max(log2, x.lift(-126.0));
     let whole = clamped.round();
@@ -159,6 +159,11 @@ impl Real for f32 {
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
         single_power(self, power)
+    }
+
+    #[inline(always)]
+    fn power_times(self, power: &Power, factor: Self) -> Self {
+        any_power(self, self.lift(power.exponent) * factor, power)
     }
 
     #[inline(always)]
@@ -242,6 +247,11 @@ impl<S: Simd> Real for f32x16<S> {
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
         single_power(self, power)
+    }
+
+    #[inline(always)]
+    fn power_times(self, power: &Power, factor: Self) -> Self {
+        any_power(self, self.lift(power.exponent) * factor, power)
     }
 
     #[inline(always)]

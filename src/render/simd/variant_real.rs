@@ -114,6 +114,11 @@ impl<R: VariantReal> Real for VariantNumber<R> {
     fn power(self, power: &Power) -> Self {
         self.with(self.value.power_by(power))
     }
+
+    #[inline(always)]
+    fn power_times(self, power: &Power, factor: Self) -> Self {
+        self.with(self.value.power_times(power, factor.value))
+    }
 }
 
 impl<R: VariantReal> VariantReal for VariantNumber<R> {

@@ -3,11 +3,15 @@
 //! Positions, texels and weights are those of [`sample`](super::sample) and
 //! [`mips`](super::mips), in f32; only the texels themselves are fetched one by one.
 
+use std::sync::OnceLock;
+
 use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
 };
 
+use super::sample::{brightness, linear_factors};
 use crate::accuracy::Filter;
+use crate::base::once::get_or_compute;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Lanes as _, Real, Sixteen, Vec3, log2};
 use crate::scene::{Texture, Wrap};
@@ -50,7 +54,7 @@ impl<'a> Sampler<'a> {
     /// Red, green and blue, as factors, at sixteen positions in texels; `footprint` gives the
     /// square of the texels that a pixel covers.
     #[inline(always)]
-    pub(crate) fn sample<S: Simd>(
+    pub(crate) fn sample<S: Simd, D: Decode>(
         &self,
         simd: S,
         position: [f32x16<S>; 2],
@@ -58,36 +62,53 @@ impl<'a> Sampler<'a> {
     ) -> Vec3<f32x16<S>> {
         let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
         match self.filter {
-            Filter::Nearest => self.nearest(simd, position),
+            Filter::Nearest => self.nearest::<S, D>(simd, position),
             Filter::Bilinear => {
                 let level = Level::of(self, simd, i32x16::splat(simd, 0));
-                level.bilinear(simd, self, position).times(f32x16::splat(simd, 1.0 / 255.0))
+                let color = level.bilinear::<D>(simd, self, position);
+                color.times(f32x16::splat(simd, 1.0 / 255.0))
             }
-            Filter::Trilinear => self.trilinear(simd, position, footprint()),
+            Filter::Trilinear => self.trilinear::<S, D>(simd, position, footprint()),
         }
     }
 
     /// Alpha at sixteen positions in texels, from 0 to 1, of the texture's own size.
     #[inline(always)]
     pub(crate) fn alpha<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
+        self.scalar(simd, position, alpha_of)
+    }
+
+    /// The brightness at sixteen positions in texels, from 0 to 1, of the texture's own size.
+    #[inline(always)]
+    pub(crate) fn brightness<S: Simd>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
+        self.scalar(simd, position, brightness_of)
+    }
+
+    #[inline(always)]
+    fn scalar<S: Simd>(
+        &self,
+        simd: S,
+        position: [f32x16<S>; 2],
+        of: impl Fn(i32x16<S>) -> f32x16<S>,
+    ) -> f32x16<S> {
         let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
         let level = Level::of(self, simd, i32x16::splat(simd, 0));
-        let alpha = match self.filter {
-            Filter::Nearest => alpha_of(level.nearest(simd, self, position)),
+        let number = match self.filter {
+            Filter::Nearest => of(level.nearest(simd, self, position)),
             Filter::Bilinear | Filter::Trilinear => {
                 let Footprint { left, right, lower, upper, s, t } = level.footprint(self, position);
                 let at = [[left, lower], [right, lower], [left, upper], [right, upper]];
                 let [a, b, c, d] = [
-                    alpha_of(level.fetch(simd, self, at[0])),
-                    alpha_of(level.fetch(simd, self, at[1])),
-                    alpha_of(level.fetch(simd, self, at[2])),
-                    alpha_of(level.fetch(simd, self, at[3])),
+                    of(level.fetch(simd, self, at[0])),
+                    of(level.fetch(simd, self, at[1])),
+                    of(level.fetch(simd, self, at[2])),
+                    of(level.fetch(simd, self, at[3])),
                 ];
                 let (below, above) = (a + (b - a) * s, c + (d - c) * s);
                 below + (above - below) * t
             }
         };
-        alpha * (1.0 / 255.0)
+        number * (1.0 / 255.0)
     }
 
     /// Whether the filter shows texels as they are.
@@ -112,14 +133,14 @@ impl<'a> Sampler<'a> {
     }
 
     #[inline(always)]
-    fn nearest<S: Simd>(&self, simd: S, position: Positions<S>) -> Vec3<f32x16<S>> {
+    fn nearest<S: Simd, D: Decode>(&self, simd: S, position: Positions<S>) -> Vec3<f32x16<S>> {
         let level = Level::of(self, simd, i32x16::splat(simd, 0));
-        let Vec3([r, g, b]) = channels(level.nearest(simd, self, position));
+        let Vec3([r, g, b]) = D::channels(level.nearest(simd, self, position));
         Vec3([r / 255.0, g / 255.0, b / 255.0])
     }
 
     #[inline(always)]
-    fn trilinear<S: Simd>(
+    fn trilinear<S: Simd, D: Decode>(
         &self,
         simd: S,
         position: Positions<S>,
@@ -133,10 +154,10 @@ impl<'a> Sampler<'a> {
         let below = level.floor();
         let part = level - below;
         let below: i32x16<S> = below.to_int();
-        let near = Level::of(self, simd, below).bilinear(simd, self, position);
+        let near = Level::of(self, simd, below).bilinear::<D>(simd, self, position);
         let color = if part.simd_gt(0.0).any_true() {
             let next = (below + 1).min(last.to_int::<i32x16<S>>());
-            let far = Level::of(self, simd, next).bilinear(simd, self, position);
+            let far = Level::of(self, simd, next).bilinear::<D>(simd, self, position);
             between(near, far, part)
         } else {
             near
@@ -192,7 +213,12 @@ impl<S: Simd> Level<S> {
 
     /// Interpolates between four texels: red, green and blue from 0 to 255.
     #[inline(always)]
-    fn bilinear(&self, simd: S, sampler: &Sampler<'_>, [x, y]: Positions<S>) -> Vec3<f32x16<S>> {
+    fn bilinear<D: Decode>(
+        &self,
+        simd: S,
+        sampler: &Sampler<'_>,
+        [x, y]: Positions<S>,
+    ) -> Vec3<f32x16<S>> {
         let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
         let (column, row) = (x.floor(), y.floor());
         let (s, t) = (x - column, y - row);
@@ -200,13 +226,13 @@ impl<S: Simd> Level<S> {
         let [left, right] = beside(column.to_int(), self.width, wrap);
         let [lower, upper] = beside(row.to_int(), self.height, wrap);
         let below = between(
-            channels(self.fetch(simd, sampler, [left, lower])),
-            channels(self.fetch(simd, sampler, [right, lower])),
+            D::channels(self.fetch(simd, sampler, [left, lower])),
+            D::channels(self.fetch(simd, sampler, [right, lower])),
             s,
         );
         let above = between(
-            channels(self.fetch(simd, sampler, [left, upper])),
-            channels(self.fetch(simd, sampler, [right, upper])),
+            D::channels(self.fetch(simd, sampler, [left, upper])),
+            D::channels(self.fetch(simd, sampler, [right, upper])),
             s,
         );
         between(below, above, t)
@@ -294,6 +320,64 @@ fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
         ((texels >> 8) & 255).to_float(),
         ((texels >> 16) & 255).to_float(),
     ])
+}
+
+/// How bytes of texels become numbers.
+pub(crate) trait Decode {
+    /// Red, green and blue of texels, from 0 to 255.
+    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>>;
+}
+
+/// As they are stored.
+pub(crate) struct Stored;
+/// Decoded from sRGB.
+pub(crate) struct Linear;
+
+impl Decode for Stored {
+    #[inline(always)]
+    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
+        channels(texels)
+    }
+}
+
+impl Decode for Linear {
+    #[inline(always)]
+    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
+        let simd = texels.simd;
+        let table = decoded_bytes();
+        let texels = <[i32; 16]>::from(texels);
+        let mut rows = [[0.0; 16]; 3];
+        for (lane, texel) in texels.into_iter().enumerate() {
+            let [r, g, b, _] = texel.to_le_bytes();
+            rows[0][lane] = table[usize::from(r)];
+            rows[1][lane] = table[usize::from(g)];
+            rows[2][lane] = table[usize::from(b)];
+        }
+        Vec3([
+            f32x16::from_slice(simd, &rows[0]),
+            f32x16::from_slice(simd, &rows[1]),
+            f32x16::from_slice(simd, &rows[2]),
+        ])
+    }
+}
+
+/// 255 times the linear value of each byte.
+fn decoded_bytes() -> &'static [f32; 256] {
+    static TABLE: OnceLock<[f32; 256]> = OnceLock::new();
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    get_or_compute(&TABLE, || linear_factors().map(|linear| (255.0 * linear) as f32))
+}
+
+/// Computes the tables that decoding reads, so that threads compute none while they draw.
+pub(crate) fn prepare_decoding() {
+    decoded_bytes();
+}
+
+/// The brightness of texels, from 0 to 255; that of a grey is its byte, exactly. The weights are
+/// those of ITU-R BT.709.
+#[inline(always)]
+fn brightness_of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
+    brightness(channels(texels))
 }
 
 /// Alpha of texels, from 0 to 255.

@@ -1,7 +1,12 @@
 //! Samples textures: texels are bytes / 255, and (0, 0) is the lower left corner.
 
+use std::sync::OnceLock;
+
 use crate::accuracy::Filter;
-use crate::render::simd::Number;
+use crate::base::color::linear;
+use crate::base::once::get_or_compute;
+use crate::render::frame::variants::Decoding;
+use crate::render::simd::{Number, Real, Vec3};
 use crate::scene::{Texture, Wrap};
 
 /// Red, green, blue and alpha at `uv`, as factors.
@@ -10,6 +15,17 @@ use crate::scene::{Texture, Wrap};
 /// interpolation is computed in `T`.
 #[inline(always)]
 pub(crate) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter) -> [T; 4] {
+    sample_as(texture, (uv, [0.0; 2]), filter, Decoding::Stored)
+}
+
+/// The same at a distance `beside` from `uv` in texels, with red, green and blue decoded.
+#[inline(always)]
+pub(crate) fn sample_as<T: Number>(
+    texture: &Texture,
+    (uv, beside): ([f64; 2], [f64; 2]),
+    filter: Filter,
+    decoding: Decoding,
+) -> [T; 4] {
     let size = texture.picture.size();
     if size.area() == 0 {
         return [T::from_f64(1.0); 4];
@@ -18,12 +34,21 @@ pub(crate) fn sample<T: Number>(texture: &Texture, uv: [f64; 2], filter: Filter)
     let v = wrapped(uv[1] * texture.scale[1] + texture.offset[1], texture.wrap);
     // In texels, from the lower left corner of the picture.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-    let (x, y) = (u * size.width as f64, v * size.height as f64);
+    let (x, y) = (u * size.width as f64 + beside[0], v * size.height as f64 + beside[1]);
     let texel = |column: i64, row: i64| {
         let column = bring(column, size.width, texture.wrap);
         // The picture's own rows run down.
         let row = size.height - 1 - bring(row, size.height, texture.wrap);
-        texture.picture.pixel(column, row).map(|byte| T::from_f64(FACTORS[usize::from(byte)]))
+        let pixel = texture.picture.pixel(column, row);
+        let stored = pixel.map(|byte| T::from_f64(FACTORS[usize::from(byte)]));
+        match decoding {
+            Decoding::Stored => stored,
+            Decoding::Linear => {
+                let [r, g, b, _] =
+                    pixel.map(|byte| T::from_f64(linear_factors()[usize::from(byte)]));
+                [r, g, b, stored[3]]
+            }
+        }
     };
     match filter {
         Filter::Nearest => texel(whole(x), whole(y)),
@@ -52,6 +77,19 @@ const FACTORS: [f64; 256] = {
     }
     factors
 };
+
+/// The linear value of each byte, from 0 to 1.
+pub(crate) fn linear_factors() -> &'static [f64; 256] {
+    static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
+    get_or_compute(&TABLE, || FACTORS.map(linear))
+}
+
+/// The brightness of a colour; that of a grey is its value, exactly. The weights are those of ITU-R
+/// BT.709.
+#[inline(always)]
+pub(crate) fn brightness<R: Real>(Vec3([r, g, b]): Vec3<R>) -> R {
+    g + (r - g) * g.lift(0.2126) + (b - g) * g.lift(0.0722)
+}
 
 /// Wraps a coordinate to 0 to 1; NaN becomes 0.
 #[inline(always)]

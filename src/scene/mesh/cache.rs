@@ -8,13 +8,14 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::closed::is_closed;
+use super::tangents::CornerTangents;
 use crate::base::math::each;
 use crate::base::once::get_or_compute;
 use crate::scene::mesh::build::{Outlines, triangles};
 use crate::scene::mesh::edges::{Edge, Edges};
 use crate::scene::mesh::points::shown_normal;
 use crate::scene::mesh::{Shape, index};
-use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, Triangle};
+use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, NormalSource, Triangle};
 
 /// The data for flat shading of a polygon, in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +42,8 @@ pub enum Derived {
     Facets,
     /// [`Mesh::draw_order`].
     DrawOrder,
+    /// The tangents of corners, beside one kind of normals.
+    Tangents(NormalSource),
     /// [`Mesh::edge_order`], [`Mesh::edges`] and [`Mesh::edge_polygons`].
     EdgeOrder,
 }
@@ -50,6 +53,8 @@ pub enum Derived {
 pub(crate) struct Found {
     corners: OnceLock<Vec<Corner>>,
     order: OnceLock<DrawOrder>,
+    /// With computed normals, and with those of the file.
+    pub(super) tangents: [OnceLock<Vec<CornerTangents>>; 2],
 }
 
 /// The data that has been computed and does not depend on the normals of vertices.
@@ -106,6 +111,7 @@ impl Mesh {
             Derived::PolygonNormals => _ = self.polygon_normals(),
             Derived::Facets => _ = self.facets(),
             Derived::DrawOrder => _ = self.draw_order(),
+            Derived::Tangents(source) => _ = self.tangents(source),
             Derived::EdgeOrder => _ = self.edge_order(),
         }
     }
@@ -120,6 +126,11 @@ impl Mesh {
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.shape.corners.len() - 2 * self.polygon_count()
+    }
+
+    /// The position of a corner, by its place in [`Self::corners`].
+    pub(crate) fn corner_position(&self, corner: usize) -> glam::DVec3 {
+        super::dvec3(self.shape.positions[self.shape.corners[corner] as usize])
     }
 
     /// The corners of a triangle, as places in [`Self::corners`].

@@ -20,6 +20,7 @@ pub(super) mod edges;
 mod fans;
 mod points;
 mod splits;
+mod tangents;
 
 use glam::DVec3;
 

@@ -104,8 +104,9 @@ fn with_unused_material(model: &Shared<Model>, rng: &mut Rng) -> Shared<Model> {
     let mut materials = model.materials.clone();
     let material = shapes::material(rng);
     let texture = Some(shapes::texture(rng));
-    materials
-        .insert(at, FileMaterial { name: "unused".to_owned(), material, opacity: 0.7, texture });
+    let (name, maps) = ("unused".to_owned(), shapes::maps(rng));
+    let unused = FileMaterial { name, material, opacity: 0.7, texture, maps, unlit: false };
+    materials.insert(at, unused);
     let moved = |material: u32| if material as usize >= at { material + 1 } else { material };
     let part = |part: &Part| Part { name: part.name.clone(), material: part.material.map(moved) };
     let corner =

@@ -230,7 +230,13 @@ impl Hostile {
     fn material(&mut self) -> Material {
         let mut color = || std::array::from_fn(|_| self.amount(1.0));
         let (ambient, diffuse, specular) = (color(), color(), color());
-        Material { ambient, diffuse, specular, exponent: self.amount(128.0) }
+        Material {
+            ambient,
+            diffuse,
+            specular,
+            exponent: self.amount(128.0),
+            emission: [self.amount(2.0), 0.0, 0.0],
+        }
     }
 
     fn texture(&mut self) -> Shared<Texture> {

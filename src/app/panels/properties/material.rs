@@ -134,15 +134,17 @@ fn corner_text(ui: &Ui, rect: Rect, letter: &str) {
 /// Ka, Kd, Ks and Ns of the user's own material.
 fn own_ui(ui: &mut Ui, material: Material) -> Option<(Material, Gesture)> {
     let mut changed = None;
-    let rows: [(&str, &str, [f64; 3]); 3] = [
+    let rows: [(&str, &str, [f64; 3]); 4] = [
         ("Ambient", "Ka: the part of ambient light that is sent back", material.ambient),
         ("Diffuse", "Kd: the part of a lamp's light that is scattered", material.diffuse),
         ("Specular", "Ks: the part of a lamp's light that is mirrored", material.specular),
+        ("Emission", "Ke: light of its own, which no lamp changes", material.emission),
     ];
     for (i, (name, hint, factors)) in rows.into_iter().enumerate() {
         if let Some((to, gesture)) = factors_ui(ui, name, hint, factors) {
             let mut own = material;
-            *[&mut own.ambient, &mut own.diffuse, &mut own.specular][i] = to;
+            let Material { ambient, diffuse, specular, emission, .. } = &mut own;
+            *[ambient, diffuse, specular, emission][i] = to;
             changed = Some((own, gesture));
         }
     }

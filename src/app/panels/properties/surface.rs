@@ -7,7 +7,7 @@ use crate::app::state::State;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Choice, choices, row};
 use crate::edit::{Gesture, items};
-use crate::scene::{Object, ObjectId, Surface};
+use crate::scene::{FileMaterial, MapKind, Object, ObjectId, Surface};
 
 pub(crate) fn show(
     ui: &mut Ui,
@@ -31,6 +31,7 @@ pub(crate) fn show(
         change(requests, format!("Change the surface of {}", object.name), Gesture::Whole, command);
     }
     texture_ui(ui, state, requests, id, object);
+    maps_ui(ui, object);
     row(ui, "Tint", |ui| {
         let hint = "Multiplied with the texture";
         if let Some((tint, gesture)) = swatch(ui, "Tint", hint, object.tint) {
@@ -74,4 +75,29 @@ fn texture_ui(
             change(requests, label, Gesture::Whole, command);
         }
     });
+}
+
+/// Lists the other maps of the object's materials, each with its file and size.
+fn maps_ui(ui: &mut Ui, object: &Object) {
+    for kind in MapKind::ALL {
+        let of = |material: &FileMaterial| material.maps.get(&kind).map(|map| map.texture.clone());
+        let mut textures: Vec<_> = object.model.materials.iter().filter_map(of).collect();
+        textures.dedup_by(|a, b| a.source == b.source);
+        let names: Vec<String> = textures
+            .iter()
+            .map(|texture| {
+                let name = texture.source.file_name().unwrap_or(texture.source.as_os_str());
+                let size = texture.picture.size();
+                format!("{} ({} x {})", name.to_string_lossy(), size.width, size.height)
+            })
+            .collect();
+        if let Some(first) = names.first() {
+            let more = names.len() - 1;
+            let text = if more > 0 { format!("{first}, {more} more") } else { first.clone() };
+            row(ui, kind.label(), |ui| {
+                let hint = format!("{} of the file: {}", kind.statement(), names.join(", "));
+                ui.add(egui::Label::new(&text).truncate()).on_hover_text(hint);
+            });
+        }
+    }
 }

@@ -1,0 +1,161 @@
+//! The options of a picture or a turntable that is saved.
+
+use egui::{DragValue, Ui};
+
+use crate::accuracy::Samples;
+use crate::app::widgets::controls::take_focus;
+use crate::base::image::Size;
+use crate::edit::turntable::Turn;
+
+/// The longest side that a picture may have.
+const LONGEST_SIDE: usize = 16_384;
+
+/// What is saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    Picture,
+    Turntable,
+}
+
+/// The options.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PictureChoices {
+    pub(crate) purpose: Purpose,
+    /// Before it is multiplied.
+    pub(crate) size: Size,
+    /// How many times as wide and as high.
+    pub(crate) times: usize,
+    pub(crate) samples: Samples,
+    pub(crate) transparent: bool,
+    /// Whether what the window draws over the picture is on it: it then is what the window shows.
+    pub(crate) overlays: bool,
+    pub(crate) frames: u32,
+    pub(crate) seconds: f64,
+    pub(crate) turn: Turn,
+}
+
+impl PictureChoices {
+    /// The usual options, for a window that shows a picture of this size and these samples.
+    pub(crate) const fn new(purpose: Purpose, size: Size, samples: Samples) -> Self {
+        Self {
+            purpose,
+            size,
+            times: 1,
+            samples,
+            transparent: false,
+            overlays: false,
+            frames: 60,
+            seconds: 4.0,
+            turn: Turn::Objects,
+        }
+    }
+
+    /// The size of the picture.
+    pub(crate) fn whole(&self) -> Size {
+        let side = |side: usize| (side * self.times).clamp(1, LONGEST_SIDE);
+        Size::new(side(self.size.width), side(self.size.height))
+    }
+}
+
+/// The dialog.
+#[derive(Debug)]
+pub(crate) struct PictureDialog {
+    choices: PictureChoices,
+}
+
+impl PictureDialog {
+    pub(crate) const fn new(choices: PictureChoices) -> Self {
+        Self { choices }
+    }
+
+    /// Shows the dialog. Returns how it ended, once it has: with the options, or without.
+    pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<Option<PictureChoices>> {
+        ui.set_width(ui.available_width().clamp(240.0, 380.0));
+        let is_picture = self.choices.purpose == Purpose::Picture;
+        ui.heading(if is_picture { "Save picture" } else { "Save turntable" });
+        egui::Grid::new("picture options").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
+            // What the window shows has the window's size and samples.
+            ui.add_enabled_ui(!self.choices.overlays, |ui| ui.label("Size"));
+            ui.add_enabled_ui(!self.choices.overlays, |ui| self.size_ui(ui));
+            ui.end_row();
+            ui.label("Samples per pixel");
+            ui.add_enabled_ui(!self.choices.overlays, |ui| self.samples_ui(ui));
+            ui.end_row();
+            if is_picture {
+                ui.label("");
+                let overlays = ui.checkbox(&mut self.choices.overlays, "Overlays");
+                overlays.on_hover_text(
+                    "Saves what the window shows: with the outline of the selection, axes and \
+                     marks of lights",
+                );
+                ui.end_row();
+            } else {
+                self.turn_ui(ui);
+            }
+            ui.label("");
+            let choices = &mut self.choices;
+            ui.add_enabled_ui(!choices.overlays, |ui| {
+                let ground = ui.checkbox(&mut choices.transparent, "Transparent ground");
+                ground.on_hover_text("Leaves the background out; PNG, APNG and WebP have alpha");
+            });
+            ui.end_row();
+        });
+        let Size { width, height } = self.choices.whole();
+        ui.weak(match is_picture {
+            true => format!("{width} x {height} pixels"),
+            false => format!("{} pictures of {width} x {height} pixels", self.choices.frames),
+        });
+        ui.add_space(6.0);
+        let mut end = None;
+        ui.horizontal(|ui| {
+            let save = ui.button("Save...");
+            take_focus(ui, &save);
+            if save.clicked() {
+                end = Some(Some(self.choices));
+            }
+            if ui.button("Cancel").clicked() {
+                end = Some(None);
+            }
+        });
+        end
+    }
+
+    fn size_ui(&mut self, ui: &mut Ui) {
+        let choices = &mut self.choices;
+        ui.horizontal(|ui| {
+            let side = |value| DragValue::new(value).range(1..=LONGEST_SIDE).speed(4.0);
+            ui.add(side(&mut choices.size.width)).accessible_name("Width");
+            ui.label("x");
+            ui.add(side(&mut choices.size.height)).accessible_name("Height");
+            ui.label("times");
+            let times = DragValue::new(&mut choices.times).range(1..=8).speed(0.05);
+            ui.add(times).accessible_name("Times");
+        });
+    }
+
+    fn samples_ui(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            for samples in Samples::ALL {
+                let text = samples.count().to_string();
+                ui.radio_value(&mut self.choices.samples, samples, text);
+            }
+        });
+    }
+
+    fn turn_ui(&mut self, ui: &mut Ui) {
+        let choices = &mut self.choices;
+        ui.label("Pictures");
+        ui.add(DragValue::new(&mut choices.frames).range(2..=3600)).accessible_name("Pictures");
+        ui.end_row();
+        ui.label("Seconds a turn");
+        let seconds = DragValue::new(&mut choices.seconds).range(0.1..=600.0).speed(0.1);
+        ui.add(seconds).accessible_name("Seconds a turn");
+        ui.end_row();
+        ui.label("What turns");
+        ui.horizontal(|ui| {
+            ui.radio_value(&mut choices.turn, Turn::Objects, "Objects");
+            ui.radio_value(&mut choices.turn, Turn::Camera, "Camera");
+        });
+        ui.end_row();
+    }
+}

@@ -1,0 +1,250 @@
+//! Makes files that take time: pictures with options, turntables, exports. Each is made on a thread
+//! of its own from a snapshot of the scene, with a bar and a way to cancel it.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use egui::{ColorImage, Context, Rect};
+
+use super::App;
+use crate::accuracy::{Settings, Shot};
+use crate::app::documents::dialogs::Wanted;
+use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
+use crate::app::drawing::viewport_renderer;
+use crate::app::state::{Notice, State};
+use crate::app::tasks::{Outcome, Task};
+use crate::app::widgets::text::file_name;
+use crate::edit::turntable::turned;
+use crate::io::{self, Animation, AnimationWriter, Progress};
+use crate::render::{Renderer, plan_frame, without_ground};
+use crate::scene::View;
+
+/// What came of making a file.
+#[derive(Debug)]
+pub(crate) enum Made {
+    /// It is there; with what is to be said about it.
+    Done(PathBuf, Vec<String>),
+    Cancelled,
+    /// Why not, in a sentence.
+    Failed(String),
+}
+
+/// Files that are being made.
+#[derive(Debug, Default)]
+pub(crate) struct Making {
+    pub(crate) tasks: Vec<Task<Made>>,
+    /// The options of the picture whose file is being asked for.
+    choices: Option<PictureChoices>,
+    /// A picture of the window that was asked for.
+    screenshot: Option<Screenshot>,
+}
+
+/// A picture of the window, and the file that it goes to.
+#[derive(Debug)]
+struct Screenshot {
+    path: PathBuf,
+    /// Whether the window was asked: only once no dialog lies over the picture.
+    asked: bool,
+    image: Arc<Mutex<Option<Arc<ColorImage>>>>,
+}
+
+impl App {
+    /// Asks for the options of a picture or a turntable.
+    pub(crate) fn ask_picture(&mut self, purpose: Purpose) {
+        let Some(size) = self.viewport.size() else { return };
+        let samples = self.state.refined_to().unwrap_or(self.state.settings.samples);
+        self.dialogs.ask_picture(PictureChoices::new(purpose, size, samples));
+    }
+
+    /// Asks for the file of a picture with these options.
+    pub(crate) fn take_picture(&mut self, ctx: &Context, choices: PictureChoices) {
+        self.making.choices = Some(choices);
+        match choices.purpose {
+            Purpose::Picture => self.ask_file(ctx, Wanted::PictureWithOptionsTo, "picture.png"),
+            Purpose::Turntable => self.ask_file(ctx, Wanted::TurntableTo, "turntable.gif"),
+        }
+    }
+
+    /// Begins to make the picture or the turntable whose options were chosen.
+    pub(crate) fn make_picture(&mut self, ctx: &Context, path: PathBuf) {
+        let Some(choices) = self.making.choices.take() else { return };
+        if choices.overlays {
+            let image = Arc::default();
+            self.making.screenshot = Some(Screenshot { path, asked: false, image });
+            ctx.request_repaint();
+            return;
+        }
+        let State { scene, view, settings, .. } = &self.state;
+        let settings = Settings { samples: choices.samples, ..*settings };
+        let shot = Shot::new(scene, view, &settings, choices.whole());
+        let label = format!("Drawing {}", file_name(&path));
+        self.make(ctx, label, move |progress| match choices.purpose {
+            Purpose::Picture => picture(&path, &shot, choices.transparent, progress),
+            Purpose::Turntable => turntable(&path, &shot, &choices, progress),
+        });
+    }
+
+    /// Begins to export the scene.
+    pub(crate) fn export_scene(&mut self, ctx: &Context, path: PathBuf) {
+        let State { scene, view, .. } = &self.state;
+        let (scene, view) = (scene.clone(), view.clone());
+        let label = format!("Exporting {}", file_name(&path));
+        self.make(ctx, label, move |_| match io::export(&path, &scene, &view) {
+            Ok(exported) => Made::Done(path, exported.notes),
+            Err(error) => Made::Failed(error.to_string()),
+        });
+    }
+
+    fn make(
+        &mut self,
+        ctx: &Context,
+        label: String,
+        work: impl FnOnce(&Progress) -> Made + Send + 'static,
+    ) {
+        match Task::start(ctx, label, work) {
+            Ok(task) => self.making.tasks.push(task),
+            Err(error) => self.refuse(format!("cannot start a thread to write files: {error}")),
+        }
+    }
+
+    /// Takes files that are made.
+    pub(crate) fn hear_making(&mut self, ctx: &Context) {
+        self.hear_screenshot(ctx);
+        let mut made = Vec::new();
+        self.making.tasks.retain(|task| match task.outcome() {
+            Outcome::Running => true,
+            Outcome::Done(outcome) => {
+                made.push(outcome);
+                false
+            }
+            Outcome::Lost => {
+                let text = format!("{} failed because of a bug in the program", task.label);
+                made.push(Made::Failed(text));
+                false
+            }
+        });
+        for outcome in made {
+            match outcome {
+                Made::Done(path, notes) => {
+                    self.state.tell(Some(format!("Saved {}", path.display())));
+                    if !notes.is_empty() {
+                        let text = format!("{}: what it does not say", file_name(&path));
+                        self.state.notices.push(Notice { text, details: notes, offer: None });
+                    }
+                }
+                Made::Cancelled => self.state.tell(Some("Cancelled: no file was written".into())),
+                Made::Failed(why) => self.dialogs.tell_fault(format!("{why}.")),
+            }
+        }
+    }
+
+    /// Asks for a picture of the window, and saves it once it is there.
+    fn hear_screenshot(&mut self, ctx: &Context) {
+        let Some(screenshot) = &mut self.making.screenshot else { return };
+        if !screenshot.asked {
+            if self.dialogs.is_open() {
+                return;
+            }
+            screenshot.asked = true;
+            let image = Arc::clone(&screenshot.image);
+            let wake = ctx.clone();
+            ctx.request_screenshot(move |shown| {
+                *image.lock().unwrap_or_else(PoisonError::into_inner) = Some(shown);
+                wake.request_repaint();
+            });
+            ctx.request_repaint();
+            return;
+        }
+        let shown = screenshot.image.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let (Some(shown), Some(rect)) = (shown, self.viewport.rect()) else { return };
+        let path = screenshot.path.clone();
+        self.making.screenshot = None;
+        match part_of(&shown, rect, ctx.pixels_per_point()) {
+            Some(part) => self.save_these(&path, &part),
+            None => self.refuse("the window gave no picture of itself".to_owned()),
+        }
+    }
+
+    fn save_these(&mut self, path: &Path, image: &ColorImage) {
+        let saved = viewport_renderer::picture(image).map(|it| io::save_picture(path, &it));
+        match saved {
+            Some(Ok(())) => self.state.tell(Some(format!("Saved {}", path.display()))),
+            Some(Err(error)) => self.dialogs.tell_fault(format!("{error}.")),
+            None => self.refuse("the window gave no picture of itself".to_owned()),
+        }
+    }
+}
+
+/// The part of a picture of the window that shows the viewport.
+fn part_of(shown: &ColorImage, rect: Rect, scale: f32) -> Option<ColorImage> {
+    let inside = Rect::from_min_size(egui::Pos2::ZERO, shown.source_size);
+    let whole = [shown.size[0], shown.size[1]].iter().all(|side| *side > 0);
+    let fits = inside.width() <= 0.0 || inside.expand(1.0).contains_rect(rect);
+    (whole && fits).then(|| shown.region(&rect, Some(scale)))
+}
+
+/// Draws a picture into a file.
+fn picture(path: &Path, shot: &Shot, transparent: bool, progress: &Progress) -> Made {
+    let mut renderer = Renderer::default();
+    let picture = if transparent {
+        without_ground(&mut renderer, shot).map_err(|error| error.to_string())
+    } else {
+        let drawn = renderer.redraw(&plan_frame(shot), &|| !progress.is_cancelled());
+        match drawn {
+            Ok(_) => Ok(renderer.picture().clone()),
+            Err(crate::render::Cancelled) => return Made::Cancelled,
+        }
+    };
+    if progress.is_cancelled() {
+        return Made::Cancelled;
+    }
+    let saved = picture.and_then(|it| io::save_picture(path, &it).map_err(|it| it.to_string()));
+    match saved {
+        Ok(()) => Made::Done(path.to_owned(), Vec::new()),
+        Err(why) => Made::Failed(why),
+    }
+}
+
+/// Draws a turn into a file.
+fn turntable(path: &Path, shot: &Shot, choices: &PictureChoices, progress: &Progress) -> Made {
+    match turn_into(path, shot, choices, progress) {
+        Ok(true) => Made::Done(path.to_owned(), Vec::new()),
+        Ok(false) => Made::Cancelled,
+        Err(why) => Made::Failed(why),
+    }
+}
+
+/// As [`turntable`]; false if it was cancelled.
+fn turn_into(
+    path: &Path,
+    shot: &Shot,
+    choices: &PictureChoices,
+    progress: &Progress,
+) -> Result<bool, String> {
+    let PictureChoices { frames, seconds, transparent, turn, .. } = *choices;
+    let fail = |error: &dyn std::fmt::Display| error.to_string();
+    let animation = Animation { size: shot.size, frames, seconds, transparent };
+    let mut writer = AnimationWriter::begin(path, animation).map_err(|it| fail(&it))?;
+    let mut renderer = Renderer::default();
+    for i in 0..frames {
+        let part = f64::from(i) / f64::from(frames);
+        let scene = turned(&shot.scene, &shot.view, turn, part).map_err(|it| fail(&it))?;
+        let view = View { time: shot.view.time + seconds * part, ..shot.view.clone() };
+        let shot = Shot { scene, view, ..shot.clone() };
+        if transparent {
+            let picture = without_ground(&mut renderer, &shot).map_err(|it| fail(&it))?;
+            writer.push(&picture).map_err(|it| fail(&it))?;
+        } else {
+            let wanted = || !progress.is_cancelled();
+            if renderer.redraw(&plan_frame(&shot), &wanted).is_err() {
+                return Ok(false);
+            }
+            writer.push(renderer.picture()).map_err(|it| fail(&it))?;
+        }
+        if progress.reached(i as usize + 1, frames as usize).is_err() {
+            return Ok(false);
+        }
+    }
+    writer.finish().map_err(|it| fail(&it))?;
+    Ok(true)
+}

@@ -1,0 +1,70 @@
+//! `marraztu export`: writes a scene for other programs.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use marraztu::io;
+
+use super::accuracy::Accuracy;
+use super::arguments::{Reading, Seeing, Surfaces};
+use super::failure::Failure;
+use super::render::staged;
+use super::talk::{Talk, note};
+use super::target::default_name;
+
+/// A scene, and the file that it goes to.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+OBJ has shapes and materials (.mtl beside it); glTF has cameras and lights, too: .glb is one file,
+.gltf has its buffer beside it. Textures become PNG files, or parts of the glTF. Hidden objects are
+left out. What a format cannot say is noted.
+
+Examples:
+  marraztu export --out first.glb
+  marraztu export shelf.marraztu --out shelf.obj
+  marraztu export room.obj --up z --out room.gltf")]
+pub(crate) struct Export {
+    /// Models (.obj, .obj.gz), and at most one scene (.marraztu) that they are put into; "-" is
+    /// standard input
+    files: Vec<PathBuf>,
+    /// The file to write: .obj, .gltf or .glb [default: the name of the scene or first model with
+    /// .glb, in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    talk: Talk,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    surfaces: Surfaces,
+    #[command(flatten)]
+    seeing: Seeing,
+}
+
+/// Writes the scene that the arguments describe.
+pub(super) fn export(arguments: &Export) -> Result<(), Failure> {
+    let Export { files, out, talk, reading, surfaces, seeing } = arguments;
+    talk.apply();
+    let path = out.clone().unwrap_or_else(|| default_name(files).with_extension("glb"));
+    io::check_export_target(&path)?;
+    if let Some(file) = files.iter().find(|file| is_same(file, &path)) {
+        return Err(Failure::Absent(format!(
+            "{} is read for this export and would be replaced by it; choose another name with --out",
+            file.display()
+        )));
+    }
+    let stage = staged(files, reading, surfaces, seeing, &Accuracy::default())?;
+    let exported = io::export(&path, &stage.scene, &stage.view)?;
+    for text in &exported.notes {
+        note(text);
+    }
+    if out.is_none() {
+        note(&format_args!("the scene is in {}", path.display()));
+    }
+    Ok(())
+}
+
+/// Whether both name the same file, which exists.
+fn is_same(a: &std::path::Path, b: &std::path::Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}

@@ -1,0 +1,107 @@
+//! `marraztu turntable`: draws a scene from all around.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::{PathBufValueParser, TypedValueParser};
+use marraztu::edit::turntable::{Turn, turned};
+use marraztu::io::{Animation, AnimationFormat, AnimationWriter, Progress};
+use marraztu::render::{Renderer, plan_frame, without_ground};
+use marraztu::scene::View;
+
+use super::arguments::PictureArguments;
+use super::bar::Bar;
+use super::failure::Failure;
+use super::render::stage;
+use super::stage::{Stage, is_standard};
+use super::talk::note;
+use super::target::default_name;
+
+/// The most pictures of a turn: one for each tenth of a degree.
+const MOST_FRAMES: i64 = 3600;
+
+/// A turn, and the file that it goes to.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The first picture is the one that `render` draws with the same options. Objects that turn and lights
+that circle by themselves go on meanwhile. Nothing is written before the last picture is drawn,
+unless pictures are numbered.
+
+Examples:
+  marraztu turntable teapot.obj
+  marraztu turntable bunny.obj --out bunny.png --size 480 --samples 4 --frames 90 --seconds 6
+  marraztu turntable shelf.marraztu --out frames --turn camera
+  marraztu turntable ship.obj --out ship.gif --transparent --material gold")]
+pub(crate) struct Turntable {
+    /// The file to write: .gif, .png (animated), or a name without an ending for a folder of
+    /// numbered pictures [default: the name of the scene or first model with .gif, in the current
+    /// folder]
+    #[arg(short, long, value_name = "FILE")]
+    #[arg(value_parser = PathBufValueParser::new().try_map(animation))]
+    out: Option<PathBuf>,
+    /// The number of pictures of a whole turn
+    #[arg(long, value_name = "N", default_value_t = 60)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES))]
+    frames: u32,
+    /// The seconds that a whole turn takes
+    #[arg(long, value_name = "SECONDS", default_value_t = 4.0, value_parser = seconds)]
+    seconds: f64,
+    /// What turns: objects* (under lights that stand still), camera
+    #[arg(long, value_name = "WHAT", hide_possible_values = true, default_value = "objects")]
+    #[arg(hide_default_value = true, value_parser = ["objects", "camera"])]
+    turn: String,
+    /// Leave the ground out: the pictures have an alpha channel
+    #[arg(long)]
+    transparent: bool,
+    #[command(flatten)]
+    picture: PictureArguments,
+}
+
+/// Draws the turn that the arguments describe.
+pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
+    let Turntable { out, frames, seconds, turn, transparent, picture } = arguments;
+    let path = out.clone().unwrap_or_else(|| default_name(&picture.files).with_extension("gif"));
+    AnimationWriter::check(&path)?;
+    let stage = stage(picture)?;
+    let size = picture.size;
+    let (frames, seconds, transparent) = (*frames, *seconds, *transparent);
+    let animation = Animation { size, frames, seconds, transparent };
+    let turn = if turn == "camera" { Turn::Camera } else { Turn::Objects };
+    let mut writer = AnimationWriter::begin(&path, animation)?;
+    let mut renderer = Renderer::default();
+    let progress = Progress::new();
+    let bar = Bar::of("drawing", &progress);
+    for i in 0..frames {
+        let part = f64::from(i) / f64::from(frames);
+        let scene = turned(&stage.scene, &stage.view, turn, part)?;
+        let time = stage.view.time + seconds * part;
+        let view = View { time, ..stage.view.clone() };
+        let shot = Stage { scene, view, findings: Vec::new(), ..stage }.shot(size);
+        if transparent {
+            writer.push(&without_ground(&mut renderer, &shot)?)?;
+        } else {
+            writer.push(renderer.render(&plan_frame(&shot)))?;
+        }
+        // Nothing cancels this.
+        let _ = progress.reached(i as usize + 1, frames as usize);
+    }
+    writer.finish()?;
+    drop(bar);
+    if out.is_none() {
+        note(&format_args!("the turn is in {}", path.display()));
+    }
+    Ok(())
+}
+
+/// Checks the name before anything is drawn, which may take long.
+fn animation(path: PathBuf) -> Result<PathBuf, String> {
+    if is_standard(&path) {
+        return Err("a turn goes to a file".to_owned());
+    }
+    AnimationFormat::of(&path).map(|_| path)
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|it: &f64| (0.01..=3600.0).contains(it));
+    seconds.ok_or_else(|| "write seconds, from 0.01 to 3600".to_owned())
+}

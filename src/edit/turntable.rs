@@ -1,0 +1,55 @@
+//! A turntable: the scene as it looks after a part of a turn about the vertical.
+//!
+//! Either the objects turn, under lights that stand still as in a photographer's studio, or the
+//! camera circles about them. The axis goes through the middle of everything visible.
+
+use glam::{DMat4, DVec3};
+
+use super::{Refusal, framing, items};
+use crate::base::math;
+use crate::scene::{Command, Item, ObjectId, Pose, Scene, Tracked, View};
+
+/// What turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Turn {
+    /// The objects.
+    #[default]
+    Objects,
+    /// The camera.
+    Camera,
+}
+
+/// The scene after `part` of a whole turn, counter-clockwise seen from above. A part of 0 is the
+/// scene itself.
+///
+/// # Errors
+/// If nothing is visible.
+pub fn turned(scene: &Scene, view: &View, turn: Turn, part: f64) -> Result<Scene, Refusal> {
+    let visible = scene.objects.iter().filter(|(_, object)| object.visible);
+    let ids: Vec<ObjectId> = visible.map(|(id, _)| id).collect();
+    let sphere = framing::sphere(scene, view, &ids).ok_or(Refusal::NothingToFrame)?;
+    let mut turned = scene.clone();
+    if part.rem_euclid(1.0) == 0.0 {
+        return Ok(turned);
+    }
+    let rotation = math::rotation(DVec3::Y, part * std::f64::consts::TAU);
+    let centre = DVec3::new(sphere.centre.x, 0.0, sphere.centre.z);
+    let command = match turn {
+        Turn::Objects => {
+            let about: DMat4 = math::placed(rotation, centre - rotation * centre);
+            items::change_all_objects(scene, |object| {
+                object.placement = Tracked::new(about * *object.placement.now());
+            })
+        }
+        Turn::Camera => {
+            let id = view.camera;
+            let mut camera = scene.selected_camera(view).clone();
+            let pose = *camera.pose.now();
+            let eye = centre + rotation * (pose.eye - centre);
+            camera.pose = Tracked::new(Pose { eye, axes: rotation * pose.axes, ..pose });
+            Command::Replace(Item::Camera(id, Box::new(camera)))
+        }
+    };
+    command.apply(&mut turned)?;
+    Ok(turned)
+}

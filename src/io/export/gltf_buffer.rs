@@ -1,0 +1,110 @@
+//! The buffer of a glTF file, and the numbers that point into it.
+
+use std::collections::BTreeMap;
+
+use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
+use gltf_json::buffer::{Target, View};
+use gltf_json::validation::{Checked, USize64};
+use gltf_json::{Accessor, Index, Root, Value};
+
+/// A number of floats for each vertex, or indices, in the buffer.
+pub(super) struct Buffer {
+    pub(super) bytes: Vec<u8>,
+}
+
+impl Buffer {
+    /// Appends bytes, aligned to 4, as a view of the buffer.
+    pub(super) fn view(
+        &mut self,
+        root: &mut Root,
+        bytes: impl IntoIterator<Item = u8>,
+        target: Option<Target>,
+    ) -> Index<View> {
+        let start = self.bytes.len();
+        self.bytes.extend(bytes);
+        let length = self.bytes.len() - start;
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        root.push(View {
+            buffer: Index::new(0),
+            byte_length: USize64::from(length),
+            byte_offset: Some(USize64::from(start)),
+            byte_stride: None,
+            name: None,
+            target: target.map(Checked::Valid),
+            extensions: None,
+            extras: Default::default(),
+        })
+    }
+
+    /// Appends `N` floats for each vertex.
+    pub(super) fn floats<const N: usize>(
+        &mut self,
+        root: &mut Root,
+        all: &[[f32; N]],
+        limits: Limits,
+    ) -> Index<Accessor> {
+        let bytes = all.iter().flatten().flat_map(|x| x.to_le_bytes());
+        let view = self.view(root, bytes, Some(Target::ArrayBuffer));
+        let [min, max] = match limits {
+            Limits::Told => [f32::min, f32::max].map(|of| {
+                let limit =
+                    all.iter().copied().reduce(|a, b| std::array::from_fn(|i| of(a[i], b[i])));
+                limit.map(|limit| Value::from(limit.to_vec()))
+            }),
+            Limits::LeftOut => [None, None],
+        };
+        let kind = if N == 2 { Type::Vec2 } else { Type::Vec3 };
+        root.push(Accessor { min, max, ..accessor(view, all.len(), ComponentType::F32, kind) })
+    }
+
+    /// Appends indices.
+    pub(super) fn indices(&mut self, root: &mut Root, all: &[u32]) -> Index<Accessor> {
+        let bytes = all.iter().flat_map(|i| i.to_le_bytes());
+        let view = self.view(root, bytes, Some(Target::ElementArrayBuffer));
+        root.push(accessor(view, all.len(), ComponentType::U32, Type::Scalar))
+    }
+}
+
+/// Whether the least and the greatest numbers are told; of positions they have to be.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Limits {
+    Told,
+    LeftOut,
+}
+
+fn accessor(view: Index<View>, count: usize, component: ComponentType, kind: Type) -> Accessor {
+    Accessor {
+        buffer_view: Some(view),
+        byte_offset: Some(USize64(0)),
+        count: USize64::from(count),
+        component_type: Checked::Valid(GenericComponentType(component)),
+        extensions: None,
+        extras: Default::default(),
+        type_: Checked::Valid(kind),
+        min: None,
+        max: None,
+        name: None,
+        normalized: false,
+        sparse: None,
+    }
+}
+
+/// The vertices of a mesh as glTF has them: each with all of its attributes.
+#[derive(Debug, Default)]
+pub(super) struct Vertices {
+    numbers: BTreeMap<(u32, u32), u32>,
+    /// The point and the texture coordinates of each.
+    pub(super) all: Vec<(u32, u32)>,
+}
+
+impl Vertices {
+    /// The number of the vertex with this point and these texture coordinates.
+    pub(super) fn number(&mut self, point: u32, uv: u32) -> u32 {
+        let next = u32::try_from(self.all.len()).unwrap_or(u32::MAX);
+        let number = *self.numbers.entry((point, uv)).or_insert(next);
+        if number == next {
+            self.all.push((point, uv));
+        }
+        number
+    }
+}

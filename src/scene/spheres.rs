@@ -1,0 +1,61 @@
+//! Spheres about the objects of a scene in the world, side by side in memory: with thousands of
+//! objects, what is out of view is found without touching the objects themselves.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use super::{List, Object, ObjectId};
+
+/// A sphere about each object.
+#[derive(Debug, Default)]
+pub struct Spheres {
+    /// The middles, as x, y and z; all of them sorted by the objects' ids.
+    pub centres: [Vec<f64>; 3],
+    /// The radii; infinite for objects that turn with time.
+    pub radii: Vec<f64>,
+    /// The positions of the objects in the list.
+    pub places: Vec<u32>,
+}
+
+/// Rounded up by more than the arithmetic of placing is inexact.
+const ROUNDING: f64 = 1.0 + 1e-9;
+
+impl List<ObjectId, Object> {
+    /// A sphere about each object; computed once for as long as no object changes.
+    #[must_use]
+    pub fn spheres(&self) -> Arc<Spheres> {
+        self.derived(Spheres::of)
+    }
+}
+
+impl Spheres {
+    fn of(objects: &List<ObjectId, Object>) -> Self {
+        let mut sorted: Vec<(ObjectId, u32, &Object)> =
+            (0..).zip(objects.iter()).map(|(at, (id, object))| (id, at, object)).collect();
+        sorted.sort_unstable_by_key(|(id, ..)| *id);
+        let mut all = Self::default();
+        for (_, at, object) in sorted {
+            let (centre, radius) = sphere(object);
+            for (of, value) in all.centres.iter_mut().zip(centre.to_array()) {
+                of.push(value);
+            }
+            all.radii.push(radius);
+            all.places.push(at);
+        }
+        all
+    }
+}
+
+/// A sphere about the object's placed box. The Frobenius norm is at least the largest stretch of
+/// the placement.
+fn sphere(object: &Object) -> (DVec3, f64) {
+    let Some(bounds) = object.model.mesh.bounds() else { return (DVec3::ZERO, f64::INFINITY) };
+    let placement = object.placement.now();
+    let stretch = DMat3::from_mat4(*placement).to_cols_array();
+    let stretch = stretch.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let radius = bounds.extent().length() * 0.5 * stretch * ROUNDING;
+    let still = !object.spin.is_on();
+    let radius = if still && radius.is_finite() { radius } else { f64::INFINITY };
+    (placement.transform_point3(bounds.centre()), radius)
+}
