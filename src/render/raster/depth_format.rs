@@ -2,8 +2,7 @@
 //!
 //! In every format the larger key is the nearer. Formats in which 0 is near are stored as the
 //! difference from their largest number, which keeps exactly those depths equal that are equal
-//! after rounding. All formats round the same depths: kernels are compiled for each, and map the
-//! depths of sixteen pixels at once.
+//! after rounding. All formats round the same depths, those of sixteen pixels at once.
 //!
 //! One step of depth at z 1000, between near 1 and far 2000, is 15.3 units in 16 bits, 0.06 in 24,
 //! and 0.06 in f32 too, whose finest steps are near 0 and wasted on the near plane; with reversed
@@ -23,17 +22,20 @@ const ONE: u32 = 1.0_f32.to_bits();
 const FIRST: u32 = 1 << 29;
 
 /// A format of depths. Depths are 1 at the near plane and 0 at the far one.
+///
+/// Kernels are compiled for the default, and for all others together: which of these it is, is
+/// asked once for sixteen pixels.
 pub(crate) trait Format: Copy {
     /// Whether keys are the bits of depths.
     const KEEPS_BITS: bool = false;
+    /// This format, if it is among those of the type.
+    fn of(format: DepthFormat) -> Self;
     /// The depth bias of lines, in steps of the format, beside that in steps of the default.
-    const LINES_NEARER: u32 = 2;
+    fn lines_nearer(self) -> u32;
     /// The key of a depth.
-    fn key(depth: f32) -> u32;
+    fn key(self, depth: f32) -> u32;
     /// The keys of sixteen depths.
-    fn keys<S: Simd>(depth: f32x16<S>) -> u32x16<S>;
-    /// The depth of a key, and the largest error of it.
-    fn depth(key: u32) -> (f32, f32);
+    fn keys<S: Simd>(self, depth: f32x16<S>) -> u32x16<S>;
 }
 
 /// The depth itself: the default.
@@ -42,108 +44,124 @@ pub(crate) struct Reversed;
 
 impl Format for Reversed {
     const KEEPS_BITS: bool = true;
-    const LINES_NEARER: u32 = 0;
+
+    fn of(_: DepthFormat) -> Self {
+        Self
+    }
 
     #[inline(always)]
-    fn key(depth: f32) -> u32 {
+    fn lines_nearer(self) -> u32 {
+        0
+    }
+
+    #[inline(always)]
+    fn key(self, depth: f32) -> u32 {
         depth.to_bits()
     }
 
     #[inline(always)]
-    fn keys<S: Simd>(depth: f32x16<S>) -> u32x16<S> {
+    fn keys<S: Simd>(self, depth: f32x16<S>) -> u32x16<S> {
         depth.bitcast()
     }
-
-    fn depth(key: u32) -> (f32, f32) {
-        (f32::from_bits(key), 0.0)
-    }
 }
 
-/// 1 - depth in f32.
+/// Any of the formats.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plain;
+pub(crate) struct Any(pub(crate) DepthFormat);
 
-impl Format for Plain {
-    #[inline(always)]
-    fn key(depth: f32) -> u32 {
-        FIRST + ONE - (1.0 - depth).to_bits()
+impl Format for Any {
+    fn of(format: DepthFormat) -> Self {
+        Self(format)
     }
 
     #[inline(always)]
-    fn keys<S: Simd>(depth: f32x16<S>) -> u32x16<S> {
-        let one = f32x16::splat(depth.simd, 1.0);
-        u32x16::splat(depth.simd, FIRST + ONE) - (one - depth).bitcast::<u32x16<S>>()
+    fn lines_nearer(self) -> u32 {
+        if self.0 == DepthFormat::F32Reversed { 0 } else { 2 }
     }
 
-    fn depth(key: u32) -> (f32, f32) {
-        (1.0 - f32::from_bits((FIRST + ONE).saturating_sub(key)), f32::EPSILON)
+    #[inline(always)]
+    fn key(self, depth: f32) -> u32 {
+        match self.0 {
+            DepthFormat::F32Reversed => depth.to_bits(),
+            DepthFormat::F32 => FIRST + ONE - (1.0 - depth).to_bits(),
+            DepthFormat::Bits24 => whole(depth, 24),
+            DepthFormat::Bits16 => whole(depth, 16),
+        }
+    }
+
+    #[inline(always)]
+    fn keys<S: Simd>(self, depth: f32x16<S>) -> u32x16<S> {
+        match self.0 {
+            DepthFormat::F32Reversed => depth.bitcast(),
+            DepthFormat::F32 => {
+                let one = f32x16::splat(depth.simd, 1.0);
+                let all = u32x16::splat(depth.simd, FIRST + ONE);
+                all - (one - depth).bitcast::<u32x16<S>>()
+            }
+            DepthFormat::Bits24 => whole_keys(depth, 24),
+            DepthFormat::Bits16 => whole_keys(depth, 16),
+        }
     }
 }
 
-/// 1 - depth in whole numbers of some bits, 24 at most.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Whole<const BITS: u32>;
-
-impl<const BITS: u32> Whole<BITS> {
-    /// The largest number.
-    const LARGEST: u32 = (1 << BITS) - 1;
+/// The largest number of some bits.
+const fn largest(bits: u32) -> u32 {
+    (1 << bits) - 1
 }
 
-/// With L = 2^BITS - 1, the key is L - round(L - L d), halves away from 0: the least integer that
-/// is not less than L d - 1/2. With 2^BITS d = i + f, where i is whole and f below 1, that is
+/// The largest number less the rounded 1 - depth.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "up to 2^24")]
+fn whole(depth: f32, bits: u32) -> u32 {
+    let largest = largest(bits);
+    FIRST + largest - ((1.0 - f64::from(depth)) * f64::from(largest)).round() as u32
+}
+
+/// The same for sixteen depths. With L = 2^BITS - 1, the key is L - round(L - L d), halves away
+/// from 0: the least integer that is not less than L d - 1/2. With 2^BITS d = i + f, where i is
+/// whole and f below 1, that is
 ///
 ///   i + 1 if f - 1/2 > d,   i - 1 if f + 1/2 <= d,   else i
 ///
 /// and all of these numbers are exact in f32 where they decide.
-impl<const BITS: u32> Format for Whole<BITS> {
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "up to 2^24")]
-    fn key(depth: f32) -> u32 {
-        let largest = f64::from(Self::LARGEST);
-        FIRST + Self::LARGEST - ((1.0 - f64::from(depth)) * largest).round() as u32
-    }
+#[inline(always)]
+#[expect(clippy::cast_precision_loss, reason = "a power of two")]
+fn whole_keys<S: Simd>(depth: f32x16<S>, bits: u32) -> u32x16<S> {
+    let simd = depth.simd;
+    let all = depth * (1_u32 << bits) as f32;
+    let whole: i32x16<S> = all.to_int();
+    let rest = all - whole.to_float::<f32x16<S>>();
+    let up = (rest - 0.5).simd_gt(depth);
+    let down = depth.simd_ge(rest + 0.5);
+    let first = i32x16::splat(simd, FIRST.cast_signed());
+    let (more, less) = (first + 1, first - 1);
+    (whole + up.select(more, down.select(less, first))).bitcast()
+}
 
-    #[inline(always)]
-    #[expect(clippy::cast_precision_loss, reason = "a power of two")]
-    fn keys<S: Simd>(depth: f32x16<S>) -> u32x16<S> {
-        let simd = depth.simd;
-        let all = depth * (1_u32 << BITS) as f32;
-        let whole: i32x16<S> = all.to_int();
-        let rest = all - whole.to_float::<f32x16<S>>();
-        let up = (rest - 0.5).simd_gt(depth);
-        let down = depth.simd_ge(rest + 0.5);
-        let first = i32x16::splat(simd, FIRST.cast_signed());
-        let (more, less) = (first + 1, first - 1);
-        (whole + up.select(more, down.select(less, first))).bitcast()
-    }
-
-    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
-    fn depth(key: u32) -> (f32, f32) {
-        let step = 1.0 / f64::from(Self::LARGEST);
+/// The depth of a key, and the largest error of it.
+#[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+fn depth_and_error(format: DepthFormat, key: u32) -> (f32, f32) {
+    let part = |bits: u32| {
+        let step = 1.0 / f64::from(largest(bits));
         ((f64::from(key.saturating_sub(FIRST)) * step) as f32, step as f32)
+    };
+    match format {
+        DepthFormat::F32Reversed => (f32::from_bits(key), 0.0),
+        DepthFormat::F32 => (1.0 - f32::from_bits((FIRST + ONE).saturating_sub(key)), f32::EPSILON),
+        DepthFormat::Bits24 => part(24),
+        DepthFormat::Bits16 => part(16),
     }
 }
 
-/// Evaluates an expression with the type of a format.
+/// Evaluates an expression with the type that a format belongs to.
 macro_rules! with_format {
     ($format:expr, $name:ident => $what:expr) => {
-        match $format {
-            $crate::accuracy::DepthFormat::F32Reversed => {
-                type $name = $crate::render::raster::depth_format::Reversed;
-                $what
-            }
-            $crate::accuracy::DepthFormat::F32 => {
-                type $name = $crate::render::raster::depth_format::Plain;
-                $what
-            }
-            $crate::accuracy::DepthFormat::Bits24 => {
-                type $name = $crate::render::raster::depth_format::Whole<24>;
-                $what
-            }
-            $crate::accuracy::DepthFormat::Bits16 => {
-                type $name = $crate::render::raster::depth_format::Whole<16>;
-                $what
-            }
+        if $format == $crate::accuracy::DepthFormat::F32Reversed {
+            type $name = $crate::render::raster::depth_format::Reversed;
+            $what
+        } else {
+            type $name = $crate::render::raster::depth_format::Any;
+            $what
         }
     };
 }
@@ -151,15 +169,14 @@ pub(crate) use with_format;
 
 /// The depth of a key, 1 at the near plane and 0 at the far one.
 pub(crate) fn depth(format: DepthFormat, key: u32) -> f32 {
-    with_format!(format, D => D::depth(key).0)
+    depth_and_error(format, key).0
 }
 
 /// Bounds of the depths whose keys lie between two others.
 pub(crate) fn depths_between(format: DepthFormat, [low, high]: [u32; 2]) -> [f32; 2] {
-    with_format!(format, D => {
-        let ((low, below), (high, above)) = (D::depth(low), D::depth(high));
-        [(low - below).max(0.0), (high + above).min(1.0)]
-    })
+    let (low, below) = depth_and_error(format, low);
+    let (high, above) = depth_and_error(format, high);
+    [(low - below).max(0.0), (high + above).min(1.0)]
 }
 
 #[cfg(test)]
@@ -170,7 +187,7 @@ mod tests {
     use super::*;
 
     fn key(format: DepthFormat, depth: f32) -> u32 {
-        with_format!(format, D => D::key(depth))
+        Any(format).key(depth)
     }
 
     /// The distance at which two planes about z = 1000 are always told apart.
@@ -225,9 +242,10 @@ mod tests {
                 DepthFormat::Bits16,
             ] {
                 let mut keys = [0; 16];
-                with_format!(format, D => dispatch!(Level::new(), simd => {
-                    D::keys(f32x16::from_slice(simd, &depths)).store_slice(&mut keys);
-                }));
+                dispatch!(Level::new(), simd => {
+                    let depths = f32x16::from_slice(simd, &depths);
+                    Any(format).keys(depths).store_slice(&mut keys);
+                });
                 assert_eq!(keys, depths.map(|depth| key(format, depth)), "{format:?} {depths:?}");
             }
         }

@@ -169,8 +169,9 @@ impl FloatTriangle {
     /// Draws the triangle into a block of the visibility buffer, for the sample with this offset.
     /// `whole` says that it covers the block fully.
     #[inline(always)]
-    pub(crate) fn draw<S: Simd, D: Format, O: Opaque>(
+    pub(crate) fn draw<S: Simd, O: Opaque>(
         &self,
+        format: impl Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
@@ -200,13 +201,13 @@ impl FloatTriangle {
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
             if !O::ALL {
-                let front = in_front::<S, D>(simd, covered, depth, self.number, visibility);
+                let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {
                     continue;
                 }
                 covered = mask32x16::from_bitmask(simd, opaque.of(pair, front));
             }
-            put_rows::<S, D>(simd, covered, depth, self.number, visibility);
+            put_rows(format, simd, covered, depth, self.number, visibility);
         }
     }
 }

@@ -214,7 +214,7 @@ impl Hits {
     #[inline(always)]
     pub(crate) fn each<S: Simd, D: Format>(
         &self,
-        simd: S,
+        (format, simd): (D, S),
         tile: usize,
         mut take: impl FnMut(u32, u32, u32),
     ) {
@@ -227,8 +227,8 @@ impl Hits {
                 for at in (0..*count).step_by(PACK) {
                     let row = f32x16::from_slice(simd, bytemuck::cast_slice(&depth[at..at + PACK]));
                     let own = u32x16::from_slice(simd, &number[at..at + PACK]);
-                    let bias = (own >> 31) * D::LINES_NEARER;
-                    (D::keys(row) + bias).store_slice(&mut keys[at..at + PACK]);
+                    let bias = (own >> 31) * format.lines_nearer();
+                    (format.keys(row) + bias).store_slice(&mut keys[at..at + PACK]);
                 }
                 depth = &keys;
             }

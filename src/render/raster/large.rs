@@ -180,8 +180,9 @@ impl Large {
     /// Draws the triangle into a block of the visibility buffer, for the sample with this offset;
     /// the triangle covers the block fully or in part, and may have holes.
     #[inline(always)]
-    pub(crate) fn draw<S: Simd, D: Format>(
+    pub(crate) fn draw<S: Simd>(
         &self,
+        format: impl Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
@@ -210,7 +211,7 @@ impl Large {
             let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
             let mut covered = mask32x16::from_bitmask(simd, covered);
             if holes.there_are() {
-                let front = in_front::<S, D>(simd, covered, depth, self.number, visibility);
+                let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {
                     continue;
                 }
@@ -219,7 +220,7 @@ impl Large {
                 let opaque = holes.opaque(simd, pair, front, rows);
                 covered = mask32x16::from_bitmask(simd, opaque);
             }
-            put_rows::<S, D>(simd, covered, depth, self.number, visibility);
+            put_rows(format, simd, covered, depth, self.number, visibility);
         }
     }
 

@@ -153,8 +153,9 @@ impl<S: Simd> Medium<S> {
     /// Draws the triangle into those rows of a block that `area` reaches into, for the sample with
     /// this offset. `area` is in pixels from the tile's first.
     #[inline(always)]
-    pub(crate) fn draw<D: Format>(
+    pub(crate) fn draw(
         &self,
+        format: impl Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         area: PixelBox,
@@ -175,7 +176,7 @@ impl<S: Simd> Medium<S> {
                 let second = self.second + gain[1] + below * self.down[1];
                 let third = self.third + gain[2] + below * self.down[2];
                 let depth = self.depths(simd, second, third);
-                put_rows::<S, D>(simd, covered, depth, self.number, &mut pairs[pair as usize % 4]);
+                put_rows(format, simd, covered, depth, self.number, &mut pairs[pair as usize % 4]);
             }
         }
     }

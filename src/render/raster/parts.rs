@@ -73,6 +73,7 @@ impl<'a> Parts<'a> {
                 let corners = self.corners_of(i);
                 let setup = Setup::new(draw, pipelines, corners, size, self.starts[i].number);
                 let mut setup = setup.seen_from(self.plan.shift, self.plan.variants.grid());
+                setup.coverage = self.plan.variants.coverage;
                 if !self.vertices.unsnapped.is_empty() {
                     setup.unsnapped = &self.vertices.unsnapped[self.starts[i].vertex..];
                 }

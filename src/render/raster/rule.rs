@@ -2,8 +2,8 @@
 //!
 //! * By whole numbers on the usual grid: the default.
 //! * By whole numbers on a finer grid.
-//! * By edge functions in f32, of corners that are not snapped.
-//! * By something that tiles do alone: scan lines, points.
+//! * From corners that are not snapped: edge functions in f32; and scan lines and points, which
+//!   tiles draw alone.
 
 use fearless_simd::Simd;
 
@@ -16,21 +16,10 @@ use crate::render::screen::coverage::Grid;
 pub(crate) trait Rule: Copy {
     /// The grid of corners.
     const GRID: Grid = Grid::Usual;
-    /// How far beyond its bounding box a triangle may cover centres, in 1/256 pixel.
-    const BEYOND: i32 = 0;
     /// Whether corners are needed as they were before they were snapped.
     const UNSNAPPED: bool = false;
-    /// Whether small triangles are drawn sixteen at a time.
-    const SMALL: bool = true;
     /// The edge functions of small triangles.
     type Edges<S: Simd>: Edges<S>;
-
-    /// The least and the largest offsets of samples, with those of centres beyond the box.
-    #[inline(always)]
-    fn reach([least, most]: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
-        let by = Self::BEYOND;
-        [[least[0] - by, least[1] - by], [most[0] + by, most[1] + by]]
-    }
 }
 
 /// Whole numbers on the usual grid.
@@ -50,25 +39,15 @@ impl Rule for Fine {
     type Edges<S: Simd> = FineEdges<S>;
 }
 
-/// Edge functions in f32. By rounding they may cover centres that are a little outside.
+/// Corners that are not snapped: of small triangles, edge functions in f32. By rounding they may
+/// cover centres that are a little outside; scan lines, whose corners are whole pixels, up to one
+/// and a half.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Floats;
+pub(crate) struct Unsnapped;
 
-impl Rule for Floats {
-    const BEYOND: i32 = 16;
+impl Rule for Unsnapped {
     const UNSNAPPED: bool = true;
     type Edges<S: Simd> = FloatEdges<S>;
-}
-
-/// What tiles do alone. Rounded to whole pixels, corners are up to half a pixel off.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct InTiles;
-
-impl Rule for InTiles {
-    const BEYOND: i32 = 384;
-    const UNSNAPPED: bool = true;
-    const SMALL: bool = false;
-    type Edges<S: Simd> = UsualEdges<S>;
 }
 
 /// Evaluates an expression with the rule of coverage of a frame.
@@ -83,12 +62,8 @@ macro_rules! with_rule {
                 type $rule = $crate::render::raster::rule::Fine;
                 $what
             }
-            $crate::render::raster::rule::Kind::Floats => {
-                type $rule = $crate::render::raster::rule::Floats;
-                $what
-            }
-            $crate::render::raster::rule::Kind::InTiles => {
-                type $rule = $crate::render::raster::rule::InTiles;
+            $crate::render::raster::rule::Kind::Unsnapped => {
+                type $rule = $crate::render::raster::rule::Unsnapped;
                 $what
             }
         }
@@ -100,8 +75,7 @@ pub(crate) use with_rule;
 pub(crate) enum Kind {
     Usual,
     Fine,
-    Floats,
-    InTiles,
+    Unsnapped,
 }
 
 /// The rule of a frame.
@@ -109,7 +83,21 @@ pub(crate) fn kind(variants: Variants) -> Kind {
     match (variants.coverage, variants.grid()) {
         (Coverage::Exact, Grid::Usual) => Kind::Usual,
         (Coverage::Exact, Grid::Fine) => Kind::Fine,
-        (Coverage::F32Edges, _) => Kind::Floats,
-        (Coverage::ScanLines | Coverage::Points, _) => Kind::InTiles,
+        _ => Kind::Unsnapped,
     }
+}
+
+/// How far beyond its bounding box a triangle may cover centres, in 1/256 pixel.
+pub(crate) const fn beyond(coverage: Coverage) -> i32 {
+    match coverage {
+        Coverage::Exact => 0,
+        Coverage::F32Edges => 16,
+        Coverage::ScanLines | Coverage::Points => 384,
+    }
+}
+
+/// The least and the largest offsets of samples, with those of centres beyond a box.
+#[inline(always)]
+pub(crate) const fn reach([least, most]: [[i32; 2]; 2], by: i32) -> [[i32; 2]; 2] {
+    [[least[0] - by, least[1] - by], [most[0] + by, most[1] + by]]
 }

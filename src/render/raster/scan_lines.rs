@@ -94,8 +94,9 @@ impl ScanLines {
 
     /// Draws the rows into a block of the visibility buffer.
     #[inline(always)]
-    pub(crate) fn draw<S: Simd, D: Format, O: Opaque>(
+    pub(crate) fn draw<S: Simd, O: Opaque>(
         &self,
+        format: impl Format,
         simd: S,
         block: usize,
         opaque: &O,
@@ -119,10 +120,10 @@ impl ScanLines {
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
             if !O::ALL {
-                let front = in_front::<S, D>(simd, covered, depth, self.number, visibility);
+                let front = in_front(format, simd, covered, depth, self.number, visibility);
                 covered = mask32x16::from_bitmask(simd, opaque.of(pair, front));
             }
-            put_rows::<S, D>(simd, covered, depth, self.number, visibility);
+            put_rows(format, simd, covered, depth, self.number, visibility);
         }
     }
 

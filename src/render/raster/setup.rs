@@ -10,9 +10,10 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16,
 use super::bins::{Bins, LargeTriangle};
 use super::hits::PACK;
 use super::queue::{Pack, SMALL};
-use super::rule::Rule;
+use super::rule::{self, Rule};
 use super::small;
 use super::vertices::{fetch, fetch_vertices};
+use crate::accuracy::Coverage;
 use crate::base::image::Size;
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw, Pipeline};
@@ -37,6 +38,7 @@ pub(crate) struct Setup<'a> {
     pub(crate) choosy: bool,
     /// The vertices in pixels, before they were snapped, if the rule of coverage needs them.
     pub(crate) unsnapped: &'a [[f32; 2]],
+    pub(crate) coverage: Coverage,
 }
 
 /// How a triangle is drawn.
@@ -61,7 +63,16 @@ impl<'a> Setup<'a> {
             });
         let screen = Screen::new(draw.clip_from_object, size);
         let order = draw.model.mesh.draw_order();
-        Self { draw, order, vertices, screen, base, choosy, unsnapped: &[] }
+        Self {
+            draw,
+            order,
+            vertices,
+            screen,
+            base,
+            choosy,
+            unsnapped: &[],
+            coverage: Coverage::Exact,
+        }
     }
 
     /// The same for vertices relative to a sample with this offset in 1/256 pixel, on a grid.
@@ -120,7 +131,7 @@ impl<'a> Setup<'a> {
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
 
         let (half, log2) = (R::GRID.parts() / 2, R::GRID.parts().trailing_zeros());
-        let [least, most] = R::reach(bins.sample_positions.reach::<N>());
+        let [least, most] = self.reach::<R, N>(bins);
         let (least, most) = (R::GRID.offset(least), R::GRID.offset(most));
         let left = (low_x + (half - 1 - most[0])) >> log2;
         let right = ((high_x - (half + least[0])) >> log2) + 1;
@@ -152,7 +163,7 @@ impl<'a> Setup<'a> {
             );
             let number = number + self.base.cast_signed();
             let mut pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
-            if R::UNSNAPPED && R::SMALL {
+            if R::UNSNAPPED && self.has_small::<R>() {
                 for corner in 0..3 {
                     let [x, y] = self.unsnapped_corners(simd, triangles, corner);
                     (pack[2 * corner], pack[2 * corner + 1]) = (x, y);
@@ -224,7 +235,7 @@ impl<'a> Setup<'a> {
             cutout = kinds[1];
         }
         let mut above = 0;
-        for (queue, limit) in SMALL.into_iter().enumerate().filter(|_| R::SMALL) {
+        for (queue, limit) in SMALL.into_iter().enumerate().filter(|_| self.has_small::<R>()) {
             let some = plain & side.simd_gt(above) & side.simd_le(limit);
             above = limit;
             let count = some.to_bitmask().count_ones() as usize;
@@ -247,8 +258,29 @@ impl<'a> Setup<'a> {
                 let own = each(triangles[lane].vertices, |i| self.unsnapped[i as usize]);
                 bins.unsnapped.push(own);
             }
-            add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
+            self.add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
         }
+    }
+
+    /// Adds a triangle that is not small, or not drawn with small ones.
+    #[inline(always)]
+    fn add_large<R: Rule, const N: usize>(&self, triangle: LargeTriangle, bins: &mut Bins) {
+        let at = each(triangle.corners, |corner| corner.at());
+        let reach = self.reach::<R, N>(bins);
+        bins.add_large(triangle, PixelBox::reached_on(R::GRID, at, reach));
+    }
+
+    /// How far from centres of pixels they may be covered.
+    #[inline(always)]
+    fn reach<R: Rule, const N: usize>(&self, bins: &Bins) -> [[i32; 2]; 2] {
+        let reach = bins.sample_positions.reach::<N>();
+        if R::UNSNAPPED { rule::reach(reach, rule::beyond(self.coverage)) } else { reach }
+    }
+
+    /// Whether small triangles are drawn sixteen at a time.
+    #[inline(always)]
+    fn has_small<R: Rule>(&self) -> bool {
+        !R::UNSNAPPED || self.coverage == Coverage::F32Edges
     }
 
     /// The masks of the triangles that are drawn without and with the alpha test.
@@ -310,7 +342,7 @@ impl<'a> Setup<'a> {
             if R::UNSNAPPED {
                 bins.unsnapped.push([unsnapped[0], unsnapped[i - 1], unsnapped[i]]);
             }
-            add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
+            self.add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
         }
     }
 
@@ -331,14 +363,6 @@ impl<'a> Setup<'a> {
             Some(_) => Kind::Plain,
         }
     }
-}
-
-/// Adds a triangle that is not small, or not drawn with small ones.
-#[inline(always)]
-fn add_large<R: Rule, const N: usize>(triangle: LargeTriangle, bins: &mut Bins) {
-    let at = each(triangle.corners, |corner| corner.at());
-    let reach = R::reach(bins.sample_positions.reach::<N>());
-    bins.add_large(triangle, PixelBox::reached_on(R::GRID, at, reach));
 }
 
 /// Draws the small triangles that are still waiting.

@@ -11,7 +11,8 @@ use fearless_simd::{
     mask32x16,
 };
 
-use super::rule::Rule;
+use super::rule::{self, Rule};
+use crate::accuracy::Coverage;
 use crate::base::math::each;
 use crate::render::screen::coverage::{Grid, SUBPIXELS};
 use crate::render::screen::sample_positions::SamplePositions;
@@ -290,7 +291,7 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
         let snap =
             |x: i32x16<S>| -> i32x16<S> { (x.bitcast::<f32x16<S>>() * SUBPIXELS as f32).to_int() };
         let snapped = each(corners, |[x, y]| [snap(x), snap(y)]);
-        snapped_bounds::<S, R>(snapped, reach)
+        snapped_bounds::<S, R>(snapped, rule::reach(reach, rule::beyond(Coverage::F32Edges)))
     }
 
     #[inline(always)]
@@ -367,7 +368,7 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
 #[inline(always)]
 fn snapped_bounds<S: Simd, R: Rule>([p, q, r]: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
     let (half, log2) = (R::GRID.parts() / 2, R::GRID.parts().trailing_zeros());
-    let [least, most] = R::reach(reach);
+    let [least, most] = reach;
     let (least, most) = (R::GRID.offset(least), R::GRID.offset(most));
     [
         (p[0].min(q[0]).min(r[0]) + (half - 1 - most[0])) >> log2,

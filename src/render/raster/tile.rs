@@ -118,7 +118,7 @@ impl Visibility {
             dispatch!(level, simd => self.draw_hits::<_, D, N>(simd, bins, tile));
             if plan.variants.coverage != Coverage::Exact {
                 dispatch!(level, simd => {
-                    self.draw_by_variant::<_, D, N>(simd, (plan, frame), bins, tile);
+                    self.draw_by_variant::<_, N>(simd, (plan, frame), bins, tile);
                 });
                 dispatch!(level, simd => self.draw_lines::<_, D, N>(simd, bins, plan.line_width, tile));
                 continue;
@@ -255,7 +255,7 @@ impl Visibility {
                 match self.large[self.shown[block] as usize] {
                     Shown::Large(large) => self.draw_planes::<S, D, N>(simd, &large, block, true),
                     Shown::Floats(triangle) => {
-                        self.draw_float_planes::<S, D, N>(simd, &triangle, block, true);
+                        self.draw_float_planes::<S, N>(simd, &triangle, block, true);
                     }
                 }
             }
@@ -277,11 +277,11 @@ impl Visibility {
         block: usize,
         whole: bool,
     ) {
-        let sample_positions = self.sample_positions;
+        let (sample_positions, format) = (self.sample_positions, D::of(self.depth_format));
         for sample in 0..N {
             let shift = sample_positions.shift::<N>(sample);
             let plane = self.plane::<N>(block, sample);
-            large.draw::<S, D>(simd, (block, shift), whole, &Solid, plane);
+            large.draw(format, simd, (block, shift), whole, &Solid, plane);
         }
     }
 
@@ -296,8 +296,9 @@ impl Visibility {
     ) {
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
         self.write::<S, D, N>(simd, block_at(x, y));
+        let word = word(D::of(self.depth_format).key(depth) + bias, number);
         let old = &mut self.plane::<N>(block_at(x, y), sample)[within(x, y)];
-        *old = word(D::key(depth) + bias, number).max(*old);
+        *old = word.max(*old);
     }
 
     /// Draws the lines of a tile that are not short.
@@ -309,6 +310,7 @@ impl Visibility {
         width: i32,
         tile: usize,
     ) {
+        let bias = D::of(self.depth_format).lines_nearer();
         for &place in &bins.tiles[tile].lines {
             for sample in 0..N {
                 let line =
@@ -319,7 +321,6 @@ impl Visibility {
                     self.bounds,
                     #[inline(always)]
                     |x, y, depth| {
-                        let bias = D::LINES_NEARER;
                         self.put::<S, D, N>(simd, (x, y, sample), depth, line.number, bias);
                     },
                 );
@@ -330,8 +331,8 @@ impl Visibility {
     /// Draws the small triangles of a tile, and lines that are short.
     #[inline(always)]
     fn draw_hits<S: Simd, D: Format, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
-        bins.hits.each::<S, D>(
-            simd,
+        bins.hits.each(
+            (D::of(self.depth_format), simd),
             tile,
             #[inline(always)]
             |place, key, number| {

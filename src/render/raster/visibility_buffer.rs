@@ -58,14 +58,15 @@ pub(crate) fn word(key: u32, number: u32) -> u64 {
 /// Entries are compared as f64: their bits are in the order of the numbers, since keys are below the
 /// bits of infinity, and every processor has a maximum of f64.
 #[inline(always)]
-pub(crate) fn put_rows<S: Simd, D: Format>(
+pub(crate) fn put_rows<S: Simd>(
+    format: impl Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,
     number: u32,
     visibility: &mut [u64; 16],
 ) {
-    let (upper, lower) = entries::<S, D>(simd, covered, depth, number);
+    let (upper, lower) = entries(format, simd, covered, depth, number);
     let (up, down) = bytemuck::cast_slice_mut::<u64, f64>(visibility).split_at_mut(8);
     for (new, row) in [(upper, up), (lower, down)] {
         let old = f64x8::from_slice(simd, row);
@@ -76,14 +77,15 @@ pub(crate) fn put_rows<S: Simd, D: Format>(
 /// Those among sixteen pixels that a triangle covers and where it is in front, a bit for each. See
 /// [`put_rows`].
 #[inline(always)]
-pub(crate) fn in_front<S: Simd, D: Format>(
+pub(crate) fn in_front<S: Simd>(
+    format: impl Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,
     number: u32,
     visibility: &[u64; 16],
 ) -> u64 {
-    let (upper, lower) = entries::<S, D>(simd, covered, depth, number);
+    let (upper, lower) = entries(format, simd, covered, depth, number);
     let (up, down) = bytemuck::cast_slice::<u64, f64>(visibility).split_at(8);
     let front = |new: f64x8<S>, row: &[f64]| new.simd_gt(f64x8::from_slice(simd, row)).to_bitmask();
     front(upper, up) | front(lower, down) << 8
@@ -91,14 +93,15 @@ pub(crate) fn in_front<S: Simd, D: Format>(
 
 /// Entries as f64, where a triangle covers pixels, else 0.
 #[inline(always)]
-fn entries<S: Simd, D: Format>(
+fn entries<S: Simd>(
+    format: impl Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,
     number: u32,
 ) -> (f64x8<S>, f64x8<S>) {
     let nothing = u32x16::splat(simd, 0);
-    let depth = covered.select(D::keys(depth), nothing);
+    let depth = covered.select(format.keys(depth), nothing);
     let number = covered.select(u32x16::splat(simd, !number), nothing);
     let (upper, lower) = number.interleave(depth);
     (upper.bitcast(), lower.bitcast())

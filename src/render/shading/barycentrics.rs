@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::fragments::Fragments;
 use super::triangle_attributes::{TriangleAttributes, picked};
+use crate::accuracy::Interpolation;
 use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
 /// The barycentric coordinates of a list of fragments.
@@ -40,72 +41,29 @@ impl<T: Number> Barycentrics<T> {
     }
 }
 
-/// How coordinates that are linear on the screen become the weights of corners.
-pub(crate) trait Method: Copy {
-    /// The weights of the second and the third corner, and w.
-    fn weights<M: Lanes>(self, lanes: M, linear: [M::R; 2], by_w: Vec3<M::R>) -> ([M::R; 2], M::R);
-}
-
-/// With perspective:
+/// The weights of the second and the third corner, and w, from coordinates that are linear on the
+/// screen. With perspective:
 ///
 ///   m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and 1 / the sum, which is the
 ///   pixel's own w.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Perspective;
-
-impl Method for Perspective {
-    #[inline(always)]
-    fn weights<M: Lanes>(
-        self,
-        lanes: M,
-        [second, third]: [M::R; 2],
-        by_w: Vec3<M::R>,
-    ) -> ([M::R; 2], M::R) {
-        let w = distance(lanes, [second, third], by_w);
-        let Vec3([_, w1, w2]) = by_w;
-        ([second * w1 * w, third * w2 * w], w)
-    }
-}
-
-/// As they are. The distance is exact nevertheless: what is lit, is lit where it is.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Affine;
-
-impl Method for Affine {
-    #[inline(always)]
-    fn weights<M: Lanes>(self, lanes: M, linear: [M::R; 2], by_w: Vec3<M::R>) -> ([M::R; 2], M::R) {
-        (linear, distance(lanes, linear, by_w))
-    }
-}
-
-/// w at a pixel.
+///
+/// Affine weights are the coordinates themselves. The distance is exact nevertheless: what is lit,
+/// is lit where it is. Spans of sixteen pixels begin with perspective.
 #[inline(always)]
-fn distance<M: Lanes>(
+pub(crate) fn weighed<M: Lanes>(
+    interpolation: Interpolation,
     lanes: M,
     [second, third]: [M::R; 2],
     Vec3([w0, w1, w2]): Vec3<M::R>,
-) -> M::R {
-    lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0))
-}
-
-/// Evaluates an expression with the method of an interpolation. Spans of sixteen pixels begin with
-/// perspective.
-macro_rules! with_method {
-    ($interpolation:expr, $method:ident => $what:expr) => {
-        match $interpolation {
-            $crate::accuracy::Interpolation::Affine => {
-                let $method = $crate::render::shading::barycentrics::Affine;
-                $what
-            }
-            $crate::accuracy::Interpolation::Perspective
-            | $crate::accuracy::Interpolation::EverySixteen => {
-                let $method = $crate::render::shading::barycentrics::Perspective;
-                $what
-            }
+) -> ([M::R; 2], M::R) {
+    let w = lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
+    match interpolation {
+        Interpolation::Affine => ([second, third], w),
+        Interpolation::Perspective | Interpolation::EverySixteen => {
+            ([second * w1 * w, third * w2 * w], w)
         }
-    };
+    }
 }
-pub(crate) use with_method;
 
 /// Clamps linear coordinates of pixels whose centres lie outside of their triangles: negative ones
 /// count as 0, and the sum stays 1.
@@ -131,22 +89,22 @@ impl<T: Number> Kernel<T> for Clamp<'_, T> {
 }
 
 /// Makes linear coordinates the weights of corners.
-pub(super) struct Weigh<'a, T, I, const PAGES: usize> {
-    pub(super) method: I,
+pub(super) struct Weigh<'a, T, const PAGES: usize> {
+    pub(super) interpolation: Interpolation,
     pub(super) fragments: &'a Fragments,
     pub(super) attributes: &'a TriangleAttributes<T>,
     pub(super) to: &'a mut Barycentrics<T>,
 }
 
-impl<T: Number, I: Method, const PAGES: usize> Kernel<T> for Weigh<'_, T, I, PAGES> {
+impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { method, fragments, attributes, to } = self;
+        let Self { interpolation, fragments, attributes, to } = self;
         for at in (0..fragments.len).step_by(M::LANES) {
             let slots = lanes.slots(&fragments.slots, at);
             let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
             let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
-            to.put(method, lanes, at, linear, by_w);
+            to.put(interpolation, lanes, at, linear, by_w);
         }
     }
 }
@@ -156,13 +114,13 @@ impl<T: Number> Barycentrics<T> {
     #[inline(always)]
     pub(super) fn put<M: Lanes<Number = T>>(
         &mut self,
-        method: impl Method,
+        interpolation: Interpolation,
         lanes: M,
         at: usize,
         linear: [M::R; 2],
         by_w: Vec3<M::R>,
     ) {
-        let (weights, w) = method.weights(lanes, linear, by_w);
+        let (weights, w) = weighed(interpolation, lanes, linear, by_w);
         lanes.store(w, &mut self.w, at);
         lanes.store(weights[0], &mut self.weights[0], at);
         lanes.store(weights[1], &mut self.weights[1], at);

@@ -8,7 +8,7 @@ use fearless_simd::{
     Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,
 };
 
-use super::barycentrics::{Method, with_method};
+use super::barycentrics::weighed;
 use super::interpolate::{CornerValues, Look, between, depth_between};
 use super::quantize::reflected;
 use super::texels::{OfFirst, PlacedTexture, product};
@@ -207,22 +207,22 @@ trait Points<S: Simd>: Copy {
 
 /// From linear coordinates and 1/w of each corner.
 #[derive(Clone, Copy)]
-struct Inside<S: Simd, L, I> {
-    method: I,
+struct Inside<S: Simd, L> {
+    interpolation: Interpolation,
     linear: L,
     by_w: Vec3<f32x16<S>>,
 }
 
-impl<S: Simd, L: Linear<S>, I: Method> Points<S> for Inside<S, L, I> {
+impl<S: Simd, L: Linear<S>> Points<S> for Inside<S, L> {
     #[inline(always)]
     fn block(&self, simd: S, first: [i32; 2]) -> [Weighted<S>; PAIRS] {
         let [a, b, c, d] = self.linear.block(simd, first);
         let lanes = Sixteen(simd);
         [
-            self.method.weights(lanes, a, self.by_w),
-            self.method.weights(lanes, b, self.by_w),
-            self.method.weights(lanes, c, self.by_w),
-            self.method.weights(lanes, d, self.by_w),
+            weighed(self.interpolation, lanes, a, self.by_w),
+            weighed(self.interpolation, lanes, b, self.by_w),
+            weighed(self.interpolation, lanes, c, self.by_w),
+            weighed(self.interpolation, lanes, d, self.by_w),
         ]
     }
 }
@@ -256,18 +256,18 @@ macro_rules! with_points {
             dispatch!($level, $simd => $what);
             true
         } else if attributes.wide & 1 == 0 {
-            with_method!($by.interpolation, method => dispatch!($level, $simd => {
+            dispatch!($level, $simd => {
                 let by_w = of_first(Sixteen($simd), &attributes.by_w);
-                let $points = Inside { method, linear: Narrow::new($simd, attributes), by_w };
+                let $points = Inside { interpolation: $by.interpolation, linear: Narrow::new($simd, attributes), by_w };
                 $what
-            }));
+            });
             true
         } else if let Some(triangle) = &Triangle::on(attributes.grid, attributes.corners(0)) {
-            with_method!($by.interpolation, method => dispatch!($level, $simd => {
+            dispatch!($level, $simd => {
                 let by_w = of_first(Sixteen($simd), &attributes.by_w);
-                let $points = Inside { method, linear: Wide::new($simd, triangle), by_w };
+                let $points = Inside { interpolation: $by.interpolation, linear: Wide::new($simd, triangle), by_w };
                 $what
-            }));
+            });
             true
         } else {
             false

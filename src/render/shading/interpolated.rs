@@ -3,7 +3,7 @@
 use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
 use glam::DVec3;
 
-use super::barycentrics::{Barycentrics, Clamp, Method, Perspective, Weigh, with_method};
+use super::barycentrics::{Barycentrics, Clamp, Weigh};
 use super::fragments::Fragments;
 use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _, Wide};
 use super::spans::interpolate_spans;
@@ -25,7 +25,7 @@ pub(crate) trait Interpolated: AttributeNumber {
     /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow that.
     /// Returns whether they do.
     fn find(
-        method: impl Method,
+        interpolation: Interpolation,
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<Self>,
@@ -84,11 +84,9 @@ impl<T: Interpolated> Barycentrics<T> {
     ) {
         let Variants { coverage, interpolation, .. } = plan.variants;
         let outside = fragments.shared || coverage != Coverage::Exact;
-        with_method!(interpolation, method => {
-            if outside || !T::find(method, level, fragments, attributes, self) {
-                self.find_step_by_step(method, level, fragments, attributes, (plan, draw));
-            }
-        });
+        if outside || !T::find(interpolation, level, fragments, attributes, self) {
+            self.find_step_by_step(level, fragments, attributes, (plan, draw));
+        }
         if interpolation == Interpolation::EverySixteen {
             interpolate_spans(fragments, attributes, self);
         }
@@ -97,12 +95,12 @@ impl<T: Interpolated> Barycentrics<T> {
     /// The same for all kinds of triangles, and for pixels whose centres lie outside.
     fn find_step_by_step(
         &mut self,
-        method: impl Method,
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<T>,
         (plan, draw): (&FramePlan, &Draw),
     ) {
+        let interpolation = plan.variants.interpolation;
         T::find_linear(level, fragments, attributes, self);
         self.find_wide(fragments, attributes);
         if fragments.shared {
@@ -113,7 +111,7 @@ impl<T: Interpolated> Barycentrics<T> {
         }
         paged!(attributes.count, PAGES => T::run(
             level,
-            Weigh::<T, _, PAGES> { method, fragments, attributes, to: self },
+            Weigh::<T, PAGES> { interpolation, fragments, attributes, to: self },
         ));
         if attributes.cut != 0 {
             self.find_cut(fragments, attributes, plan, draw);
@@ -173,7 +171,7 @@ impl<T: Interpolated> Barycentrics<T> {
 
 impl Interpolated for f64 {
     fn find(
-        _: impl Method,
+        _: Interpolation,
         _: Level,
         _: &Fragments,
         _: &TriangleAttributes<Self>,
@@ -226,7 +224,7 @@ impl Interpolated for f64 {
 
 impl Interpolated for f32 {
     fn find(
-        method: impl Method,
+        interpolation: Interpolation,
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<Self>,
@@ -234,7 +232,7 @@ impl Interpolated for f32 {
     ) -> bool {
         let wide = attributes.count == 1 && attributes.wide == 1;
         if wide && let Some(triangle) = Triangle::on(attributes.grid, attributes.corners(0)) {
-            dispatch!(level, simd => find_in_one(method, simd, fragments, &triangle, attributes, to));
+            dispatch!(level, simd => find_in_one(interpolation, simd, fragments, &triangle, attributes, to));
             return true;
         }
         if (attributes.wide | attributes.cut) != 0 {
@@ -242,7 +240,7 @@ impl Interpolated for f32 {
         }
         paged!(attributes.count, PAGES => {
             dispatch!(level, simd => {
-                find_narrow::<_, PAGES>(method, simd, fragments, attributes, to);
+                find_narrow::<_, PAGES>(interpolation, simd, fragments, attributes, to);
             });
         });
         true
@@ -256,7 +254,7 @@ impl Interpolated for f32 {
     ) {
         paged!(attributes.count, PAGES => {
             dispatch!(level, simd => {
-                find_narrow::<_, PAGES>(Perspective, simd, fragments, attributes, to);
+                find_narrow::<_, PAGES>(Interpolation::Perspective, simd, fragments, attributes, to);
             });
         });
     }
@@ -312,7 +310,7 @@ impl Interpolated for f32 {
 /// Computes the coordinates in narrow triangles.
 #[inline(always)]
 fn find_narrow<S: Simd, const PAGES: usize>(
-    method: impl Method,
+    interpolation: Interpolation,
     simd: S,
     fragments: &Fragments,
     attributes: &TriangleAttributes<f32>,
@@ -329,7 +327,7 @@ fn find_narrow<S: Simd, const PAGES: usize>(
         lanes.store(second, &mut to.linear[0], at);
         lanes.store(third, &mut to.linear[1], at);
         let by_w = picked::<_, PAGES>(lanes, &attributes.by_w, slots);
-        to.put(method, lanes, at, [second, third], by_w);
+        to.put(interpolation, lanes, at, [second, third], by_w);
     }
 }
 
@@ -351,7 +349,7 @@ fn edge<S: Simd, const PAGES: usize>(
 /// Computes the coordinates in one triangle whose edge functions need more bits.
 #[inline(always)]
 fn find_in_one<S: Simd>(
-    method: impl Method,
+    interpolation: Interpolation,
     simd: S,
     fragments: &Fragments,
     triangle: &Triangle,
@@ -366,13 +364,13 @@ fn find_in_one<S: Simd>(
         for (pair, linear) in
             wide.block(simd, [fragments.x[0], fragments.y[0]]).into_iter().enumerate()
         {
-            to.put(method, lanes, 16 * pair, linear, by_w);
+            to.put(interpolation, lanes, 16 * pair, linear, by_w);
         }
         return;
     }
     for at in (0..fragments.len).step_by(16) {
         let linear = wide.scattered(simd, &fragments.x[at..at + 16], &fragments.y[at..at + 16]);
-        to.put(method, lanes, at, linear, by_w);
+        to.put(interpolation, lanes, at, linear, by_w);
     }
 }
 

@@ -7,7 +7,7 @@ use crate::render::raster::bins::LargeTriangle;
 use crate::render::raster::depth_format::Reversed;
 use crate::render::raster::edges_in_floats::{Everywhere, FloatTriangle};
 use crate::render::raster::queue::{ROWS, SMALL};
-use crate::render::raster::rule::{Fine, Floats, Rule, Usual};
+use crate::render::raster::rule::{Fine, Rule, Unsnapped, Usual};
 use crate::render::raster::scan_lines::ScanLines;
 use crate::render::raster::small;
 use crate::render::raster::visibility_buffer::Visible;
@@ -275,7 +275,7 @@ fn edges_in_floats_decide_by_their_formula_alone_however_large_a_triangle_is() {
                 (some, whole) = (touched.some, touched.whole);
                 drawn(|block, plane| {
                     let at = (block, [0; 2]);
-                    triangle.draw::<_, Reversed, _>(simd, at, false, &Everywhere, plane);
+                    triangle.draw(Reversed, simd, at, false, &Everywhere, plane);
                 })
             });
             assert_eq!(got, want, "{corners:?}");
@@ -288,7 +288,7 @@ fn edges_in_floats_decide_by_their_formula_alone_however_large_a_triangle_is() {
             }
             if extent <= 7 {
                 let bits = corners.map(|corner| corner.map(|x| x.to_bits().cast_signed()));
-                let seen = seen_in(&small_by::<Floats>(&[bits], one));
+                let seen = seen_in(&small_by::<Unsnapped>(&[bits], one));
                 let got: Vec<_> = seen.iter().map(|(y, x, _)| (*y, *x)).collect();
                 let want: Vec<_> = want.into_iter().filter(|(y, x)| *y < 64 && *x < 64).collect();
                 let got: Vec<_> = got.into_iter().filter(|(y, x)| *y < 64 && *x < 64).collect();
@@ -314,7 +314,7 @@ fn a_square_of_two_halves_is_covered_twice_on_an_edge_and_at_every_seam() {
     let scan_lines = |corners: [[f32; 2]; 3]| {
         let rows = ScanLines::new(corners, [0.5; 3], 0, TILE_BOX).unwrap();
         dispatch!(Level::new(), simd => drawn(|block, plane| {
-            rows.draw::<_, Reversed, _>(simd, block, &Everywhere, plane);
+            rows.draw(Reversed, simd, block, &Everywhere, plane);
         }))
     };
     assert_eq!(count([5.2, 5.2], &scan_lines), (441, 441 + 21));

@@ -29,7 +29,7 @@ impl Visibility {
         }
         let Some((large, area)) = self.set_up::<N>(large) else { return };
         let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let (mut some, high) = (touched.some, D::key(large.high));
+        let (mut some, high) = (touched.some, D::of(self.depth_format).key(large.high));
         let mut place = None;
         while some != 0 {
             let block = some.trailing_zeros() as usize;
@@ -59,7 +59,8 @@ impl Visibility {
         let Some(medium) = Medium::new(simd, triangle, first) else { return };
         let touched = medium.blocks::<N>(simd, area, &self.sample_positions);
         let (mut some, mut whole) = (touched.some & !touched.whole, touched.whole);
-        let high = D::key(medium.high);
+        let format = D::of(self.depth_format);
+        let high = format.key(medium.high);
         while some != 0 {
             let block = some.trailing_zeros() as usize;
             some &= some - 1;
@@ -70,7 +71,7 @@ impl Visibility {
             for sample in 0..N {
                 let shift = self.sample_positions.shift::<N>(sample);
                 let plane = self.plane::<N>(block, sample);
-                medium.draw::<D>(simd, (block, shift), area, plane);
+                medium.draw(format, simd, (block, shift), area, plane);
             }
         }
         if whole == 0 {
@@ -97,7 +98,8 @@ impl Visibility {
         block: usize,
         place: &mut Option<u32>,
     ) {
-        let [low, high] = large.depths::<N>(block).map(D::key);
+        let format = D::of(self.depth_format);
+        let [low, high] = large.depths::<N>(block).map(|depth| format.key(depth));
         if high < self.farthest[block] {
             return;
         }
@@ -143,7 +145,8 @@ impl Visibility {
     ) {
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
         let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let (mut blocks, high) = (some, D::key(large.high));
+        let format = D::of(self.depth_format);
+        let (mut blocks, high) = (some, format.key(large.high));
         while blocks != 0 {
             let block = blocks.trailing_zeros();
             blocks &= blocks - 1;
@@ -168,9 +171,9 @@ impl Visibility {
                 let plane = self.plane::<N>(block, sample);
                 match test {
                     Some(test) => {
-                        large.draw::<S, D>(simd, at, whole, &BlockHoles { test, first }, plane);
+                        large.draw(format, simd, at, whole, &BlockHoles { test, first }, plane);
                     }
-                    None => large.draw::<S, D>(simd, at, whole, &Solid, plane),
+                    None => large.draw(format, simd, at, whole, &Solid, plane),
                 }
             }
         }

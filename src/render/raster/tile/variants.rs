@@ -8,10 +8,10 @@ use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::raster::alpha_test::AlphaTest;
 use crate::render::raster::bins::Bins;
-use crate::render::raster::depth_format::Format;
+use crate::render::raster::depth_format::{Any, Format as _};
 use crate::render::raster::edges_in_floats::{Everywhere, FloatTriangle, Opaque, in_pixels};
 use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::raster::rule::{Floats, Rule as _};
+use crate::render::raster::rule::{beyond, reach};
 use crate::render::raster::scan_lines::ScanLines;
 use crate::render::reference::points;
 use crate::render::screen::coverage::PixelBox;
@@ -44,7 +44,7 @@ impl Opaque for Tested<'_, '_> {
 impl Visibility {
     /// Draws all triangles of a tile that are not small.
     #[inline(always)]
-    pub(super) fn draw_by_variant<S: Simd, D: Format, const N: usize>(
+    pub(super) fn draw_by_variant<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         (plan, frame): (&FramePlan, &ScreenGeometry),
@@ -59,35 +59,37 @@ impl Visibility {
                 triangle.cutout.then(|| AlphaTest::of(plan, frame, number, shift)).flatten()
             });
             if plan.variants.coverage == Coverage::Points {
-                self.draw_points::<S, D, N>(simd, (plan, frame), number, &tests);
+                self.draw_points::<S, N>(simd, (plan, frame), number, &tests);
                 continue;
             }
             let depths = each(triangle.corners, |corner| corner.depth);
             let corners = bins.unsnapped[*place as usize];
             if plan.variants.coverage == Coverage::ScanLines {
-                self.draw_scan_lines::<S, D, N>(simd, (corners, depths, number), &tests);
+                self.draw_scan_lines::<S, N>(simd, (corners, depths, number), &tests);
                 continue;
             }
             let first = [self.bounds.left, self.bounds.top];
             let own = FloatTriangle::new(corners, depths, number, first);
             let at = each(triangle.corners, |corner| corner.at());
-            let reach = Floats::reach(self.sample_positions.reach::<N>());
+            let beyond = beyond(Coverage::F32Edges);
+            let reach = reach(self.sample_positions.reach::<N>(), beyond);
             if let Some(area) = self.in_tile(PixelBox::reached(at, reach)) {
-                self.draw_floats::<S, D, N>(simd, (&own, area), &tests);
+                self.draw_floats::<S, N>(simd, (&own, area), &tests);
             }
         }
     }
 
     /// Draws a triangle by edge functions in f32.
     #[inline(always)]
-    fn draw_floats<S: Simd, D: Format, const N: usize>(
+    fn draw_floats<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         (triangle, area): (&FloatTriangle, PixelBox),
         tests: &[Option<AlphaTest<'_>>; N],
     ) {
         let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
-        let (mut some, high) = (touched.some, D::key(triangle.high));
+        let format = Any(self.depth_format);
+        let (mut some, high) = (touched.some, format.key(triangle.high));
         let mut place = None;
         while some != 0 {
             let block = some.trailing_zeros() as usize;
@@ -97,90 +99,93 @@ impl Visibility {
             }
             let whole = touched.whole >> block & 1 != 0;
             if tests[0].is_some() {
-                self.write::<S, D, N>(simd, block);
+                self.write::<S, Any, N>(simd, block);
                 let first = self.corner(block);
                 for (sample, test) in tests.iter().enumerate() {
                     let at = (block, self.sample_positions.shift::<N>(sample));
                     let plane = self.plane::<N>(block, sample);
                     if let Some(test) = test {
                         let holes = Tested { test, first };
-                        triangle.draw::<S, D, _>(simd, at, whole, &holes, plane);
+                        triangle.draw(format, simd, at, whole, &holes, plane);
                     }
                 }
             } else if whole {
-                self.draw_full_float_block::<S, D, N>(simd, triangle, block, &mut place);
+                self.draw_full_float_block::<S, N>(simd, triangle, block, &mut place);
             } else {
-                self.write::<S, D, N>(simd, block);
-                self.draw_float_planes::<S, D, N>(simd, triangle, block, false);
+                self.write::<S, Any, N>(simd, block);
+                self.draw_float_planes::<S, N>(simd, triangle, block, false);
             }
         }
     }
 
     /// As `draw_full_block`.
     #[inline(always)]
-    fn draw_full_float_block<S: Simd, D: Format, const N: usize>(
+    fn draw_full_float_block<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         triangle: &FloatTriangle,
         block: usize,
         place: &mut Option<u32>,
     ) {
-        let [low, high] = triangle.depths::<N>(block).map(D::key);
+        let format = Any(self.depth_format);
+        let [low, high] = triangle.depths::<N>(block).map(|depth| format.key(depth));
         if high < self.farthest[block] {
             return;
         }
         if !self.show_whole(block, [low, high], place, || Shown::Floats(*triangle)) {
-            self.write::<S, D, N>(simd, block);
-            self.draw_float_planes::<S, D, N>(simd, triangle, block, true);
+            self.write::<S, Any, N>(simd, block);
+            self.draw_float_planes::<S, N>(simd, triangle, block, true);
         }
         self.farthest[block] = self.farthest[block].max(low);
     }
 
     /// Draws a triangle into a block that it covers fully or in part.
     #[inline(always)]
-    pub(super) fn draw_float_planes<S: Simd, D: Format, const N: usize>(
+    pub(super) fn draw_float_planes<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         triangle: &FloatTriangle,
         block: usize,
         whole: bool,
     ) {
+        let format = Any(self.depth_format);
         for sample in 0..N {
             let at = (block, self.sample_positions.shift::<N>(sample));
             let plane = self.plane::<N>(block, sample);
-            triangle.draw::<S, D, _>(simd, at, whole, &Everywhere, plane);
+            triangle.draw(format, simd, at, whole, &Everywhere, plane);
         }
     }
 
     /// Draws a triangle by scan lines.
     #[inline(always)]
-    fn draw_scan_lines<S: Simd, D: Format, const N: usize>(
+    fn draw_scan_lines<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         (corners, depths, number): ([[f32; 2]; 3], [f32; 3], u32),
         tests: &[Option<AlphaTest<'_>>; N],
     ) {
+        let format = Any(self.depth_format);
         for (sample, test) in tests.iter().enumerate() {
             let shift = self.sample_positions.shift::<N>(sample);
             let [dx, dy] = in_pixels(shift);
             let seen = each(corners, |[x, y]| [x - dx, y - dy]);
             let Some(rows) = ScanLines::new(seen, depths, number, self.bounds) else { continue };
             for block in rows.blocks() {
-                self.write::<S, D, N>(simd, block);
+                self.write::<S, Any, N>(simd, block);
                 let first = self.corner(block);
                 let plane = self.plane::<N>(block, sample);
                 match test {
                     Some(test) => {
-                        rows.draw::<S, D, _>(simd, block, &Tested { test, first }, plane);
+                        rows.draw(format, simd, block, &Tested { test, first }, plane);
                     }
-                    None => rows.draw::<S, D, _>(simd, block, &Everywhere, plane),
+                    None => rows.draw(format, simd, block, &Everywhere, plane),
                 }
             }
         }
     }
 
     /// Draws a triangle by points, as ancestor A's author wrote it: one after the other.
-    fn draw_points<S: Simd, D: Format, const N: usize>(
+    fn draw_points<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         (plan, frame): (&FramePlan, &ScreenGeometry),
@@ -195,7 +200,7 @@ impl Visibility {
             let own = number - start.number;
             points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
                 if test.as_ref().is_none_or(|test| test.is_opaque([x, y])) {
-                    self.put::<S, D, N>(simd, (x, y, sample), depth, number, 0);
+                    self.put::<S, Any, N>(simd, (x, y, sample), depth, number, 0);
                 }
             });
         }
