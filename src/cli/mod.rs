@@ -44,7 +44,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Plan(arguments)) => plan::plan(&arguments),
         Some(Headless::Lab(arguments)) => lab::lab(&arguments),
         Some(Headless::Verify(arguments)) => verify::verify(&arguments),
-        None => open::open(&arguments.files, arguments.shell),
+        None => open::open(&arguments.files, arguments.shell, arguments.preset),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -40,8 +40,9 @@ pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
             let direction = *direction.now();
             Some(Aim { position: centre - direction * (SUN * radius).max(1e-3), direction })
         }
-        LightKind::Bulb { position, .. } => {
-            Some(Aim { position: *position.now(), direction: DVec3::NEG_Y })
+        LightKind::Bulb { position, orbit } => {
+            let position = orbit.at(*position.now(), view.time);
+            Some(Aim { position, direction: DVec3::NEG_Y })
         }
         LightKind::Spot { owner, .. } => scene.aim(view, owner),
     }

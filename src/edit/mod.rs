@@ -7,6 +7,7 @@
 pub mod aiming;
 pub mod framing;
 mod gesture;
+pub mod gizmo;
 mod history;
 pub mod items;
 pub mod lighting;
@@ -19,6 +20,7 @@ pub mod presenting;
 mod refusal;
 pub mod selection;
 mod set_transform;
+pub mod several;
 pub mod shapes;
 pub mod steps;
 pub mod transform;

@@ -17,6 +17,9 @@ pub enum Refusal {
     /// The item is not in the scene.
     #[error("it is no longer in the scene")]
     Gone,
+    /// Nothing is selected beside it.
+    #[error("only one item is selected")]
+    OneSelected,
     /// There is no other item of its kind.
     #[error("there is only one of its kind")]
     OnlyOne,
@@ -65,6 +68,9 @@ pub enum Refusal {
     /// The scene is seen from an object.
     #[error("the observer is an object: press C to look through the camera")]
     ObjectLooks,
+    /// A camera stands where the picture is seen from.
+    #[error("the picture is seen through this camera: drag the view itself")]
+    SeenThrough,
     /// Lights have neither frames nor modes.
     #[error("lights have neither a mode nor a frame to choose")]
     NoModeOfLight,
@@ -74,6 +80,9 @@ pub enum Refusal {
     /// The light has no cone.
     #[error("only a spot has an aperture")]
     NotASpot,
+    /// Ambient light casts no shadows.
+    #[error("ambient light comes from everywhere: it casts no shadows")]
+    NoShadows,
     /// The light cannot be aimed.
     #[error("only a spot or a sun can be aimed")]
     NotAimed,

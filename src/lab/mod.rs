@@ -13,6 +13,7 @@ pub mod kernels;
 pub mod pairs;
 pub mod picture_source;
 pub mod pictures;
+pub mod pixel;
 pub mod report;
 pub mod statistics;
 pub mod suite;

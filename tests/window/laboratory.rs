@@ -171,7 +171,7 @@ fn a_pixel_is_explained_by_a_click_that_selects_nothing() {
     let mut editor = editor();
     editor.ask(Request::Settings(Settings { light: LightAt::Face, ..Settings::default() }));
     let selected = editor.view().object;
-    click(&mut editor, Role::CheckBox, "Explain a pixel: click on it");
+    click(&mut editor, Role::CheckBox, "Attribute the error: click on it");
     let middle = editor.at(0.3, 0.5);
     editor.click(middle, PointerButton::Primary);
     until(&mut editor, "the explanation", |e| lab(e).attribution.is_some());

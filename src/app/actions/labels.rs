@@ -21,7 +21,7 @@ impl Action {
     /// the history shows it: "Move teapot 10 along x".
     #[must_use]
     pub fn step_label(self, state: &State, times: u32) -> String {
-        let name = state.selected_name();
+        let name = &state.acted_on_name();
         let (axis, sign) = match self {
             Self::StepXUp => (Axis::X, 1.0),
             Self::StepXDown => (Axis::X, -1.0),

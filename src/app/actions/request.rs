@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
+use super::chord::Chord;
 use super::table::Action;
 use crate::accuracy::Settings;
 use crate::app::state::laboratory::{Compare, Side};
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, State};
+use crate::edit::several::Others;
 use crate::edit::{Gesture, Refusal};
 use crate::lab::candidates::Thoroughness;
 use crate::lab::error::{Measure, Region};
@@ -40,6 +42,14 @@ pub enum Request {
     Lab(LabRequest),
     /// Selects an item, and makes its kind the subject.
     Select(ItemId),
+    /// Selects these items too, or no longer; the last of them becomes the one that keys act on.
+    SelectAlso(Vec<ItemId>, Also),
+    /// Selects these items beside the one that the keys act on.
+    Others(Others),
+    /// Explains this pixel of the picture.
+    Explain([usize; 2]),
+    /// Closes the explanation of a pixel.
+    EndExplaining,
     /// Aims the selected light at a point of the world.
     AimAt(DVec3),
     /// Selects a polygon of the selected object while polygons are shown one at a time.
@@ -70,14 +80,44 @@ pub enum Request {
     Abandon(Gesture),
     /// Divides the window differently among its panels.
     Layout(Layout),
+    /// Something about the keys of actions.
+    Keys(KeyRequest),
+    /// The strip of the first minute is put away.
+    EndGreeting,
     /// Says in the status line why a request was refused.
     Refuse(String),
+}
+
+/// How items are added to the selection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Also {
+    /// One that is selected is selected no longer.
+    Toggle,
+    /// They alone are selected.
+    Only,
+    /// They are selected too.
+    Add,
 }
 
 impl From<Action> for Request {
     fn from(action: Action) -> Self {
         Self::Do(action)
     }
+}
+
+/// A request about the keys of actions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyRequest {
+    /// The next key is chosen for this action.
+    Choose(Action),
+    /// The key that was pressed becomes this action's, and is taken from any other.
+    Take(Action, Chord),
+    /// No key is chosen.
+    Cancel,
+    /// The action has the keys of the table again.
+    Reset(Action),
+    /// All actions have.
+    ResetAll,
 }
 
 /// A request to the laboratory.
@@ -107,7 +147,7 @@ pub enum LabRequest {
     Sampled(bool),
     /// The next click picks a pixel, or does not.
     Pick(bool),
-    /// Explain this pixel.
+    /// Attribute the error of this pixel.
     Attribute([usize; 2]),
     /// Show this beside the plots.
     Side(Side),

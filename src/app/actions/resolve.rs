@@ -15,13 +15,14 @@ use crate::base::math::Axis;
 use crate::edit::framing::Side as LookSide;
 use crate::edit::lights::{APERTURE_STEP, Channel};
 use crate::edit::selection::Selection;
+use crate::edit::several::{self, Others};
 use crate::edit::transform::Sign;
 use crate::edit::{
-    GesturePhase, Refusal, aiming, framing, items, lights, selection, shapes, transform,
+    GesturePhase, Refusal, aiming, framing, gizmo, items, lights, selection, shapes, transform,
 };
 use crate::scene::{
     CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
-    Panels, Projection, Shape, SpotOwner, Subject, Transformation, View,
+    Panels, Projection, Scene, Shape, SpotOwner, Subject, Transformation, View,
 };
 
 /// What an action means.
@@ -65,6 +66,14 @@ pub(crate) enum Intent {
     Zoom(f32),
     /// What is drawn over the picture is shown or hidden.
     Overlays,
+    /// Handles over the picture are shown or hidden.
+    Gizmo,
+    /// An axis and a number are taken from the keyboard.
+    TypeAmount,
+    /// These are selected beside the selected item.
+    Others(Others),
+    /// The next click into the picture explains a pixel.
+    Explain,
     /// The next click into the picture aims the selected light.
     AimByClick,
     /// The keyboard goes to the panels, or back to the viewport.
@@ -110,9 +119,13 @@ const LIGHT_SWITCHES: [Action; 10] = [
 /// Why it is not available.
 pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Resolved {
     let (scene, view) = (&state.scene, &state.view);
-    let step = |axis, sign| transform::step(scene, view, axis, sign, phase).map(Intent::Change);
-    let color = |channel, by| lights::step_color(scene, view, channel, by).map(Intent::Change);
-    let aperture = |by| lights::step_aperture(scene, view, by).map(Intent::Change);
+    let others = state.others();
+    let each = |act: &dyn Fn(&Scene, &View) -> Result<Command, Refusal>| {
+        several::each(scene, view, &others, act).map(Intent::Change)
+    };
+    let step = |axis, sign| each(&|scene, view| transform::step(scene, view, axis, sign, phase));
+    let color = |channel, by| each(&|scene, view| lights::step_color(scene, view, channel, by));
+    let aperture = |by| each(&|scene, view| lights::step_aperture(scene, view, by));
     let look_from = |side| framing::side(scene, view, side).map(Intent::Change);
     let file = |intent| Ok(Intent::File(intent));
     match action {
@@ -138,16 +151,32 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             Err(Refusal::NothingUndone)
         }
         Action::Redo => Ok(Intent::Redo),
-        Action::TakeBack => transform::take_back(scene, view).map(Intent::Change),
+        Action::TakeBack => each(&transform::take_back),
         Action::Rename => selected(state).map(Intent::Rename),
         Action::Duplicate => {
-            let id = selected(state)?;
-            let subject = selection::subject_of(id);
-            items::duplicate(scene, id).map(|command| Intent::Add(command, subject))
+            let subject = selection::subject_of(selected(state)?);
+            let copy = |scene: &Scene, view: &View| {
+                items::duplicate(scene, selection::selected(view).ok_or(Refusal::Gone)?)
+            };
+            several::each(scene, view, &others, copy).map(|command| Intent::Add(command, subject))
         }
-        Action::Delete => items::remove(scene, selected(state)?).map(Intent::Change),
+        Action::Delete => {
+            selected(state)?;
+            each(&|scene, view| {
+                items::remove(scene, selection::selected(view).ok_or(Refusal::Gone)?)
+            })
+        }
         Action::Split => items::split(scene, object(state)?).map(Intent::Change),
-        Action::ToggleVisible => items::toggle_shown(scene, selected(state)?).map(Intent::Change),
+        Action::ToggleVisible => {
+            selected(state)?;
+            several::toggle_shown(scene, view, &others).map(Intent::Change)
+        }
+        Action::SelectAll => {
+            let first = selected(state)?;
+            Ok(Intent::Others(Others::new(first, several::all(scene, view, &others))))
+        }
+        Action::SelectNone if others.is_empty() => Err(Refusal::OneSelected),
+        Action::SelectNone => Ok(Intent::Others(Others::default())),
 
         Action::AddPlane => add_shape(state, Shape::Plane),
         Action::AddCube => add_shape(state, Shape::Cube),
@@ -180,6 +209,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             }
             Subject::Light => Err(Refusal::NoModeOfLight),
         },
+        Action::TypeAmount => gizmo::pivot(scene, view).map(|_| Intent::TypeAmount),
         Action::StepXUp => step(Axis::X, Sign::Positive),
         Action::StepXDown => step(Axis::X, Sign::Negative),
         Action::StepYUp => step(Axis::Y, Sign::Positive),
@@ -209,6 +239,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         }
         Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
         Action::ToggleOverlays => Ok(Intent::Overlays),
+        Action::ToggleGizmo => Ok(Intent::Gizmo),
         Action::ToggleCoarse => viewed(state, |view| view.coarse_while_moving ^= true),
         Action::ToggleRefine => {
             let refines = !state.drawing.refines;
@@ -223,12 +254,26 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
                 other(view.projection, Projection::Perspective, Projection::Orthographic);
         }),
         Action::ToggleObserver => seen(state, |view| selection::toggle_observer(scene, view)),
-        Action::FrameSelection => framing::selection(scene, view).map(Intent::Change),
+        Action::FrameSelection => {
+            let objects = state.selected().into_iter().chain(others.iter().copied());
+            let objects: Vec<ObjectId> = objects
+                .filter_map(|item| match item {
+                    ItemId::Object(id) => Some(id),
+                    ItemId::Camera(_) | ItemId::Light(_) => None,
+                })
+                .collect();
+            let framed = match objects.len() {
+                0 | 1 => framing::selection(scene, view),
+                _ => framing::objects(scene, view, &objects),
+            };
+            framed.map(Intent::Change)
+        }
         Action::FrameAll => framing::all(scene, view).map(Intent::Change),
         Action::LookFront => look_from(LookSide::Front),
         Action::LookRight => look_from(LookSide::Right),
         Action::LookTop => look_from(LookSide::Top),
         Action::WhyUnseen => object(state).map(Intent::WhyUnseen),
+        Action::ExplainPixel => Ok(Intent::Explain),
         Action::LookBack => look_from(LookSide::Back),
         Action::LookLeft => look_from(LookSide::Left),
         Action::LookBottom => look_from(LookSide::Bottom),
@@ -248,7 +293,9 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         }
         Action::ApertureUp => aperture(APERTURE_STEP),
         Action::ApertureDown => aperture(-APERTURE_STEP),
-        Action::AimAtSelection => aiming::aim_at_selection(scene, view, phase).map(Intent::Change),
+        Action::ToggleAllShadows => lights::toggle_all_shadows(scene).map(Intent::Change),
+        Action::ToggleShadows => lights::toggle_selected_shadows(scene, view).map(Intent::Change),
+        Action::AimAtSelection => each(&|scene, view| aiming::aim_at_selection(scene, view, phase)),
         Action::AimByClick => aiming::can_aim(scene, view).map(|_| Intent::AimByClick),
         Action::RedUp => color(Channel::Red, 1),
         Action::RedDown => color(Channel::Red, -1),
@@ -414,11 +461,15 @@ impl Action {
             Self::ToggleNormalLength => view.normal_length == NormalLength::BySize,
             Self::ToggleMarks => view.marks,
             Self::ToggleOverlays => state.overlays,
+            Self::ToggleGizmo => state.gizmo,
             Self::AimByClick => state.aiming,
+            Self::ExplainPixel => state.explaining,
             Self::Palette => state.palette,
             Self::ToggleCoarse => view.coarse_while_moving,
             Self::ToggleRefine => state.drawing.refines,
             Self::ToggleLightNormals => view.normals == Normals::Face,
+            Self::ToggleAllShadows => lights::casts_shadows(scene),
+            Self::ToggleShadows => scene.lights.get(view.light?)?.shadows,
             Self::ToggleProjection => view.projection == Projection::Orthographic,
             Self::ToggleObserver => view.observer == Observer::Object,
             Self::CheatSheet => panels.cheat_sheet,
@@ -447,6 +498,7 @@ impl Action {
             }
             Self::AddPlane | Self::AddCube | Self::AddSphere | Self::AddCylinder => return None,
             Self::AddTorus => return None,
+            Self::SelectAll | Self::SelectNone | Self::TypeAmount => return None,
             Self::NextItem | Self::NextPolygon | Self::NextSubject => return None,
             Self::StepXUp | Self::StepXDown | Self::StepYUp | Self::StepYDown => return None,
             Self::StepZUp | Self::StepZDown | Self::FrameSelection | Self::FrameAll => return None,

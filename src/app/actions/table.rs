@@ -149,7 +149,7 @@ actions! {
         "Asks for size, samples, a transparent ground and overlays, and saves a picture."
         "screenshot render resolution size transparent alpha large print wallpaper";
     SaveTurntable File ONCE []
-        "Save turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
+        "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
         "animation gif apng video movie spin rotate frames orbit";
     ExportScene File ONCE []
         "Export scene..." "Writes the scene for other programs, as OBJ with MTL or as glTF."
@@ -182,6 +182,12 @@ actions! {
     Split Edit ONCE []
         "Split into parts" "Turns each part of the selected object into an object of its own."
         "separate explode ungroup pieces";
+    SelectAll Edit ONCE [Command(Key::A)]
+        "Select all" "Selects all items of the subject; once more, everything."
+        "everything several multiple";
+    SelectNone Edit ONCE []
+        "Select one" "Selects only the item that the keys act on."
+        "none deselect clear single nothing";
     ToggleVisible Edit ONCE []
         "Visible" "Shows or hides the selected object or camera."
         "hide show eye";
@@ -252,6 +258,9 @@ actions! {
         "Analysis / global"
         "Makes cameras fly or orbit, and objects use their own axes or the world's."
         "orbit fly look around local global world axes turntable";
+    TypeAmount Transform ONCE []
+        "Transform by a number" "Takes an axis and a number from the keyboard: x 12 Enter."
+        "type amount exact distance angle factor numeric move rotate scale";
     StepXUp Transform REPEATS [Lower(Key::X)]
         "Step along or about +X" "Transforms the selected item one step along or about +X."
         "nudge move turn grow x";
@@ -305,6 +314,9 @@ actions! {
     ToggleOverlays Show ONCE []
         "Overlays" "Draws the selection's outline, axes and marks of lights over the picture."
         "gizmo axes cones helpers outline guides widgets";
+    ToggleGizmo Show ONCE []
+        "Gizmo" "Shows handles over the picture that move, rotate and scale the selection."
+        "handles manipulator arrows rings widget transform drag move rotate scale";
     ToggleCoarse Show ONCE []
         "Coarser while moving" "Draws slow scenes at reduced quality while something moves."
         "quality fast preview performance resolution";
@@ -342,6 +354,10 @@ actions! {
     WhyUnseen Camera ONCE []
         "Why can't I see it?" "Says why nothing of the selected object is seen, and what mends it."
         "invisible missing gone lost hidden vanished black find";
+    ExplainPixel Show ONCE [Either(Key::E)]
+        "Explain a pixel"
+        "Says what the next pixel that is clicked shows, and what its colour is made of."
+        "why colour color value inspect probe light terms debug vectors";
     LookBack Camera ONCE []
         "Back view" "Looks from behind, along +Z."
         "camera behind rear";
@@ -388,6 +404,12 @@ actions! {
     ApertureDown Light REPEATS [Text("-")]
         "Narrower spot" "Closes the selected spot by 5 degrees."
         "cone angle smaller tighten";
+    ToggleAllShadows Light ONCE []
+        "Shadows" "Switches the shadows of all lights on or off."
+        "shadow cast ray trace occlusion shade";
+    ToggleShadows Light ONCE []
+        "Shadows of this light" "Switches the shadows of the selected light on or off."
+        "shadow cast ray trace occlusion shade lamp";
     AimAtSelection Light ONCE []
         "Aim at selection" "Turns the selected spot or sun towards the selected object."
         "point target look track direct";

@@ -21,8 +21,9 @@ pub(crate) struct Snapshot {
     pub(crate) refined: Option<Samples>,
     /// Whether to explain the effects of the picture.
     pub(crate) explain: bool,
-    /// The item whose border is wanted with the picture.
-    pub(crate) outlined: Option<ItemId>,
+    /// The selected items whose borders are wanted with the picture: the first has its own, the
+    /// others have one together.
+    pub(crate) outlined: Vec<ItemId>,
 }
 
 impl Snapshot {

@@ -251,9 +251,14 @@ impl ViewportRenderer {
 
     /// The border of the visible part of an item.
     pub(crate) fn border(&mut self, item: ItemId) -> Option<Border> {
+        self.border_of(item, &[item])
+    }
+
+    /// The border of the visible parts of some items together, under the name of one.
+    pub(crate) fn border_of(&mut self, item: ItemId, all: &[ItemId]) -> Option<Border> {
         self.shown?;
         let [width, height] = self.images[2].size;
-        let own = self.renderer.pixels_of(item);
+        let own = self.renderer.pixels_of_any(all);
         Some(Border::of(item, Size::new(width, height), &own))
     }
 }
@@ -302,7 +307,7 @@ mod tests {
     fn snapshot(size: Size) -> Snapshot {
         let (scene, view) = io::default_scene();
         let budget = Duration::from_millis(33);
-        let (settings, moving, explain, outlined) = (Settings::default(), false, false, None);
+        let (settings, moving, explain, outlined) = (Settings::default(), false, false, Vec::new());
         Snapshot { scene, view, settings, size, moving, budget, refined: None, explain, outlined }
     }
 

@@ -38,8 +38,9 @@ pub(crate) struct News<P> {
     pub(crate) drawn: Option<Drawn>,
     /// The same picture with more samples per pixel; it follows `drawn`.
     pub(crate) refined: Option<Drawn>,
-    /// The border that was wanted with the picture, if it was drawn anew.
-    pub(crate) outline: Option<Option<Border>>,
+    /// The borders that were wanted with the picture, if it was drawn anew: of the first item, and
+    /// of the others.
+    pub(crate) outline: Option<[Option<Border>; 2]>,
     pub(crate) explained: Option<Arc<Explained>>,
     pub(crate) picked: Vec<(Pick<P>, Option<Hit>)>,
     pub(crate) failed: bool,
@@ -251,7 +252,7 @@ enum Work<P> {
 fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
     let mut painter = ViewportRenderer::new(Instant::now);
     let mut last = None;
-    let mut outlined = None;
+    let mut outlined = Vec::new();
     while let Some(work) = shared.next() {
         let (picks, border, wanted) = match work {
             Work::Asked(picks, border, wanted) => (picks, border, wanted),
@@ -292,7 +293,7 @@ fn draw<P: Copy + Send>(
     wake: &impl Fn(),
     painter: &mut ViewportRenderer,
     wanted: &Snapshot,
-    outlined: &mut Option<ItemId>,
+    outlined: &mut Vec<ItemId>,
 ) -> bool {
     let asked = || match shared.over.load(Ordering::Relaxed) {
         true => Asked::Nothing,
@@ -307,8 +308,12 @@ fn draw<P: Copy + Send>(
     let another = wanted.outlined != *outlined && !painter.was_given_up();
     if drawn.is_some() || another {
         // Of this very picture, so that it never lags behind.
-        let outline = wanted.outlined.and_then(|item| painter.border(item));
-        *outlined = wanted.outlined;
+        let (first, others) = wanted.outlined.split_first().unzip();
+        let own = first.and_then(|item| painter.border(*item));
+        let others = others.filter(|others| !others.is_empty());
+        let others = others.and_then(|all| painter.border_of(*first?, all));
+        let outline = [own, others];
+        outlined.clone_from(&wanted.outlined);
         let mut desk = shared.lock();
         if drawn.is_some() {
             (desk.news.drawn, desk.news.refined) = (drawn, None);

@@ -7,13 +7,15 @@ use egui::{Context, Key};
 use glam::DVec3;
 
 use super::App;
-use crate::app::actions::{Action, Chord, FileIntent, Intent, Request, resolve};
+use crate::app::actions::{Action, Chord, FileIntent, Intent, KeyRequest, Request, resolve};
 use crate::app::documents::dialogs::{After, Wanted};
 use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::documents::picture_dialog::Purpose;
 use crate::app::input::keyboard::{Keyboard, Press};
+use crate::app::input::keymap::Keymap;
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
+use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, aiming, items};
 use crate::scene::{Command, ItemId, Subject, View};
 
@@ -26,10 +28,19 @@ impl App {
                 return requests.into_iter().for_each(|request| self.answer(ctx, request));
             }
             if std::mem::take(&mut self.state.aiming)
+                || std::mem::take(&mut self.state.explaining)
                 || std::mem::take(&mut self.state.lab.picking)
                 || std::mem::take(&mut self.state.panels.cheat_sheet)
                 || self.state.renaming.take().is_some()
             {
+                return;
+            }
+            if self.state.explained.take().is_some() {
+                self.explaining = None;
+                return;
+            }
+            if !self.state.others().is_empty() {
+                self.state.several = Others::default();
                 return;
             }
         }
@@ -50,6 +61,12 @@ impl App {
                 Ok(selection) => self.select(selection, Gesture::Whole),
                 Err(refusal) => self.refuse(refusal.to_string()),
             },
+            Request::SelectAlso(items, how) => self.select_also(&items, how),
+            Request::Others(others) => state.several = others,
+            Request::Explain(at) => self.explain_pixel(ctx, at),
+            Request::EndExplaining => {
+                (self.explaining, state.explained, state.explaining) = (None, None, false);
+            }
             Request::AimAt(point) => self.aim_at(point),
             Request::SelectPolygon(polygon) => {
                 let mut view = state.view.clone();
@@ -93,6 +110,8 @@ impl App {
             Request::Recover(at) => self.unless_unsaved(ctx, After::Recover(at)),
             Request::DiscardWork(at) => self.discard_work(at),
             Request::Layout(layout) => state.layout = layout,
+            Request::Keys(request) => answer_keys(ctx, request),
+            Request::EndGreeting => state.greeting = false,
             Request::Refuse(why) => self.refuse(why),
         }
     }
@@ -108,7 +127,7 @@ impl App {
         match resolve(action, &self.state, self.state.phase(gesture)) {
             Err(refusal) => self.refuse(refusal.to_string()),
             Ok(Intent::Change(command)) => self.change(command, gesture, &label),
-            Ok(Intent::Add(command, subject)) => self.add(command, subject, &label),
+            Ok(Intent::Add(command, subject)) => self.add_all(command, subject, &label),
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
             Ok(Intent::Settings(settings)) => self.state.settings = settings,
@@ -138,7 +157,17 @@ impl App {
             Ok(Intent::Palette) => self.state.palette ^= true,
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
             Ok(Intent::Overlays) => self.state.overlays ^= true,
-            Ok(Intent::AimByClick) => self.state.aiming ^= true,
+            Ok(Intent::Gizmo) => self.state.gizmo ^= true,
+            Ok(Intent::TypeAmount) => self.type_amount(ctx),
+            Ok(Intent::Others(others)) => self.state.several = others,
+            Ok(Intent::AimByClick) => {
+                self.state.aiming ^= true;
+                self.state.explaining = false;
+            }
+            Ok(Intent::Explain) => {
+                self.state.explaining ^= true;
+                self.state.aiming = false;
+            }
             Ok(Intent::ChangeKeyboardOwner(way)) => Keyboard::change_owner(ctx, way),
         }
     }
@@ -203,7 +232,7 @@ impl App {
         selection::settle(&self.state.scene, &mut self.state.view);
     }
 
-    fn select(&mut self, selection: Selection, gesture: Gesture) {
+    pub(crate) fn select(&mut self, selection: Selection, gesture: Gesture) {
         if let Some(command) = selection.command {
             self.change(command, gesture, "Aim the camera");
         }
@@ -245,4 +274,21 @@ impl App {
     pub(crate) fn refuse(&mut self, why: String) {
         self.state.message = Some(Message { text: why, tone: Tone::Refused });
     }
+}
+
+/// Answers a request about keys.
+fn answer_keys(ctx: &Context, request: KeyRequest) {
+    let mut keymap = Keymap::clone(&Keyboard::keymap(ctx));
+    match request {
+        KeyRequest::Choose(action) => return Keyboard::choose_for(ctx, Some(action)),
+        KeyRequest::Cancel => return Keyboard::choose_for(ctx, None),
+        KeyRequest::Take(action, chord) => {
+            keymap.set(action, chord);
+            Keyboard::choose_for(ctx, None);
+        }
+        KeyRequest::Reset(action) => keymap.reset(action),
+        KeyRequest::ResetAll => keymap = Keymap::default(),
+    }
+    Keyboard::set_keymap(ctx, keymap);
+    ctx.request_repaint();
 }

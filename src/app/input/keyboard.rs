@@ -6,9 +6,11 @@
 //! egui's.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 
+use super::keymap::{Keymap, chord_of};
 use crate::app::actions::{Action, Chord, Group};
 use crate::app::widgets::gestures;
 use crate::app::widgets::regions::{self, Way};
@@ -29,8 +31,10 @@ pub struct Press {
 #[derive(Debug, Default)]
 pub(crate) struct Keyboard {
     viewport: Option<Id>,
-    /// While the viewport flies, letters steer and ask for nothing.
-    steering: bool,
+    /// What letters and numbers do over the viewport.
+    letters: Letters,
+    /// What was typed while they are [`Letters::Type`]; Enter is a new line, Backspace itself.
+    typed: String,
     down: BTreeSet<Key>,
     /// While Alt is down, typed text may belong to a menu or another layer of the layout.
     alt: bool,
@@ -42,6 +46,9 @@ pub(crate) struct Keyboard {
     left_by_escape: bool,
     /// Whether an Esc was held back since this was last asked.
     held_escape: bool,
+    keymap: Arc<Keymap>,
+    /// The action that the next key is chosen for, and that key.
+    choosing: Option<(Action, Option<Chord>)>,
 }
 
 impl Keyboard {
@@ -50,11 +57,36 @@ impl Keyboard {
         let _ = ctx.plugin_or_default::<Self>();
     }
 
-    /// Tells it which widget is the viewport, and whether letters steer it.
-    pub(crate) fn set_viewport(ctx: &Context, viewport: Id, steering: bool) {
+    /// Tells it which widget is the viewport, and what letters do there.
+    pub(crate) fn set_viewport(ctx: &Context, viewport: Id, letters: Letters) {
         let handle = ctx.plugin_or_default::<Self>();
         let mut keyboard = handle.lock();
-        (keyboard.viewport, keyboard.steering) = (Some(viewport), steering);
+        (keyboard.viewport, keyboard.letters) = (Some(viewport), letters);
+    }
+
+    /// What was typed for a handle since this was last asked.
+    pub(crate) fn take_typed(ctx: &Context) -> String {
+        std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().typed)
+    }
+
+    /// The keys of all actions.
+    pub(crate) fn keymap(ctx: &Context) -> Arc<Keymap> {
+        Arc::clone(&ctx.plugin_or_default::<Self>().lock().keymap)
+    }
+
+    /// Gives actions other keys.
+    pub(crate) fn set_keymap(ctx: &Context, keymap: Keymap) {
+        ctx.plugin_or_default::<Self>().lock().keymap = Arc::new(keymap);
+    }
+
+    /// The action that the next key is chosen for, and that key once it was pressed.
+    pub(crate) fn choosing(ctx: &Context) -> Option<(Action, Option<Chord>)> {
+        ctx.plugin_or_default::<Self>().lock().choosing
+    }
+
+    /// Lets the next key be chosen for an action, or no longer.
+    pub(crate) fn choose_for(ctx: &Context, action: Option<Action>) {
+        ctx.plugin_or_default::<Self>().lock().choosing = action.map(|action| (action, None));
     }
 
     /// What was pressed since it was last asked, in order.
@@ -108,6 +140,11 @@ impl Keyboard {
                 return true;
             }
         }
+        let types = self.letters == Letters::Type && owner == Owner::Viewport;
+        if types && matches!(key, Key::Enter | Key::Backspace) {
+            self.typed.push(if key == Key::Enter { '\n' } else { '\u{8}' });
+            return true;
+        }
         let chord = |chord: &Chord| chord.is_pressed_by(key, modifiers);
         self.ask(owner, chord);
         let own = matches!(
@@ -124,12 +161,13 @@ impl Keyboard {
 
     /// Asks for the action whose chord fits, if it may act.
     fn ask(&mut self, owner: Owner, fits: impl Fn(&Chord) -> bool) {
-        let fitting = |action: &Action| action.info().keys.iter().copied().find(|key| fits(key));
+        let keymap = Arc::clone(&self.keymap);
+        let fitting = |action: &Action| keymap.keys(*action).iter().copied().find(|key| fits(key));
         let found = Action::ALL.iter().find_map(|action| Some((*action, fitting(action)?)));
         let Some((action, chord)) = found else { return };
         let info = action.info();
         let acts = match owner {
-            Owner::Viewport => !self.steering || chord == Chord::Named(Key::Escape),
+            Owner::Viewport => self.letters == Letters::Act || chord == Chord::Named(Key::Escape),
             Owner::Panel => chord.is_global(),
             // A text field has an undo of its own.
             Owner::Text => chord.is_global() && info.group != Group::Edit,
@@ -149,6 +187,18 @@ impl Keyboard {
     }
 }
 
+/// What letters and numbers do over the viewport.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Letters {
+    /// They ask for actions.
+    #[default]
+    Act,
+    /// They steer, and ask for nothing.
+    Steer,
+    /// They are an amount for a handle, and ask for nothing.
+    Type,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Owner {
     Viewport,
@@ -164,6 +214,20 @@ impl egui::Plugin for Keyboard {
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
         let owner = self.whose(ctx);
+        if let Some((_, chosen @ None)) = &mut self.choosing {
+            let pressed = input.events.iter().find_map(|event| match event {
+                Event::Key { key, pressed: true, modifiers, .. } => Some((*key, *modifiers)),
+                _ => None,
+            });
+            match pressed {
+                Some((Key::Escape, _)) => self.choosing = None,
+                Some((key, modifiers)) => *chosen = chord_of(key, modifiers),
+                None => {}
+            }
+            // What is chosen presses nothing and types nothing.
+            let is_key = |event: &Event| matches!(event, Event::Key { .. } | Event::Text(_));
+            input.events.retain(|event| !is_key(event));
+        }
         input.events.retain(|event| match event {
             Event::Key { key, pressed: true, modifiers, repeat, .. } => {
                 !self.key(owner, *key, *modifiers, *repeat)
@@ -173,7 +237,9 @@ impl egui::Plugin for Keyboard {
                 true
             }
             Event::Text(text) => {
-                if !self.alt {
+                if self.letters == Letters::Type && owner == Owner::Viewport {
+                    self.typed.push_str(text);
+                } else if !self.alt {
                     self.ask(owner, |chord| matches!(chord, Chord::Text(sign) if sign == text));
                 }
                 true

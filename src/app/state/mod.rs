@@ -14,11 +14,13 @@ pub use crate::app::drawing::reduction::{Reduction, Shrink};
 use crate::app::drawing::refinement::can_refine;
 use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
+use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
 use crate::lab::cost::{Costs, Explained};
-use crate::render::Damage;
+use crate::render::{Damage, PixelColor};
 use crate::scene::{
-    Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Sides, View,
+    Command, ItemId, Light, LightKind, MaterialChoice, Object, ObjectId, Panels, Scene, Sides,
+    Surface, View,
 };
 use laboratory::Laboratory;
 use layout::Layout;
@@ -54,8 +56,20 @@ pub struct State {
     pub palette: bool,
     /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
     pub overlays: bool,
+    /// Whether handles to move, rotate and scale the selection lie over the picture.
+    pub gizmo: bool,
+    /// The items that are selected beside the one that the keys act on.
+    pub several: Others,
     /// Whether the next click into the picture aims the selected light.
     pub aiming: bool,
+    /// The title of the system's dialog that is open.
+    pub asking: Option<&'static str>,
+    /// Whether the strip of the first minute is shown.
+    pub greeting: bool,
+    /// Whether the next click into the picture explains a pixel.
+    pub explaining: bool,
+    /// The pixel that is explained.
+    pub explained: Option<Arc<ExplainedPixel>>,
     /// How large the interface is; 1 is the system's size.
     pub zoom: f32,
     /// Whether the window is so narrow that panels are folded.
@@ -133,6 +147,8 @@ pub enum Offer {
     TwoSides(ObjectId),
     /// To show an object that is hidden.
     Show(ObjectId),
+    /// To make an object opaque.
+    Opaque(ObjectId),
 }
 
 impl Offer {
@@ -143,13 +159,14 @@ impl Offer {
             Self::Frame(_) => "Frame",
             Self::TwoSides(_) => "Draw both sides",
             Self::Show(_) => "Show",
+            Self::Opaque(_) => "Make opaque",
         }
     }
 
     /// The object that it is about.
     #[must_use]
     pub const fn object(self) -> ObjectId {
-        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id)) = self;
+        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id) | Self::Opaque(id)) = self;
         id
     }
 
@@ -170,7 +187,26 @@ impl Offer {
                 let show = |object: &mut Object| object.visible = true;
                 (items::change_object(scene, id, show)?, format!("Show {name}"))
             }
+            Self::Opaque(_) => {
+                (items::change_object(scene, id, make_opaque)?, format!("Make {name} opaque"))
+            }
         })
+    }
+}
+
+/// Makes an object opaque: its own opacity becomes 1. If it was, the materials or the texture of
+/// its file hide it: it gets the first part's material as its own, or shows its material alone.
+fn make_opaque(object: &mut Object) {
+    let was_transparent = object.opacity < 1.0;
+    object.opacity = 1.0;
+    if was_transparent {
+        return;
+    }
+    let parts = u32::try_from(object.model.mesh.parts().len()).unwrap_or(u32::MAX);
+    if (0..parts).all(|part| object.part_look(part).opacity == 0.0) {
+        object.material = MaterialChoice::Own(object.part_look(0).material);
+    } else if (0..parts).any(|part| object.part_look(part).texture.is_some()) {
+        object.surface = Surface::Material;
     }
 }
 
@@ -255,6 +291,34 @@ pub struct Measured {
     pub settings: Settings,
 }
 
+/// A pixel that is explained, and the picture that it belongs to.
+#[derive(Clone, Debug)]
+pub struct ExplainedPixel {
+    /// Column and row, from the upper left.
+    pub at: [usize; 2],
+    /// What there is to draw.
+    pub scene: Scene,
+    /// How it is looked at.
+    pub view: View,
+    /// How exactly it is drawn.
+    pub settings: Settings,
+    /// The size of the picture.
+    pub size: Size,
+    /// The explanation; `None` if the pixel is outside of the picture.
+    pub explained: Option<PixelColor>,
+}
+
+impl ExplainedPixel {
+    /// Whether the picture is still the one that was explained.
+    #[must_use]
+    pub fn is_of(&self, state: &State, size: Size) -> bool {
+        let Self { scene, view, settings, .. } = self;
+        self.size == size
+            && (settings, view) == (&state.settings, &state.view)
+            && *scene == state.scene
+    }
+}
+
 impl State {
     /// The state of a new scene, without history.
     #[must_use]
@@ -274,7 +338,13 @@ impl State {
             layout: Layout::default(),
             palette: false,
             overlays: true,
+            gizmo: true,
+            several: Others::default(),
             aiming: false,
+            asking: None,
+            greeting: false,
+            explaining: false,
+            explained: None,
             zoom: 1.0,
             narrow: false,
             theme: ThemePreference::System,
@@ -291,6 +361,28 @@ impl State {
     #[must_use]
     pub fn selected(&self) -> Option<ItemId> {
         selection::selected(&self.view)
+    }
+
+    /// The items that are selected beside the one that the keys act on.
+    #[must_use]
+    pub fn others(&self) -> Vec<ItemId> {
+        self.several.of(&self.scene, &self.view).collect()
+    }
+
+    /// Whether an item is selected, as the one that the keys act on or beside it.
+    #[must_use]
+    pub fn is_selected(&self, id: ItemId) -> bool {
+        self.selected() == Some(id)
+            || self.several.of(&self.scene, &self.view).any(|other| other == id)
+    }
+
+    /// What commands act on, in words: the name of the selected item, or how many there are.
+    #[must_use]
+    pub fn acted_on_name(&self) -> String {
+        match self.others().len() {
+            0 => self.selected_name().to_owned(),
+            others => format!("{} items", others + 1),
+        }
     }
 
     /// Whether anything is drawn over the picture now: a comparison shows the pictures alone.
@@ -310,9 +402,14 @@ impl State {
         (wanted && can_refine(&self.settings)).then_some(refined)
     }
 
-    /// The item whose outline is drawn over the picture: the one that the keys act on.
-    pub(crate) fn outlined(&self) -> Option<ItemId> {
-        self.selected().filter(|_| self.shows_overlays())
+    /// The items whose outlines are drawn over the picture: first the one that the keys act on.
+    pub(crate) fn outlined(&self) -> Vec<ItemId> {
+        match self.selected() {
+            Some(first) if self.shows_overlays() => {
+                std::iter::once(first).chain(self.others()).collect()
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// Its name; empty if nothing is selected.

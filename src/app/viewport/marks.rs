@@ -89,7 +89,7 @@ const SHADE: Color32 = Color32::from_black_alpha(110);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
     pub(super) id: LightId,
-    at: Pos2,
+    pub(super) at: Pos2,
     /// From the observer.
     distance: f64,
     /// Whether it stands where an object or a camera is, which a click selects first.
@@ -131,12 +131,12 @@ pub(super) fn lights_at(marks: &[Mark], at: Pos2) -> [Vec<ItemId>; 2] {
 pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mark]) {
     let painter = ui.painter().with_clip_rect(projection.rect);
     let accent = theme::accent(ui.visuals());
-    if let Some(ItemId::Light(id)) = state.outlined() {
+    if let Some(ItemId::Light(id)) = state.selected().filter(|_| state.shows_overlays()) {
         cone_ui(&painter, state, projection, id, Stroke::new(1.5, accent));
     }
     for mark in marks.iter().rev() {
         let Some(light) = state.scene.lights.get(mark.id) else { continue };
-        let selected = state.selected() == Some(ItemId::Light(mark.id));
+        let selected = state.is_selected(ItemId::Light(mark.id));
         if mark.follows && !selected {
             // It would lie over its owner: a small dot says that there is one.
             painter.circle(mark.at, 3.0, SHADE, Stroke::new(1.0, Color32::WHITE));

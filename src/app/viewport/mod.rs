@@ -5,6 +5,7 @@
 
 mod axes;
 pub(crate) mod comparison;
+pub(crate) mod gizmo;
 mod marks;
 mod mouse;
 mod over;
@@ -19,15 +20,16 @@ use egui::{
 };
 use glam::DMat4;
 
-use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::actions::{Action, Also, LabRequest, Request};
 use crate::app::drawing::border::Border;
 use crate::app::drawing::worker::{News, Pick, Worker};
-use crate::app::input::keyboard::Keyboard;
+use crate::app::input::keyboard::{Keyboard, Letters};
 use crate::app::state::State;
 use crate::app::widgets::plate::plate_ui;
 use crate::base::image::Size;
 use crate::render::Hit;
 use crate::scene::ItemId;
+use gizmo::{Gizmo, Grab};
 use marks::Projection;
 use mouse::{Mouse, Under};
 use over::Over;
@@ -39,6 +41,10 @@ pub(crate) enum Purpose {
     Hover,
     /// Selects the item that was clicked.
     Select,
+    /// Selects the item that was clicked too, or no longer.
+    SelectAlso,
+    /// Selects what lies in this part of the window.
+    Box(Rect),
     /// Frames the item that was double-clicked.
     Frame,
     /// Opens the menu of the item that was right-clicked.
@@ -60,8 +66,8 @@ pub(crate) struct Viewport {
     menu: Option<Menu>,
     /// The border of the item under the pointer.
     border: Option<Border>,
-    /// The border of the selected item.
-    outline: Option<Border>,
+    /// The borders of the selected item, and of those that are selected beside it.
+    outline: [Option<Border>; 2],
     /// Whether the picture has changed since the last pick under the pointer.
     stale: bool,
     /// The item whose border was requested for this picture.
@@ -96,6 +102,19 @@ impl Viewport {
     /// The image it shows.
     pub(crate) fn image(&self) -> Option<&Arc<ColorImage>> {
         self.image.as_ref()
+    }
+
+    /// Takes an amount from the keyboard from now on; returns whether the selection has handles.
+    pub(crate) fn type_amount(&mut self, state: &State) -> bool {
+        let grab = self.place.and_then(|(rect, size)| Grab::typing(state, rect, size));
+        let found = grab.is_some();
+        grab.into_iter().for_each(|grab| self.mouse.type_amount(grab));
+        found
+    }
+
+    /// Gives the picture the keyboard.
+    pub(crate) fn take_keyboard(&self, ctx: &Context) {
+        ctx.memory_mut(|memory| memory.request_focus(Id::unique("viewport")));
     }
 
     /// Cancels the current drag. Returns whether there was one.
@@ -150,11 +169,18 @@ impl Viewport {
             ui.painter().image(texture.id(), rect, all, egui::Color32::WHITE);
         }
         let hit = self.hovered.and_then(|(_, hit)| hit);
-        let under = Under { rect, size, hit };
+        let gizmo = Gizmo::new(state, rect, size);
+        let typed = Keyboard::take_typed(ui.ctx());
+        let under = Under { rect, size, hit, gizmo: gizmo.as_ref(), typed: &typed };
         let picks = self.mouse.ui(ui, &response, state, under, requests);
-        Keyboard::set_viewport(ui.ctx(), id, self.mouse.is_flying());
+        let letters = match (self.mouse.is_flying(), self.mouse.is_typing()) {
+            (true, _) => Letters::Steer,
+            (false, true) => Letters::Type,
+            (false, false) => Letters::Act,
+        };
+        Keyboard::set_viewport(ui.ctx(), id, letters);
         let projection = Projection::new(state, rect, size);
-        let over = Over::new(state, rect, &projection);
+        let over = Over { gizmo, ..Over::new(state, rect, &projection) };
         for (at, purpose) in picks {
             if let Some(request) = self.over_click(state, &over, at, purpose) {
                 requests.extend(request);
@@ -165,7 +191,9 @@ impl Viewport {
                 purpose => purpose,
             };
             let at = self.pixel(at);
-            if state.lab.picking && purpose == Purpose::Select {
+            if state.explaining && purpose == Purpose::Select {
+                requests.push(Request::Explain(at));
+            } else if state.lab.picking && purpose == Purpose::Select {
                 requests.push(Request::Lab(LabRequest::Attribute(at)));
             } else {
                 worker.pick(Pick { at, purpose });
@@ -213,6 +241,11 @@ impl Viewport {
                 }
             }
             Purpose::Select => requests.extend(hit.map(|hit| self.selecting(state, pick.at, hit))),
+            Purpose::SelectAlso => {
+                requests.extend(item.map(|item| Request::SelectAlso(vec![item], Also::Toggle)));
+            }
+            // It is answered without a picture.
+            Purpose::Box(_) => {}
             Purpose::Aim(at) => requests.push(match (hit, self.place) {
                 (Some(hit), Some((rect, size))) => {
                     match Projection::new(state, rect, size).world(at, hit.depth) {
@@ -397,6 +430,7 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
             Action::Delete,
         ],
         ItemId::Light(_) => &[
+            Action::ToggleShadows,
             Action::AimAtSelection,
             Action::AimByClick,
             Action::ToggleVisible,

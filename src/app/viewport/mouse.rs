@@ -6,6 +6,9 @@
 //! | middle drag | pan |
 //! | right held | look, and fly with W A S D Q E; a right click within 4 points is a menu |
 //! | wheel, pinch | zoom towards the pointer; while flying, the speed |
+//! | left drag on a handle of the gizmo | moves, rotates or scales; Ctrl snaps, numbers are typed |
+//! | Shift + left click | selects one more, or one less |
+//! | Ctrl + left drag | selects all in a box |
 //! | right press or Esc during another drag | back to where it began |
 //!
 //! Each drag is one gesture. So are the turns of the wheel while the pointer rests.
@@ -15,6 +18,7 @@ use glam::{DVec2, DVec3};
 
 use super::Purpose;
 use super::comparison;
+use super::gizmo::{Gizmo, Grab, Pull};
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::gestures;
@@ -41,17 +45,23 @@ pub(crate) struct Mouse {
     count: u64,
     /// Whether the last press of the left button was one on the picture, and the one before it.
     pressed: [bool; 2],
+    /// The handle of the gizmo that is held, or whose amount is typed.
+    grab: Option<Box<Grab>>,
 }
 
 /// The picture under the mouse.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Under {
+pub(crate) struct Under<'a> {
     /// The place of the picture in the window.
     pub(crate) rect: Rect,
     /// Its size in pixels.
     pub(crate) size: Size,
     /// The hit under the pointer, if known.
     pub(crate) hit: Option<Hit>,
+    /// The handles that lie over it.
+    pub(crate) gizmo: Option<&'a Gizmo>,
+    /// What was typed while a handle is held.
+    pub(crate) typed: &'a str,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +77,8 @@ struct Drag {
     moved: bool,
     /// Whether it was cancelled: it does nothing until the button is released.
     over: bool,
+    /// Whether Shift was held when it began.
+    shift: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,11 +87,15 @@ enum Motion {
     Orbit,
     Pan,
     Fly,
+    /// Drags a handle of the gizmo.
+    Handle,
+    /// Draws a box, in which all is selected.
+    Box,
 }
 
 impl Default for Mouse {
     fn default() -> Self {
-        Self { drag: None, speed: 1.0, count: 0, pressed: [false; 2] }
+        Self { drag: None, speed: 1.0, count: 0, pressed: [false; 2], grab: None }
     }
 }
 
@@ -87,6 +103,31 @@ impl Mouse {
     /// Whether a button is held.
     pub(crate) const fn is_dragging(&self) -> bool {
         self.drag.is_some()
+    }
+
+    /// The handle of the gizmo that is held, once it is more than a click.
+    pub(crate) fn grab(&self) -> Option<&Grab> {
+        let moved = self.drag.is_none_or(|drag| drag.moved && !drag.over);
+        self.grab.as_deref().filter(|grab| moved || grab.is_typed())
+    }
+
+    /// Takes numbers for a handle from now on, without the mouse.
+    pub(crate) fn type_amount(&mut self, grab: Grab) {
+        if self.drag.is_none() {
+            self.count += 1;
+            self.grab = Some(Box::new(grab));
+        }
+    }
+
+    /// Whether letters and numbers are for a handle.
+    pub(crate) const fn is_typing(&self) -> bool {
+        self.grab.is_some()
+    }
+
+    /// The corners of the box that is drawn.
+    pub(crate) fn selection_box(&self) -> Option<Rect> {
+        let drag = self.drag.filter(|drag| drag.motion == Motion::Box && drag.moved && !drag.over);
+        drag.map(|drag| Rect::from_two_pos(drag.from, drag.to))
     }
 
     /// Whether letters steer.
@@ -105,6 +146,11 @@ impl Mouse {
             Some(drag) if !drag.over => {
                 drag.over = true;
                 requests.push(Request::Abandon(drag.gesture));
+                self.grab = None;
+                true
+            }
+            None if self.grab.take().is_some() => {
+                requests.push(Request::Abandon(gestures::numbered(self.count, TYPED)));
                 true
             }
             _ => false,
@@ -117,7 +163,7 @@ impl Mouse {
         ui: &Ui,
         response: &Response,
         state: &State,
-        under: Under,
+        under: Under<'_>,
         requests: &mut Vec<Request>,
     ) -> Vec<(Pos2, Purpose)> {
         let mut picks = Vec::new();
@@ -131,7 +177,8 @@ impl Mouse {
                             && response.rect.contains(pos);
                         self.pressed = [here, self.pressed[0]];
                     }
-                    self.press(ui, response, state, (pos, button, modifiers), requests);
+                    let press = (pos, button, modifiers);
+                    self.press(ui, response, (state, under), press, requests);
                 }
                 Event::PointerMoved(at) => {
                     if let Some(drag) = &mut self.drag {
@@ -139,15 +186,16 @@ impl Mouse {
                     }
                 }
                 Event::PointerButton { pos, button, pressed: false, .. } => {
-                    self.release(ui, state, under.size, (pos, button), requests, &mut picks);
+                    self.release(ui, state, under, (pos, button), requests, &mut picks);
                 }
                 _ => {}
             }
         }
+        self.pull(ui, under, requests);
         self.go_on(ui, state, under.size, requests);
         if self.drag.is_some_and(|drag| !ui.input(|input| input.pointer.button_down(drag.button))) {
             // It was released outside the window.
-            self.drag = None;
+            (self.drag, self.grab) = (None, None);
         }
         // A click that put a notice away, and one on what lay under it, are no double click.
         if response.double_clicked_by(PointerButton::Primary) && self.pressed == [true; 2] {
@@ -163,7 +211,7 @@ impl Mouse {
         &mut self,
         ui: &Ui,
         response: &Response,
-        state: &State,
+        (state, under): (&State, Under<'_>),
         (from, button, modifiers): (Pos2, PointerButton, Modifiers),
         requests: &mut Vec<Request>,
     ) {
@@ -184,12 +232,18 @@ impl Mouse {
         if !response.contains_pointer() || egui::Popup::is_any_open(ui.ctx()) {
             return;
         }
+        self.end_typing(requests);
         let pose = state.scene.selected_camera(&state.view).pose.now();
+        let held = under.gizmo.and_then(|gizmo| Some((gizmo, gizmo.handle_at(from)?)));
         let motion = match button {
             PointerButton::Secondary => Motion::Fly,
             PointerButton::Middle => Motion::Pan,
+            PointerButton::Primary if !modifiers.alt && !modifiers.shift && held.is_some() => {
+                Motion::Handle
+            }
             PointerButton::Primary if modifiers.alt => Motion::Orbit,
             PointerButton::Primary if modifiers.shift => Motion::Pan,
+            PointerButton::Primary if modifiers.command => Motion::Box,
             PointerButton::Primary => match pose.mode_with(state.view.object) {
                 CameraMode::Fly => Motion::Look,
                 CameraMode::Analysis { .. } => Motion::Orbit,
@@ -198,8 +252,11 @@ impl Mouse {
         };
         let gesture = self.gesture("drag");
         let (to, at) = (from, from);
-        let (moved, over) = (false, false);
-        self.drag = Some(Drag { motion, button, gesture, from, at, to, moved, over });
+        if let (Motion::Handle, Some((gizmo, handle))) = (motion, held) {
+            self.grab = Some(Box::new(Grab::new(state, gizmo, handle, from)));
+        }
+        let (moved, over, shift) = (false, false, modifiers.shift);
+        self.drag = Some(Drag { motion, button, gesture, from, at, to, moved, over, shift });
     }
 
     /// Handles the movement of the pointer since the last call.
@@ -212,7 +269,7 @@ impl Mouse {
             drag.at = drag.to;
         }
         let drag = *drag;
-        if drag.over {
+        if drag.over || matches!(drag.motion, Motion::Handle | Motion::Box) {
             return;
         }
         if by != Vec2::ZERO {
@@ -229,7 +286,7 @@ impl Mouse {
         &mut self,
         ui: &Ui,
         state: &State,
-        size: Size,
+        under: Under<'_>,
         (to, button): (Pos2, PointerButton),
         requests: &mut Vec<Request>,
         picks: &mut Vec<(Pos2, Purpose)>,
@@ -238,15 +295,53 @@ impl Mouse {
             Some(drag) if drag.button == button => drag.to = to,
             _ => return,
         }
-        self.go_on(ui, state, size, requests);
+        self.go_on(ui, state, under.size, requests);
+        self.pull(ui, under, requests);
+        let typed = self.grab.take().is_some_and(|grab| grab.is_typed());
         let Some(drag) = self.drag.take() else { return };
-        if drag.moved || drag.over {
+        if drag.motion == Motion::Box && drag.moved && !drag.over {
+            picks.push((drag.from, Purpose::Box(Rect::from_two_pos(drag.from, drag.to))));
+        }
+        if drag.moved || drag.over || typed {
             return;
         }
         match drag.button {
+            PointerButton::Primary if drag.shift || drag.motion == Motion::Box => {
+                picks.push((drag.from, Purpose::SelectAlso));
+            }
             PointerButton::Primary => picks.push((drag.from, Purpose::Select)),
             PointerButton::Secondary => picks.push((drag.from, Purpose::Menu(drag.from))),
             _ => {}
+        }
+    }
+
+    /// Lets the handle that is held follow the pointer and what is typed.
+    fn pull(&mut self, ui: &Ui, under: Under<'_>, requests: &mut Vec<Request>) {
+        let Some(grab) = &mut self.grab else { return };
+        let snap = ui.input(|input| input.modifiers.command);
+        let Some(drag) = &mut self.drag else {
+            let pull = Pull { to: under.rect.center(), snap: false, typed: under.typed };
+            let gesture = gestures::numbered(self.count, TYPED);
+            if grab.follow_typed(pull, gesture, requests) {
+                self.grab = None;
+            }
+            return;
+        };
+        drag.moved |= (drag.to - drag.from).length() > CLICK;
+        if !drag.moved && !grab.is_typed() && under.typed.is_empty() {
+            return;
+        }
+        let pull = Pull { to: drag.to, snap, typed: under.typed };
+        if grab.follow(pull, drag.gesture, requests) {
+            // Enter ends the drag: the button may be let go anywhere.
+            (drag.over, self.grab) = (true, None);
+        }
+    }
+
+    /// A press ends an amount that is typed: it stays as it is.
+    fn end_typing(&mut self, requests: &mut Vec<Request>) {
+        if self.grab.take().is_some_and(|grab| !grab.is_typed()) {
+            requests.push(Request::Abandon(gestures::numbered(self.count, TYPED)));
         }
     }
 
@@ -279,8 +374,8 @@ impl Mouse {
         ui.ctx().request_repaint();
     }
 
-    fn wheel(&mut self, ui: &Ui, state: &State, under: Under, requests: &mut Vec<Request>) {
-        let Under { rect, size, hit } = under;
+    fn wheel(&mut self, ui: &Ui, state: &State, under: Under<'_>, requests: &mut Vec<Request>) {
+        let Under { rect, size, hit, .. } = under;
         let (notches, moved, at) = ui.input(|input| {
             let notches = input.events.iter().map(notches).sum::<f64>();
             (notches, input.pointer.delta() != Vec2::ZERO, input.pointer.latest_pos())
@@ -313,6 +408,9 @@ impl Mouse {
     }
 }
 
+/// What typed amounts are a gesture of.
+const TYPED: &str = "typed amount";
+
 /// The command for a movement of the pointer, in pixels.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command, Refusal> {
@@ -332,6 +430,8 @@ fn moving(drag: Drag, state: &State, pixels: Vec2, size: Size) -> Result<Command
             let angle = 2.0 * lens.half_angle.to_radians() / shorter;
             navigation::look(scene, view, -dx * angle, -dy * angle, phase)
         }
+        // These are followed elsewhere.
+        Motion::Handle | Motion::Box => Err(Refusal::Gone),
     }
 }
 

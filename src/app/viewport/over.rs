@@ -2,9 +2,10 @@
 
 use egui::{Pos2, Rect, Response, Ui};
 
+use super::gizmo::{Gizmo, Grab};
 use super::marks::Projection;
 use super::{Purpose, Viewport, axes, marks, overlay, picking};
-use crate::app::actions::Request;
+use crate::app::actions::{Also, Request};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
@@ -14,15 +15,61 @@ use crate::scene::ItemId;
 pub(super) struct Over {
     pub(super) ends: Vec<axes::End>,
     pub(super) marks: Vec<marks::Mark>,
+    pub(super) gizmo: Option<Gizmo>,
 }
 
 impl Over {
     pub(super) fn new(state: &State, rect: Rect, projection: &Projection) -> Self {
-        Self { ends: axes::ends(state, rect), marks: marks::marks(state, projection) }
+        let (ends, marks) = (axes::ends(state, rect), marks::marks(state, projection));
+        Self { ends, marks, gizmo: None }
     }
 }
 
 impl Viewport {
+    /// Marks the pixel that is explained.
+    fn explained_ui(&self, ui: &Ui, rect: Rect, state: &State) {
+        let Some(explained) = &state.explained else { return };
+        let at = self.point(explained.at);
+        let painter = ui.painter().with_clip_rect(rect);
+        for (width, color) in
+            [(3.5, egui::Color32::from_black_alpha(170)), (1.5, egui::Color32::WHITE)]
+        {
+            let stroke = egui::Stroke::new(width, color);
+            painter.circle_stroke(at, 6.0, stroke);
+            for way in [egui::vec2(1.0, 0.0), egui::vec2(0.0, 1.0)] {
+                painter.line_segment([at + way * 6.0, at + way * 13.0], stroke);
+                painter.line_segment([at - way * 6.0, at - way * 13.0], stroke);
+            }
+        }
+    }
+
+    /// Draws the gizmo, what a drag of it does, and the box that is drawn.
+    fn handles_ui(&self, ui: &Ui, rect: Rect, response: &Response, over: &Over) {
+        let grab = self.mouse.grab();
+        if let Some(gizmo) = &over.gizmo {
+            let pointer = response.hover_pos().filter(|_| !self.mouse.is_dragging());
+            let hovered = pointer.and_then(|at| gizmo.handle_at(at));
+            gizmo.show(ui, rect, grab.map(Grab::handle), hovered);
+        }
+        if let Some(grab) = grab {
+            plate_ui(ui, rect, egui::Align2::CENTER_TOP, grab.said.clone());
+        }
+        if let Some(area) = self.mouse.selection_box() {
+            let accent = theme::accent(ui.visuals());
+            let painter = ui.painter().with_clip_rect(rect);
+            let dark = egui::Color32::from_black_alpha(110);
+            let kind = egui::StrokeKind::Middle;
+            painter.rect_stroke(area, 0.0, egui::Stroke::new(3.5, dark), kind);
+            painter.rect(
+                area,
+                0.0,
+                accent.gamma_multiply(0.12),
+                egui::Stroke::new(1.5, accent),
+                kind,
+            );
+        }
+    }
+
     /// What a click on something over the picture asks for; `None` if it is for the picture.
     pub(super) fn over_click(
         &mut self,
@@ -36,7 +83,15 @@ impl Viewport {
             (Purpose::Select, Some(end)) => Some(Some(Request::Do(end.action))),
             // The two clicks of a double click have turned the view already.
             (Purpose::Frame, Some(_)) => Some(None),
-            (Purpose::Select, None) if !state.aiming && !state.lab.picking => {
+            (Purpose::SelectAlso, None) => {
+                let [free, _] = marks::lights_at(&over.marks, at);
+                Some(Some(Request::SelectAlso(vec![*free.first()?], Also::Toggle)))
+            }
+            (Purpose::Box(area), _) => {
+                let items = self.items_in(state, over, area);
+                Some(Some(Request::SelectAlso(items, Also::Only)))
+            }
+            (Purpose::Select, None) if !state.aiming && !state.lab.picking && !state.explaining => {
                 let [free, _] = marks::lights_at(&over.marks, at);
                 let first = *free.first()?;
                 let pixel = self.pixel(at);
@@ -46,6 +101,24 @@ impl Viewport {
             }
             _ => None,
         }
+    }
+
+    /// The items that reach into a part of the window.
+    fn items_in(&self, state: &State, over: &Over, area: Rect) -> Vec<ItemId> {
+        let Some((rect, size)) = self.place else { return Vec::new() };
+        let onto = Projection::new(state, rect, size);
+        let mut items: Vec<ItemId> =
+            picking::objects_within(state, &onto, area).into_iter().map(ItemId::Object).collect();
+        let eye = state.scene.observer_frame(&state.view).w_axis.truncate();
+        let cameras = state.scene.cameras.iter().filter(|(_, camera)| {
+            let at = camera.pose.now().eye;
+            let seen = camera.visible && state.view.marks && at != eye;
+            seen && onto.place(at).is_some_and(|at| area.contains(at))
+        });
+        items.extend(cameras.map(|(id, _)| ItemId::Camera(id)));
+        let marks = over.marks.iter().filter(|mark| area.contains(mark.at));
+        items.extend(marks.map(|mark| ItemId::Light(mark.id)));
+        items
     }
 
     /// The first of what lies here, or the next after the selected one if it was clicked before.
@@ -79,11 +152,18 @@ impl Viewport {
         over: &Over,
     ) {
         let Some((rect, _)) = self.place else { return };
-        if let Some(outline) = self.outline.as_ref().filter(|it| Some(it.item) == state.outlined())
-        {
-            overlay::border_ui(ui, rect, outline, theme::accent(ui.visuals()));
+        let first = state.outlined().first().copied();
+        let [own, others] = &self.outline;
+        let accent = theme::accent(ui.visuals());
+        // Those beside it are weaker: it is the one that the keys act on.
+        let borders = [(others, accent.gamma_multiply(0.6)), (own, accent)];
+        for (border, color) in borders {
+            if let Some(border) = border.as_ref().filter(|it| Some(it.item) == first) {
+                overlay::border_ui(ui, rect, border, color);
+            }
         }
         marks::show(ui, state, projection, &over.marks);
+        self.handles_ui(ui, rect, response, over);
         let pointer = response.hover_pos().filter(|_| !self.mouse.is_dragging());
         let end = pointer.and_then(|at| axes::end_at(&over.ends, at));
         axes::show(ui, rect, &over.ends, end);
@@ -93,6 +173,12 @@ impl Viewport {
         } else if let Some(name) = light.and_then(|light| state.name(light)) {
             plate_ui(ui, rect, egui::Align2::RIGHT_BOTTOM, name.to_owned());
         }
+        if state.explaining {
+            let text = "Click a pixel to explain it; Esc cancels".to_owned();
+            plate_ui(ui, rect, egui::Align2::CENTER_TOP, text);
+            ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
+        }
+        self.explained_ui(ui, rect, state);
         if state.aiming {
             let text = "Click where the light shall shine; Esc cancels".to_owned();
             plate_ui(ui, rect, egui::Align2::CENTER_TOP, text);

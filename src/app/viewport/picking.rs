@@ -1,7 +1,9 @@
 //! Finds all objects under the pointer, nearest first; the picture holds only the nearest.
 
+use egui::Rect;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
+use super::marks::Projection;
 use crate::app::state::State;
 use crate::base::image::Size;
 use crate::scene::{Object, ObjectId, dvec3};
@@ -51,6 +53,18 @@ pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<O
     // Depth is 1 at the near plane.
     found.sort_by(|(a, _), (b, _)| b.total_cmp(a));
     found.into_iter().map(|(_, id)| id).collect()
+}
+
+/// The visible objects with a vertex in a part of the window.
+pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Vec<ObjectId> {
+    let shown = state.scene.objects.iter().filter(|(_, object)| object.visible);
+    let touches = |object: &Object| {
+        let world_from_object = object.world_from_object(state.view.time);
+        let at = |p: &[f32; 3]| onto.place(world_from_object.transform_point3(dvec3(*p)));
+        let positions = object.model.mesh.positions();
+        positions.iter().any(|p| at(p).is_some_and(|at| area.contains(at)))
+    };
+    shown.filter(|(_, object)| touches(object)).map(|(id, _)| id).collect()
 }
 
 /// The depth of the nearest triangle at a point; triangles that cross the near plane are skipped.

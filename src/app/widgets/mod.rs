@@ -2,7 +2,7 @@
 
 pub(crate) mod color_picker;
 pub(crate) mod controls;
-mod expression;
+pub(crate) mod expression;
 pub mod gestures;
 pub(crate) mod icons;
 pub(crate) mod number;

@@ -102,9 +102,13 @@ impl<'a> Number<'a> {
         // Asked when the text is made, for Tab gives the field the keyboard just before that.
         let (ctx, room) = (ui.ctx().clone(), self.room(width));
         let parsed = ctx.clone();
+        let mixed = is_mixed(&ctx, &self.name);
         let edited = move || ctx.memory(|memory| memory.has_focus(id));
-        let format =
-            move |number: f64, _| if edited() { exact(number) } else { short_in(number, room) };
+        let format = move |number: f64, _| match (edited(), mixed) {
+            (true, _) => exact(number),
+            (false, true) => "mixed".to_owned(),
+            (false, false) => short_in(number, room),
+        };
         let mut field = DragValue::new(&mut to)
             .speed(self.speed)
             .range(self.range)
@@ -152,6 +156,20 @@ impl<'a> Number<'a> {
         let changed = response.changed() && (response.dragged() || exact(to) != exact(value));
         changed.then(|| (to, gestures::of(&response)))
     }
+}
+
+/// Shows the fields with these names as "mixed" from now on: several items have other numbers.
+pub(crate) fn set_mixed(ctx: &Context, names: Vec<String>) {
+    ctx.data_mut(|data| data.insert_temp(mixed_names(), names));
+}
+
+fn is_mixed(ctx: &Context, name: &str) -> bool {
+    let is_it = |names: Vec<String>| names.iter().any(|other| other == name);
+    ctx.data(|data| data.get_temp(mixed_names())).is_some_and(is_it)
+}
+
+fn mixed_names() -> Id {
+    Id::unique("mixed numbers")
 }
 
 fn bad_text() -> Id {

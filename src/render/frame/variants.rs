@@ -42,7 +42,7 @@ pub(crate) struct Variants {
     /// How the tangents of bumps are found.
     pub(crate) tangents: Tangents,
     /// How the maps of bumps are filtered.
-    bump_filter: BumpFilter,
+    pub(crate) bump_filter: BumpFilter,
     /// In which values light is computed.
     pub(crate) light_values: LightValues,
 }

@@ -4,6 +4,7 @@
 //! `work` after another: `setup` and `edges` put primitives that may be visible into `bins`, and
 //! `small` rasterizes small triangles at once, to `hits`. A `tile` then draws its hits, `large`
 //! triangles and `lines` with a depth test; the nearest primitive stays in the `visibility_buffer`.
+//! `layers` are the transparent triangles in front of it.
 //!
 //! What the settings can choose beside the defaults are variants of the same kernels: each `rule`
 //! of coverage and each `depth_format` is a type for which they are compiled. `vertex_variants`
@@ -19,6 +20,7 @@ mod facing;
 pub(crate) mod geometry;
 mod hits;
 mod large;
+pub(crate) mod layers;
 pub(crate) mod lines;
 mod medium;
 mod parts;

@@ -34,11 +34,14 @@ pub(crate) struct Setup<'a> {
     pub(crate) screen: Screen,
     /// The number of the draw's first triangle in the frame.
     pub(crate) base: u32,
-    /// Whether some triangles are not drawn or need the alpha test, so that each has to be checked.
+    /// Whether some triangles are not drawn, need the alpha test or are transparent, so that each
+    /// has to be checked.
     pub(crate) choosy: bool,
     /// The vertices in pixels, before they were snapped, if the rule of coverage needs them.
     pub(crate) unsnapped: &'a [[f32; 2]],
     pub(crate) coverage: Coverage,
+    /// Whether all triangles that are drawn are transparent.
+    pub(crate) transparent: bool,
 }
 
 /// How a triangle is drawn.
@@ -47,6 +50,7 @@ pub(crate) enum Kind {
     Not,
     Plain,
     Cutout,
+    Transparent,
 }
 
 impl<'a> Setup<'a> {
@@ -57,9 +61,14 @@ impl<'a> Setup<'a> {
         size: Size,
         base: u32,
     ) -> Self {
+        let transparent =
+            draw.uniform.is_some_and(|pipeline| pipelines[pipeline as usize].opacity().is_some());
         let choosy = draw.polygons.is_some()
             || draw.part_pipelines.iter().any(|pipeline| {
-                pipeline.is_none_or(|pipeline| pipelines[pipeline as usize].is_cutout())
+                pipeline.is_none_or(|pipeline| {
+                    let pipeline = &pipelines[pipeline as usize];
+                    pipeline.is_cutout() || (!transparent && pipeline.opacity().is_some())
+                })
             });
         let screen = Screen::new(draw.clip_from_object, size);
         let order = draw.model.mesh.draw_order();
@@ -70,6 +79,7 @@ impl<'a> Setup<'a> {
             screen,
             base,
             choosy,
+            transparent,
             unsnapped: &[],
             coverage: Coverage::Exact,
         }
@@ -170,7 +180,13 @@ impl<'a> Setup<'a> {
                 }
             }
             let side = (right - left).max(bottom - top);
-            self.sort::<S, R, N>(simd, triangles, &pack, (plain, side), pipelines, bins);
+            let places = (plain, side, area);
+            if self.choosy {
+                self.sort_kinds::<S, R, N>(simd, triangles, &pack, places, pipelines, bins);
+            } else {
+                let bins = bins.of(self.transparent);
+                self.sort::<S, R, N>(simd, triangles, &pack, (plain, side), 0, bins);
+            }
         }
         let mut odd = odd.to_bitmask();
         while odd != 0 {
@@ -216,24 +232,46 @@ impl<'a> Setup<'a> {
         [x, y]
     }
 
+    /// Sorts visible triangles of several kinds, with the larger sides of their boxes and their
+    /// areas.
+    #[inline(always)]
+    fn sort_kinds<S: Simd, R: Rule, const N: usize>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        pack: &Pack<S>,
+        (plain, side, area): (mask32x16<S>, i32x16<S>, i32x16<S>),
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+    ) {
+        let [mut plain, mut cutout, transparent] =
+            self.kinds(triangles, plain.to_bitmask(), pipelines);
+        if self.draw.culls_opaque {
+            let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
+            let front = front.to_bitmask();
+            (plain, cutout) = (plain & front, cutout & front);
+        }
+        let mask = |bits| mask32x16::from_bitmask(simd, bits);
+        for (is_transparent, some, cutout) in [(false, plain, cutout), (true, transparent, 0)] {
+            if some | cutout != 0 {
+                let bins = bins.of(is_transparent);
+                self.sort::<S, R, N>(simd, triangles, pack, (mask(some), side), cutout, bins);
+            }
+        }
+    }
+
     /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
-    /// small ones, or to the large ones.
+    /// small ones, or to the large ones; those with a bit in `cutout` need the alpha test.
     #[inline(always)]
     fn sort<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
         pack: &Pack<S>,
-        (mut plain, side): (mask32x16<S>, i32x16<S>),
-        pipelines: &[Pipeline],
+        (plain, side): (mask32x16<S>, i32x16<S>),
+        cutout: u64,
         bins: &mut Bins,
     ) {
-        let mut cutout = 0;
-        if self.choosy {
-            let kinds = self.kinds(triangles, plain.to_bitmask(), pipelines);
-            plain = mask32x16::from_bitmask(simd, kinds[0]);
-            cutout = kinds[1];
-        }
         let mut above = 0;
         for (queue, limit) in SMALL.into_iter().enumerate().filter(|_| self.has_small::<R>()) {
             let some = plain & side.simd_gt(above) & side.simd_le(limit);
@@ -283,14 +321,15 @@ impl<'a> Setup<'a> {
         !R::UNSNAPPED || self.coverage == Coverage::F32Edges
     }
 
-    /// The masks of the triangles that are drawn without and with the alpha test.
+    /// The masks of the triangles that are drawn without and with the alpha test, and of those that
+    /// are transparent.
     fn kinds(
         &self,
         triangles: &[DrawTriangle; PACK],
         some: u64,
         pipelines: &[Pipeline],
-    ) -> [u64; 2] {
-        let mut kinds = [0; 2];
+    ) -> [u64; 3] {
+        let mut kinds = [0; 3];
         let mut left = some;
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
@@ -299,6 +338,7 @@ impl<'a> Setup<'a> {
                 Kind::Not => {}
                 Kind::Plain => kinds[0] |= 1 << lane,
                 Kind::Cutout => kinds[1] |= 1 << lane,
+                Kind::Transparent => kinds[2] |= 1 << lane,
             }
         }
         kinds
@@ -334,9 +374,10 @@ impl<'a> Setup<'a> {
             let corners = [pieces[0], pieces[i - 1], pieces[i]];
             let area = doubled_area(corners.map(|corner| corner.at()));
             let front = (area < 0) != self.draw.mirrored;
-            if area == 0 || (!front && self.draw.back == Back::Culled) {
+            if area == 0 || (!front && self.culls_back(kind)) {
                 continue;
             }
+            let bins = bins.of(kind == Kind::Transparent);
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
             if R::UNSNAPPED {
@@ -360,13 +401,22 @@ impl<'a> Setup<'a> {
         match self.draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize] {
             None => Kind::Not,
             Some(pipeline) if pipelines[pipeline as usize].is_cutout() => Kind::Cutout,
+            Some(pipeline) if pipelines[pipeline as usize].opacity().is_some() => Kind::Transparent,
             Some(_) => Kind::Plain,
         }
+    }
+
+    /// Whether the back faces of a kind are culled.
+    pub(crate) fn culls_back(&self, kind: Kind) -> bool {
+        self.draw.back == Back::Culled || (kind != Kind::Transparent && self.draw.culls_opaque)
     }
 }
 
 /// Draws the small triangles that are still waiting.
 pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins) {
+    if bins.transparent().is_some() {
+        finish::<R>(level, bins.of(true));
+    }
     let many = bins.sample_positions.are_many();
     dispatch!(level, simd => {
         for queue in 0..SMALL.len() {

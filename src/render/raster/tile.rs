@@ -241,6 +241,29 @@ impl Visibility {
         (samples, count)
     }
 
+    /// The entries of a block for one of its samples; 0 where nothing is opaque.
+    pub(crate) fn entries(
+        &mut self,
+        level: Level,
+        block: usize,
+        sample: usize,
+    ) -> [u64; BLOCK_PIXELS] {
+        if !self.shows(block) {
+            return [0; BLOCK_PIXELS];
+        }
+        if self.sample_positions.are_many() {
+            with_format!(self.depth_format, D => {
+                dispatch!(level, simd => self.write::<_, D, FOUR>(simd, block));
+            });
+            *self.plane::<FOUR>(block, sample)
+        } else {
+            with_format!(self.depth_format, D => {
+                dispatch!(level, simd => self.write::<_, D, 1>(simd, block));
+            });
+            *self.plane::<1>(block, sample)
+        }
+    }
+
     /// Ensures that a block has valid entries for `N` samples per pixel.
     #[inline(always)]
     fn write<S: Simd, D: Format, const N: usize>(&mut self, simd: S, block: usize) {

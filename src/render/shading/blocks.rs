@@ -108,6 +108,7 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let mixed = shaded.light.is_some()
             && plan.light_at == LightAt::Vertex
+            && shaded.extras.is_empty()
             && !plan.variants.are_linear();
         let in_spans = plan.variants.interpolation == Interpolation::EverySixteen;
         if !mixed || group.draw.back == Back::Red || in_spans {
@@ -143,7 +144,8 @@ impl<T: ShadingNumber> Shader<T> {
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
         let otherwise = plan.variants.interpolation == Interpolation::EverySixteen
             || plan.variants.are_linear()
-            || !shaded.extras.is_empty();
+            || !shaded.extras.is_empty()
+            || plan.shadows.any_of(shaded.light.as_deref().unwrap_or_default());
         if (is_lit && !pixels) || otherwise || group.draw.back == Back::Red {
             return false;
         }

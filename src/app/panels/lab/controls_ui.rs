@@ -210,7 +210,7 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let switch = Switch::new("Explain a pixel: click on it", state.lab.picking).ui(ui);
+    let switch = Switch::new("Attribute the error: click on it", state.lab.picking).ui(ui);
     let switch = switch.on_hover_text("Shows the error of one pixel and attributes it to an axis");
     if switch.clicked() {
         requests.push(Request::Lab(LabRequest::Pick(!state.lab.picking)));

@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::order::take_dragged;
-use crate::app::actions::{Action, Request, change};
+use crate::app::actions::{Action, Also, Request, change};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_at};
@@ -47,7 +47,7 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, r
     let name = state.name(item).unwrap_or_default();
     let response =
         ui.interact(rect, id(ui, item), regions::sense(Sense::click_and_drag(), is_stop));
-    let is_subject = state.selected() == Some(item);
+    let is_subject = state.is_selected(item);
     response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, true, is_subject, name));
     ground(ui, state, item, rect, &response);
     response.dnd_set_drag_payload(item);
@@ -86,6 +86,11 @@ fn ground(ui: &Ui, state: &State, item: ItemId, rect: Rect, response: &Response)
     let visuals = ui.visuals();
     if state.selected() == Some(item) {
         ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill);
+    } else if state.is_selected(item) {
+        // Framed too: the one that the keys act on is filled alone.
+        ui.painter().rect_filled(rect, 4.0, visuals.selection.bg_fill.gamma_multiply(0.55));
+        let edge = egui::Stroke::new(1.0, theme::accent(visuals));
+        ui.painter().rect_stroke(rect, 4.0, edge, egui::StrokeKind::Inside);
     } else if response.hovered() {
         ui.painter().rect_filled(rect, 4.0, visuals.widgets.inactive.bg_fill);
     }
@@ -187,11 +192,34 @@ fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
     ui.data_mut(|data| data.insert_temp(id, text));
 }
 
+/// The items of a list from the selected one to another; that one alone in another list.
+fn range_to(state: &State, item: ItemId) -> Vec<ItemId> {
+    let scene = &state.scene;
+    let list: Vec<ItemId> = match item {
+        ItemId::Object(_) => scene.objects.ids().map(ItemId::Object).collect(),
+        ItemId::Camera(_) => scene.cameras.ids().map(ItemId::Camera).collect(),
+        ItemId::Light(_) => scene.lights.ids().map(ItemId::Light).collect(),
+    };
+    let place = |of: Option<ItemId>| list.iter().position(|other| Some(*other) == of);
+    match (place(state.selected()), place(Some(item))) {
+        (Some(from), Some(to)) => list[from.min(to)..=from.max(to)].to_vec(),
+        _ => vec![item],
+    }
+}
+
 /// What clicks on the line ask for.
 fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &Response) {
     if response.double_clicked() {
         requests.push(Request::BeginRename(item));
-    } else if response.clicked() || response.secondary_clicked() {
+    } else if response.clicked() {
+        let (also, range) =
+            response.ctx.input(|input| (input.modifiers.command, input.modifiers.shift));
+        requests.push(match (also, range) {
+            (true, _) => Request::SelectAlso(vec![item], Also::Toggle),
+            (false, true) => Request::SelectAlso(range_to(state, item), Also::Only),
+            (false, false) => Request::Select(item),
+        });
+    } else if response.secondary_clicked() && !state.is_selected(item) {
         requests.push(Request::Select(item));
     }
     Popup::context_menu(response).show(|ui| {
@@ -201,7 +229,7 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
             actions.push(Action::ToggleVisible);
         }
         if matches!(item, ItemId::Light(_)) {
-            actions.extend([Action::AimAtSelection, Action::AimByClick]);
+            actions.extend([Action::ToggleShadows, Action::AimAtSelection, Action::AimByClick]);
         }
         if matches!(item, ItemId::Object(_)) {
             actions.extend([Action::FrameSelection, Action::WhyUnseen, Action::Split]);

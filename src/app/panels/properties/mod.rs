@@ -5,6 +5,7 @@ mod crease;
 mod light;
 mod material;
 mod object;
+mod several;
 mod surface;
 
 use egui::{ScrollArea, Sense, TextStyle, Ui, vec2};
@@ -26,6 +27,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         return;
     };
     title(ui, state, item);
+    let others = several::note_ui(ui, state, item);
+    let asked = requests.len();
     // Ids of fields go with the item, so that a number typed for one never lands in another.
     let area = ScrollArea::vertical().id_salt("properties").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
@@ -35,6 +38,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ItemId::Light(id) => light::show(ui, state, requests, id),
         });
     });
+    several::spread(ui, state, &others, &mut requests[asked..]);
 }
 
 fn title(ui: &mut Ui, state: &State, item: ItemId) {

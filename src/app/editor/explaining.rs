@@ -1,0 +1,68 @@
+//! Explains a pixel of the picture, on a thread of its own and with a picture of its own.
+
+use std::sync::Arc;
+
+use egui::Context;
+
+use super::App;
+use crate::accuracy::{Samples, Settings, Shot};
+use crate::app::state::{ExplainedPixel, State};
+use crate::app::tasks::{Outcome, Task};
+use crate::base::image::Size;
+use crate::render::{PixelColor, Renderer, plan_frame};
+
+/// A pixel that is being explained.
+#[derive(Debug)]
+pub(crate) struct Explaining {
+    task: Task<Option<PixelColor>>,
+    of: ExplainedPixel,
+}
+
+impl App {
+    /// Explains a pixel from now on, also when the picture changes.
+    pub(crate) fn explain_pixel(&mut self, ctx: &Context, at: [usize; 2]) {
+        self.state.explaining = false;
+        let Some(size) = self.viewport.size() else { return };
+        let State { scene, view, settings, .. } = &self.state;
+        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
+        let of = ExplainedPixel { at, scene, view, settings, size, explained: None };
+        let (scene, view) = (of.scene.clone(), of.view.clone());
+        // The light at the centre: several samples would be a mean of several surfaces.
+        let settings = Settings { samples: Samples::One, ..settings };
+        let task = Task::start(ctx, "explain a pixel".to_owned(), move |_| {
+            let mut renderer = Renderer::default();
+            renderer.render(&plan_frame(&Shot::new(&scene, &view, &settings, size)));
+            renderer.explain(at[0], at[1])
+        });
+        match task {
+            Ok(task) => self.explaining = Some(Explaining { task, of }),
+            Err(error) => self.refuse(format!("cannot start a thread to explain: {error}")),
+        }
+    }
+
+    /// Takes the explanation; asks again if the picture has changed since.
+    pub(crate) fn hear_explaining(&mut self, ctx: &Context) {
+        let outcome = self.explaining.as_ref().map(|explaining| explaining.task.outcome());
+        match outcome {
+            Some(Outcome::Running) => return,
+            Some(Outcome::Done(explained)) => {
+                if let Some(Explaining { of, .. }) = self.explaining.take() {
+                    self.state.explained = Some(Arc::new(ExplainedPixel { explained, ..of }));
+                }
+            }
+            Some(Outcome::Lost) => {
+                self.explaining = None;
+                self.state.explained = None;
+                self.refuse("the pixel could not be explained: this is a bug".to_owned());
+            }
+            None => {}
+        }
+        let Some(last) = self.state.explained.clone() else { return };
+        let size = self.viewport.size().unwrap_or(Size::new(0, 0));
+        let [x, y] = last.at;
+        let inside = x < size.width && y < size.height;
+        if inside && !last.is_of(&self.state, size) && !self.state.is_animated() {
+            self.explain_pixel(ctx, last.at);
+        }
+    }
+}

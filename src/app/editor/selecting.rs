@@ -1,0 +1,76 @@
+//! Selects several items, and takes amounts from the keyboard.
+
+use std::collections::BTreeSet;
+
+use egui::Context;
+
+use super::App;
+use crate::app::actions::Also;
+use crate::edit::Gesture;
+use crate::edit::selection;
+use crate::edit::several::Others;
+use crate::scene::{Command, ItemId, Scene, Subject};
+
+impl App {
+    /// Selects items beside those that are selected, instead of them, or no longer.
+    pub(crate) fn select_also(&mut self, items: &[ItemId], how: Also) {
+        let state = &self.state;
+        let first = state.selected();
+        let mut all: Vec<ItemId> = match how {
+            Also::Only => Vec::new(),
+            Also::Add | Also::Toggle => first.into_iter().chain(state.others()).collect(),
+        };
+        let mut current = first;
+        for item in items {
+            match all.iter().position(|other| other == item) {
+                // The last one stays selected: there is always an item that the keys act on.
+                Some(at) if how == Also::Toggle && all.len() > 1 => {
+                    all.remove(at);
+                    current = current.filter(|current| current != item).or(all.first().copied());
+                }
+                Some(_) => {}
+                None => {
+                    all.push(*item);
+                    // A box keeps the item that the keys act on, if it is among them.
+                    if how != Also::Only {
+                        current = Some(*item);
+                    }
+                }
+            }
+        }
+        let current = current.filter(|current| all.contains(current)).or(all.first().copied());
+        let Some(current) = current else { return };
+        if state.selected() != Some(current) {
+            match selection::pick(&state.scene, &state.view, current) {
+                Ok(selection) => self.select(selection, Gesture::Whole),
+                Err(refusal) => return self.refuse(refusal.to_string()),
+            }
+        }
+        self.state.several = Others::new(current, all);
+    }
+
+    /// Adds items and selects all of them; the first becomes the one that the keys act on.
+    pub(crate) fn add_all(&mut self, command: Command, subject: Subject, label: &str) {
+        let ids = |scene: &Scene| -> BTreeSet<ItemId> {
+            let objects = scene.objects.ids().map(ItemId::Object);
+            let cameras = scene.cameras.ids().map(ItemId::Camera);
+            objects.chain(cameras).chain(scene.lights.ids().map(ItemId::Light)).collect()
+        };
+        let before = ids(&self.state.scene);
+        self.add(command, subject, label);
+        let added: Vec<ItemId> = ids(&self.state.scene).difference(&before).copied().collect();
+        if let (Some(first), true) = (self.state.selected(), added.len() > 1) {
+            self.state.several = Others::new(first, added);
+        }
+    }
+
+    /// Takes an axis and a number from the keyboard, for the selected items.
+    pub(crate) fn type_amount(&mut self, ctx: &Context) {
+        self.state.message = None;
+        if self.viewport.type_amount(&self.state) {
+            self.viewport.take_keyboard(ctx);
+        } else {
+            self.refuse("there is no picture to transform in".to_owned());
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! A pixel explained: what is seen there, what its colour is made of, and the vectors of its light.
+
+use egui::{
+    Align2, Color32, Context, Grid, Label, Painter, Pos2, Rect, RichText, Sense, Stroke, TextStyle,
+    Ui, Vec2, Window, pos2, vec2,
+};
+use glam::DVec3;
+
+use crate::app::actions::Request;
+use crate::app::state::{ExplainedPixel, State};
+use crate::app::theme;
+use crate::base::math;
+use crate::lab::pixel;
+use crate::render::{PixelColor, SurfacePoint, Term};
+
+/// The height of the diagram.
+const DIAGRAM: f32 = 120.0;
+
+/// The length of a vector of length 1 in it.
+const VECTOR: f32 = 72.0;
+
+/// Shows the window; its requests are added to `requests`.
+pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut Vec<Request>) {
+    let Some(pixel) = &state.explained else { return };
+    let mut open = true;
+    let [x, y] = pixel.at;
+    let place = pos2(picture.right() - 372.0, picture.top() + 90.0).max(picture.min);
+    Window::new(format!("Pixel {x}, {y}"))
+        .id(egui::Id::unique("explained pixel"))
+        .open(&mut open)
+        .default_pos(place)
+        .default_width(360.0)
+        .max_height((picture.height() - 60.0).max(160.0))
+        .collapsible(true)
+        .vscroll(true)
+        .show(ctx, |ui| match &pixel.explained {
+            Some(explained) => explained_ui(ui, state, pixel, explained, requests),
+            None => drop(ui.weak("Outside of the picture.")),
+        });
+    if !open {
+        requests.push(Request::EndExplaining);
+    }
+}
+
+fn explained_ui(
+    ui: &mut Ui,
+    state: &State,
+    pixel: &ExplainedPixel,
+    explained: &PixelColor,
+    requests: &mut Vec<Request>,
+) {
+    let mono = |text: String| RichText::new(text).monospace();
+    if let Some(point) = &explained.surface {
+        Grid::new("facts").num_columns(2).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
+            for [name, value] in pixel::facts(&pixel.scene, point) {
+                ui.weak(name);
+                ui.add(Label::new(mono(value)).wrap());
+                ui.end_row();
+            }
+        });
+        ui.separator();
+        diagram_ui(ui, pixel, point, explained);
+    }
+    ui.separator();
+    sum_ui(ui, pixel, explained);
+    if explained.linear {
+        ui.weak("Linear light: encoded in sRGB before it is rounded.");
+    }
+    let samples = state.refined_to().unwrap_or(pixel.settings.samples);
+    if samples.count() > 1 {
+        let count = samples.count();
+        ui.weak(format!(
+            "The picture has the mean of {count} samples; this is the centre's light."
+        ));
+    }
+    ui.separator();
+    ui.horizontal(|ui| {
+        if ui.button("Copy as text").clicked() {
+            ui.ctx().copy_text(pixel::lines(&pixel.scene, explained).join("\n"));
+        }
+        if ui.selectable_label(state.explaining, "Another pixel").clicked() {
+            requests.push(Request::Do(crate::app::actions::Action::ExplainPixel));
+        }
+        for (name, by) in [("<", [-1, 0]), (">", [1, 0]), ("^", [0, -1]), ("v", [0, 1])] {
+            let next = |at: usize, by: isize| at.checked_add_signed(by);
+            let response = ui.small_button(name).on_hover_text("The pixel beside it");
+            if let ([Some(x), Some(y)], true) =
+                ([next(pixel.at[0], by[0]), next(pixel.at[1], by[1])], response.clicked())
+            {
+                requests.push(Request::Explain([x, y]));
+            }
+        }
+    });
+}
+
+/// The terms, their sum, and the byte that it is.
+fn sum_ui(ui: &mut Ui, pixel: &ExplainedPixel, explained: &PixelColor) {
+    let mono = |text: String| RichText::new(text).monospace();
+    Grid::new("sum").num_columns(4).striped(true).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
+        let row = |ui: &mut Ui, label: RichText, value: [String; 3]| {
+            ui.add(Label::new(label).truncate());
+            for text in value {
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    ui.label(mono(text));
+                });
+            }
+            ui.end_row();
+        };
+        let numbers = |value: [f64; 3]| value.map(|x| format!("{x:.3}"));
+        row(
+            ui,
+            RichText::new("in steps of a byte").weak(),
+            ["red", "green", "blue"].map(str::to_owned),
+        );
+        for term in pixel::rows(&pixel.scene, explained) {
+            row(ui, RichText::new(term.label), numbers(term.value));
+        }
+        row(ui, RichText::new("sum").strong(), numbers(explained.color.map(|x| x * 255.0)));
+        let bytes = explained.bytes.map(|byte| byte.to_string());
+        row(ui, RichText::new("clamped and rounded").strong(), bytes);
+    });
+    let [r, g, b] = explained.bytes;
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 10.0), Sense::hover());
+    ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
+}
+
+/// N, V, and L and R of the strongest light, seen from the side: N points up.
+fn diagram_ui(ui: &mut Ui, pixel: &ExplainedPixel, point: &SurfacePoint, explained: &PixelColor) {
+    let lit = |term: &&Term| term.ray.is_some_and(|ray| ray.n_l > 0.0);
+    let bright = |term: &&Term| term.value.iter().sum::<f64>();
+    let strongest =
+        explained.terms.iter().filter(lit).max_by(|a, b| bright(a).total_cmp(&bright(b)));
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), DIAGRAM), Sense::hover());
+    let painter = ui.painter().with_clip_rect(rect);
+    let middle = pos2(rect.center().x, rect.bottom() - 22.0);
+    let ink = ui.visuals().text_color();
+    let weak = ui.visuals().weak_text_color();
+    painter.hline(rect.shrink(12.0).x_range(), middle.y, Stroke::new(2.0, weak));
+    let ray = strongest.and_then(|term| Some((term.light?, term.ray?)));
+    // The plane of N and L, or of N and V without a light.
+    let aside = ray.map_or(point.to_eye, |(_, ray)| ray.to_light);
+    let across = math::unit(aside - point.normal * point.normal.dot(aside))
+        .unwrap_or_else(|| point.normal.any_orthonormal_vector());
+    let on = |v: DVec3| flat(v, point.normal, across);
+    let accent = theme::accent(ui.visuals());
+    let mut arrows = vec![("N", point.normal, ink), ("V", point.to_eye, accent)];
+    if let Some((_, ray)) = ray {
+        arrows.push(("L", ray.to_light, Color32::from_rgb(214, 150, 20)));
+        arrows.push(("R", ray.reflected, Color32::from_rgb(200, 80, 160)));
+    }
+    let font = TextStyle::Body.resolve(ui.style());
+    for (name, v, color) in arrows {
+        let way = on(v) * VECTOR;
+        arrow(&painter, middle, way, color);
+        let at = middle + way + way.normalized() * 9.0;
+        painter.text(at, Align2::CENTER_CENTER, name, font.clone(), color);
+    }
+    let words = ray.map_or_else(
+        || "No light reaches the front of the surface here.".to_owned(),
+        |(id, ray)| {
+            let name = pixel::light_name(&pixel.scene, id);
+            format!("L and R of {name}: {}", pixel::ray_line(&ray))
+        },
+    );
+    response.on_hover_text(&words);
+    ui.add(Label::new(RichText::new(words).small()).wrap());
+}
+
+/// A vector in the plane of the diagram: to the left what leans towards the light.
+#[expect(clippy::cast_possible_truncation, reason = "a drawing for the eye")]
+fn flat(v: DVec3, normal: DVec3, across: DVec3) -> Vec2 {
+    vec2(-v.dot(across) as f32, -v.dot(normal) as f32)
+}
+
+fn arrow(painter: &Painter, from: Pos2, way: Vec2, color: Color32) {
+    let stroke = Stroke::new(2.0, color);
+    painter.line_segment([from, from + way], stroke);
+    let along = way.normalized();
+    for side in [along.rot90(), -along.rot90()] {
+        let end = from + way;
+        painter.line_segment([end, end - along * 8.0 + side * 4.0], stroke);
+    }
+}

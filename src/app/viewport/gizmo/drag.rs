@@ -1,0 +1,523 @@
+//! Drags of a handle: from places of the pointer, or from typed numbers, to amounts.
+//!
+//! Every amount counts from the scene in which the drag began, and from the place where the button
+//! went down; nothing is added up, so nothing drifts, and the way back leads to where it began.
+
+use egui::{Pos2, Rect, Vec2};
+use glam::DVec3;
+
+use super::{Gizmo, Handle, others};
+use crate::app::actions::Request;
+use crate::app::state::State;
+use crate::app::widgets::{expression, number::short};
+use crate::base::image::Size;
+use crate::base::math::{self, Axis};
+use crate::edit::gizmo::{self, Amount};
+use crate::edit::{Gesture, GesturePhase, several};
+use crate::scene::{ItemId, Scene, Transformation, View};
+
+/// Points of the window over which a scale doubles.
+const DOUBLE: f64 = 100.0;
+
+/// A ring seen more from its edge than this, as a cosine, turns by the way along it.
+const RING_EDGE_ON: f64 = 0.3;
+
+/// A handle that is held.
+#[derive(Debug)]
+pub(crate) struct Grab {
+    gizmo: Gizmo,
+    handle: Handle,
+    from: Pos2,
+    /// The scene and the view in which it began.
+    scene: Scene,
+    view: View,
+    others: Vec<ItemId>,
+    name: String,
+    /// The last angle, and all of them together over several turns.
+    angle: f64,
+    turned: f64,
+    typed: Typed,
+    /// What was asked for last.
+    asked: Option<Amount>,
+    /// What it does now, in words.
+    pub(crate) said: String,
+}
+
+/// What was typed: an axis, and a number.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Typed {
+    axis: Option<usize>,
+    text: String,
+}
+
+impl Typed {
+    /// Takes what was typed. Returns whether Enter ended it.
+    fn take(&mut self, text: &str) -> bool {
+        for sign in text.chars() {
+            match sign {
+                '\n' => return true,
+                '\u{8}' if self.text.pop().is_none() => self.axis = None,
+                'x' | 'X' => self.axis = Some(0),
+                'y' | 'Y' => self.axis = Some(1),
+                'z' | 'Z' => self.axis = Some(2),
+                ',' => self.text.push('.'),
+                '0'..='9' | '.' | '+' | '-' | '*' | '/' | '(' | ')' => self.text.push(sign),
+                _ => {}
+            }
+        }
+        false
+    }
+
+    fn axis(&self) -> Option<Axis> {
+        self.axis.map(|axis| Axis::ALL[axis])
+    }
+}
+
+/// What the pointer and the keyboard say in a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pull<'a> {
+    pub(crate) to: Pos2,
+    pub(crate) snap: bool,
+    pub(crate) typed: &'a str,
+}
+
+impl Grab {
+    /// Takes a handle at a place of the window.
+    pub(crate) fn new(state: &State, gizmo: &Gizmo, handle: Handle, from: Pos2) -> Self {
+        let mut grab = Self {
+            gizmo: gizmo.clone(),
+            handle,
+            from,
+            scene: state.scene.clone(),
+            view: state.view.clone(),
+            others: state.others(),
+            name: state.acted_on_name(),
+            angle: 0.0,
+            turned: 0.0,
+            typed: Typed::default(),
+            asked: None,
+            said: String::new(),
+        };
+        grab.angle = grab.angle_at(from).unwrap_or(0.0);
+        grab
+    }
+
+    /// Begins to take numbers without the mouse, along or about X.
+    pub(crate) fn typing(state: &State, rect: Rect, size: Size) -> Option<Self> {
+        let gizmo = Gizmo::of(state, rect, size)?;
+        let handle = match gizmo.pivot.kind {
+            Transformation::Translation => Handle::Axis(Axis::X),
+            Transformation::Rotation => Handle::Ring(Axis::X),
+            Transformation::Scaling => Handle::Middle,
+        };
+        let mut grab = Self::new(state, &gizmo, handle, rect.center());
+        grab.say(None);
+        Some(grab)
+    }
+
+    /// The handle.
+    pub(crate) const fn handle(&self) -> Handle {
+        self.handle
+    }
+
+    /// Whether it is to be taken for a drag although the pointer has hardly moved.
+    pub(crate) fn is_typed(&self) -> bool {
+        self.typed != Typed::default()
+    }
+
+    /// Follows the pointer and the keyboard. Adds the change, and says whether Enter ended it.
+    pub(crate) fn follow(
+        &mut self,
+        pull: Pull<'_>,
+        gesture: Gesture,
+        requests: &mut Vec<Request>,
+    ) -> bool {
+        let ended = self.typed.take(pull.typed);
+        let amount = if self.is_typed() {
+            let number = expression::value(&self.typed.text);
+            number.and_then(|number| self.of_number(number))
+        } else {
+            let amount = self.of_pointer(pull.to);
+            let snap = |amount| gizmo::snapped(&self.scene, &self.view, amount);
+            if pull.snap { amount.map(snap) } else { amount }
+        };
+        self.say(amount);
+        if let Some(amount) = amount.filter(|amount| self.asked != Some(*amount)) {
+            self.asked = Some(amount);
+            requests.push(self.request(amount, gesture));
+        }
+        ended
+    }
+
+    /// The same without the mouse: nothing happens before a number is typed.
+    pub(crate) fn follow_typed(
+        &mut self,
+        pull: Pull<'_>,
+        gesture: Gesture,
+        requests: &mut Vec<Request>,
+    ) -> bool {
+        if pull.typed == "\n" && !self.is_typed() {
+            return true;
+        }
+        let empty = pull.typed.is_empty() && !self.is_typed();
+        !empty && self.follow(pull, gesture, requests)
+    }
+
+    fn request(&self, amount: Amount, gesture: Gesture) -> Request {
+        let Self { scene, view, others, .. } = self;
+        let command = several::each(scene, view, others, |scene, view| {
+            gizmo::transform(scene, view, amount, GesturePhase::First)
+        });
+        match command {
+            Ok(command) => Request::Change { command, gesture, label: self.label(amount) },
+            Err(why) => Request::Refuse(why.to_string()),
+        }
+    }
+
+    /// "Move teapot 12 along x".
+    fn label(&self, amount: Amount) -> String {
+        let name = &self.name;
+        let list = |v: DVec3| v.to_array().map(short).join(", ");
+        match amount {
+            Amount::Move(by) => match only(by, 0.0) {
+                Some((axis, by)) => format!("Move {name} {} along {}", short(by), letter(axis)),
+                None => format!("Move {name} by {}", list(by)),
+            },
+            Amount::Turn(about, radians) => {
+                let degrees = short(radians.to_degrees());
+                match only(about, 0.0) {
+                    Some((axis, _)) => {
+                        format!("Rotate {name} {degrees} deg about {}", letter(axis))
+                    }
+                    None => format!("Rotate {name} {degrees} deg about the line of sight"),
+                }
+            }
+            Amount::Scale(by) if by == DVec3::splat(by.x) => {
+                format!("Scale {name} by {}", short(by.x))
+            }
+            Amount::Scale(by) => match only(by, 1.0) {
+                Some((axis, by)) => format!("Scale {name} by {} along {}", short(by), letter(axis)),
+                None => format!("Scale {name} by {}", list(by)),
+            },
+        }
+    }
+
+    /// Says what it does now.
+    fn say(&mut self, amount: Option<Amount>) {
+        let mut said = match amount {
+            Some(amount) => self.label(amount),
+            None => match self.gizmo.pivot.kind {
+                Transformation::Translation => format!("Move {}", self.name),
+                Transformation::Rotation => format!("Rotate {}", self.name),
+                Transformation::Scaling => format!("Scale {}", self.name),
+            },
+        };
+        if self.is_typed() {
+            let axis =
+                self.typed.axis().map_or_else(String::new, |axis| format!("{} ", letter(axis)));
+            said += &format!("   [{axis}{}]  Enter takes it", self.typed.text);
+        } else {
+            said += "   type x, y, z and a number; Ctrl snaps; Esc cancels";
+        }
+        self.said = said;
+    }
+
+    /// What a typed number means on this handle, or along the axis that was typed before it.
+    fn of_number(&self, number: f64) -> Option<Amount> {
+        let axis = self.typed.axis().or(match self.handle {
+            Handle::Axis(axis) | Handle::Ring(axis) => Some(axis),
+            Handle::Plane(_) | Handle::Outer | Handle::Middle => None,
+        });
+        let all = match self.handle {
+            Handle::Plane(across) => DVec3::ONE - across.unit(),
+            Handle::Axis(_) | Handle::Ring(_) | Handle::Outer | Handle::Middle => DVec3::ONE,
+        };
+        Some(match (self.gizmo.pivot.kind, axis) {
+            (Transformation::Translation, Some(axis)) => Amount::Move(axis.unit() * number),
+            (Transformation::Translation, None) if self.handle == Handle::Middle => {
+                Amount::Move(DVec3::X * number)
+            }
+            (Transformation::Translation, None) => Amount::Move(all * number),
+            (Transformation::Rotation, Some(axis)) => {
+                Amount::Turn(axis.unit(), number.to_radians())
+            }
+            (Transformation::Rotation, None) => {
+                Amount::Turn(self.line_of_sight()?, number.to_radians())
+            }
+            (Transformation::Scaling, Some(axis)) => {
+                Amount::Scale(DVec3::ONE + axis.unit() * (number - 1.0))
+            }
+            (Transformation::Scaling, None) => Amount::Scale(DVec3::ONE + all * (number - 1.0)),
+        })
+    }
+
+    /// What the place of the pointer means; `None` where the handle leads nowhere.
+    fn of_pointer(&mut self, to: Pos2) -> Option<Amount> {
+        let Gizmo { pivot, sight, .. } = &self.gizmo;
+        let middle = sight.to_view(pivot.origin);
+        let by = to - self.from;
+        let growth = libm::exp2(f64::from(by.x - by.y) / DOUBLE);
+        match (self.handle, pivot.kind) {
+            (Handle::Axis(axis), kind) => {
+                let (from, to) = (self.along(axis, self.from)?, self.along(axis, to)?);
+                Some(match kind {
+                    Transformation::Scaling => {
+                        Amount::Scale(DVec3::ONE + axis.unit() * (to / from - 1.0))
+                    }
+                    Transformation::Translation | Transformation::Rotation => {
+                        Amount::Move(axis.unit() * ((to - from) / pivot.unit(axis)))
+                    }
+                })
+            }
+            (Handle::Plane(across), Transformation::Scaling) => {
+                Some(Amount::Scale(DVec3::ONE + (DVec3::ONE - across.unit()) * (growth - 1.0)))
+            }
+            (Handle::Middle, Transformation::Scaling) => Some(Amount::Scale(DVec3::splat(growth))),
+            (Handle::Plane(across), _) => {
+                let [a, b] = others(across);
+                let normal = self.gizmo.axis(a)?.cross(self.gizmo.axis(b)?).try_normalize()?;
+                let moved = self.moved_on(middle, normal, to)?;
+                Some(Amount::Move(moved * (DVec3::ONE - across.unit())))
+            }
+            (Handle::Middle, _) => Some(Amount::Move(self.moved_on(middle, DVec3::Z, to)?)),
+            (Handle::Ring(axis), _) => Some(Amount::Turn(axis.unit(), self.turned_to(to)?)),
+            (Handle::Outer, _) => {
+                let axis = self.line_of_sight()?;
+                Some(Amount::Turn(axis, self.turned_to(to)?))
+            }
+        }
+    }
+
+    /// How far along an axis a place is, in units of the world.
+    fn along(&self, axis: Axis, at: Pos2) -> Option<f64> {
+        let Gizmo { pivot, sight, .. } = &self.gizmo;
+        let middle = sight.to_view(pivot.origin);
+        let ray = sight.ray(at);
+        ray.on_line(middle, self.gizmo.axis(axis)?, sight.towards_eye(middle))
+    }
+
+    /// How far the pointer has moved on a plane, in the frame.
+    fn moved_on(&self, middle: DVec3, normal: DVec3, to: Pos2) -> Option<DVec3> {
+        let Gizmo { pivot, sight, .. } = &self.gizmo;
+        let hit = |at| sight.ray(at).on_plane(middle, normal);
+        pivot.in_frame(sight.to_world(hit(to)? - hit(self.from)?))
+    }
+
+    /// The direction to the observer, in the frame.
+    fn line_of_sight(&self) -> Option<DVec3> {
+        let Gizmo { pivot, sight, .. } = &self.gizmo;
+        let eye = sight.towards_eye(sight.to_view(pivot.origin));
+        math::unit(pivot.in_frame(sight.to_world(eye))?)
+    }
+
+    /// How far a ring was turned, over several turns too.
+    fn turned_to(&mut self, to: Pos2) -> Option<f64> {
+        use std::f64::consts::{PI, TAU};
+        let angle = self.angle_at(to)?;
+        let by = angle - self.angle;
+        self.turned += by - TAU * ((by + PI) / TAU).floor();
+        self.angle = angle;
+        Some(self.turned * self.gizmo.pivot.hand())
+    }
+
+    /// The angle of a place about the ring's axis, in the world.
+    fn angle_at(&self, at: Pos2) -> Option<f64> {
+        let Gizmo { pivot, sight, .. } = &self.gizmo;
+        let middle = sight.to_view(pivot.origin);
+        let eye = sight.towards_eye(middle);
+        let about = match self.handle {
+            Handle::Ring(axis) => self.gizmo.axis(axis)?,
+            Handle::Outer => eye,
+            Handle::Axis(_) | Handle::Plane(_) | Handle::Middle => return None,
+        };
+        if self.handle != Handle::Outer && eye.dot(about).abs() < RING_EDGE_ON {
+            // Along the ring where it is nearest to the observer: a radius is a radian.
+            let near = (eye - about * eye.dot(about)).try_normalize()?;
+            let ahead = sight.place(middle + about.cross(near) * sight.unit_at(middle))?;
+            let way: Vec2 = (ahead - sight.place(middle)?).normalized();
+            return Some(f64::from((at - self.from).dot(way) / super::LENGTH));
+        }
+        let hit = sight.ray(at).on_plane(middle, about)? - middle;
+        let side = about.any_orthonormal_vector();
+        Some(libm::atan2(hit.dot(about.cross(side)), hit.dot(side)))
+    }
+}
+
+/// The only number of a vector that is not `rest`, and its axis.
+fn only(v: DVec3, rest: f64) -> Option<(Axis, f64)> {
+    let mut own = Axis::ALL.into_iter().filter(|axis| v[axis.index()] != rest);
+    let axis = own.next()?;
+    own.next().is_none().then_some((axis, v[axis.index()]))
+}
+
+const fn letter(axis: Axis) -> &'static str {
+    ["x", "y", "z"][axis.index()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::viewport::gizmo::Shape;
+    use crate::scene::Frame;
+    use egui::vec2;
+    use glam::DMat4;
+
+    fn scene(offset: DVec3, size: f64) -> State {
+        let (scene, view) = crate::io::default_scene();
+        let mut state = State::new(scene, view);
+        state.view.subject = crate::scene::Subject::Object;
+        let id = state.view.object.unwrap();
+        let m = DMat4::from_translation(offset) * DMat4::from_scale(DVec3::splat(size));
+        let command =
+            crate::edit::placement::object(&state.scene, &state.view, id, m, GesturePhase::First);
+        command.unwrap().apply(&mut state.scene).unwrap();
+        let turn = math::rotation(DVec3::Y, 0.4) * math::rotation(DVec3::X, -0.3);
+        let eye = offset + turn * DVec3::new(20.0, 5.0, 300.0) * size;
+        let camera = state.view.camera;
+        let command =
+            crate::edit::placement::camera(&state.scene, camera, eye, turn, GesturePhase::First);
+        command.unwrap().apply(&mut state.scene).unwrap();
+        state
+    }
+
+    fn placed(state: &State) -> DMat4 {
+        *state.scene.objects.get(state.view.object.unwrap()).unwrap().placement.now()
+    }
+
+    fn gizmo(state: &State) -> Gizmo {
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(800.0, 600.0));
+        Gizmo::new(state, rect, Size::new(800, 600)).unwrap()
+    }
+
+    fn end(gizmo: &Gizmo, handle: Handle) -> Pos2 {
+        let part = gizmo.parts.iter().find(|part| part.handle == handle).unwrap();
+        match &part.shape {
+            Shape::Line([_, to]) => *to,
+            Shape::Square(corners) => corners[0] + (corners[2] - corners[0]) * 0.5,
+            Shape::Ring { near, .. } => near[near.len() / 3],
+            Shape::Circle(middle, radius) => *middle + vec2(*radius, 0.0),
+            Shape::Disk(middle) => *middle,
+        }
+    }
+
+    /// Drags a handle, and applies what the last request asks for.
+    fn drag(state: &mut State, handle: Handle, by: Vec2, typed: &str) -> Option<Amount> {
+        let gizmo = gizmo(state);
+        let from = end(&gizmo, handle);
+        assert_eq!(gizmo.handle_at(from), Some(handle));
+        let mut grab = Grab::new(state, &gizmo, handle, from);
+        let mut requests = Vec::new();
+        // On the way there it goes elsewhere.
+        let pull = |to, typed| Pull { to, snap: false, typed };
+        grab.follow(pull(from + vec2(7.0, 31.0), ""), Gesture::Part(1), &mut requests);
+        grab.follow(pull(from + by, typed), Gesture::Part(1), &mut requests);
+        let Some(Request::Change { command, .. }) = requests.pop() else { return None };
+        command.apply(&mut state.scene).unwrap();
+        grab.asked
+    }
+
+    #[test]
+    fn what_is_dragged_along_an_axis_stays_under_the_pointer_at_every_size_and_distance() {
+        for (offset, size) in [(0.0, 1.0), (1e5, 1.0), (1e5, 1e-3), (-3e5, 1e3), (0.0, 1e-6)] {
+            for axis in Axis::ALL {
+                let mut state = scene(DVec3::splat(offset), size);
+                let before = gizmo(&state);
+                let from = end(&before, Handle::Axis(axis));
+                let way =
+                    from - before.sight.place(before.sight.to_view(before.pivot.origin)).unwrap();
+                drag(&mut state, Handle::Axis(axis), way * 0.4, "").unwrap();
+                let after = gizmo(&state);
+                let shift = |g: &Gizmo| g.sight.place(g.sight.to_view(g.pivot.origin)).unwrap();
+                let moved = shift(&after) - shift(&before);
+                // The handle's end was pulled, so the middle follows but for perspective.
+                assert!((moved - way * 0.4).length() < 8.0, "{axis:?} {offset} {size}: {moved:?}");
+                let delta = placed(&state).w_axis.truncate() - DVec3::splat(offset);
+                let off = delta - axis.unit() * delta[axis.index()];
+                assert!(off.length() <= offset.abs() * 1e-15, "{axis:?}: {delta}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_typed_number_is_exact_whatever_the_pointer_does() {
+        let typed = |kind, handle, text: &str| {
+            let mut state = scene(DVec3::ZERO, 1.0);
+            state.view.transformation = kind;
+            drag(&mut state, handle, vec2(13.0, 5.0), text)
+        };
+        let moving = Transformation::Translation;
+        let x = Handle::Axis(Axis::X);
+        assert_eq!(typed(moving, x, "12"), Some(Amount::Move(DVec3::X * 12.0)));
+        assert_eq!(typed(moving, x, "y-12\u{8}3"), Some(Amount::Move(DVec3::Y * -13.0)));
+        assert_eq!(
+            typed(moving, Handle::Plane(Axis::Z), "360/8"),
+            Some(Amount::Move(DVec3::new(45.0, 45.0, 0.0)))
+        );
+        let turning = Transformation::Rotation;
+        assert_eq!(
+            typed(turning, Handle::Ring(Axis::Y), "90"),
+            Some(Amount::Turn(DVec3::Y, 90.0_f64.to_radians()))
+        );
+        let scaling = Transformation::Scaling;
+        assert_eq!(typed(scaling, Handle::Middle, "2"), Some(Amount::Scale(DVec3::splat(2.0))));
+        assert_eq!(typed(scaling, x, "z3"), Some(Amount::Scale(DVec3::new(1.0, 1.0, 3.0))));
+    }
+
+    #[test]
+    fn a_scale_of_0_is_refused_and_a_negative_one_mirrors() {
+        let mut state = scene(DVec3::ZERO, 1.0);
+        state.view.transformation = Transformation::Scaling;
+        assert_eq!(drag(&mut state, Handle::Axis(Axis::X), vec2(3.0, 0.0), "0"), None);
+        drag(&mut state, Handle::Axis(Axis::X), vec2(3.0, 0.0), "-1").unwrap();
+        assert_eq!(placed(&state).x_axis.x, -1.0);
+    }
+
+    #[test]
+    fn in_the_global_frame_handles_that_turn_stand_in_the_worlds_origin() {
+        let at = DVec3::new(5.0, 6.0, 7.0);
+        for (frame, kind, origin, unit) in [
+            (Frame::Local, Transformation::Rotation, at, 3.0),
+            (Frame::Global, Transformation::Translation, at, 1.0),
+            (Frame::Global, Transformation::Rotation, DVec3::ZERO, 1.0),
+            (Frame::Global, Transformation::Scaling, DVec3::ZERO, 1.0),
+        ] {
+            let mut state = scene(at, 3.0);
+            (state.view.frame, state.view.transformation) = (frame, kind);
+            let pivot = gizmo::pivot(&state.scene, &state.view).unwrap();
+            assert_eq!((pivot.origin, pivot.unit(Axis::Y)), (origin, unit), "{frame:?} {kind:?}");
+        }
+    }
+
+    #[test]
+    fn amounts_snap_to_whole_steps_and_a_mirror_keeps_its_sign() {
+        let state = scene(DVec3::ZERO, 1.0);
+        let snap = |amount| gizmo::snapped(&state.scene, &state.view, amount);
+        let delta = DVec3::new(14.9, -5.1, 0.0);
+        assert_eq!(snap(Amount::Move(delta)), Amount::Move(DVec3::new(10.0, -10.0, 0.0)));
+        let Amount::Turn(_, radians) = snap(Amount::Turn(DVec3::X, 0.5)) else { panic!() };
+        assert!((radians.to_degrees() - 30.0).abs() < 1e-12);
+        let Amount::Scale(factors) = snap(Amount::Scale(DVec3::new(-1.4, 1.0, 0.0))) else {
+            panic!()
+        };
+        assert!((factors - DVec3::new(-1.44, 1.0, 0.0)).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_ring_dragged_once_around_comes_back_and_a_half_turn_is_one() {
+        let mut state = scene(DVec3::ZERO, 1.0);
+        state.view.transformation = Transformation::Rotation;
+        let gizmo = gizmo(&state);
+        let middle = gizmo.sight.place(gizmo.sight.to_view(gizmo.pivot.origin)).unwrap();
+        let from = end(&gizmo, Handle::Outer);
+        let mut grab = Grab::new(&state, &gizmo, Handle::Outer, from);
+        let mut turned = Vec::new();
+        for i in 1..=16_u8 {
+            let angle = f32::from(i) / 8.0 * std::f32::consts::PI;
+            let to = middle + vec2(angle.cos(), -angle.sin()) * 120.0;
+            let Some(Amount::Turn(_, radians)) = grab.of_pointer(to) else { panic!() };
+            turned.push(radians.to_degrees());
+        }
+        assert!((turned[7] - 180.0).abs() < 0.5, "{turned:?}");
+        assert!((turned[15] - 360.0).abs() < 0.5, "{turned:?}");
+    }
+}

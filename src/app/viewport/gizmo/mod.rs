@@ -1,0 +1,279 @@
+//! The gizmo: handles over the picture that move, rotate or scale the selected item.
+//!
+//! It has the same size on the screen at every distance, and lies over everything. Its parts are
+//! lines, squares and rings of the window; the part that is under the pointer is found among them.
+//! A press on a part that becomes no drag stays a click into the picture.
+
+mod drag;
+mod show;
+mod sight;
+
+use egui::{Pos2, Rect, Vec2};
+use glam::DVec3;
+
+use crate::app::state::State;
+use crate::base::image::Size;
+use crate::base::math::Axis;
+use crate::edit::gizmo::{Pivot, pivot};
+use crate::scene::Transformation;
+pub(crate) use drag::{Grab, Pull};
+use sight::Sight;
+
+/// From the middle to the end of an axis, in points.
+const LENGTH: f32 = 84.0;
+
+/// A press this near to a line is on it.
+const REACH: f32 = 6.0;
+
+/// The middle of the squares of planes along both axes, and half of their side, in parts of an
+/// axis.
+const PLANE: [f64; 2] = [0.32, 0.09];
+
+/// The radius of the handle in the middle, in points.
+const MIDDLE: f32 = 8.0;
+
+/// The radius of the ring about the line of sight, in parts of an axis.
+const OUTER: f32 = 1.18;
+
+/// The sides of a ring.
+const SIDES: u32 = 64;
+
+/// An axis that points at the observer more than this, as a cosine, cannot be dragged along.
+const HEAD_ON: f64 = 0.985;
+
+/// A plane that is seen more from its edge than this, as a cosine, cannot be dragged on.
+const EDGE_ON: f64 = 0.15;
+
+/// The middle of a gizmo farther outside of the picture than this is not shown, in points.
+const OUTSIDE: f32 = 2.0;
+
+/// What can be dragged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Handle {
+    /// Along an axis.
+    Axis(Axis),
+    /// In the plane across an axis.
+    Plane(Axis),
+    /// About an axis.
+    Ring(Axis),
+    /// About the line of sight.
+    Outer,
+    /// In the plane of the picture, or in all directions alike.
+    Middle,
+}
+
+/// What is seen of a handle.
+#[derive(Clone, Debug, PartialEq)]
+enum Shape {
+    /// From the middle to an end.
+    Line([Pos2; 2]),
+    /// A square in its plane.
+    Square([Pos2; 4]),
+    /// Half of a ring, nearer to the observer; and the other half.
+    Ring { near: Vec<Pos2>, far: Vec<Pos2> },
+    /// A whole circle.
+    Circle(Pos2, f32),
+    /// A small disk.
+    Disk(Pos2),
+}
+
+/// A handle on the screen.
+#[derive(Clone, Debug, PartialEq)]
+struct Part {
+    handle: Handle,
+    shape: Shape,
+}
+
+/// The handles of the selected item.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Gizmo {
+    pivot: Pivot,
+    sight: Sight,
+    /// The later ones lie over the others.
+    parts: Vec<Part>,
+}
+
+impl Gizmo {
+    /// The gizmo of the selected item, if it is shown.
+    pub(super) fn new(state: &State, rect: Rect, size: Size) -> Option<Self> {
+        if !state.gizmo || !state.shows_overlays() || state.aiming || state.explaining {
+            return None;
+        }
+        let gizmo = Self::of(state, rect, size)?;
+        (!gizmo.parts.is_empty()).then_some(gizmo)
+    }
+
+    /// The gizmo of the selected item, whether it is shown or not.
+    fn of(state: &State, rect: Rect, size: Size) -> Option<Self> {
+        let pivot = pivot(&state.scene, &state.view).ok()?;
+        let sight = Sight::new(state, rect, size);
+        let middle = sight.to_view(pivot.origin);
+        let mut gizmo = Self { pivot, sight, parts: Vec::new() };
+        let place = sight.place(middle).filter(|at| rect.expand(OUTSIDE).contains(*at));
+        if let Some(place) = place {
+            gizmo.build(middle, place);
+        }
+        Some(gizmo)
+    }
+
+    fn build(&mut self, middle: DVec3, place: Pos2) {
+        // Not so long that an end comes behind the observer.
+        let length = f64::from(LENGTH) * self.sight.unit_at(middle);
+        let length = if length.is_finite() { length.min(middle.length() * 0.5) } else { return };
+        let add = |parts: &mut Vec<Part>, handle, shape: Option<Shape>| {
+            parts.extend(shape.map(|shape| Part { handle, shape }));
+        };
+        let mut parts = Vec::new();
+        match self.pivot.kind {
+            Transformation::Rotation => {
+                add(&mut parts, Handle::Outer, Some(Shape::Circle(place, LENGTH * OUTER)));
+                for axis in Axis::ALL {
+                    add(&mut parts, Handle::Ring(axis), self.ring(middle, axis, length));
+                }
+            }
+            Transformation::Translation | Transformation::Scaling => {
+                for axis in Axis::ALL {
+                    add(&mut parts, Handle::Plane(axis), self.square(middle, axis, length));
+                }
+                for axis in Axis::ALL {
+                    add(&mut parts, Handle::Axis(axis), self.line(middle, axis, length));
+                }
+                add(&mut parts, Handle::Middle, Some(Shape::Disk(place)));
+            }
+        }
+        self.parts = parts;
+    }
+
+    /// An axis in view space.
+    fn axis(&self, axis: Axis) -> Option<DVec3> {
+        self.pivot.direction(axis).map(|v| self.sight.turned(v))
+    }
+
+    fn line(&self, middle: DVec3, axis: Axis, length: f64) -> Option<Shape> {
+        let along = self.axis(axis)?;
+        let head_on = along.dot(self.sight.towards_eye(middle)).abs() > HEAD_ON;
+        let ends = [self.sight.place(middle)?, self.sight.place(middle + along * length)?];
+        (!head_on).then_some(Shape::Line(ends))
+    }
+
+    fn square(&self, middle: DVec3, across: Axis, length: f64) -> Option<Shape> {
+        let [a, b] = others(across);
+        let (a, b) = (self.axis(a)?, self.axis(b)?);
+        let facing = a.cross(b).try_normalize()?.dot(self.sight.towards_eye(middle));
+        let [at, half] = PLANE.map(|part| part * length);
+        let corner =
+            |i: f64, j: f64| self.sight.place(middle + a * (at + i * half) + b * (at + j * half));
+        let square =
+            [corner(-1.0, -1.0)?, corner(1.0, -1.0)?, corner(1.0, 1.0)?, corner(-1.0, 1.0)?];
+        (facing.abs() > EDGE_ON).then_some(Shape::Square(square))
+    }
+
+    fn ring(&self, middle: DVec3, about: Axis, length: f64) -> Option<Shape> {
+        let axis = self.axis(about)?;
+        let eye = self.sight.towards_eye(middle);
+        // Towards the observer as far as the plane allows, so that the near half comes first.
+        let near = (eye - axis * eye.dot(axis)).try_normalize();
+        let near = near.unwrap_or_else(|| axis.any_orthonormal_vector());
+        let side = axis.cross(near);
+        let point = |i: u32| {
+            let turn = std::f64::consts::TAU * (f64::from(i) / f64::from(SIDES) - 0.25);
+            let aside = near * libm::cos(turn) + side * libm::sin(turn);
+            self.sight.place(middle + aside * length)
+        };
+        // Seen from above a ring has no far half.
+        let flat = eye.dot(axis).abs() > 0.98;
+        let half = if flat { SIDES } else { SIDES / 2 };
+        let points = |range: std::ops::RangeInclusive<u32>| range.map(point).collect();
+        let near: Option<Vec<Pos2>> = points(0..=half);
+        let far: Option<Vec<Pos2>> = points(half..=SIDES);
+        Some(Shape::Ring { near: near?, far: far? })
+    }
+
+    /// The handle at a place of the window: the nearest, and of those that lie over one another the
+    /// upper one.
+    pub(crate) fn handle_at(&self, at: Pos2) -> Option<Handle> {
+        let reached = |part: &&Part| part.shape.distance(at).is_some_and(|far| far <= REACH);
+        let over = self.parts.iter().rev().filter(reached);
+        let rank = |part: &&Part| match part.shape {
+            Shape::Disk(_) | Shape::Square(_) => 0.0,
+            _ => part.shape.distance(at).unwrap_or(REACH),
+        };
+        over.min_by(|a, b| rank(a).total_cmp(&rank(b))).map(|part| part.handle)
+    }
+}
+
+impl Shape {
+    /// How far a place is from it, at least 0.
+    fn distance(&self, at: Pos2) -> Option<f32> {
+        match self {
+            // Near the middle all axes are as near: only the disk is meant there.
+            Self::Line([from, to]) => {
+                let from = *from + (*to - *from) * 0.15;
+                Some(segment_distance(at, [from, *to]))
+            }
+            Self::Square(corners) => inside(at, corners).then_some(0.0),
+            Self::Ring { near, .. } => near
+                .windows(2)
+                .map(|ends| segment_distance(at, [ends[0], ends[1]]))
+                .min_by(f32::total_cmp),
+            Self::Circle(middle, radius) => Some((at.distance(*middle) - radius).abs()),
+            Self::Disk(middle) => (at.distance(*middle) <= MIDDLE).then_some(0.0),
+        }
+    }
+}
+
+/// The distance of a place from a line between two others.
+fn segment_distance(at: Pos2, [a, b]: [Pos2; 2]) -> f32 {
+    let (way, to) = (b - a, at - a);
+    let part =
+        if way == Vec2::ZERO { 0.0 } else { (to.dot(way) / way.length_sq()).clamp(0.0, 1.0) };
+    at.distance(a + way * part)
+}
+
+/// Whether a place is inside of a quadrilateral that is convex.
+fn inside(at: Pos2, corners: &[Pos2; 4]) -> bool {
+    let side = |i: usize| {
+        let (a, b) = (corners[i], corners[(i + 1) % 4]);
+        let (way, to) = (b - a, at - a);
+        way.x * to.y - way.y * to.x
+    };
+    let sides = [side(0), side(1), side(2), side(3)];
+    sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
+}
+
+/// The two axes that an axis is across.
+const fn others(axis: Axis) -> [Axis; 2] {
+    match axis {
+        Axis::X => [Axis::Y, Axis::Z],
+        Axis::Y => [Axis::Z, Axis::X],
+        Axis::Z => [Axis::X, Axis::Y],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+
+    use super::*;
+
+    #[test]
+    fn a_place_is_as_far_from_a_line_as_from_its_nearest_point() {
+        let ends = [pos2(0.0, 0.0), pos2(10.0, 0.0)];
+        for (at, far) in [((5.0, 3.0), 3.0), ((-4.0, 3.0), 5.0), ((14.0, -3.0), 5.0)] {
+            let got = segment_distance(pos2(at.0, at.1), ends);
+            assert!((got - far).abs() < 1e-5, "{at:?}: {got}");
+        }
+        assert!((segment_distance(pos2(3.0, 4.0), [ends[0]; 2]) - 5.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_quadrilateral_holds_what_is_inside_whichever_way_it_runs() {
+        let mut corners = [pos2(0.0, 0.0), pos2(4.0, 1.0), pos2(5.0, 4.0), pos2(1.0, 3.0)];
+        for _ in 0..2 {
+            assert!(inside(pos2(2.5, 2.0), &corners));
+            assert!(!inside(pos2(4.8, 1.5), &corners));
+            assert!(!inside(pos2(0.2, 2.0), &corners));
+            corners.reverse();
+        }
+    }
+}

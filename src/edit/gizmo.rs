@@ -1,0 +1,168 @@
+//! Handles for the mouse: where the selected item is moved, rotated or scaled, along which axes,
+//! and what an amount means there.
+//!
+//! An amount counts from the scene in which a drag began, so that a drag adds up no rounding.
+
+use glam::{DMat3, DVec3};
+
+use super::{GesturePhase, Refusal, aiming, set_transform, steps, transform};
+use crate::base::math::{self, Axis};
+use crate::scene::{
+    Command, Frame, LightKind, Observer, Scene, SpotOwner, Subject, Transformation, View,
+};
+
+/// Where the handles of the selected item stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pivot {
+    /// What they do.
+    pub kind: Transformation,
+    /// Their place in the world.
+    pub origin: DVec3,
+    /// The frame's axes in the world, as long as its units.
+    pub axes: DMat3,
+}
+
+/// How far an item is transformed, in the frame of a [`Pivot`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amount {
+    /// Units along each axis.
+    Move(DVec3),
+    /// An angle in radians about an axis, by the right-hand rule.
+    Turn(DVec3, f64),
+    /// A factor for each axis.
+    Scale(DVec3),
+}
+
+impl Pivot {
+    /// The direction of an axis in the world; `None` if it has no length.
+    #[must_use]
+    pub fn direction(&self, axis: Axis) -> Option<DVec3> {
+        math::unit(self.axes.col(axis.index()))
+    }
+
+    /// The length of a unit along an axis, in the world.
+    #[must_use]
+    pub fn unit(&self, axis: Axis) -> f64 {
+        self.axes.col(axis.index()).length()
+    }
+
+    /// A vector of the world in the frame; `None` if the frame is flat.
+    #[must_use]
+    pub fn in_frame(&self, v: DVec3) -> Option<DVec3> {
+        let inside = self.axes.inverse() * v;
+        (math::has_full_rank(self.axes) && inside.is_finite()).then_some(inside)
+    }
+
+    /// -1 if the frame is mirrored, so that its turns run the other way in the world; else 1.
+    #[must_use]
+    pub fn hand(&self) -> f64 {
+        if self.axes.determinant() < 0.0 { -1.0 } else { 1.0 }
+    }
+}
+
+/// Where the selected item of the subject is transformed.
+///
+/// In the global frame an object is rotated and scaled about the world's origin, and there the
+/// handles stand.
+///
+/// # Errors
+/// If it cannot be transformed, or is the camera that the picture is seen through.
+pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
+    let kind = view.transformation;
+    match view.subject {
+        Subject::Object => {
+            let (_, object) = set_transform::selected_object(scene, view)?;
+            let m = *object.placement.now();
+            let origin = m.w_axis.truncate();
+            Ok(match (view.frame, kind) {
+                (Frame::Local, _) => Pivot { kind, origin, axes: DMat3::from_mat4(m) },
+                (Frame::Global, Transformation::Translation) => {
+                    Pivot { kind, origin, axes: DMat3::IDENTITY }
+                }
+                (Frame::Global, Transformation::Rotation | Transformation::Scaling) => {
+                    Pivot { kind, origin: DVec3::ZERO, axes: DMat3::IDENTITY }
+                }
+            })
+        }
+        Subject::Camera if kind == Transformation::Scaling => Err(Refusal::CameraScaled),
+        Subject::Camera if view.observer == Observer::Camera => Err(Refusal::SeenThrough),
+        Subject::Camera => {
+            let pose = transform::effective_pose(scene, view);
+            let centre = set_transform::analysis_centre(scene, view);
+            let origin = match kind {
+                Transformation::Rotation => centre.unwrap_or(pose.eye),
+                Transformation::Translation | Transformation::Scaling => pose.eye,
+            };
+            Ok(Pivot { kind, origin, axes: pose.axes })
+        }
+        Subject::Light => {
+            let (id, light) = set_transform::selected_light(scene, view)?;
+            set_transform::place_of(light)?;
+            let kind = match (&light.kind, kind) {
+                (LightKind::Sun { .. }, _) => Transformation::Rotation,
+                (LightKind::Bulb { .. }, _) => Transformation::Translation,
+                (LightKind::Spot { owner: SpotOwner::Fixed(_), .. }, kind)
+                    if kind != Transformation::Scaling =>
+                {
+                    kind
+                }
+                (LightKind::Spot { .. } | LightKind::Ambient, _) => {
+                    return Err(Refusal::LightScaled);
+                }
+            };
+            let origin = aiming::stands(scene, view, id).ok_or(Refusal::Ambient)?.position;
+            Ok(Pivot { kind, origin, axes: DMat3::IDENTITY })
+        }
+    }
+}
+
+/// Transforms the selected item of the subject by an amount.
+///
+/// # Errors
+/// If it cannot be transformed in this way.
+pub fn transform(
+    scene: &Scene,
+    view: &View,
+    amount: Amount,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    match amount {
+        Amount::Move(delta) => transform::translate(scene, view, delta, phase),
+        Amount::Turn(axis, radians) => transform::rotate(scene, view, axis, radians, phase),
+        Amount::Scale(factors) => transform::stretch(scene, view, factors, phase),
+    }
+}
+
+/// The amount rounded to whole steps of the keys x, y and z.
+#[must_use]
+pub fn snapped(scene: &Scene, view: &View, amount: Amount) -> Amount {
+    match amount {
+        Amount::Move(delta) => {
+            let along = Axis::ALL.map(|axis| {
+                let step = match view.subject {
+                    Subject::Object => transform::distance(scene, view, axis),
+                    Subject::Camera | Subject::Light => steps::length(scene, view),
+                };
+                to_multiple(delta[axis.index()], step)
+            });
+            Amount::Move(DVec3::from_array(along))
+        }
+        Amount::Turn(axis, radians) => {
+            let degrees = to_multiple(radians.to_degrees(), view.steps.rotation);
+            Amount::Turn(axis, degrees.to_radians())
+        }
+        Amount::Scale(factors) => Amount::Scale(factors.map(|factor| {
+            let step = libm::log(view.steps.scaling);
+            let count = libm::log(libm::fabs(factor)) / step;
+            if factor == 0.0 || !count.is_finite() {
+                return factor;
+            }
+            libm::copysign(libm::pow(view.steps.scaling, count.round()), factor)
+        })),
+    }
+}
+
+fn to_multiple(x: f64, step: f64) -> f64 {
+    let rounded = (x / step).round() * step;
+    if step > 0.0 && rounded.is_finite() { rounded } else { x }
+}

@@ -1,0 +1,293 @@
+//! Several selected items: what is asked for the selected one is done with all of them.
+//!
+//! Each is asked in turn, as if it were the selected one, in the scene that those before it have
+//! left. What one of them refuses is done with the others; only if all refuse, nothing is.
+
+use std::collections::BTreeSet;
+
+use super::{Refusal, items, placement, selection};
+use crate::scene::{
+    Camera, Command, Item, ItemId, Light, LightKind, Object, Scene, SpotOwner, Subject, Tracked,
+    View,
+};
+
+/// Items that are selected beside the one that the keys act on.
+///
+/// They belong to that one: once another is selected by itself, they are not selected any more.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Others {
+    with: Option<ItemId>,
+    items: BTreeSet<ItemId>,
+}
+
+impl Others {
+    /// These beside the selected one.
+    #[must_use]
+    pub fn new(with: ItemId, items: impl IntoIterator<Item = ItemId>) -> Self {
+        let items = items.into_iter().filter(|item| *item != with).collect();
+        Self { with: Some(with), items }
+    }
+
+    /// Those that are selected now beside the selected one.
+    pub fn of<'a>(
+        &'a self,
+        scene: &'a Scene,
+        view: &View,
+    ) -> impl Iterator<Item = ItemId> + use<'a> {
+        let valid = self.with.is_some() && self.with == selection::selected(view);
+        self.items.iter().copied().filter(move |item| valid && scene.contains(*item))
+    }
+}
+
+/// The command that `act` gives for the selected item and for each of the others, as one.
+///
+/// # Errors
+/// The reason of the selected item, if all of them refuse.
+pub fn each(
+    scene: &Scene,
+    view: &View,
+    others: &[ItemId],
+    act: impl Fn(&Scene, &View) -> Result<Command, Refusal>,
+) -> Result<Command, Refusal> {
+    if others.is_empty() {
+        return act(scene, view);
+    }
+    let mut after = scene.clone();
+    let (mut commands, mut refused) = (Vec::new(), None);
+    for id in selection::selected(view).into_iter().chain(others.iter().copied()) {
+        // It may have gone with the one before it.
+        if !after.contains(id) {
+            continue;
+        }
+        match act(&after, &as_if_selected(view, id)) {
+            Ok(command) => {
+                command.clone().apply(&mut after)?;
+                commands.push(command);
+            }
+            Err(why) => refused = refused.or(Some(why)),
+        }
+    }
+    match (commands.is_empty(), refused) {
+        (true, refused) => Err(refused.unwrap_or(Refusal::Gone)),
+        (false, _) => Ok(Command::Batch(commands)),
+    }
+}
+
+/// The view in which this item is the one that the keys act on.
+fn as_if_selected(view: &View, id: ItemId) -> View {
+    let mut view = view.clone();
+    view.subject = selection::subject_of(id);
+    match id {
+        ItemId::Object(id) => view.object = Some(id),
+        ItemId::Camera(id) => view.camera = id,
+        ItemId::Light(id) => view.light = Some(id),
+    }
+    view
+}
+
+/// Shows all of these items, or hides all, as is done with the selected one.
+///
+/// # Errors
+/// If it is gone.
+pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
+    let shown = |scene: &Scene, id| match id {
+        ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
+        ItemId::Camera(id) => scene.cameras.get(id).is_some_and(|camera| camera.visible),
+        ItemId::Light(id) => scene.lights.get(id).is_some_and(|light| light.on),
+    };
+    let first = selection::selected(view).ok_or(Refusal::Gone)?;
+    let before = shown(scene, first);
+    let others: Vec<ItemId> =
+        others.iter().copied().filter(|id| shown(scene, *id) == before).collect();
+    each(scene, view, &others, |scene, view| {
+        items::toggle_shown(scene, selection::selected(view).ok_or(Refusal::Gone)?)
+    })
+}
+
+/// The command that makes the same change in all items of a kind: what it changes of the selected
+/// one, it changes of the others to the same value.
+#[must_use]
+pub fn spread(scene: &Scene, command: Command, others: &[ItemId]) -> Command {
+    let Some(changed) = replaced(&command) else { return command };
+    let mut commands = Vec::new();
+    for id in others {
+        commands.extend(alike(scene, changed, *id).map(Command::Replace));
+    }
+    if commands.is_empty() {
+        return command;
+    }
+    commands.insert(0, command);
+    Command::Batch(commands)
+}
+
+/// The item that a command replaces first.
+fn replaced(command: &Command) -> Option<&Item> {
+    match command {
+        Command::Replace(item) => Some(item),
+        Command::Batch(commands) => commands.first().and_then(replaced),
+        Command::Insert { .. }
+        | Command::Remove(_)
+        | Command::Reorder { .. }
+        | Command::Background(_)
+        | Command::NextId(_) => None,
+    }
+}
+
+/// Another item with what `changed` changes of its own.
+fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Item> {
+    match (changed, other) {
+        (Item::Object(id, to), ItemId::Object(other)) if *id != other => {
+            let mut object = scene.objects.get(other)?.clone();
+            object_alike(scene.objects.get(*id)?, to, &mut object)?;
+            Some(Item::Object(other, Box::new(object)))
+        }
+        (Item::Camera(id, to), ItemId::Camera(other)) if *id != other => {
+            let mut camera = scene.cameras.get(other)?.clone();
+            camera_alike(scene.cameras.get(*id)?, to, &mut camera);
+            Some(Item::Camera(other, Box::new(camera)))
+        }
+        (Item::Light(id, to), ItemId::Light(other)) if *id != other => {
+            let mut light = scene.lights.get(other)?.clone();
+            light_alike(scene.lights.get(*id)?, to, &mut light);
+            Some(Item::Light(other, Box::new(light)))
+        }
+        _ => None,
+    }
+}
+
+/// Sets a field where it was changed.
+fn set<T: PartialEq + Clone>(before: &T, after: &T, own: &mut T) {
+    if before != after {
+        own.clone_from(after);
+    }
+}
+
+/// What of a placed thing was changed, number by number.
+fn vector(before: glam::DVec3, after: glam::DVec3, own: glam::DVec3) -> glam::DVec3 {
+    glam::DVec3::select(before.cmpeq(after), own, after)
+}
+
+fn object_alike(before: &Object, after: &Object, own: &mut Object) -> Option<()> {
+    set(&before.visible, &after.visible, &mut own.visible);
+    set(&before.spin, &after.spin, &mut own.spin);
+    set(&before.material, &after.material, &mut own.material);
+    set(&before.surface, &after.surface, &mut own.surface);
+    set(&before.texture, &after.texture, &mut own.texture);
+    set(&before.tint, &after.tint, &mut own.tint);
+    set(&before.edge_color, &after.edge_color, &mut own.edge_color);
+    set(&before.sides, &after.sides, &mut own.sides);
+    set(&before.file_normals, &after.file_normals, &mut own.file_normals);
+    if before.model != after.model && before.model.shares_file_with(&after.model) {
+        let crease = after.model.options.crease;
+        if items::why_no_crease(&own.model, own.file_normals).is_none() {
+            own.model = crate::base::Shared::new(own.model.with_crease(crease));
+        }
+    }
+    let (old, new) = (before.placement.now(), after.placement.now());
+    if old != new {
+        let m = *own.placement.now();
+        let to = placement::alike(old, new, &m)?;
+        own.placement = follow(&before.placement, &after.placement, &own.placement, to);
+    }
+    Some(())
+}
+
+/// Pushes what an item was if that was done with the selected one.
+fn follow<T: Clone>(
+    before: &Tracked<T>,
+    after: &Tracked<T>,
+    own: &Tracked<T>,
+    to: T,
+) -> Tracked<T> {
+    if after.depth() > before.depth() { own.moved(to) } else { own.replaced(to) }
+}
+
+fn camera_alike(before: &Camera, after: &Camera, own: &mut Camera) {
+    let lens = &after.lens;
+    set(&before.visible, &after.visible, &mut own.visible);
+    set(&before.material, &after.material, &mut own.material);
+    set(&before.lens.half_angle, &lens.half_angle, &mut own.lens.half_angle);
+    set(&before.lens.near, &lens.near, &mut own.lens.near);
+    set(&before.lens.far, &lens.far, &mut own.lens.far);
+    set(&before.lens.half_size, &lens.half_size, &mut own.lens.half_size);
+    set(&before.lens.parallel_near, &lens.parallel_near, &mut own.lens.parallel_near);
+    set(&before.lens.parallel_far, &lens.parallel_far, &mut own.lens.parallel_far);
+    let (old, new) = (before.pose.now(), after.pose.now());
+    if old != new {
+        let mut to = *own.pose.now();
+        to.eye = vector(old.eye, new.eye, to.eye);
+        set(&old.axes, &new.axes, &mut to.axes);
+        own.pose = follow(&before.pose, &after.pose, &own.pose, to);
+    }
+}
+
+fn light_alike(before: &Light, after: &Light, own: &mut Light) {
+    let attenuation = &after.attenuation;
+    set(&before.on, &after.on, &mut own.on);
+    for channel in 0..3 {
+        set(&before.color.0[channel], &after.color.0[channel], &mut own.color.0[channel]);
+    }
+    set(&before.attenuation.constant, &attenuation.constant, &mut own.attenuation.constant);
+    set(&before.attenuation.linear, &attenuation.linear, &mut own.attenuation.linear);
+    set(&before.attenuation.quadratic, &attenuation.quadratic, &mut own.attenuation.quadratic);
+    match (&before.kind, &after.kind, &mut own.kind) {
+        (
+            LightKind::Sun { direction: old },
+            LightKind::Sun { direction: new },
+            LightKind::Sun { direction },
+        ) if old.now() != new.now() => {
+            *direction = follow(old, new, direction, *new.now());
+        }
+        (
+            LightKind::Bulb { position: old, orbit: old_orbit },
+            LightKind::Bulb { position: new, orbit: new_orbit },
+            LightKind::Bulb { position, orbit },
+        ) => {
+            set(old_orbit, new_orbit, orbit);
+            if old.now() != new.now() {
+                let to = vector(*old.now(), *new.now(), *position.now());
+                *position = follow(old, new, position, to);
+            }
+        }
+        (
+            LightKind::Spot { owner: old, half_aperture: old_aperture, exponent: old_exponent },
+            LightKind::Spot { owner: new, half_aperture: new_aperture, exponent: new_exponent },
+            LightKind::Spot { owner, half_aperture, exponent },
+        ) => {
+            set(old_aperture, new_aperture, half_aperture);
+            set(old_exponent, new_exponent, exponent);
+            match (old, new, &mut *owner) {
+                (SpotOwner::Fixed(old), SpotOwner::Fixed(new), SpotOwner::Fixed(aim))
+                    if old.now() != new.now() =>
+                {
+                    let mut to = *aim.now();
+                    let (was, is) = (old.now(), new.now());
+                    to.position = vector(was.position, is.position, to.position);
+                    set(&was.direction, &is.direction, &mut to.direction);
+                    *aim = follow(old, new, aim, to);
+                }
+                (SpotOwner::Fixed(_), SpotOwner::Fixed(_), _) => {}
+                (old, new, owner) => set(old, new, owner),
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The items of the subject's list; where all of them are selected already, of all lists.
+#[must_use]
+pub fn all(scene: &Scene, view: &View, others: &[ItemId]) -> Vec<ItemId> {
+    let objects = || scene.objects.ids().map(ItemId::Object);
+    let cameras = || scene.cameras.ids().map(ItemId::Camera);
+    let lights = || scene.lights.ids().map(ItemId::Light);
+    let own: Vec<ItemId> = match view.subject {
+        Subject::Object => objects().collect(),
+        Subject::Camera => cameras().collect(),
+        Subject::Light => lights().collect(),
+    };
+    let is_selected = |id: &ItemId| others.contains(id) || selection::selected(view) == Some(*id);
+    match own.iter().all(is_selected) {
+        true => objects().chain(cameras()).chain(lights()).collect(),
+        false => own,
+    }
+}

@@ -1,0 +1,501 @@
+//! What one pixel shows, and the light that its colour is made of.
+//!
+//! The pixel is shaded again by the code that shaded the picture, one light at a time, in the
+//! picture's own arithmetic. So the terms are those of the picture bit for bit; what their sum
+//! loses by rounding is a term of its own, and with it they add up to the colour exactly.
+
+use glam::{DMat3, DVec3};
+
+use super::context::ShadingContext;
+use super::groups::{Group, group_of};
+use super::interpolate::{Mixed, mix, surface_samples};
+use super::interpolated::ShadingNumber;
+use super::light::run;
+use super::quantize::{SurfaceColor, reflected};
+use super::surface::Shader;
+use crate::accuracy::LightAt;
+use crate::render::frame::draw::{Back, Form, Pipeline, Shaded, Stage};
+use crate::render::frame::{Eye, FramePlan};
+use crate::render::lights::{Batch, Rows, ViewLight, store};
+use crate::render::raster::tile::Visibility;
+use crate::render::raster::visibility_buffer::{Visible, seen};
+use crate::render::screen::coverage::PixelBox;
+use crate::render::simd::{Kernel, Lanes, Vec3};
+use crate::scene::{ItemId, LightId};
+
+/// One pixel of a picture, and what its colour is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PixelColor {
+    /// Column and row, from the upper left.
+    pub at: [usize; 2],
+    /// The surface that is seen there; `None` if it is the background or a line.
+    pub surface: Option<SurfacePoint>,
+    /// What the colour is made of, as factors from 0 to 1: with [`Self::rounding`] their sum is
+    /// [`Self::color`].
+    pub terms: Vec<Term>,
+    /// What the sum loses in the arithmetic of the picture.
+    pub rounding: [f64; 3],
+    /// The colour before it is clamped to 0 to 1 and rounded to a byte.
+    pub color: [f64; 3],
+    /// Whether the sum is linear light, which is encoded in sRGB before it is rounded.
+    pub linear: bool,
+    /// The bytes of the picture.
+    pub bytes: [u8; 3],
+}
+
+/// A point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// The object, the camera whose mark it is, or the bulb's light.
+    pub item: ItemId,
+    /// The polygon of its mesh.
+    pub polygon: u32,
+    /// The triangle of its mesh, in the order in which it is drawn.
+    pub triangle: u32,
+    /// The barycentric coordinates of the point in the triangle, in space.
+    pub weights: DVec3,
+    /// The distance along the observer's axis, in units of the world.
+    pub distance: f64,
+    /// The point in the world.
+    pub position: DVec3,
+    /// N, of length 1.
+    pub normal: DVec3,
+    /// V, of length 1.
+    pub to_eye: DVec3,
+    /// Whether its back is seen.
+    pub back: bool,
+    /// The colour t of the surface, which ambient and diffuse light are multiplied by: texel, tint
+    /// and vertex colour.
+    pub own: [f64; 3],
+    /// Where light was evaluated; `None` if the surface is not lit.
+    pub light_at: Option<LightAt>,
+}
+
+/// A part of a colour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// Which part it is.
+    pub part: Part,
+    /// The light that it comes from, if it comes from one.
+    pub light: Option<LightId>,
+    /// Red, green and blue, as factors.
+    pub value: [f64; 3],
+    /// How the light reaches the point; with a light's first term.
+    pub ray: Option<LightRay>,
+}
+
+/// The parts that a colour can have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The colour where nothing is seen.
+    Background,
+    /// The colour of an edge or of a drawn normal.
+    Line,
+    /// The colour of what is not lit.
+    Unlit,
+    /// The red of a back face.
+    BackFace,
+    /// I Ka, times the colour of the surface.
+    Ambient,
+    /// I Kd (N.L), times the colour of the surface.
+    Diffuse,
+    /// I Ks (R.V)^Ns.
+    Specular,
+    /// What the surface adds to its colour whatever the lights: emission, and ambient light that
+    /// has a map of its own.
+    Emission,
+    /// Light of the corners, interpolated: of all lights together.
+    Corners,
+}
+
+impl Part {
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Background => "background",
+            Self::Line => "line",
+            Self::Unlit => "surface, not lit",
+            Self::BackFace => "back face",
+            Self::Ambient => "ambient",
+            Self::Diffuse => "diffuse",
+            Self::Specular => "specular",
+            Self::Emission => "emission",
+            Self::Corners => "light of the corners",
+        }
+    }
+}
+
+/// How a light reaches a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightRay {
+    /// L, of length 1, in the world.
+    pub to_light: DVec3,
+    /// R = 2 (N.L) N - L, in the world.
+    pub reflected: DVec3,
+    /// N.L
+    pub n_l: f64,
+    /// R.V, or N.H if highlights are Blinn's.
+    pub highlight: f64,
+    /// Whether it is N.H.
+    pub half_vector: bool,
+    /// The distance to the light in units of the world; `None` for a sun.
+    pub distance: Option<f64>,
+    /// The factor by which distance weakens it.
+    pub attenuation: f64,
+    /// The factor of a spot's cone.
+    pub cone: f64,
+}
+
+/// Explains a pixel of the picture whose bytes there are `bytes`.
+pub(crate) fn explain<T: ShadingNumber>(
+    context: &ShadingContext<'_, T>,
+    visibility: &mut Visibility,
+    bounds: PixelBox,
+    [x, y]: [i32; 2],
+) -> PixelColor {
+    let at = [x, y].map(|i| usize::try_from(i).unwrap_or(0));
+    let plain = |part, [r, g, b, _]: [u8; 4]| {
+        let value = [r, g, b].map(|byte| f64::from(byte) / 255.0);
+        let terms = vec![Term { part, light: None, value, ray: None }];
+        PixelColor {
+            at,
+            surface: None,
+            terms,
+            rounding: [0.0; 3],
+            color: value,
+            linear: false,
+            bytes: [r, g, b],
+        }
+    };
+    let ShadingContext { level, plan, frame, .. } = *context;
+    match seen(visibility.word(level, x, y)) {
+        Visible::Background => plain(Part::Background, plan.background.opaque()),
+        Visible::Line(line) => plain(Part::Line, frame.line_color(plan, line)),
+        Visible::Triangle(number) => {
+            let mut shader = Shader::<T>::default();
+            shader.tile.begin(plan, bounds, || visibility.depths(level));
+            let place = usize::try_from((y & 7) * 8 + (x & 7)).unwrap_or(0);
+            shader.fragments.begin_shared();
+            shader.fragments.add(number, [x & !7, y & !7], place, 1);
+            shader.fragments.shared = false;
+            Point { context, group: group_of(context, number), shader: &mut shader, number, at }
+                .explained()
+        }
+    }
+}
+
+/// A pixel that shows a triangle.
+struct Point<'a, 'b, T> {
+    context: &'a ShadingContext<'b, T>,
+    group: Group<'b>,
+    shader: &'a mut Shader<T>,
+    number: u32,
+    at: [usize; 2],
+}
+
+impl<T: ShadingNumber> Point<'_, '_, T> {
+    fn explained(mut self) -> PixelColor {
+        let plan = self.context.plan;
+        let [r, g, b, _] = self.shader.first_color(self.context, &self.group);
+        let bytes = [r, g, b];
+        // What first_color left: the light of the pixel, and its texel.
+        let of_all = [first(&self.shader.batch.diffuse), first(&self.shader.batch.specular)];
+        let texel = first(&self.shader.texels);
+        let glow = first(&self.shader.maps.glow);
+        let drawn = self.shader.batch.clone();
+        let mut surface = self.place();
+        let red = surface.back && self.group.draw.back == Back::Red;
+        let shaded = match &plan.pipelines[self.group.pipeline as usize] {
+            Pipeline::Shaded(shaded) if !red => shaded,
+            Pipeline::Shaded(_) | Pipeline::Flat(_) => {
+                let part = if red { Part::BackFace } else { Part::Unlit };
+                let value = bytes.map(|byte| f64::from(byte) / 255.0);
+                let terms = vec![Term { part, light: None, value, ray: None }];
+                let (surface, at) = (Some(surface), self.at);
+                let (rounding, linear) = ([0.0; 3], false);
+                return PixelColor { at, surface, terms, rounding, color: value, linear, bytes };
+            }
+        };
+        let extras = &shaded.extras;
+        let textured = shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels();
+        let tint = shaded.tint.map(|x| T::from_f64(x).into());
+        surface.own = if textured { texel } else { tint };
+        surface.light_at = shaded.light.is_some().then_some(plan.light_at);
+        let (mut terms, mut color) = match (&shaded.light, plan.light_at) {
+            (None, _) => {
+                let term = Term { part: Part::Unlit, light: None, value: surface.own, ray: None };
+                (vec![term], surface.own)
+            }
+            (Some(_), LightAt::Vertex) => self.of_corners(&mut surface, textured, of_all),
+            (Some(stages), LightAt::Pixel | LightAt::Sample | LightAt::Face) => {
+                self.of_lights(&mut surface, (shaded, stages), &drawn)
+            }
+        };
+        if extras.glows().next().is_some() {
+            terms.push(Term { part: Part::Emission, light: None, value: glow, ray: None });
+            color = plus(color, glow);
+        }
+        let sum = terms.iter().fold([0.0; 3], |sum, term| plus(sum, term.value));
+        let rounding = [0, 1, 2].map(|i| color[i] - sum[i]);
+        let linear = plan.variants.are_linear();
+        PixelColor { at: self.at, surface: Some(surface), terms, rounding, color, linear, bytes }
+    }
+
+    /// Where the point is. Afterwards the batch holds its position and its normal.
+    fn place(&mut self) -> SurfacePoint {
+        let Self { context, group, shader, number, .. } = self;
+        let ShadingContext { level, plan, .. } = **context;
+        shader.attributes.forget();
+        shader.take(context, group, true);
+        let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
+        barycentrics.find(level, fragments, attributes, (plan, group.draw));
+        attributes.carry_normals(group.draw);
+        attributes.spread(level);
+        batch.len = 1;
+        surface_samples(level, (plan, group.draw), fragments, attributes, barycentrics, batch);
+        let world = World::new(plan);
+        let w: f64 = barycentrics.w[0].into();
+        let position = vec3(&batch.position);
+        let distance = match plan.eye {
+            Eye::Point => w,
+            Eye::Parallel => -position.z,
+        };
+        let triangle = *number - group.base;
+        SurfacePoint {
+            item: group.draw.item,
+            polygon: group.draw.model.mesh.polygon_of(triangle),
+            triangle,
+            weights: barycentrics.weights(0),
+            distance: distance / world.unit,
+            position: world.point(position),
+            normal: world.direction(vec3(&batch.normal)),
+            to_eye: world.direction(vec3(&batch.to_eye)),
+            back: attributes.back & 1 == 1,
+            own: [1.0; 3],
+            light_at: None,
+        }
+    }
+
+    /// The terms of every light that is evaluated, and their sum.
+    fn of_lights(
+        &mut self,
+        surface: &mut SurfacePoint,
+        (shaded, stages): (&Shaded, &[Stage]),
+        drawn: &Batch<T>,
+    ) -> (Vec<Term>, [f64; 3]) {
+        let Self { context, group, shader, .. } = self;
+        let ShadingContext { level, plan, lit, terms: of, .. } = **context;
+        let kept = shader.tile.light(plan, group.pipeline, shaded).kept.map(<[u32]>::to_vec);
+        let by_face = plan.light_at == LightAt::Face;
+        if by_face {
+            let Shader { attributes, batch, .. } = &mut **shader;
+            batch.len = attributes.count;
+            lit.place_faces(level, (group.draw_index, group.draw), attributes, batch);
+            let world = World::new(plan);
+            surface.normal = world.direction(vec3(&batch.normal));
+            surface.to_eye = world.direction(vec3(&batch.to_eye));
+        }
+        let lit_places = shader.tile.light(plan, group.pipeline, shaded).needs_positions;
+        if !by_face && lit_places {
+            // With normals that bumps have bent, and exponents from a map.
+            shader.batch.clone_from(drawn);
+            surface.normal = World::new(plan).direction(vec3(&shader.batch.normal));
+        }
+        let lights = of.of(group.pipeline);
+        let mut terms = Vec::new();
+        let evaluated = |i: &usize| {
+            by_face || kept.as_ref().is_none_or(|kept| kept.iter().any(|at| *at as usize == *i))
+        };
+        for i in (0..stages.len()).filter(evaluated) {
+            let batch = &mut shader.batch;
+            batch.darken();
+            run(&stages[i..=i], &lights[i..=i], level, batch, None);
+            let parts = [first(&batch.diffuse), first(&batch.specular)];
+            terms.extend(light_terms(plan, &stages[i], batch, parts, surface.own));
+        }
+        // All together, in the order of the picture.
+        shader.batch.darken();
+        for i in (0..stages.len()).filter(evaluated) {
+            run(&stages[i..=i], &lights[i..=i], level, &mut shader.batch, None);
+        }
+        shader.batch.len = 1;
+        // A map of Ks multiplies all highlights together.
+        let (own, mapped) = (first(&shader.batch.specular), first(&drawn.specular));
+        for term in terms.iter_mut().filter(|term| term.part == Part::Specular) {
+            for i in (0..3).filter(|i| own[*i] != mapped[*i] && own[*i] != 0.0 && !by_face) {
+                term.value[i] *= mapped[i] / own[i];
+            }
+        }
+        if !by_face {
+            for (row, value) in shader.batch.specular.iter_mut().zip(mapped) {
+                row[0] = T::from_f64(value);
+            }
+        }
+        let color = reflect(context, &shader.batch, surface.own);
+        (terms, color)
+    }
+
+    /// The light of vertices, which was interpolated when its lights were added up already.
+    fn of_corners(
+        &mut self,
+        surface: &mut SurfacePoint,
+        textured: bool,
+        [diffuse, specular]: [[f64; 3]; 2],
+    ) -> (Vec<Term>, [f64; 3]) {
+        let Self { context, group, shader, .. } = self;
+        let term = |value| Term { part: Part::Corners, light: None, value, ray: None };
+        if textured {
+            let mut sums = Batch::<T>::default();
+            sums.len = 1;
+            for i in 0..3 {
+                sums.diffuse[i][0] = T::from_f64(diffuse[i]);
+                sums.specular[i][0] = T::from_f64(specular[i]);
+            }
+            let lit = [0, 1, 2].map(|i| surface.own[i] * diffuse[i]);
+            let shine = Term { part: Part::Specular, ..term(specular) };
+            return (vec![term(lit), shine], reflect(context, &sums, surface.own));
+        }
+        let ShadingContext { level, plan, .. } = **context;
+        let Pipeline::Shaded(shaded) = &plan.pipelines[group.pipeline as usize] else {
+            return (Vec::new(), [0.0; 3]);
+        };
+        let tables = context.lit.tables(group.draw_index, group.pipeline);
+        shader.carry_diffuse(context, group, shaded, tables);
+        shader.attributes.spread(level);
+        let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
+        mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));
+        let color = first(&batch.diffuse);
+        (vec![term(color)], color)
+    }
+}
+
+/// The terms of one light: ambient, or diffuse and specular.
+fn light_terms<T: ShadingNumber>(
+    plan: &FramePlan,
+    stage: &Stage,
+    batch: &Batch<T>,
+    [diffuse, specular]: [[f64; 3]; 2],
+    own: [f64; 3],
+) -> Vec<Term> {
+    let id = plan.light_ids[stage.light as usize];
+    let light = &plan.lights[stage.light as usize];
+    let value = [0, 1, 2].map(|i| own[i] * diffuse[i]);
+    if !stage.effect.reads_positions {
+        return vec![Term { part: Part::Ambient, light: Some(id), value, ray: None }];
+    }
+    let ray = Some(ray(plan, stage, light, batch));
+    vec![
+        Term { part: Part::Diffuse, light: Some(id), value, ray },
+        Term { part: Part::Specular, light: Some(id), value: specular, ray: None },
+    ]
+}
+
+/// How a light reaches the first position of a batch.
+fn ray<T: ShadingNumber>(
+    plan: &FramePlan,
+    stage: &Stage,
+    light: &ViewLight,
+    batch: &Batch<T>,
+) -> LightRay {
+    let world = World::new(plan);
+    let (position, normal) = (vec3(&batch.position), vec3(&batch.normal));
+    let to_eye = vec3(&batch.to_eye);
+    let travels = DVec3::from_array(light.direction);
+    let is_sun = stage.effect.name == "sun";
+    let way = DVec3::from_array(light.position) - position;
+    let (to_light, distance) = if is_sun {
+        (-travels, None)
+    } else {
+        (way.normalize_or_zero(), Some(way.length() / world.unit))
+    };
+    let n_l = normal.dot(to_light);
+    let reflected = normal * (2.0 * n_l) - to_light;
+    let half_vector = stage.highlight == Form::HalfVector;
+    let highlight = match half_vector {
+        true => normal.dot((to_light + to_eye).normalize_or_zero()),
+        false => reflected.dot(to_eye),
+    };
+    let [a0, a1, a2] = light.attenuation;
+    let d = way.length();
+    let cosine = travels.dot(-to_light).min(1.0);
+    let inside = cosine > light.cos_half_aperture;
+    LightRay {
+        to_light: world.direction(to_light),
+        reflected: world.direction(reflected),
+        n_l,
+        highlight,
+        half_vector,
+        distance,
+        attenuation: if is_sun { 1.0 } else { 1.0 / (a0 + (a1 + a2 * d) * d) },
+        cone: match stage.effect.name {
+            "spot" if inside => libm::pow(cosine, light.exponent),
+            "spot" => 0.0,
+            _ => 1.0,
+        },
+    }
+}
+
+/// From view space to the world.
+struct World {
+    world_from_view: glam::DMat4,
+    turn: DMat3,
+    /// The length of a unit of the world in view space.
+    unit: f64,
+}
+
+impl World {
+    fn new(plan: &FramePlan) -> Self {
+        let unit = plan.view_from_world.x_axis.truncate().length();
+        let world_from_view = plan.view_from_world.inverse();
+        Self { world_from_view, turn: DMat3::from_mat4(world_from_view) * unit, unit }
+    }
+
+    fn point(&self, at: DVec3) -> DVec3 {
+        self.world_from_view.transform_point3(at)
+    }
+
+    fn direction(&self, v: DVec3) -> DVec3 {
+        self.turn * v
+    }
+}
+
+/// The first of each of three rows.
+fn first<T: ShadingNumber>(rows: &Rows<T>) -> [f64; 3] {
+    [rows[0][0].into(), rows[1][0].into(), rows[2][0].into()]
+}
+
+fn vec3<T: ShadingNumber>(rows: &Rows<T>) -> DVec3 {
+    DVec3::from_array(first(rows))
+}
+
+fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// t D + S of the first position of a batch, in the arithmetic of the picture.
+fn reflect<T: ShadingNumber>(
+    context: &ShadingContext<'_, T>,
+    batch: &Batch<T>,
+    own: [f64; 3],
+) -> [f64; 3] {
+    let mut to: Rows<T> = [[T::default(); crate::render::simd::BATCH]; 3];
+    let own = own.map(T::from_f64);
+    T::run(context.level, Reflect { batch, own, to: &mut to });
+    first(&to)
+}
+
+struct Reflect<'a, T> {
+    batch: &'a Batch<T>,
+    own: [T; 3],
+    to: &'a mut Rows<T>,
+}
+
+impl<T: ShadingNumber> Kernel<T> for Reflect<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { batch, own, to } = self;
+        let own: Vec3<M::R> = SurfaceColor::Tint(own).at(lanes, 0);
+        store(lanes, reflected(lanes, own, batch, 0), to, 0);
+    }
+}

@@ -1,0 +1,122 @@
+//! The explanation of a pixel adds up to the byte on screen.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+#![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
+
+use marraztu::accuracy::{Arithmetic, LightAt, Samples, Settings, Shot, SpecularForm};
+use marraztu::base::image::Size;
+use marraztu::base::rng::Rng;
+use marraztu::io::{self, Progress};
+use marraztu::lab::pixel;
+use marraztu::render::{Part, Renderer, plan_frame};
+use marraztu::scene::{Fill, Projection, Scene, View};
+
+const SIZE: Size = Size::new(320, 240);
+
+/// The bytes of a colour, as pictures are rounded.
+fn rounded(color: [f64; 3], arithmetic: Arithmetic) -> [u8; 3] {
+    color.map(|x| match arithmetic {
+        Arithmetic::F32 => ((x as f32).clamp(0.0, 1.0) * 255.0 + 0.5) as u8,
+        Arithmetic::F64 => (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8,
+    })
+}
+
+/// Explains pixels of a picture, and returns how many showed a surface.
+fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]]) -> usize {
+    let mut renderer = Renderer::default();
+    let picture = renderer.render(&plan_frame(&Shot::new(scene, view, settings, SIZE))).clone();
+    let mut surfaces = 0;
+    for [x, y] in pixels.iter().copied() {
+        let explained = renderer.explain(x, y).unwrap();
+        let [r, g, b, _] = picture.pixel(x, y);
+        let of = format!("{settings:?} {:?} pixel {x},{y}: {explained:?}", view.projection);
+        assert_eq!(explained.bytes, [r, g, b], "{of}");
+        if !explained.linear {
+            assert_eq!(rounded(explained.color, settings.arithmetic), [r, g, b], "{of}");
+        }
+        let mut sum = explained.rounding;
+        for term in &explained.terms {
+            for (sum, part) in sum.iter_mut().zip(term.value) {
+                *sum += part;
+            }
+        }
+        for i in 0..3 {
+            assert!((sum[i] - explained.color[i]).abs() < 1e-14, "{of}");
+            assert!(explained.rounding[i].abs() < 1e-6, "{of}");
+        }
+        let hit = renderer.hit(x, y);
+        assert_eq!(hit.map(|hit| hit.item), explained.surface.map(|point| point.item), "{of}");
+        if let Some(point) = explained.surface {
+            surfaces += 1;
+            assert!((point.weights.element_sum() - 1.0).abs() < 1e-5, "{of}");
+            assert!((point.to_eye.length() - 1.0).abs() < 1e-4, "{of}");
+        }
+    }
+    surfaces
+}
+
+fn random_pixels(seed: u64, count: usize) -> Vec<[usize; 2]> {
+    let mut rng = Rng::new(seed);
+    (0..count).map(|_| [rng.index(SIZE.width), rng.index(SIZE.height)]).collect()
+}
+
+#[test]
+fn the_terms_of_random_pixels_add_up_to_the_bytes_of_the_picture() {
+    let (scene, mut view) = io::default_scene();
+    let mut seen = 0;
+    for (i, light) in [LightAt::Pixel, LightAt::Face, LightAt::Vertex].into_iter().enumerate() {
+        for arithmetic in [Arithmetic::F32, Arithmetic::F64] {
+            for projection in [Projection::Perspective, Projection::Orthographic] {
+                for specular in [SpecularForm::Reflection, SpecularForm::HalfVector] {
+                    view.projection = projection;
+                    let settings = Settings { light, arithmetic, specular, ..Settings::default() };
+                    seen += adds_up(&scene, &view, &settings, &random_pixels(i as u64 + 1, 150));
+                }
+            }
+        }
+    }
+    assert!(seen > 100, "only {seen} pixels showed a surface");
+}
+
+#[test]
+fn edges_and_back_faces_and_the_background_are_explained_too() {
+    let (scene, mut view) = io::default_scene();
+    view.fill = Fill::Edges;
+    adds_up(&scene, &view, &Settings::default(), &random_pixels(7, 300));
+    (view.fill, view.back_faces) = (Fill::Filled, true);
+    adds_up(&scene, &view, &Settings::default(), &random_pixels(8, 300));
+}
+
+#[test]
+fn every_example_adds_up() {
+    for example in io::EXAMPLES {
+        let opened = io::open(example.path.as_ref(), &Progress::new()).unwrap();
+        let settings = Settings { samples: Samples::One, ..opened.settings };
+        adds_up(&opened.scene, &opened.view, &settings, &random_pixels(9, 100));
+    }
+}
+
+#[test]
+fn a_sun_from_above_is_what_the_formula_says() {
+    let (scene, view) = io::default_scene();
+    let settings = Settings { arithmetic: Arithmetic::F64, ..Settings::default() };
+    let mut renderer = Renderer::default();
+    renderer.render(&plan_frame(&Shot::new(&scene, &view, &settings, SIZE)));
+    let mut checked = 0;
+    for [x, y] in random_pixels(3, 600) {
+        let explained = renderer.explain(x, y).unwrap();
+        let Some(point) = explained.surface else { continue };
+        for term in explained.terms.iter().filter(|term| term.part == Part::Diffuse) {
+            let ray = term.ray.unwrap();
+            assert!((point.normal.dot(ray.to_light) - ray.n_l).abs() < 1e-9);
+            assert!((ray.reflected.dot(point.to_eye) - ray.highlight).abs() < 1e-9);
+            if ray.n_l <= 0.0 {
+                assert_eq!(term.value, [0.0; 3]);
+            }
+            checked += usize::from(ray.n_l > 0.0 && term.value[0] > 0.0);
+        }
+        let lines = pixel::lines(&scene, &explained);
+        assert!(lines.iter().any(|line| line.contains("clamped and rounded")));
+    }
+    assert!(checked > 5, "{checked}");
+}
