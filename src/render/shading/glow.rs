@@ -2,6 +2,7 @@
 
 use super::context::ShadingContext;
 use super::groups::Group;
+use super::interpolate::multiply;
 use super::interpolated::ShadingNumber;
 use super::map_rows::{Map, MapRows};
 use super::map_texels::{Points, TexelSource, Texels};
@@ -65,10 +66,9 @@ impl<T: ShadingNumber> Shader<T> {
                 }
             }
             if shaded.vertex_colors {
-                let Self { fragments, attributes, barycentrics, maps, .. } = self;
-                let points = Points { fragments, attributes, barycentrics };
-                let decoding = context.plan.variants.decoding();
-                points.multiply_vertex_colors(context.level, group, decoding, &mut maps.texels);
+                let Self { fragments, attributes, barycentrics, vertex_colors, maps, .. } = self;
+                let at = (context.level, attributes.count);
+                multiply(at, fragments, vertex_colors, barycentrics, &mut maps.texels);
             }
             self.add_glow();
         }

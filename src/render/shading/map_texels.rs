@@ -1,6 +1,6 @@
 //! The texels of maps on fragments: sixteen pixels at a time, or one by one if that cannot be.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::dispatch;
 
 use super::barycentrics::Barycentrics;
 use super::context::ShadingContext;
@@ -8,12 +8,10 @@ use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::groups::Group;
 use super::interpolated::ShadingNumber;
-use super::texels::{PlacedTexture, TextureSamples, color, footprint, steps};
+use super::texels::{PlacedTexture, TextureSamples, footprint, steps};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::Filter;
 use crate::base::Shared;
-use crate::base::color::linear;
-use crate::base::math::each;
 use crate::render::frame::variants::Decoding;
 use crate::render::lights::Rows;
 use crate::render::screen::weights::HomogeneousWeights;
@@ -65,10 +63,9 @@ impl<'a> TexelSource<'a> {
     }
 
     /// How lanes sample it; `None` if they cannot.
-    pub(super) fn sampler<T>(&self, context: &ShadingContext<'_, T>) -> Option<Sampler<'a>> {
+    pub(super) fn sampler(&self) -> Option<Sampler<'a>> {
         let levels = self.mips.map_or(std::slice::from_ref(self.texture), Mips::levels);
-        let can = !context.plan.variants.locates_one_by_one();
-        Sampler::new(levels, self.filter).filter(|_| can)
+        Sampler::new(levels, self.filter)
     }
 
     /// Its texel at `uv`, and `beside` texels from there.
@@ -123,7 +120,7 @@ impl<T: ShadingNumber> Points<'_, T> {
     ) {
         let Self { fragments, attributes, barycentrics } = *self;
         let mut done = 0;
-        if let Some(sampler) = source.sampler(context) {
+        if let Some(sampler) = source.sampler() {
             if new {
                 place(context, group, attributes, (source.texture, &sampler), placed);
             }
@@ -194,33 +191,6 @@ impl<T: ShadingNumber> Points<'_, T> {
                     to[0][i] = (height([1.0, 0.0]) - height([-1.0, 0.0])) * half;
                     to[1][i] = (height([0.0, 1.0]) - height([0.0, -1.0])) * half;
                 }
-            }
-        });
-    }
-
-    /// Multiplies by the vertex colours.
-    pub(super) fn multiply_vertex_colors(
-        &self,
-        level: Level,
-        group: &Group<'_>,
-        decoding: Decoding,
-        to: &mut Rows<T>,
-    ) {
-        let Self { fragments, attributes, barycentrics } = *self;
-        let mut colors = [[[0.0; 3]; 3]; SLOTS];
-        for (colors, number) in colors.iter_mut().zip(&attributes.numbers[..attributes.count]) {
-            *colors = group.draw.model.mesh.triangle_colors(*number);
-            if decoding == Decoding::Linear {
-                #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
-                let decoded = |c: f32| linear(f64::from(c)) as f32;
-                *colors = each(*colors, |color| each(color, decoded));
-            }
-        }
-        dispatch!(level, _ => for i in 0..fragments.len {
-            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
-            let color = color(colors[slot], barycentrics.weights(i));
-            for (row, part) in to.iter_mut().zip(color) {
-                row[i] = row[i] * T::from_f64(part);
             }
         });
     }

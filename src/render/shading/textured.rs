@@ -2,10 +2,14 @@
 
 use super::context::ShadingContext;
 use super::groups::Group;
+use super::interpolate::multiply;
 use super::interpolated::ShadingNumber;
 use super::map_texels::{Points, TexelSource, Texels, place};
 use super::surface::Shader;
+use crate::base::color::linear;
+use crate::base::math::each;
 use crate::render::frame::draw::Shaded;
+use crate::render::frame::variants::Decoding;
 use crate::render::texture::lanes::Sampler;
 use crate::scene::Texture;
 
@@ -30,10 +34,12 @@ impl<T: ShadingNumber> Shader<T> {
             points.read(context, group, of, placed, (shaded.tint, texels));
         }
         if shaded.vertex_colors {
-            let Self { fragments, attributes, barycentrics, texels, .. } = self;
-            let points = Points { fragments, attributes, barycentrics };
-            let decoding = context.plan.variants.decoding();
-            points.multiply_vertex_colors(context.level, group, decoding, texels);
+            if new {
+                self.take_vertex_colors(group, context.plan.variants.decoding());
+            }
+            let Self { fragments, attributes, barycentrics, texels, vertex_colors, .. } = self;
+            let at = (context.level, attributes.count);
+            multiply(at, fragments, vertex_colors, barycentrics, texels);
         }
     }
 
@@ -46,5 +52,23 @@ impl<T: ShadingNumber> Shader<T> {
         sampler: &Sampler<'_>,
     ) {
         place(context, group, &self.attributes, (texture, sampler), &mut self.placed);
+    }
+    /// Fetches the vertex colours at the corners of the triangles of the list.
+    pub(super) fn take_vertex_colors(&mut self, group: &Group<'_>, decoding: Decoding) {
+        let Self { attributes, vertex_colors, .. } = self;
+        let mesh = &group.draw.model.mesh;
+        let decoded = |c: f32| match decoding {
+            Decoding::Linear => linear(f64::from(c)),
+            Decoding::Stored => f64::from(c),
+        };
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            let [a, b, c] = each(mesh.triangle_colors(*number), |color| each(color, decoded));
+            for part in 0..3 {
+                let row = [a[part], b[part] - a[part], c[part] - a[part]];
+                for (values, value) in vertex_colors.iter_mut().zip(row) {
+                    values[part][slot] = T::from_f64(value);
+                }
+            }
+        }
     }
 }
