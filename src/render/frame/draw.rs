@@ -61,6 +61,10 @@ impl Draw {
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
+        // Whether a map of opacity counts by its alpha or its brightness.
+        for map in shaded.iter().filter_map(|shaded| shaded.opacity_map.as_ref()) {
+            let _least: u8 = map.picture.least_alpha();
+        }
         let is_bumpy = shaded.iter().any(|shaded| shaded.extras.bump.is_some());
         let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
         let Lines { edges, face_normals, .. } = self.lines;
