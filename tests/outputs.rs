@@ -190,7 +190,7 @@ fn numbers(json: &Value, buffer: &[u8], accessor: &Value) -> Vec<Vec<u32>> {
     let (start, length) = (whole(&view["byteOffset"]), whole(&view["byteLength"]));
     let count = whole(&accessor["count"]);
     assert!(count > 0 && count * width * 4 == length, "as long as it says");
-    assert!(start % 4 == 0 && start + length <= buffer.len(), "within the buffer");
+    assert!(start.is_multiple_of(4) && start + length <= buffer.len(), "within the buffer");
     let words: Vec<u32> = buffer[start..start + length]
         .chunks(4)
         .map(|bytes| u32::from_le_bytes(bytes.try_into().unwrap()))
@@ -249,7 +249,7 @@ fn holds_object(json: &Value, buffer: &[u8], node: &Value, object: &Object) {
         let normals = numbers(json, buffer, &attributes["NORMAL"]);
         assert_eq!(positions.len(), normals.len());
         let indices = numbers(json, buffer, &primitive["indices"]);
-        assert!(indices.len() % 3 == 0);
+        assert!(indices.len().is_multiple_of(3));
         assert!(indices.iter().all(|index| (index[0] as usize) < positions.len()));
         triangles += indices.len() / 3;
         let told = &json["accessors"][whole(&attributes["POSITION"])];

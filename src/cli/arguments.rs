@@ -73,7 +73,7 @@ pub(crate) enum Headless {
     /// Draw the scene from all around: a GIF, an animated PNG, or numbered pictures
     Turntable(Box<Turntable>),
     /// Write the scene for other programs, as OBJ with MTL or as glTF
-    Export(Export),
+    Export(Box<Export>),
     /// Explain which effects a frame uses, which are left out and why, and what they cost
     Plan(Box<Plan>),
     /// Describe files: shape, parts, materials, and what is wrong with them

@@ -49,7 +49,8 @@ pub(super) fn export(arguments: &Export) -> Result<(), Failure> {
     io::check_export_target(&path)?;
     if let Some(file) = files.iter().find(|file| is_same(file, &path)) {
         return Err(Failure::Absent(format!(
-            "{} is read for this export and would be replaced by it; choose another name with --out",
+            "{} is read for this export and would be replaced by it; choose another name with \
+             --out",
             file.display()
         )));
     }

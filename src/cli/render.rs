@@ -49,7 +49,7 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes the picture, and notes its place if nobody has named it.
+/// Writes the picture, and notes its place if the user has not named it.
 fn written(arguments: &Render, target: &Target, picture: &Picture) -> Result<(), Failure> {
     target.write(picture)?;
     if let (None, Target::File(path)) = (&arguments.out, target) {

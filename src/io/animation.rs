@@ -65,7 +65,7 @@ pub struct Animation {
 }
 
 impl Animation {
-    /// The time of picture `i` in whole units of which a second has `units`. The sum of all times
+    /// The time of picture `i` in whole units; a second has `units`. The sum of all times
     /// is the whole time, rounded once.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within a day")]
     fn time(&self, i: u32, units: f64) -> u32 {

@@ -109,7 +109,7 @@ impl AdaptiveQuality {
 
     /// A reduction to measure while the picture is still; `None` if full quality keeps the budget,
     /// or all are known.
-    pub(crate) fn to_measure(&self, applicable: Applicable, budget: Duration) -> Option<Reduction> {
+    pub(crate) fn unmeasured(&self, applicable: Applicable, budget: Duration) -> Option<Reduction> {
         let full = self.known[0].time.filter(|time| *time > budget);
         full.and_then(|_| self.unknown(applicable))
     }
@@ -255,7 +255,7 @@ mod tests {
     fn surveyed(of: impl Fn(Reduction) -> (u64, f64)) -> AdaptiveQuality {
         let mut quality = AdaptiveQuality::default();
         quality.record(Reduction::NONE, 1.0, ms(200));
-        while let Some(one) = quality.to_measure(all(), BUDGET) {
+        while let Some(one) = quality.unmeasured(all(), BUDGET) {
             let (time, error) = of(one);
             quality.measured(one, ms(time), error);
         }
@@ -287,7 +287,7 @@ mod tests {
         assert_eq!(choose(250), Reduction::NONE);
         assert_eq!(choose(1).shrink, Shrink::Quarter, "the quickest");
         assert_eq!(quality.error(half), Some(4.0));
-        assert_eq!(quality.to_measure(all(), BUDGET), None, "nothing is left to measure");
+        assert_eq!(quality.unmeasured(all(), BUDGET), None, "nothing is left to measure");
     }
 
     #[test]
@@ -308,11 +308,11 @@ mod tests {
     #[test]
     fn a_scene_that_keeps_the_budget_is_not_measured() {
         let mut quality = AdaptiveQuality::default();
-        assert_eq!(quality.to_measure(all(), BUDGET), None);
+        assert_eq!(quality.unmeasured(all(), BUDGET), None);
         quality.record(Reduction::NONE, 1.0, ms(30));
-        assert_eq!(quality.to_measure(all(), BUDGET), None);
+        assert_eq!(quality.unmeasured(all(), BUDGET), None);
         quality.record(Reduction::NONE, 1.0, ms(34));
-        assert!(quality.to_measure(all(), BUDGET).is_some());
+        assert!(quality.unmeasured(all(), BUDGET).is_some());
     }
 
     #[test]

@@ -175,7 +175,7 @@ impl ViewportRenderer {
         }
         let applicable = applicable(snapshot);
         let begun = (self.clock)();
-        let measured = self.quality.to_measure(applicable, snapshot.budget);
+        let measured = self.quality.unmeasured(applicable, snapshot.budget);
         if let Some(reduction) = measured.filter(|_| snapshot.view.coarse_while_moving) {
             if self.finer.redraw(&planned(snapshot, reduction), wanted).is_err() {
                 return Finer::Disturbed;
@@ -263,7 +263,7 @@ impl ViewportRenderer {
     }
 }
 
-/// Copies a picture into an image that nobody holds, and makes that the last one.
+/// Copies a picture into a free image, and makes that the last one.
 fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {
     let [first, second, _] = images;
     let free = if Arc::get_mut(first).is_some() { 0 } else { 1 };

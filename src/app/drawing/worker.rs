@@ -223,7 +223,11 @@ impl<P> Shared<P> {
                 desk.busy = true;
                 self.newer.store(false, Ordering::Relaxed);
                 let picks = std::mem::take(&mut desk.picks);
-                return Some(Work::Asked(picks, desk.border.take(), desk.wanted.take()));
+                return Some(Work::Asked(
+                    picks,
+                    desk.border.take(),
+                    desk.wanted.take().map(Box::new),
+                ));
             }
             if desk.settled {
                 desk = self.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
@@ -243,7 +247,7 @@ impl<P> Shared<P> {
 /// What the thread does next.
 enum Work<P> {
     /// Answers picks, outlines an item, draws a picture.
-    Asked(VecDeque<Pick<P>>, Option<ItemId>, Option<Snapshot>),
+    Asked(VecDeque<Pick<P>>, Option<ItemId>, Option<Box<Snapshot>>),
     /// Refines the last picture by a step.
     Refine,
 }
@@ -282,7 +286,7 @@ fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
             shared.lock().news.explained = Some(explained);
             wake();
         }
-        last = Some(wanted);
+        last = Some(*wanted);
     }
 }
 

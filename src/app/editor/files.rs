@@ -3,7 +3,7 @@
 //! Files are loaded on background threads; the scene changes only once a file is read completely,
 //! so that a bad file leaves it unchanged.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use egui::Context;
 
@@ -72,7 +72,7 @@ impl App {
             }
             Wanted::PictureTo => {
                 if let Some(path) = paths.next() {
-                    self.save_picture(&path);
+                    self.save_picture(ctx, path);
                 }
             }
             Wanted::PictureWithOptionsTo | Wanted::TurntableTo => {
@@ -280,12 +280,17 @@ impl App {
         }
     }
 
-    fn save_picture(&mut self, path: &Path) {
-        let Some(picture) = self.picture() else {
+    /// Saves the picture as the still window shows it; draws it in the background if it does not
+    /// show it yet.
+    fn save_picture(&mut self, ctx: &Context, path: PathBuf) {
+        if !self.shows_all() {
+            return self.draw_as_shown(ctx, path);
+        }
+        let Some(picture) = self.shown_picture() else {
             self.refuse("no picture has been drawn yet".to_owned());
             return;
         };
-        match io::save_picture(path, &picture) {
+        match io::save_picture(&path, &picture) {
             Ok(()) => self.state.tell(Some(format!("Saved {}", path.display()))),
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),
         }
@@ -309,11 +314,16 @@ impl App {
         self.viewport.image().and_then(|image| viewport_renderer::picture(image))
     }
 
+    /// Whether the viewport shows the picture at full quality, and refined as far as it will be.
+    fn shows_all(&self) -> bool {
+        let statistics = &self.state.statistics;
+        statistics.reduction == Reduction::NONE && statistics.refined == self.state.refined_to()
+    }
+
     /// The picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
-        let State { scene, view, settings, statistics, .. } = &self.state;
-        if statistics.reduction == Reduction::NONE && statistics.refined == self.state.refined_to()
-        {
+        let State { scene, view, settings, .. } = &self.state;
+        if self.shows_all() {
             return self.shown_picture();
         }
         let samples = self.state.refined_to().unwrap_or(settings.samples);

@@ -56,6 +56,14 @@ impl App {
         self.dialogs.ask_picture(PictureChoices::new(purpose, size, samples));
     }
 
+    /// Draws the picture as the still window shows it.
+    pub(crate) fn draw_as_shown(&mut self, ctx: &Context, path: PathBuf) {
+        let Some(size) = self.viewport.size() else { return };
+        let samples = self.state.refined_to().unwrap_or(self.state.settings.samples);
+        self.making.choices = Some(PictureChoices::new(Purpose::Picture, size, samples));
+        self.make_picture(ctx, path);
+    }
+
     /// Asks for the file of a picture with these options.
     pub(crate) fn take_picture(&mut self, ctx: &Context, choices: PictureChoices) {
         self.making.choices = Some(choices);

@@ -1,7 +1,7 @@
 //! Exports a scene as glTF 2.0: meshes with their placements, cameras and lights.
 //!
-//! Positions stay in the object's own space, bit for bit. Where the format knows less than the
-//! scene, it is approximated, and said:
+//! Positions stay in the object's own space, bit for bit. What the format does not know is
+//! approximated, and said:
 //!
 //! * colours are display values here and linear there: `c = ((s + 0.055) / 1.055)^2.4`;
 //! * Phong's exponent n becomes roughness r = (2 / (4 n + 2))^(1/4): Blinn's exponent is about 4 n,
@@ -13,21 +13,17 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat3, DMat4, DVec3};
-use gltf_json::extensions::scene::khr_lights_punctual as punctual;
-use gltf_json::material::{AlphaCutoff, AlphaMode, PbrBaseColorFactor, StrengthFactor};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::scene::Node;
 use gltf_json::validation::{Checked, USize64};
-use gltf_json::{Index, Root, extensions, image, material, texture};
+use gltf_json::{Index, Root, image, texture};
 
 use super::Content;
-use super::gltf_buffer::{Buffer, Limits, Vertices};
-use super::look::{Look, Looks, polygons};
+use super::gltf_buffer::{Buffer, Limits, Vertices, columns, single};
+use super::gltf_surface::{linear, surface};
+use super::look::{Looks, polygons};
 use crate::base::math;
-use crate::scene::{
-    Attenuation, Camera, Light, LightKind, MapKind, NONE, Object, Projection, Scene,
-};
-use crate::scene::{SpotOwner, Texture, View, Wrap, dvec3};
+use crate::scene::{MapKind, NONE, Object, Scene, Texture, View, Wrap, dvec3};
 
 /// The maps that glTF has, too.
 const MAPS: [MapKind; 2] = [MapKind::Emission, MapKind::Normal];
@@ -41,14 +37,14 @@ pub(super) enum Form {
     Binary,
 }
 
-struct Writer<'a> {
-    scene: &'a Scene,
-    view: &'a View,
-    root: Root,
+pub(super) struct Writer<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) view: &'a View,
+    pub(super) root: Root,
     buffer: Buffer,
     looks: Looks,
     nodes: Vec<Index<Node>>,
-    notes: Vec<String>,
+    pub(super) notes: Vec<String>,
 }
 
 /// The files.
@@ -117,7 +113,7 @@ fn escaped(name: &str) -> String {
 fn binary(mut text: Vec<u8>, mut buffer: Vec<u8>) -> Result<Vec<u8>, String> {
     text.resize(text.len().next_multiple_of(4), b' ');
     buffer.resize(buffer.len().next_multiple_of(4), 0);
-    let length = |bytes: usize| u32::try_from(bytes).map_err(|_| "it is too large".to_owned());
+    let length = |bytes: usize| u32::try_from(bytes).map_err(|_large| "it is too large".to_owned());
     let whole = length(12 + 8 + text.len() + 8 + buffer.len())?;
     let mut file = Vec::with_capacity(12 + 16 + text.len() + buffer.len());
     file.extend(b"glTF");
@@ -167,7 +163,7 @@ impl Writer<'_> {
     }
 
     /// Adds a node; some readers want no two of the same name.
-    fn node(&mut self, mut node: Node) {
+    pub(super) fn node(&mut self, mut node: Node) {
         if let Some(name) = &node.name {
             let taken =
                 |name: &String| self.root.nodes.iter().any(|it| it.name.as_ref() == Some(name));
@@ -277,7 +273,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    fn uses(&mut self, extension: &str) {
+    pub(super) fn uses(&mut self, extension: &str) {
         let used = &mut self.root.extensions_used;
         if !used.iter().any(|other| other == extension) {
             used.push(extension.to_owned());
@@ -307,194 +303,6 @@ impl Writer<'_> {
         });
         texture::Info { index, tex_coord: 0, extensions: None, extras: Default::default() }
     }
-
-    fn camera(&mut self, camera: &Camera) {
-        let lens = &camera.lens;
-        let is_perspective = self.view.projection == Projection::Perspective;
-        let perspective = gltf_json::camera::Perspective {
-            aspect_ratio: None,
-            yfov: single(2.0 * lens.half_angle.to_radians()),
-            zfar: Some(single(lens.far)),
-            znear: single(lens.near),
-            extensions: None,
-            extras: Default::default(),
-        };
-        let orthographic = gltf_json::camera::Orthographic {
-            xmag: single(lens.half_size),
-            ymag: single(lens.half_size),
-            zfar: single(lens.parallel_far),
-            znear: single(lens.parallel_near.max(0.0)),
-            extensions: None,
-            extras: Default::default(),
-        };
-        let index = self.root.push(gltf_json::Camera {
-            name: Some(camera.name.clone()),
-            orthographic: (!is_perspective).then_some(orthographic),
-            perspective: is_perspective.then_some(perspective),
-            type_: Checked::Valid(match is_perspective {
-                true => gltf_json::camera::Type::Perspective,
-                false => gltf_json::camera::Type::Orthographic,
-            }),
-            extensions: None,
-            extras: Default::default(),
-        });
-        let matrix = Some(columns(&camera.pose.now().world_from_camera()));
-        let name = Some(camera.name.clone());
-        self.node(Node { camera: Some(index), matrix, name, ..Node::default() });
-    }
-
-    fn lights(&mut self) {
-        let mut all = Vec::new();
-        let mut left_out = 0;
-        for (_, light) in self.scene.lights.iter().filter(|(_, light)| light.on) {
-            match self.light(light) {
-                Some((own, world)) => all.push((own, world)),
-                None => left_out += 1,
-            }
-        }
-        if left_out > 0 {
-            let text = "glTF has no light from everywhere, and no spot of nothing: left out";
-            self.notes.push(format!("{text}: {left_out}"));
-        }
-        if all.is_empty() {
-            return;
-        }
-        self.uses("KHR_lights_punctual");
-        let mut lights = Vec::new();
-        for (i, (light, world)) in (0..).zip(all) {
-            let of_node = punctual::KhrLightsPunctual { light: Index::new(i) };
-            let extensions = extensions::scene::Node { khr_lights_punctual: Some(of_node) };
-            let (name, matrix) = (light.name.clone(), Some(columns(&world)));
-            self.node(Node { extensions: Some(extensions), name, matrix, ..Node::default() });
-            lights.push(light);
-        }
-        let of_root = extensions::root::KhrLightsPunctual { lights };
-        self.root.extensions = Some(extensions::root::Root { khr_lights_punctual: Some(of_root) });
-    }
-
-    /// A light with its place in the world; `None` if glTF has none of its kind.
-    fn light(&self, light: &Light) -> Option<(punctual::Light, DMat4)> {
-        let along = |direction: DVec3| {
-            math::frame(-direction, DVec3::Y, DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y))
-        };
-        let (kind, world, spot) = match &light.kind {
-            LightKind::Ambient => return None,
-            LightKind::Sun { direction } => {
-                let world = math::placed(along(*direction.now()), DVec3::ZERO);
-                (punctual::Type::Directional, world, None)
-            }
-            LightKind::Bulb { position, orbit } => {
-                let at = orbit.at(*position.now(), self.view.time);
-                (punctual::Type::Point, DMat4::from_translation(at), None)
-            }
-            LightKind::Spot { owner, half_aperture, .. } => {
-                let world = match owner {
-                    SpotOwner::SelectedObject => self.object_frame(self.view.object?)?,
-                    SpotOwner::Object(id) => self.object_frame(*id)?,
-                    SpotOwner::SelectedCamera => {
-                        self.scene.selected_camera(self.view).pose.now().world_from_camera()
-                    }
-                    SpotOwner::Camera(id) => {
-                        self.scene.cameras.get(*id)?.pose.now().world_from_camera()
-                    }
-                    SpotOwner::Fixed(aim) => {
-                        math::placed(along(aim.now().direction), aim.now().position)
-                    }
-                };
-                let outer_cone_angle = single(half_aperture.to_radians());
-                let spot = punctual::Spot { inner_cone_angle: 0.0, outer_cone_angle };
-                (punctual::Type::Spot, world, Some(spot))
-            }
-        };
-        let intensity = match kind {
-            punctual::Type::Directional => 1.0,
-            punctual::Type::Point | punctual::Type::Spot => {
-                self.candela(&light.attenuation, world.w_axis.truncate())
-            }
-        };
-        let light = punctual::Light {
-            color: light.color.factors().map(linear),
-            extensions: None,
-            extras: Default::default(),
-            intensity,
-            name: Some(light.name.clone()),
-            range: None,
-            spot,
-            type_: Checked::Valid(kind),
-        };
-        Some((light, world))
-    }
-
-    /// The frame of an object that a spot shines from.
-    fn object_frame(&self, id: crate::scene::ObjectId) -> Option<DMat4> {
-        let world = self.scene.objects.get(id)?.world_from_object(self.view.time);
-        let turn = DMat3::from_mat4(world);
-        let axes = math::frame(turn.z_axis, turn.y_axis, DMat3::IDENTITY);
-        Some(math::placed(axes, world.w_axis.truncate()))
-    }
-
-    /// The intensity with which a lamp that fades with the square of the distance lights the middle
-    /// of the scene as this one does.
-    fn candela(&self, fades: &Attenuation, at: DVec3) -> f32 {
-        let objects = self.scene.objects.iter().filter(|(_, object)| object.visible);
-        let centres = objects.map(|(_, object)| object.centre(self.view.time));
-        let (sum, count) = centres.fold((DVec3::ZERO, 0.0), |(sum, n), p| (sum + p, n + 1.0));
-        let d = if count > 0.0 { at.distance(sum / count).max(1.0) } else { 1.0 };
-        single(d * d / (fades.constant + fades.linear * d + fades.quadratic * d * d))
-    }
-}
-
-/// A material: Phong's as metallic roughness.
-fn surface(i: usize, look: &Look, infos: [Option<texture::Info>; 3]) -> gltf_json::Material {
-    let [info, emissive, normal] = infos;
-    let normal = normal.map(|info| material::NormalTexture {
-        index: info.index,
-        scale: 1.0,
-        tex_coord: 0,
-        extensions: None,
-        extras: Default::default(),
-    });
-    let base = match (&look.texture, look.colored) {
-        (Some(_), _) => look.tint,
-        (None, true) => [1.0; 3],
-        (None, false) => look.material.diffuse,
-    };
-    let [r, g, b] = base.map(linear);
-    let has_holes = look.texture.as_ref().is_some_and(|it| it.picture.least_alpha() < 255);
-    let unlit = look.unlit.then(extensions::material::Unlit::default);
-    gltf_json::Material {
-        alpha_cutoff: has_holes.then_some(AlphaCutoff(0.5)),
-        alpha_mode: Checked::Valid(match (has_holes, look.opacity < 1.0) {
-            (true, _) => AlphaMode::Mask,
-            (false, true) => AlphaMode::Blend,
-            (false, false) => AlphaMode::Opaque,
-        }),
-        double_sided: look.two_sided,
-        emissive_texture: emissive,
-        emissive_factor: material::EmissiveFactor(look.material.emission.map(linear)),
-        normal_texture: normal,
-        name: Some(format!("material {}", i + 1)),
-        pbr_metallic_roughness: material::PbrMetallicRoughness {
-            base_color_factor: PbrBaseColorFactor([r, g, b, single(look.opacity)]),
-            base_color_texture: info,
-            metallic_factor: StrengthFactor(0.0),
-            roughness_factor: StrengthFactor(roughness(look.material.exponent)),
-            ..material::PbrMetallicRoughness::default()
-        },
-        extensions: Some(extensions::material::Material { unlit }),
-        ..gltf_json::Material::default()
-    }
-}
-
-/// The roughness for a highlight with Phong's exponent.
-fn roughness(exponent: f64) -> f32 {
-    single(libm::pow(2.0 / (4.0 * exponent.max(0.0) + 2.0), 0.25))
-}
-
-/// A display value as linear light (IEC 61966-2-1).
-fn linear(display: f64) -> f32 {
-    let s = display.clamp(0.0, 1.0);
-    single(if s <= 0.04045 { s / 12.92 } else { libm::pow((s + 0.055) / 1.055, 2.4) })
 }
 
 /// Texture coordinates with (0, 0) at the upper left, with the texture's own offset and scale.
@@ -525,13 +333,4 @@ fn is_product(world: &DMat4) -> bool {
     let [x, y, z] = [turn.x_axis, turn.y_axis, turn.z_axis];
     let across = |a: DVec3, b: DVec3| a.dot(b).abs() <= 1e-6 * a.length() * b.length();
     across(x, y) && across(y, z) && across(z, x)
-}
-
-fn columns(world: &DMat4) -> [f32; 16] {
-    world.to_cols_array().map(single)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "numbers of glTF are single")]
-const fn single(x: f64) -> f32 {
-    x as f32
 }

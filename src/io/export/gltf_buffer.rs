@@ -1,7 +1,8 @@
-//! The buffer of a glTF file, and the numbers that point into it.
+//! The buffer of a glTF file, the numbers that point into it, and how numbers are written.
 
 use std::collections::BTreeMap;
 
+use glam::DMat4;
 use gltf_json::accessor::{ComponentType, GenericComponentType, Type};
 use gltf_json::buffer::{Target, View};
 use gltf_json::validation::{Checked, USize64};
@@ -107,4 +108,13 @@ impl Vertices {
         }
         number
     }
+}
+
+pub(super) fn columns(world: &DMat4) -> [f32; 16] {
+    world.to_cols_array().map(single)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "numbers of glTF are single")]
+pub(super) const fn single(x: f64) -> f32 {
+    x as f32
 }

@@ -5,6 +5,8 @@
 
 mod gltf;
 mod gltf_buffer;
+mod gltf_lights;
+mod gltf_surface;
 mod look;
 mod obj;
 

@@ -2,7 +2,7 @@
 //!
 //! Positions are those of the world, since the format knows no placement; polygons keep their
 //! corners, and a mirrored object has them in the opposite order, so that its front stays its
-//! front. Where an object is not moved, its numbers are those of its file, bit for bit.
+//! front. If an object is not moved, its numbers are those of its file, bit for bit.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

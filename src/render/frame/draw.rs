@@ -6,7 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use glam::{DMat3, DMat4};
 
 use super::FramePlan;
-use super::extras::Extras;
+use super::extras::{Extras, bits};
 use crate::accuracy::{LightAt, Tangents};
 use crate::base::{Shared, color::Color};
 use crate::render::lights::{self, LightRow, PhongMaterial};
@@ -236,11 +236,6 @@ impl Shaded {
         opacity_map.as_ref().map(|map| &map.source).hash(hasher);
         extras.hash_into(hasher);
     }
-}
-
-/// The bits of a number, the same for 0 and -0, which are equal.
-pub(super) fn bits(x: f64) -> u64 {
-    (x + 0.0).to_bits()
 }
 
 /// One light on one surface.

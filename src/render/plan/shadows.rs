@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 
 use glam::DMat3;
 
+use super::ground::Ground;
 use super::planning::{Planner, Planning, Shining};
-use super::surfaces::Ground;
 use super::uses::{Effect, EffectState, EffectUse};
 use crate::base::math;
 use crate::render::frame::shadows::{Caster, CasterPart, Shadows};
