@@ -306,7 +306,9 @@ impl Renderer {
         terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms, tracer: None };
+        let tracer = Tracer::new(plan);
+        let (lit, terms, tracer) = (&lit, &terms, tracer.as_ref());
+        let context = ShadingContext { level, plan, frame, lit, terms, tracer };
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(at[1] / TILE * columns + at[0] / TILE).expect("not negative");
         let bounds = bounds_of(tile, plan.size);

@@ -11,15 +11,18 @@ use super::groups::{Group, group_of};
 use super::interpolate::{Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::run;
+use super::lit_points::place_fragments;
 use super::quantize::{SurfaceColor, reflected};
+use super::shadows::{BatchShadows, place_faces};
 use super::surface::Shader;
 use crate::accuracy::LightAt;
 use crate::render::frame::draw::{Back, Form, Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
-use crate::render::lights::{Batch, Rows, ViewLight, store};
+use crate::render::lights::{Batch, LightTerm, Rows, ViewLight, store};
 use crate::render::raster::tile::Visibility;
 use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::coverage::PixelBox;
+use crate::render::shadow::rays::Origins;
 use crate::render::simd::{Kernel, Lanes, Vec3};
 use crate::scene::{ItemId, LightId};
 
@@ -308,16 +311,16 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
             by_face || kept.as_ref().is_none_or(|kept| kept.iter().any(|at| *at as usize == *i))
         };
         for i in (0..stages.len()).filter(evaluated) {
-            let batch = &mut shader.batch;
-            batch.darken();
-            run(&stages[i..=i], &lights[i..=i], level, batch, None);
+            shader.batch.darken();
+            shader.add_light(context, group, (&stages[i..=i], &lights[i..=i]), by_face);
+            let batch = &shader.batch;
             let parts = [first(&batch.diffuse), first(&batch.specular)];
             terms.extend(light_terms(plan, &stages[i], batch, parts, surface.own));
         }
         // All together, in the order of the picture.
         shader.batch.darken();
         for i in (0..stages.len()).filter(evaluated) {
-            run(&stages[i..=i], &lights[i..=i], level, &mut shader.batch, None);
+            shader.add_light(context, group, (&stages[i..=i], &lights[i..=i]), by_face);
         }
         shader.batch.len = 1;
         // A map of Ks multiplies all highlights together.
@@ -483,6 +486,31 @@ fn reflect<T: ShadingNumber>(
     let own = own.map(T::from_f64);
     T::run(context.level, Reflect { batch, own, to: &mut to });
     first(&to)
+}
+
+impl<T: ShadingNumber> Shader<T> {
+    /// Adds the light of some stages to what the batch holds, if it sees them: the faces of the
+    /// list, or its fragments.
+    fn add_light(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        group: &Group<'_>,
+        (stages, terms): (&[Stage], &[LightTerm<T>]),
+        by_face: bool,
+    ) {
+        let Self { fragments, attributes, barycentrics, batch, rays, .. } = self;
+        let tracer = context.tracer_of(group.draw_index);
+        let mut place = |origins: &mut Origins| match tracer {
+            Some(tracer) if by_face => place_faces(tracer, group.draw, attributes, origins),
+            Some(tracer) => {
+                let on = (&*fragments, &*attributes);
+                place_fragments(context, tracer, group, on, barycentrics, origins);
+            }
+            None => {}
+        };
+        let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
+        run(stages, terms, context.level, batch, shadows);
+    }
 }
 
 struct Reflect<'a, T> {
