@@ -7,6 +7,7 @@
 mod drag;
 mod show;
 mod sight;
+mod typed;
 
 use egui::{Pos2, Rect, Vec2};
 use glam::DVec3;
