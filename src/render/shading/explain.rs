@@ -227,7 +227,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
                 let term = Term { part: Part::Unlit, light: None, value: surface.own, ray: None };
                 (vec![term], surface.own)
             }
-            (Some(_), LightAt::Vertex) => self.of_corners(&mut surface, textured, of_all),
+            (Some(_), LightAt::Vertex) => self.of_corners(&surface, textured, of_all),
             (Some(stages), LightAt::Pixel | LightAt::Sample | LightAt::Face) => {
                 self.of_lights(&mut surface, (shaded, stages), &drawn)
             }
@@ -339,15 +339,14 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
     /// The light of vertices, which was interpolated when its lights were added up already.
     fn of_corners(
         &mut self,
-        surface: &mut SurfacePoint,
+        surface: &SurfacePoint,
         textured: bool,
         [diffuse, specular]: [[f64; 3]; 2],
     ) -> (Vec<Term>, [f64; 3]) {
         let Self { context, group, shader, .. } = self;
         let term = |value| Term { part: Part::Corners, light: None, value, ray: None };
         if textured {
-            let mut sums = Batch::<T>::default();
-            sums.len = 1;
+            let mut sums = Batch::<T> { len: 1, ..Batch::default() };
             for i in 0..3 {
                 sums.diffuse[i][0] = T::from_f64(diffuse[i]);
                 sums.specular[i][0] = T::from_f64(specular[i]);

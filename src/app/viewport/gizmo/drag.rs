@@ -225,7 +225,7 @@ impl Grab {
     /// What the place of the pointer means; `None` where the handle leads nowhere.
     fn of_pointer(&mut self, to: Pos2) -> Option<Amount> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
-        let middle = sight.to_view(pivot.origin);
+        let middle = sight.in_view(pivot.origin);
         let by = to - self.from;
         let growth = libm::exp2(f64::from(by.x - by.y) / DOUBLE);
         match (self.handle, pivot.kind) {
@@ -262,7 +262,7 @@ impl Grab {
     /// How far along an axis a place is, in units of the world.
     fn along(&self, axis: Axis, at: Pos2) -> Option<f64> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
-        let middle = sight.to_view(pivot.origin);
+        let middle = sight.in_view(pivot.origin);
         let ray = sight.ray(at);
         ray.on_line(middle, self.gizmo.axis(axis)?, sight.towards_eye(middle))
     }
@@ -271,14 +271,14 @@ impl Grab {
     fn moved_on(&self, middle: DVec3, normal: DVec3, to: Pos2) -> Option<DVec3> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
         let hit = |at| sight.ray(at).on_plane(middle, normal);
-        pivot.in_frame(sight.to_world(hit(to)? - hit(self.from)?))
+        pivot.in_frame(sight.in_world(hit(to)? - hit(self.from)?))
     }
 
     /// The direction to the observer, in the frame.
     fn line_of_sight(&self) -> Option<DVec3> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
-        let eye = sight.towards_eye(sight.to_view(pivot.origin));
-        math::unit(pivot.in_frame(sight.to_world(eye))?)
+        let eye = sight.towards_eye(sight.in_view(pivot.origin));
+        math::unit(pivot.in_frame(sight.in_world(eye))?)
     }
 
     /// How far a ring was turned, over several turns too.
@@ -294,7 +294,7 @@ impl Grab {
     /// The angle of a place about the ring's axis, in the world.
     fn angle_at(&self, at: Pos2) -> Option<f64> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
-        let middle = sight.to_view(pivot.origin);
+        let middle = sight.in_view(pivot.origin);
         let eye = sight.towards_eye(middle);
         let about = match self.handle {
             Handle::Ring(axis) => self.gizmo.axis(axis)?,

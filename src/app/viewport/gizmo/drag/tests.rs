@@ -67,10 +67,10 @@ fn what_is_dragged_along_an_axis_stays_under_the_pointer_at_every_size_and_dista
             let mut state = scene(DVec3::splat(offset), size);
             let before = gizmo(&state);
             let from = end(&before, Handle::Axis(axis));
-            let way = from - before.sight.place(before.sight.to_view(before.pivot.origin)).unwrap();
+            let way = from - before.sight.place(before.sight.in_view(before.pivot.origin)).unwrap();
             drag(&mut state, Handle::Axis(axis), way * 0.4, "").unwrap();
             let after = gizmo(&state);
-            let shift = |g: &Gizmo| g.sight.place(g.sight.to_view(g.pivot.origin)).unwrap();
+            let shift = |g: &Gizmo| g.sight.place(g.sight.in_view(g.pivot.origin)).unwrap();
             let moved = shift(&after) - shift(&before);
             // The handle's end was pulled, so the middle follows but for perspective.
             assert!((moved - way * 0.4).length() < 8.0, "{axis:?} {offset} {size}: {moved:?}");
@@ -148,7 +148,7 @@ fn a_ring_dragged_once_around_comes_back_and_a_half_turn_is_one() {
     let mut state = scene(DVec3::ZERO, 1.0);
     state.view.transformation = Transformation::Rotation;
     let gizmo = gizmo(&state);
-    let middle = gizmo.sight.place(gizmo.sight.to_view(gizmo.pivot.origin)).unwrap();
+    let middle = gizmo.sight.place(gizmo.sight.in_view(gizmo.pivot.origin)).unwrap();
     let from = end(&gizmo, Handle::Outer);
     let mut grab = Grab::new(&state, &gizmo, Handle::Outer, from);
     let mut turned = Vec::new();
