@@ -334,7 +334,13 @@ fn stage(
             [[0.8, 0.75, 0.7], [0.8, 0.75, 0.7], [0.5; 3]]
         }
     };
-    let material = MaterialChoice::Own(Material { ambient, diffuse, specular, exponent: 32.0, emission: [0.0; 3] });
+    let material = MaterialChoice::Own(Material {
+        ambient,
+        diffuse,
+        specular,
+        exponent: 32.0,
+        emission: [0.0; 3],
+    });
     let mut scene = Scene::with_camera(Camera {
         name: "camera".to_owned(),
         visible: true,

@@ -6,7 +6,7 @@
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::io::{Finding, FindingKind, Loaded, Progress, load, save_picture};
-use marraztu::scene::{LoadOptions, Wrap};
+use marraztu::scene::{LoadOptions, MapKind, Wrap};
 
 /// The only finding of a file, as text, with its kind.
 fn only(loaded: &Loaded) -> (FindingKind, &str) {
@@ -116,16 +116,16 @@ fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
 
 #[test]
 fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
-    use FindingKind::{MendedTransparency, Translucent, Transparent};
+    use FindingKind::{MendedTransparency, Transparent};
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "Tr 1.0"]), (1.0, vec![(MendedTransparency, 3)]));
     // Unused materials say nothing of the convention.
-    let unused = vec![(MendedTransparency, 2), (Translucent, 1)];
+    let unused = vec![(MendedTransparency, 2)];
     assert_eq!(with_tr(["Tr 1.0", "Tr 1", "d 0.5"]), (1.0, unused));
     assert_eq!(with_tr(["Tr 1.0", "Tr 0", "Tr 0"]), (0.0, vec![(Transparent, 1)]));
     assert_eq!(with_tr(["Tr 1.0", "d 1", "d 1"]), (0.0, vec![(Transparent, 1)]));
     assert_eq!(with_tr(["d 0", "d 0", "d 0"]), (0.0, vec![(Transparent, 3)]));
-    let mixed = vec![(Transparent, 2), (Translucent, 1)];
-    assert_eq!(with_tr(["Tr 1", "Tr 0.9", "Tr 0.1"]), (0.0, mixed));
+    assert_eq!(with_tr(["Tr 1", "Tr 0.9", "Tr 0.1"]), (0.0, vec![(Transparent, 1)]));
+    assert_eq!(with_tr(["Tr 0.75", "Tr 0.9", "Tr 0.1"]), (0.25, Vec::new()));
 }
 
 #[test]
@@ -225,4 +225,46 @@ fn material_files_and_textures_that_are_pipes_are_listed_as_such() {
     );
     let is_said = |finding: &Finding| finding.text.contains("this is a pipe, not a file");
     assert!(loaded.findings.iter().all(is_said), "{:?}", loaded.findings);
+}
+
+#[test]
+fn maps_are_read_with_their_options_and_one_picture_is_held_once() {
+    let maps = "map_Ka Maps/wood 1.png\nmap_Ks -s 2 3 Maps/wood 1.png\n\
+                map_Ns -t 1 2 3 Maps/wood 1.png\nmap_d -clamp on Maps/wood 1.png\n\
+                map_Ke -o 0.5 Maps/wood 1.png\nmap_Bump Maps/wood 1.png -bm 0.25\n\
+                norm Maps/wood 1.png\nmap_Kd Maps/wood 1.png\ndisp Maps/wood 1.png\n";
+    let red = format!("{RED}Ke 0.5 2 0\nillum 0\n{maps}");
+    let loaded = with_files("mtllib a.mtl\nusemtl red\nf 1 2 3\n", ("a.mtl", &red));
+    let expected = [FindingKind::MapUnused, FindingKind::MapOption];
+    assert_eq!(kinds(&loaded.findings), expected, "{:?}", loaded.findings);
+    let material = &loaded.model.materials[0];
+    assert_eq!((material.material.emission, material.unlit), ([0.5, 2.0, 0.0], true));
+    assert!(material.maps.keys().copied().eq(MapKind::ALL));
+    let texture = material.texture.as_ref().unwrap();
+    for (kind, map) in &material.maps {
+        assert!(Shared::same(&map.texture.picture, &texture.picture), "{kind:?}");
+    }
+    let map = |kind| &material.maps[&kind];
+    assert!(Shared::same(&map(MapKind::Ambient).texture, texture), "with the same options");
+    assert_eq!(map(MapKind::Specular).texture.scale, [2.0, 3.0]);
+    assert_eq!(map(MapKind::Emission).texture.offset, [0.5, 0.0]);
+    assert_eq!(map(MapKind::Opacity).texture.wrap, Wrap::Clamp);
+    assert_eq!((map(MapKind::Bump).gain, map(MapKind::Normal).gain), (0.25, 1.0));
+}
+
+#[test]
+fn a_light_or_a_highlight_that_is_only_mapped_is_taken_as_white() {
+    let read = |statements: &str| {
+        let text = format!("newmtl red\nKa 0.1 0 0\nKd 0.5 0 0\nNs 9\n{statements}");
+        let loaded = with_files("mtllib a.mtl\nusemtl red\nf 1 2 3\n", ("a.mtl", &text));
+        let mut kinds = kinds(&loaded.findings);
+        kinds.sort_unstable();
+        (loaded.model.materials[0].material, kinds)
+    };
+    let (material, found) = read("map_Ke Maps/wood 1.png\nmap_Ks Maps/wood 1.png\n");
+    assert_eq!((material.emission, material.specular), ([1.0; 3], [1.0; 3]));
+    assert_eq!(found, [FindingKind::MendedEmission, FindingKind::MendedMapped]);
+    let (material, found) = read("Ks 0 0 0\nKe 0 0 0\nillum 7\nmap_Ke Maps/wood 1.png\n");
+    assert_eq!((material.emission, material.specular), ([0.0; 3], [0.0; 3]));
+    assert_eq!(found, [FindingKind::Illumination]);
 }

@@ -21,6 +21,7 @@ const PAGES: &[&str] = &[
     "CHANGELOG.md",
     "docs/accuracy.md",
     "docs/breakages.md",
+    "docs/effects.md",
     "docs/glossary.md",
     "docs/keys.md",
     "docs/speed.md",

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3};
 use marraztu::accuracy::{
-    Arithmetic, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt, NormalMatrix,
-    Normalising, Rounding, Samples, Settings, SpecularForm, SpecularPower, Subpixels,
-    VertexArithmetic,
+    Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
+    LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, SpecularForm,
+    SpecularPower, Subpixels, Tangents, VertexArithmetic,
 };
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
@@ -73,7 +73,11 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         hidden_parts: BTreeSet::from([1]),
         placement: Tracked::new(DMat4::IDENTITY).moved(place),
         spin: Spin { axes: [true, false, true], speed: c, since: d },
-        material: MaterialChoice::Own(Material { exponent: 7.25, ..Material::default() }),
+        material: MaterialChoice::Own(Material {
+            exponent: 7.25,
+            emission: [0.5, 0.0, 2.0],
+            ..Material::default()
+        }),
         surface: Surface::Texture,
         texture: Some(Shared::new(texture)),
         tint: Color([1, 2, 3]),
@@ -167,6 +171,9 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         coverage: Coverage::ScanLines,
         depth: DepthFormat::Bits24,
         interpolation: Interpolation::EverySixteen,
+        tangents: Tangents::Pixel,
+        bump_filter: BumpFilter::Nearest,
+        light_values: LightValues::Linear,
     };
     (scene, view, settings)
 }

@@ -1,4 +1,5 @@
-//! Benchmarks of drawing: by stage and shape, by effect, by size, and by texture.
+//! Benchmarks of drawing: by stage and shape, by effect, by size, by texture, and of
+//! transparent surfaces.
 //!
 //! `cargo bench --bench drawing` runs them all; a part of a name selects some. Times depend on the
 //! machine and the moment, so only their ratios are meaningful. `tools/speed.sh` makes a page of
@@ -11,6 +12,7 @@ mod shapes;
 mod stage;
 mod stages;
 mod textures;
+mod transparent;
 
 use std::time::Duration;
 
@@ -27,5 +29,6 @@ fn main() {
     growth::measure(&mut criterion);
     objects::measure(&mut criterion);
     textures::measure(&mut criterion);
+    transparent::measure(&mut criterion);
     criterion.final_summary();
 }

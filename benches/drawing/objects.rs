@@ -57,7 +57,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
 /// How many objects are in view where most are not.
 const SEEN: u32 = 100;
 
-/// A scene of `count` objects, of which all but [`SEEN`] are behind the camera.
+/// A scene of `count` objects: [`SEEN`] are in view, all others are behind the camera.
 fn mostly_outside(quad: &Shared<Model>, count: u32) -> Stage {
     let mut stage = Stage::new(quad, FULL);
     let mut objects = objects(quad, count);

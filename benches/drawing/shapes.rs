@@ -72,7 +72,7 @@ fn slivers(count: u32) -> Shared<Model> {
 }
 
 /// `count` triangles over the whole view, the farthest first: all but the last are hidden.
-fn layers(count: u32) -> Shared<Model> {
+pub(crate) fn layers(count: u32) -> Shared<Model> {
     let depth = |i: u32| f64::from(i) / f64::from(count) - 1.0;
     let corners = [DVec3::new(-3.0, -1.0, 0.0), DVec3::new(3.0, -1.0, 0.0), DVec3::Y * 5.0];
     let layer = |i: u32| corners.map(|corner| narrow(corner + DVec3::Z * depth(i)));

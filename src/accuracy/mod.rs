@@ -10,6 +10,6 @@ pub use presets::{ACCURACY_PRESETS, AccuracyPreset};
 pub use settings::{
     Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
     LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, SpecularForm,
-    SpecularPower, Subpixels, Tangents, VertexArithmetic,
+    SpecularPower, Subpixels, Tangents, Transparency, VertexArithmetic,
 };
 pub use shot::Shot;

@@ -54,6 +54,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
             ("depth", "bits-24"),
             ("filter", "nearest"),
             ("rounding", "truncated"),
+            ("transparency", "threshold"),
         ],
         faults: &[
             "holes in anything nearer than 97 units",
@@ -77,6 +78,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
             ("depth", "f32"),
             ("filter", "nearest"),
             ("rounding", "truncated"),
+            ("transparency", "threshold"),
         ],
         faults: &[
             "textures bend along the diagonal of every square",

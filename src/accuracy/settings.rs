@@ -40,6 +40,8 @@ pub struct Settings {
     pub depth: DepthFormat,
     /// How vertex attributes are interpolated across a triangle.
     pub interpolation: Interpolation,
+    /// How transparent surfaces are laid over each other.
+    pub transparency: Transparency,
     /// How the tangents that bumps are laid along are found.
     pub tangents: Tangents,
     /// How the maps of bumps are filtered.
@@ -284,6 +286,20 @@ pub enum Interpolation {
     /// With perspective.
     #[default]
     Perspective,
+}
+
+/// How transparent surfaces are laid over each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Transparency {
+    /// Not at all: what is less than half opaque is not drawn, everything else is opaque.
+    Threshold,
+    /// All at once, as a mean weighted by opacity and nearness.
+    Weighted,
+    /// Object by object, the farthest first, and in each triangle by triangle.
+    Objects,
+    /// Pixel by pixel, the farthest first.
+    #[default]
+    Exact,
 }
 
 /// How the tangents that bumps are laid along are found.

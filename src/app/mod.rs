@@ -10,7 +10,8 @@
 //! The rooms of this floor, lowest first; a room uses only those below it (`tests/floors`):
 //!
 //! ```text
-//! theme      colours, fonts, spacing
+//! theme      colours, sizes, spacing
+//! fonts      fonts of the system, for letters that the built-in ones do not have
 //! tasks      work on threads of its own
 //! painter    paints what egui shows into memory, without a graphics card
 //! shell      windows of the system: what the editor is shown in, with OpenGL or without
@@ -30,6 +31,7 @@ pub mod actions;
 mod documents;
 mod drawing;
 mod editor;
+mod fonts;
 mod input;
 mod painter;
 mod panels;

@@ -5,17 +5,24 @@ use std::process::Command;
 
 use egui::ViewportBuilder;
 
+use crate::accuracy::AccuracyPreset;
 use crate::app::editor::App;
+use crate::app::fonts;
 use crate::app::shell::{self, Editor, Shell, StartError};
 use crate::app::theme;
 use crate::io::{self, OwnFolders, Preferences};
 
 /// Opens the editor with these files, and comes back when it is left: models are shown
-/// alone, framed and lit; a scene is opened in place of the first one.
+/// alone, framed and lit; a scene is opened in place of the first one. A preset sets the accuracy
+/// of the first scene.
 ///
 /// # Errors
 /// If no window can be opened, or if it is lost.
-pub fn run(files: &[PathBuf], shell: Shell) -> Result<(), StartError> {
+pub fn run(
+    files: &[PathBuf],
+    shell: Shell,
+    preset: Option<&'static AccuracyPreset>,
+) -> Result<(), StartError> {
     shell::find_display()?;
     let named = files.to_vec();
     let own = OwnFolders::of_user().map(|folders| (Preferences::load(&folders), folders));
@@ -25,27 +32,38 @@ pub fn run(files: &[PathBuf], shell: Shell) -> Result<(), StartError> {
         window,
         Box::new(move |ctx| -> Box<dyn Editor> {
             theme::install(ctx);
+            fonts::install(ctx);
             let (scene, view) = io::default_scene();
             let mut app = App::new(scene, view);
             app.use_system_dialogs();
             if let Some(((preferences, said), folders)) = own {
                 app.keep_in(ctx, folders, preferences, said);
             }
+            if let Some(preset) = preset {
+                app.use_preset(preset);
+            }
+            if named.is_empty() {
+                app.greet();
+            }
             app.load_at_start(ctx, named);
             Box::new(app)
         }),
     );
     match opened {
-        Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(files),
+        Err(StartError::NoGl) if shell == Shell::Automatic => again_without_gl(files, preset),
         opened => opened,
     }
 }
 
 /// Runs the program again, without OpenGL: a process can enter the loop of its window only once.
-fn again_without_gl(files: &[PathBuf]) -> Result<(), StartError> {
+fn again_without_gl(files: &[PathBuf], preset: Option<&AccuracyPreset>) -> Result<(), StartError> {
     let failed = |error: std::io::Error| StartError::Other(error.to_string());
     let mut program = Command::new(std::env::current_exe().map_err(failed)?);
-    program.args(["--shell", "software", "--"]).args(files);
+    program.args(["--shell", "software"]);
+    if let Some(preset) = preset {
+        program.args(["--preset", preset.word]);
+    }
+    program.arg("--").args(files);
     become_it(program).map_err(failed)
 }
 

@@ -10,21 +10,30 @@ pub struct Picture {
     width: usize,
     height: usize,
     pixels: Vec<[u8; 4]>,
-    least_alpha: LeastAlpha,
+    alphas: Alphas,
 }
 
-/// The least alpha of a picture's pixels, computed when it is first needed.
+/// What the alphas of a picture's pixels are; found when it is first needed.
 #[derive(Clone, Debug, Default)]
-struct LeastAlpha(OnceLock<u8>);
+struct Alphas(OnceLock<Found>);
 
-/// It follows from the pixels, which are compared anyway.
-impl PartialEq for LeastAlpha {
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    least: u8,
+    /// Whether any is neither 0 nor 255.
+    partial: bool,
+    /// Whether any pixel is neither black nor white.
+    grey: bool,
+}
+
+/// They follow from the pixels, which are compared anyway.
+impl PartialEq for Alphas {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl Eq for LeastAlpha {}
+impl Eq for Alphas {}
 
 /// The width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -54,8 +63,8 @@ impl Picture {
     #[must_use]
     pub fn filled(size: Size, pixel: [u8; 4]) -> Self {
         let pixels = vec![pixel; size.area()];
-        let least_alpha = LeastAlpha::default();
-        Self { width: size.width, height: size.height, pixels, least_alpha }
+        let alphas = Alphas::default();
+        Self { width: size.width, height: size.height, pixels, alphas }
     }
 
     /// A picture of these pixels, row by row from the top; `None` if their number does not fit.
@@ -65,7 +74,7 @@ impl Picture {
             width: size.width,
             height: size.height,
             pixels,
-            least_alpha: LeastAlpha::default(),
+            alphas: Alphas::default(),
         })
     }
 
@@ -83,15 +92,43 @@ impl Picture {
 
     /// All pixels, to be written.
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
-        self.least_alpha = LeastAlpha::default();
+        self.alphas = Alphas::default();
         &mut self.pixels
     }
 
     /// The least alpha of all pixels; 255 if there are none.
     #[must_use]
     pub fn least_alpha(&self) -> u8 {
-        let least = || self.pixels.iter().fold(255, |least, pixel| pixel[3].min(least));
-        *get_or_compute(&self.least_alpha.0, least)
+        self.alphas().least
+    }
+
+    /// Whether the alpha of any pixel is neither 0 nor 255.
+    #[must_use]
+    pub fn has_partial_alpha(&self) -> bool {
+        self.alphas().partial
+    }
+
+    /// Whether, as a map of opacity, it is anywhere between nothing and all: its alpha is or, if all
+    /// of it is opaque, its colour.
+    #[must_use]
+    pub fn fades(&self) -> bool {
+        let Found { least, partial, grey } = self.alphas();
+        if least == 255 { grey } else { partial }
+    }
+
+    fn alphas(&self) -> Found {
+        let nothing = Found { least: 255, partial: false, grey: false };
+        let find = || {
+            self.pixels.iter().fold(nothing, |found, [r, g, b, alpha]| {
+                let color = [*r, *g, *b];
+                Found {
+                    least: found.least.min(*alpha),
+                    partial: found.partial | (*alpha != 0 && *alpha != 255),
+                    grey: found.grey | (color != [0; 3] && color != [255; 3]),
+                }
+            })
+        };
+        *get_or_compute(&self.alphas.0, find)
     }
 
     /// The pixel in column `x` of row `y`, both counted from the upper left.
@@ -104,6 +141,6 @@ impl Picture {
     pub fn resize(&mut self, size: Size) {
         (self.width, self.height) = (size.width, size.height);
         self.pixels.resize(size.area(), [0, 0, 0, 255]);
-        self.least_alpha = LeastAlpha::default();
+        self.alphas = Alphas::default();
     }
 }

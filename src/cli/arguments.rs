@@ -17,6 +17,7 @@ use super::talk::Talk;
 use super::turntable::Turntable;
 use super::values::{color, size, threads};
 use super::verify::Verify;
+use marraztu::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
 use marraztu::app::Shell;
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
@@ -60,6 +61,9 @@ pub(crate) struct Arguments {
         ("software", Shell::Software),
     ]))]
     pub(crate) shell: Option<Shell>,
+    /// The accuracy to begin with: draft, default, exact, ancestor-a, ancestor-b
+    #[arg(long, hide_possible_values = true, value_name = "CHOICE", value_parser = preset)]
+    pub(crate) preset: Option<&'static AccuracyPreset>,
 }
 
 /// The commands that run without a window.
@@ -213,6 +217,10 @@ pub(crate) struct Seeing {
     /// The slots of the lights that are on, as "0,2"; all others are off. "none" for darkness
     #[arg(long, value_name = "SLOTS", value_parser = slots)]
     pub(crate) lights: Option<Slots>,
+    /// The slots of the lights that cast shadows, as "1,3"; the others cast none. "all" for all
+    /// that can, "none*" for none
+    #[arg(long, value_name = "SLOTS", value_parser = shadow_slots)]
+    pub(crate) shadows: Option<ShadowSlots>,
     /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name such as "white"
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     pub(crate) background: Option<Color>,
@@ -268,6 +276,15 @@ const UP_AXES: [(&str, UpAxis); 6] = {
     axes
 };
 
+/// The lights that cast shadows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum ShadowSlots {
+    /// Every light that can.
+    All,
+    /// Those in these slots.
+    These(Slots),
+}
+
 /// The slots of the lights that are on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Slots(pub(crate) BTreeSet<u32>);
@@ -314,6 +331,13 @@ fn texture_help() -> String {
     format!("A texture for the objects: {}", io::texture_formats())
 }
 
+fn preset(text: &str) -> Result<&'static AccuracyPreset, String> {
+    AccuracyPreset::named(text).ok_or_else(|| {
+        let words: Vec<&str> = ACCURACY_PRESETS.iter().map(|preset| preset.word).collect();
+        format!("there are {}", words.join(", "))
+    })
+}
+
 /// Checks the name before anything is drawn, which may take long.
 fn picture(path: PathBuf) -> Result<PathBuf, String> {
     if is_standard(&path) { Ok(path) } else { PictureFormat::of(&path).map(|_| path) }
@@ -349,6 +373,13 @@ fn slots(text: &str) -> Result<Slots, String> {
     let slots: Option<BTreeSet<u32>> =
         text.split(',').map(|part| part.trim().parse().ok()).collect();
     slots.map(Slots).ok_or_else(|| "write numbers with commas between, or none".to_owned())
+}
+
+fn shadow_slots(text: &str) -> Result<ShadowSlots, String> {
+    if text == "all" {
+        return Ok(ShadowSlots::All);
+    }
+    slots(text).map(ShadowSlots::These).map_err(|reason| format!("{reason}, or all"))
 }
 
 fn material(text: &str) -> Result<MaterialChoice, String> {

@@ -46,7 +46,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Explain(arguments)) => explain::explain(&arguments),
         Some(Headless::Lab(arguments)) => lab::lab(&arguments),
         Some(Headless::Verify(arguments)) => verify::verify(&arguments),
-        None => open::open(&arguments.files, arguments.shell),
+        None => open::open(&arguments.files, arguments.shell, arguments.preset),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
 use clap::error::ErrorKind;
+use marraztu::accuracy::AccuracyPreset;
 use marraztu::app::Shell;
 use marraztu::io;
 
@@ -13,7 +14,11 @@ use super::failure::Failure;
 use super::stage::{is_standard, usage};
 
 /// Opens the editor with these files, which have to exist.
-pub(crate) fn open(files: &[PathBuf], shell: Option<Shell>) -> Result<(), Failure> {
+pub(crate) fn open(
+    files: &[PathBuf],
+    shell: Option<Shell>,
+    preset: Option<&'static AccuracyPreset>,
+) -> Result<(), Failure> {
     if let Some(wrong) = misspelt() {
         return Err(Failure::Usage(Box::new(wrong)));
     }
@@ -23,7 +28,7 @@ pub(crate) fn open(files: &[PathBuf], shell: Option<Shell>) -> Result<(), Failur
     for file in files {
         io::check_file(file)?;
     }
-    Ok(marraztu::app::run(files, shell.unwrap_or_default())?)
+    Ok(marraztu::app::run(files, shell.unwrap_or_default(), preset)?)
 }
 
 /// The error if the first argument is not a file, but nearly the name of a command.

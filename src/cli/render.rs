@@ -11,7 +11,7 @@ use marraztu::render::{Renderer, Unseen, unseen, without_ground};
 use marraztu::scene::{CameraId, Command, Fill, ItemId, Object};
 
 use super::accuracy::Accuracy;
-use super::arguments::{PictureArguments, Reading, Render, Seeing, Slots, Surfaces};
+use super::arguments::{PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces};
 use super::bar::Bar;
 use super::draw_along;
 use super::failure::Failure;
@@ -143,6 +143,9 @@ fn look(stage: &mut Stage, seeing: &Seeing) -> Result<(), Failure> {
     if let Some(Slots(slots)) = &seeing.lights {
         light(stage, slots)?;
     }
+    if let Some(slots) = &seeing.shadows {
+        shade(stage, slots)?;
+    }
     if let Some(background) = seeing.background {
         stage.change(Command::Background(background))?;
     }
@@ -194,6 +197,30 @@ fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(
     for (id, slot, on) in lights {
         if on != slots.contains(&slot) {
             stage.change(items::toggle_shown(&stage.scene, ItemId::Light(id))?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Switches the shadows of these lights on, and those of all others off.
+fn shade(stage: &mut Stage, slots: &ShadowSlots) -> Result<(), Failure> {
+    let lights: Vec<_> = stage.scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
+    if let ShadowSlots::These(Slots(slots)) = slots {
+        let able = |slot: &u32| {
+            lights.iter().any(|(_, light)| light.slot == *slot && light.can_cast_shadows())
+        };
+        if let Some(slot) = slots.iter().find(|slot| !able(slot)) {
+            let reason = format!("the scene has no light in slot {slot} that can cast shadows");
+            return Err(Failure::Absent(reason));
+        }
+    }
+    for (id, light) in lights {
+        let to = match slots {
+            ShadowSlots::All => light.can_cast_shadows(),
+            ShadowSlots::These(Slots(slots)) => slots.contains(&light.slot),
+        };
+        if light.shadows != to {
+            stage.change(items::change_light(&stage.scene, id, |light| light.shadows = to)?)?;
         }
     }
     Ok(())

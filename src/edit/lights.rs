@@ -158,6 +158,47 @@ pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Result<Co
     change_light(scene, id, |light| light.attenuation = to)
 }
 
+/// Switches the shadows of a light on or off.
+///
+/// # Errors
+/// If the light is ambient, or gone.
+pub fn toggle_shadows(scene: &Scene, id: LightId) -> Result<Command, Refusal> {
+    let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
+    if !light.can_cast_shadows() {
+        return Err(Refusal::NoShadows);
+    }
+    change_light(scene, id, |light| light.shadows = !light.shadows)
+}
+
+/// Switches the shadows of the selected light on or off.
+///
+/// # Errors
+/// If no light is selected, or it is ambient.
+pub fn toggle_selected_shadows(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+    let (id, _) = set_transform::selected_light(scene, view)?;
+    toggle_shadows(scene, id)
+}
+
+/// Switches the shadows of all lights off if any casts them, else on.
+///
+/// # Errors
+/// If no light can cast any.
+pub fn toggle_all_shadows(scene: &Scene) -> Result<Command, Refusal> {
+    let to = !casts_shadows(scene);
+    let able = scene.lights.iter().filter(|(_, light)| light.can_cast_shadows());
+    let changed: Vec<Command> = able
+        .filter(|(_, light)| light.shadows != to)
+        .map(|(id, _)| change_light(scene, id, |light| light.shadows = to))
+        .collect::<Result<_, _>>()?;
+    if changed.is_empty() { Err(Refusal::NoLight) } else { Ok(Command::Batch(changed)) }
+}
+
+/// Whether any light of a scene casts shadows.
+#[must_use]
+pub fn casts_shadows(scene: &Scene) -> bool {
+    scene.lights.iter().any(|(_, light)| light.can_cast_shadows() && light.shadows)
+}
+
 fn change_spot(
     scene: &Scene,
     id: LightId,

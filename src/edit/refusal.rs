@@ -80,6 +80,9 @@ pub enum Refusal {
     /// The light has no cone.
     #[error("only a spot has an aperture")]
     NotASpot,
+    /// Ambient light casts no shadows.
+    #[error("ambient light comes from everywhere: it casts no shadows")]
+    NoShadows,
     /// The light cannot be aimed.
     #[error("only a spot or a sun can be aimed")]
     NotAimed,

@@ -229,7 +229,7 @@ fn describe_material(material: &FileMaterial) -> String {
     }
     if material.opacity < 1.0 {
         let _ = write!(text, ", d {}", short(material.opacity));
-        text.push_str(if material.opacity < 0.5 { " (draws nothing)" } else { " (drawn opaque)" });
+        text.push_str(if material.opacity == 0.0 { " (draws nothing)" } else { " (transparent)" });
     }
     let maps = material.maps.iter().map(|(kind, map)| (kind.statement(), &map.texture));
     for (word, texture) in material.texture.iter().map(|it| ("texture", it)).chain(maps) {

@@ -178,14 +178,10 @@ kinds! {
     MendedTransparency:
         "material \"@\": Tr 1, which would hide the whole model, is taken as opaque",
         "# materials: Tr 1, which would hide the whole model, is taken as opaque";
-    /// `d` below 0.5.
+    /// `d` of 0.
     Transparent:
-        "material \"@\" is more than half transparent and draws nothing: there is no blending",
-        "# materials are more than half transparent and draw nothing: there is no blending";
-    /// `d` below 1.
-    Translucent:
-        "material \"@\" is partly transparent and is drawn opaque: there is no blending",
-        "# materials are partly transparent and are drawn opaque: there is no blending";
+        "material \"@\" is wholly transparent and draws nothing",
+        "# materials are wholly transparent and draw nothing";
     /// A map of a kind that is not drawn.
     MapUnused:
         "a statement \"@\" is ignored: maps of this kind are not drawn",
@@ -237,7 +233,6 @@ impl FindingKind {
                 | Self::Illumination
                 | Self::MendedTransparency
                 | Self::Transparent
-                | Self::Translucent
         )
     }
 

@@ -19,6 +19,7 @@ const LESSONS: &[(&str, &str)] = &[
     ("floor", include_str!("../../assets/lessons/floor.marraztu")),
     ("highlight", include_str!("../../assets/lessons/highlight.marraztu")),
     ("near", include_str!("../../assets/lessons/near.marraztu")),
+    ("panes", include_str!("../../assets/lessons/panes.marraztu")),
     ("plate", include_str!("../../assets/lessons/plate.marraztu")),
     ("pressed", include_str!("../../assets/lessons/pressed.marraztu")),
     ("shiny", include_str!("../../assets/lessons/shiny.marraztu")),

@@ -17,12 +17,12 @@ use crate::render::plan::tile::TilePlan;
 use crate::render::plan::uses::{Effect, EffectUse};
 use crate::render::raster::geometry::ScreenGeometry;
 use crate::render::raster::lines::LineNumber;
-use crate::render::raster::tile::Visibility;
 use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
 use crate::render::screen::coverage::{PixelBox, doubled_area};
-use crate::render::screen::tiles::tiles_of;
+use crate::render::screen::tiles::{BLOCK_PIXELS, tiles_of};
 use crate::render::shading::painter::bounds_of;
+use crate::render::tile_layers::TileLayers;
 use crate::scene::ItemId;
 
 /// The triangle that a sample of the visibility buffer shows.
@@ -66,12 +66,12 @@ impl FramePlan {
         let counts = (0..tiles)
             .into_par_iter()
             .map_init(
-                || (Visibility::default(), TilePlan::default()),
-                |(visibility, tile_plan), tile| {
+                || (TileLayers::default(), TilePlan::default()),
+                |(seen, tile_plan), tile| {
                     let bounds = bounds_of(tile, self.size);
-                    visibility.draw(level, self, frame, (tile, bounds));
-                    tile_plan.begin(self, bounds, || visibility.depths(level));
-                    self.count_tile(level, frame, (visibility, bounds), tile_plan)
+                    seen.draw(level, self, frame, (tile, bounds));
+                    tile_plan.begin(self, bounds, || seen.depths(level));
+                    self.count_tile(level, frame, (seen, bounds), tile_plan)
                 },
             )
             .reduce(Counts::default, Counts::with);
@@ -86,41 +86,55 @@ impl FramePlan {
         &self,
         level: Level,
         frame: &ScreenGeometry,
-        (visibility, bounds): (&mut Visibility, PixelBox),
+        (tile_seen, bounds): (&mut TileLayers, PixelBox),
         tile: &mut TilePlan,
     ) -> Counts {
         let mut counts = Counts::default();
         // By draw and pipeline.
         let mut surfaces = BTreeMap::<(u32, u32), u64>::new();
-        let mut last = None;
+        let surface = |number: u32| {
+            let (draw, start) = frame.draw_of(number);
+            (draw, self.draws[draw as usize].pipeline_of(number - start.number))
+        };
         let rows = bounds.top..bounds.bottom;
         for (y, x) in rows.flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x))) {
             // A surface that shows in some samples only counts towards the error, but not as a
             // pixel.
-            let (samples, count) = visibility.samples(level, x, y);
+            let (samples, count) = tile_seen.visibility.samples(level, x, y);
             for number in samples[1..count].iter().filter_map(|word| triangle(*word)) {
-                let (draw, start) = frame.draw_of(number);
-                let pipeline = self.draws[draw as usize].pipeline_of(number - start.number);
-                surfaces.entry((draw, pipeline)).or_default();
+                surfaces.entry(surface(number)).or_default();
             }
-            match seen(visibility.word(level, x, y)) {
-                Visible::Background => {}
-                Visible::Line(line) => self.count_line(frame, line, &mut counts),
-                Visible::Triangle(number) => {
-                    let (draw, start) = frame.draw_of(number);
-                    let pipeline = self.draws[draw as usize].pipeline_of(number - start.number);
-                    *surfaces.entry((draw, pipeline)).or_default() += 1;
-                    let same = last.filter(|(other, _)| *other == number);
+        }
+        let (mut last, mut own) = (None, Vec::new());
+        for block in 0..BLOCK_PIXELS {
+            tile_seen.each(level, frame, block, |_, nearest, words| {
+                if let Visible::Line(line) = seen(nearest) {
+                    self.count_line(frame, line, &mut counts);
+                }
+                own.clear();
+                own.extend(words.iter().filter_map(|word| triangle(*word)));
+                for number in &own {
+                    let same = last.filter(|(other, _)| other == number);
                     let back = same.map_or_else(
-                        || self.is_back(frame, draw, number - start.number),
+                        || {
+                            let (draw, start) = frame.draw_of(*number);
+                            self.is_back(frame, draw, number - start.number)
+                        },
                         |(_, back)| back,
                     );
-                    last = Some((number, back));
+                    last = Some((*number, back));
                     if back {
+                        let (draw, _) = frame.draw_of(*number);
                         counts.add(Effect::BackFaces, self.draws[draw as usize].item, 1);
                     }
                 }
-            }
+                let mut once: Vec<(u32, u32)> = own.iter().map(|number| surface(*number)).collect();
+                once.sort_unstable();
+                once.dedup();
+                for key in once {
+                    *surfaces.entry(key).or_default() += 1;
+                }
+            });
         }
         for ((draw, pipeline), pixels) in surfaces {
             let item = self.draws[draw as usize].item;
@@ -180,13 +194,18 @@ impl FramePlan {
         };
         let mirrors = stages.iter().any(|stage| stage.highlight != Form::Plain);
         for stage in stages {
-            counts.add(Effect::Light(self.light_ids[stage.light as usize]), item, pixels);
+            let id = self.light_ids[stage.light as usize];
+            counts.add(Effect::Light(id), item, pixels);
+            if self.shadows.source(stage.light).is_some() {
+                counts.add(Effect::Shadows(id), item, pixels);
+            }
         }
         let features = [
             (Effect::Highlights, mirrors),
             (Effect::Normals, self.light_at == LightAt::Pixel && light.needs_positions),
             (Effect::Texture, shaded.texture.is_some()),
             (Effect::AlphaTest, shaded.cutout.is_some()),
+            (Effect::Transparency, shaded.opacity.is_some()),
             (Effect::VertexColors, shaded.vertex_colors),
             (Effect::Emission, shaded.extras.emission.is_some()),
             (Effect::Maps, shaded.extras.has_maps()),

@@ -41,6 +41,8 @@ pub enum DamageCause {
     Background,
     /// The settings of accuracy changed.
     Settings,
+    /// A light that casts shadows changed, or something that casts them.
+    Shadows,
     /// The order of draws changed, which decides between equal depths.
     Order,
     /// These items changed; the list is empty if the picture stays as it is.
@@ -146,11 +148,13 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         lit_by_sample,
         shift: _,
         filter,
+        transparency,
         variants,
         view_from_world,
         clip_from_view,
         line_width,
         lights: _,
+        shadows,
         draws: _,
         pipelines: _,
         leave_out,
@@ -165,6 +169,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         || *samples != before.samples
         || *lit_by_sample != before.lit_by_sample
         || *filter != before.filter
+        || *transparency != before.transparency
         || *variants != before.variants
         || *line_width != before.line_width
         || *leave_out != before.leave_out
@@ -174,6 +179,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         () if moved => Some(DamageCause::Camera),
         () if settings => Some(DamageCause::Settings),
         () if *background != before.background => Some(DamageCause::Background),
+        () if !shadows.is_same(&before.shadows) => Some(DamageCause::Shadows),
         () => None,
     }
 }
@@ -196,6 +202,7 @@ impl Compared<'_> {
             view_from_normal,
             mirrored,
             back,
+            culls_opaque,
             normals,
             normal_source,
             part_pipelines,
@@ -210,6 +217,7 @@ impl Compared<'_> {
             || *mirrored != before.mirrored;
         let shape = !Shared::same(model, &before.model)
             || *back != before.back
+            || *culls_opaque != before.culls_opaque
             || *polygons != before.polygons
             || *filled != before.filled
             || !alike_lines(lines, &before.lines)
@@ -226,11 +234,15 @@ impl Compared<'_> {
         }
     }
 
-    /// Whether other parts are drawn, or the alpha test of a part changed.
+    /// Whether other parts are drawn, or a part has an alpha test or is transparent and was not
+    /// before, or the other way round.
     fn kinds(&self, after: &[Option<u32>], before: &[Option<u32>]) -> bool {
-        let kinds = |plan: &FramePlan, parts: &[Option<u32>]| -> Vec<Option<bool>> {
-            let cutout = |pipeline: u32| plan.pipelines[pipeline as usize].is_cutout();
-            parts.iter().map(|pipeline| pipeline.map(cutout)).collect()
+        let kinds = |plan: &FramePlan, parts: &[Option<u32>]| -> Vec<Option<[bool; 2]>> {
+            let kind = |pipeline: u32| {
+                let pipeline = &plan.pipelines[pipeline as usize];
+                [pipeline.is_cutout(), pipeline.opacity().is_some()]
+            };
+            parts.iter().map(|pipeline| pipeline.map(kind)).collect()
         };
         kinds(self.after, after) != kinds(self.before, before)
     }
@@ -272,6 +284,7 @@ impl Compared<'_> {
             tint,
             texture,
             cutout,
+            opacity,
             opacity_map,
             extras,
         } = after;
@@ -290,6 +303,8 @@ impl Compared<'_> {
                     && after.iter().zip(before).all(|(after, before)| {
                         after.effect.name == before.effect.name
                             && after.highlight == before.highlight
+                            && self.after.shadows.source(after.light).is_some()
+                                == self.before.shadows.source(before.light).is_some()
                             && after.is_mapped == before.is_mapped
                             && alike_lights(
                                 &self.after.lights[after.light as usize],
@@ -307,6 +322,7 @@ impl Compared<'_> {
             && *vertex_colors == before.vertex_colors
             && alike(tint, &before.tint)
             && alike(cutout.as_slice(), before.cutout.as_slice())
+            && alike(opacity.as_slice(), before.opacity.as_slice())
             && extras.are_alike(&before.extras)
     }
 }

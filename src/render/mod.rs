@@ -15,7 +15,9 @@
 //! * `reference`: the fill algorithm of ancestor A, as a whole.
 //! * `raster`: vertices to the screen, triangles and lines into the bins of tiles, and from there
 //!   to the visibility buffer.
+//! * `shadow`: rays from lit points to lights, and what stands between.
 //! * `shading`: the colours of what is visible, and their bytes in the picture.
+//! * `tile_layers`: what the pixels of a tile show.
 //! * `renderer`, `damage`, `count`, `unseen`, `without_ground`: draw plans, and answer questions
 //!   about what was drawn.
 
@@ -29,8 +31,10 @@ mod reference;
 mod renderer;
 pub mod screen;
 mod shading;
+mod shadow;
 pub mod simd;
 mod texture;
+mod tile_layers;
 mod timings;
 mod unseen;
 mod without_ground;

@@ -11,10 +11,10 @@ use std::sync::Mutex;
 use fearless_simd::Level;
 
 use super::shading::context::ShadingContext;
-use super::shading::explain::{PixelColor, explain};
+use super::shading::explain::{Asked, PixelColor, explain};
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Painter, TileSums, bounds_of};
-use crate::accuracy::Arithmetic;
+use crate::accuracy::{Arithmetic, Samples};
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
@@ -23,13 +23,14 @@ use crate::render::damage::{Damage, DamageCause};
 use crate::render::frame::{FramePlan, Rules};
 use crate::render::plan::uses::EffectUse;
 use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::raster::tile::Visibility;
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::raster::{depth_format, visibility_buffer};
 use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
-use crate::render::screen::tiles::{TILE, TILE_SIDE, tiles_of};
+use crate::render::screen::tiles::{BLOCK_PIXELS, TILE, TILE_SIDE, block_at, tiles_of};
 use crate::render::shading::interpolated::ShadingNumber;
 use crate::render::shading::light_terms::LightTerms;
+use crate::render::shadow::tracer::Tracer;
+use crate::render::tile_layers::TileLayers;
 use crate::render::timings::{Laps, Timings};
 use crate::scene::ItemId;
 
@@ -268,9 +269,14 @@ impl Renderer {
         let [x, y] = [x, y].map(|i| i32::try_from(i).expect("inside the picture"));
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
-        let mut visibility = Visibility::default();
-        visibility.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
-        let word = visibility.word(self.level, x, y);
+        let mut tile_seen = TileLayers::default();
+        tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
+        let mut word = 0;
+        tile_seen.each(self.level, &self.frame, block_at(x % TILE, y % TILE), |at, nearest, _| {
+            if at == [x, y] {
+                word = nearest;
+            }
+        });
         let (draw, polygon) = self.seen(plan, word)?;
         let depth = depth_format::depth(plan.variants.depth, visibility_buffer::key(word));
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
@@ -299,17 +305,31 @@ impl Renderer {
         terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms };
+        let tracer = Tracer::new(plan);
+        let tracer = tracer.as_ref();
+        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms, tracer };
+        let [x, y] = at;
         let [columns, _] = tiles_of(plan.size);
-        let tile = usize::try_from(at[1] / TILE * columns + at[0] / TILE).expect("not negative");
+        let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
         let bounds = bounds_of(tile, plan.size);
-        let mut visibility = Visibility::default();
-        visibility.draw(level, plan, frame, (tile, bounds));
-        explain(&context, &mut visibility, bounds, at)
+        let mut tile_seen = TileLayers::default();
+        tile_seen.draw(level, plan, frame, (tile, bounds));
+        let depths = tile_seen.depths(level);
+        let mut shown = Vec::new();
+        tile_seen.each(level, frame, block_at(x % TILE, y % TILE), |place, nearest, words| {
+            if place == at {
+                // Of several samples, what most of them show.
+                let one = plan.samples == Samples::One;
+                shown = if one { words.to_vec() } else { vec![nearest] };
+            }
+        });
+        let [column, row] = at.map(|i| usize::try_from(i).expect("inside the picture"));
+        let [r, g, b, _] = self.picture.pixel(column, row);
+        explain(&context, &Asked { at, bounds, depths, words: &shown, bytes: [r, g, b] })
     }
 
-    /// Marks the pixels at which the last picture shows an item: a flag for each pixel, row by row
-    /// from the top.
+    /// Marks the pixels at which the last picture shows an item, also through transparent ones: a
+    /// flag for each pixel, row by row from the top.
     #[must_use]
     pub fn pixels_of(&mut self, item: ItemId) -> Vec<bool> {
         self.pixels_of_any(&[item])
@@ -320,10 +340,11 @@ impl Renderer {
     #[must_use]
     pub fn pixels_of_any(&mut self, items: &[ItemId]) -> Vec<bool> {
         let mut pixels = vec![false; self.seen_size().area()];
-        self.look(|renderer, plan, at, word| {
-            pixels[at] = renderer
-                .seen(plan, word)
-                .is_some_and(|(draw, _)| items.contains(&plan.draws[draw as usize].item));
+        self.look(|renderer, plan, at, _, words| {
+            pixels[at] = words.iter().any(|word| {
+                let seen = renderer.seen(plan, *word);
+                seen.is_some_and(|(draw, _)| items.contains(&plan.draws[draw as usize].item))
+            });
             ControlFlow::Continue(())
         });
         pixels
@@ -337,12 +358,16 @@ impl Renderer {
     ) -> Option<Vec<Option<ItemId>>> {
         let mut pixels = vec![None; self.seen_size().area()];
         let mut last = None;
-        self.look(|renderer, plan, at, word| {
-            let seen = renderer.seen(plan, word).map(|(draw, _)| plan.draws[draw as usize].item);
-            pixels[at] = seen;
-            if seen != last {
-                last = seen;
-                seen.map(|item| items.remove(&item));
+        self.look(|renderer, plan, at, nearest, words| {
+            let item = |word: u64| {
+                renderer.seen(plan, word).map(|(draw, _)| plan.draws[draw as usize].item)
+            };
+            pixels[at] = item(nearest);
+            if pixels[at] != last || words.len() > 1 {
+                last = pixels[at];
+                words.iter().filter_map(|word| item(*word)).for_each(|item| {
+                    items.remove(&item);
+                });
             }
             if items.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
@@ -366,7 +391,7 @@ impl Renderer {
     )]
     pub fn primitives(&mut self) -> Vec<u32> {
         let mut pixels = vec![0; self.seen_size().area()];
-        self.look(|_, _, at, word| {
+        self.look(|_, _, at, word, _| {
             pixels[at] = word as u32;
             ControlFlow::Continue(())
         });
@@ -378,22 +403,27 @@ impl Renderer {
         self.plan.as_ref().map_or(Size::new(0, 0), |plan| plan.size)
     }
 
-    /// Calls `each` with the index and the visibility of each pixel of the last picture, tile by
-    /// tile, until it breaks.
-    fn look(&mut self, mut each: impl FnMut(&Self, &FramePlan, usize, u64) -> ControlFlow<()>) {
+    /// Calls `each` with the index of each pixel of the last picture, its nearest word and all that
+    /// it shows, tile by tile, until it breaks. See [`TileLayers::each`].
+    fn look(
+        &mut self,
+        mut each: impl FnMut(&Self, &FramePlan, usize, u64, &[u64]) -> ControlFlow<()>,
+    ) {
         self.build_again();
         let Some(plan) = &self.plan else { return };
         let [columns, rows] = tiles_of(plan.size);
-        let mut visibility = Visibility::default();
+        let mut tile_seen = TileLayers::default();
         for tile in 0..usize::try_from(columns * rows).expect("not negative") {
-            let bounds = bounds_of(tile, plan.size);
-            visibility.draw(self.level, plan, &self.frame, (tile, bounds));
-            for (y, x) in (bounds.top..bounds.bottom)
-                .flat_map(|y| (bounds.left..bounds.right).map(move |x| (y, x)))
-            {
-                let word = visibility.word(self.level, x, y);
-                let [x, y] = [x, y].map(|i| usize::try_from(i).expect("inside the picture"));
-                if each(self, plan, y * plan.size.width + x, word).is_break() {
+            tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
+            for block in 0..BLOCK_PIXELS {
+                let mut flow = ControlFlow::Continue(());
+                tile_seen.each(self.level, &self.frame, block, |at, nearest, words| {
+                    let [x, y] = at.map(|i| usize::try_from(i).expect("inside the picture"));
+                    if flow.is_continue() {
+                        flow = each(self, plan, y * plan.size.width + x, nearest, words);
+                    }
+                });
+                if flow.is_break() {
                     return;
                 }
             }
@@ -426,7 +456,9 @@ impl Renderer {
         terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let context = ShadingContext { level, plan, frame, lit, terms };
+        let tracer = Tracer::new(plan);
+        let tracer = tracer.as_ref();
+        let context = ShadingContext { level, plan, frame, lit, terms, tracer };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self

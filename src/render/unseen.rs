@@ -32,7 +32,7 @@ pub enum Unseen {
         /// The one that covers the most of it.
         by: ItemId,
     },
-    /// It fails the alpha test wherever it could be seen.
+    /// It is wholly transparent, or fails the alpha test, wherever it could be seen.
     Transparent,
     /// It covers no pixel's centre: it is too small, or seen edge-on.
     BetweenPixels,
@@ -51,7 +51,7 @@ impl fmt::Display for Unseen {
             Self::TurnedAway { faces: 1 } => f.write_str("its only face is turned away"),
             Self::TurnedAway { faces } => write!(f, "all {faces} faces are turned away"),
             Self::Covered { .. } => f.write_str("it is behind other objects"),
-            Self::Transparent => f.write_str("it is transparent"),
+            Self::Transparent => f.write_str("it is wholly transparent"),
             Self::BetweenPixels => f.write_str("it is smaller than a pixel, or seen edge-on"),
             Self::Unexamined => f.write_str("it is too small, turned away or behind others"),
         }
@@ -139,6 +139,7 @@ impl Alone<'_> {
         if object.is_two_sided() || faces == 0 || self.is_empty(id, |o| o.sides = Sides::Two) {
             let opaque = |object: &mut Object| {
                 object.sides = Sides::Two;
+                object.opacity = 1.0;
                 object.surface = Surface::Material;
                 object.material = MaterialChoice::Own(object.part_look(0).material);
             };

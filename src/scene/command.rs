@@ -63,7 +63,9 @@ impl Item {
     /// Why it is not valid in a scene, if it is not.
     fn fault(&self) -> Option<CommandError> {
         let finite = match self {
-            Self::Object(_, object) => object.placement.now().is_finite(),
+            Self::Object(_, object) => {
+                object.placement.now().is_finite() && object.opacity.is_finite()
+            }
             Self::Camera(_, camera) => {
                 let pose = camera.pose.now();
                 if !camera.lens.is_valid() {

@@ -19,6 +19,8 @@ pub struct Light {
     pub color: Color,
     /// How its light fades; the sun's and ambient light do not.
     pub attenuation: Attenuation,
+    /// Whether objects cast shadows in its light; ambient light has none.
+    pub shadows: bool,
     /// Its kind, with what that kind needs.
     pub kind: LightKind,
 }
@@ -134,6 +136,15 @@ impl Orbit {
 }
 
 impl Light {
+    /// Whether it can cast shadows: it comes from somewhere.
+    #[must_use]
+    pub const fn can_cast_shadows(&self) -> bool {
+        match self.kind {
+            LightKind::Ambient => false,
+            LightKind::Sun { .. } | LightKind::Bulb { .. } | LightKind::Spot { .. } => true,
+        }
+    }
+
     /// A white light that is on.
     #[must_use]
     pub fn new(name: &str, slot: u32, kind: LightKind) -> Self {
@@ -143,6 +154,7 @@ impl Light {
             on: true,
             color: Color::WHITE,
             attenuation: Attenuation::default(),
+            shadows: false,
             kind,
         }
     }

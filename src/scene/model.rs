@@ -230,7 +230,7 @@ pub struct FileMaterial {
     pub name: String,
     /// Its coefficients.
     pub material: Material,
-    /// `d`: below 0.5 (times the texel's alpha) nothing is drawn.
+    /// `d`: how much it covers of what is behind it, from 0 to 1.
     pub opacity: f64,
     /// `map_Kd`, if its file was found.
     pub texture: Option<Shared<Texture>>,

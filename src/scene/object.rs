@@ -33,6 +33,8 @@ pub struct Object {
     pub texture: Option<Shared<Texture>>,
     /// The colour by which the texture is multiplied.
     pub tint: Color,
+    /// Its opacity, from 0 (not drawn) to 1, by which those of the file's materials are multiplied.
+    pub opacity: f64,
     /// Which sides of its faces are drawn.
     pub sides: Sides,
     /// Whether the file's normals are used for polygons that have them.
@@ -118,6 +120,7 @@ impl Object {
             surface: Surface::default(),
             texture: None,
             tint: Color::WHITE,
+            opacity: 1.0,
             sides: if model.source.is_some() { Sides::Auto } else { Sides::One },
             file_normals: true,
             edge_color: model.edge_color.unwrap_or(Color::WHITE),
@@ -190,7 +193,7 @@ impl Object {
         let of_file = self.material == MaterialChoice::File;
         PartLook {
             material,
-            opacity,
+            opacity: opacity * self.opacity,
             unlit: of_file && file.is_some_and(|file| file.unlit),
             texture: texture.filter(|_| self.surface != Surface::Material),
             maps: file.map(|file| &file.maps).filter(|_| self.surface != Surface::Material),
@@ -204,7 +207,7 @@ impl Object {
 pub struct PartLook<'a> {
     /// Its coefficients.
     pub material: super::Material,
-    /// `d` of the file's material.
+    /// The object's opacity, times `d` of the file's material if it has that.
     pub opacity: f64,
     /// Whether Kd alone is shown, whatever the light: `illum 0` of the file's material.
     pub unlit: bool,

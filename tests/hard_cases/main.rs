@@ -28,6 +28,8 @@ mod files_and_scale;
 mod geometry;
 mod interpolation;
 mod light;
+mod shadows;
 mod surfaces;
 mod textures;
+mod transparency;
 mod undo;

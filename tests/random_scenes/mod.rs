@@ -167,6 +167,9 @@ fn object(rng: &mut Rng) -> Object {
     ]);
     object.texture = rng.percent(35).then(|| shapes::texture(rng));
     object.tint = rng.one_of(&[Color::WHITE, Color::WHITE, Color([0; 3]), Color([200, 100, 0])]);
+    if rng.percent(25) {
+        object.opacity = rng.one_of(&[0.0, 1e-9, 0.25, 0.5, 0.75, 1.0 - f64::EPSILON]);
+    }
     object.sides = if rng.percent(20) { Sides::Two } else { Sides::One };
     object.file_normals = rng.percent(50);
     if rng.percent(5) {
@@ -192,6 +195,7 @@ fn lights(rng: &mut Rng, objects: &[(ObjectId, Object)]) -> List<LightId, Light>
         let attenuation = |constant, linear, quadratic| Attenuation { constant, linear, quadratic };
         Light {
             on: rng.percent(75),
+            shadows: rng.percent(40),
             color: Color(color),
             attenuation: rng.one_of(&[
                 Attenuation::default(),

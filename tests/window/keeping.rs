@@ -18,6 +18,7 @@ use egui::{Key, ThemePreference};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::Request;
+use marraztu::app::state::layout::Layout;
 use marraztu::base::rng::Rng;
 use marraztu::io::{Abandoned, OwnFolders, Preferences};
 
@@ -186,12 +187,17 @@ fn theme_panels_scale_and_recent_files_are_remembered() {
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
     editor.click_label("Load");
     let panels = editor.state().panels;
+    let layout = Layout { right: Some(333.0), plan: Some(0.25), ..Layout::default() };
+    editor.ask(Request::Layout(layout));
+    editor.perform(Action::ToggleOverlays);
     editor.settle();
     editor.harness.state_mut().end_keeping();
     drop(editor);
     let mut other = Editor::keeping_in_a_large_window(folder.path());
     assert_eq!(other.state().theme, ThemePreference::Light);
     assert_eq!(other.state().panels, panels);
+    assert_eq!(other.state().layout, layout);
+    assert!(!other.state().overlays);
     assert_eq!(other.harness.ctx.zoom_factor(), 1.25);
     assert_eq!(other.state().recent, [path]);
     other.harness.ctx.set_zoom_factor(1.0);

@@ -11,13 +11,19 @@ use marraztu::scene::ItemId;
 
 use crate::editor::Editor;
 
-/// The sizes of windows in points: 640 x 400, 1024 x 640 and 1920 x 1080 pixels at 100% and 200%.
-const SIZES: [[f32; 2]; 6] = [
+/// The sizes of windows in points: 640 x 400, 1024 x 640, 1280 x 800 and 1920 x 1080 pixels at
+/// 100%, 150% and 200%.
+const SIZES: [[f32; 2]; 11] = [
     [1920.0, 1080.0],
+    [1280.0, 720.0],
+    [1280.0, 800.0],
     [960.0, 540.0],
+    [853.0, 533.0],
+    [683.0, 427.0],
     [1024.0, 640.0],
     [512.0, 320.0],
     [640.0, 400.0],
+    [427.0, 267.0],
     [320.0, 200.0],
 ];
 
@@ -132,7 +138,7 @@ fn in_every_window_panels_lie_side_by_side_and_texts_are_whole() {
 fn long_and_foreign_names_push_nothing_aside() {
     const NAMES: [&str; 2] = [
         "a_very_long_name_of_an_object_that_no_panel_has_room_for_whatever_its_width_may_be",
-        "Žluťoučký kůň, ελληνικά, русский, Übergröße und noch viel mehr als das, was Platz hat",
+        "Žluťoučký kůň, ελληνικά, русский, 山と川と海, Übergröße und noch viel mehr als Platz ist",
     ];
     let mut editor = Editor::of_size(1280.0, 800.0);
     let scene = editor.scene();

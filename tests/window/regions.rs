@@ -9,7 +9,7 @@ use egui::accesskit::{Action as Deed, Role};
 use egui::{Key, Rect};
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::app::actions::Action;
-use marraztu::app::actions::Chord::Named;
+use marraztu::app::actions::Chord::{self, Named};
 
 use crate::editor::Editor;
 
@@ -79,6 +79,29 @@ fn every_control_is_within_fifteen_tabs_of_a_region_that_f6_goes_to() {
         let missed: Vec<&String> = all.difference(&reached).collect();
         assert!(missed.is_empty(), "{subject:?}: no key reaches {missed:?}");
     }
+}
+
+#[test]
+fn shift_f6_goes_the_same_regions_backwards() {
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    let names = |editor: &mut Editor, chord: Chord| {
+        let at = editor.at(0.1, 0.9);
+        editor.click(at, egui::PointerButton::Primary);
+        let mut names = Vec::new();
+        for _ in 0..40 {
+            editor.press(chord);
+            match focused(editor) {
+                Some((name, _)) if name != "Viewport" => names.push(name),
+                _ => break,
+            }
+        }
+        names
+    };
+    let forwards = names(&mut editor, Named(Key::F6));
+    let mut backwards = names(&mut editor, Chord::Shifted(Key::F6));
+    backwards.reverse();
+    assert!(forwards.len() > 4);
+    assert_eq!(forwards, backwards);
 }
 
 #[test]

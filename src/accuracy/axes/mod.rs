@@ -40,6 +40,7 @@ mod picture;
 mod sampling;
 mod sense;
 mod texture;
+mod transparency;
 
 use crate::accuracy::Settings;
 use crate::scene::{Scene, View};
@@ -124,6 +125,7 @@ pub const AXES: &[Axis] = &[
     geometry::SUBPIXELS,
     geometry::COVERAGE,
     picture::DEPTH,
+    transparency::TRANSPARENCY,
     sampling::SAMPLES,
     geometry::INTERPOLATION,
     geometry::STRETCHED,

@@ -8,7 +8,7 @@ pub mod search;
 mod table;
 
 pub use chord::Chord;
-pub use request::{Also, LabRequest, Request};
+pub use request::{Also, KeyRequest, LabRequest, Request};
 pub(crate) use request::{change, change_view};
 pub(crate) use resolve::{FileIntent, Intent, resolve};
 pub use table::{Action, ActionInfo, Group};

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
+use super::chord::Chord;
 use super::table::Action;
 use crate::accuracy::Settings;
 use crate::app::state::laboratory::{Compare, Side};
@@ -79,6 +80,10 @@ pub enum Request {
     Abandon(Gesture),
     /// Divides the window differently among its panels.
     Layout(Layout),
+    /// Something about the keys of actions.
+    Keys(KeyRequest),
+    /// The strip of the first minute is put away.
+    EndGreeting,
     /// Says in the status line why a request was refused.
     Refuse(String),
 }
@@ -98,6 +103,21 @@ impl From<Action> for Request {
     fn from(action: Action) -> Self {
         Self::Do(action)
     }
+}
+
+/// A request about the keys of actions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyRequest {
+    /// The next key is chosen for this action.
+    Choose(Action),
+    /// The key that was pressed becomes this action's, and is taken from any other.
+    Take(Action, Chord),
+    /// No key is chosen.
+    Cancel,
+    /// The action has the keys of the table again.
+    Reset(Action),
+    /// All actions have.
+    ResetAll,
 }
 
 /// A request to the laboratory.

@@ -293,6 +293,8 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         }
         Action::ApertureUp => aperture(APERTURE_STEP),
         Action::ApertureDown => aperture(-APERTURE_STEP),
+        Action::ToggleAllShadows => lights::toggle_all_shadows(scene).map(Intent::Change),
+        Action::ToggleShadows => lights::toggle_selected_shadows(scene, view).map(Intent::Change),
         Action::AimAtSelection => each(&|scene, view| aiming::aim_at_selection(scene, view, phase)),
         Action::AimByClick => aiming::can_aim(scene, view).map(|_| Intent::AimByClick),
         Action::RedUp => color(Channel::Red, 1),
@@ -466,6 +468,8 @@ impl Action {
             Self::ToggleCoarse => view.coarse_while_moving,
             Self::ToggleRefine => state.drawing.refines,
             Self::ToggleLightNormals => view.normals == Normals::Face,
+            Self::ToggleAllShadows => lights::casts_shadows(scene),
+            Self::ToggleShadows => scene.lights.get(view.light?)?.shadows,
             Self::ToggleProjection => view.projection == Projection::Orthographic,
             Self::ToggleObserver => view.observer == Observer::Object,
             Self::CheatSheet => panels.cheat_sheet,

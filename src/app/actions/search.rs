@@ -7,6 +7,7 @@
 use nucleo_matcher::pattern::{Atom, AtomKind, CaseMatching, Normalization};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
 
+use super::chord::Chord;
 use super::table::Action;
 
 /// The texts by which something is found.
@@ -99,9 +100,14 @@ impl Action {
     /// How well the action matches a search: by one of its keys as it is written, by its label, or
     /// by other words for it.
     pub fn score(self, search: &mut Search, query: &str) -> Option<u32> {
+        self.score_on(self.info().keys, search, query)
+    }
+
+    /// As [`Self::score`], for an action that is on other keys.
+    pub(crate) fn score_on(self, keys: &[Chord], search: &mut Search, query: &str) -> Option<u32> {
         let info = self.info();
         let query = query.trim();
-        let mut keys = info.keys.iter().flat_map(|key| key.names());
+        let mut keys = keys.iter().flat_map(|key| key.names());
         let is_key = |key: String| match query.chars().count() {
             0 => false,
             1 => key == query,

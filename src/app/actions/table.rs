@@ -149,7 +149,7 @@ actions! {
         "Asks for size, samples, a transparent ground and overlays, and saves a picture."
         "screenshot render resolution size transparent alpha large print wallpaper";
     SaveTurntable File ONCE []
-        "Save turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
+        "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
         "animation gif apng video movie spin rotate frames orbit";
     ExportScene File ONCE []
         "Export scene..." "Writes the scene for other programs, as OBJ with MTL or as glTF."
@@ -404,6 +404,12 @@ actions! {
     ApertureDown Light REPEATS [Text("-")]
         "Narrower spot" "Closes the selected spot by 5 degrees."
         "cone angle smaller tighten";
+    ToggleAllShadows Light ONCE []
+        "Shadows" "Switches the shadows of all lights on or off."
+        "shadow cast ray trace occlusion shade";
+    ToggleShadows Light ONCE []
+        "Shadows of this light" "Switches the shadows of the selected light on or off."
+        "shadow cast ray trace occlusion shade lamp";
     AimAtSelection Light ONCE []
         "Aim at selection" "Turns the selected spot or sun towards the selected object."
         "point target look track direct";

@@ -11,6 +11,7 @@ use egui::{Context, Id, Modal, Ui};
 use super::browser::{Browser, Choice, Mode};
 use super::material_dialog::{self, MaterialChoices, MaterialDialog};
 use super::picture_dialog::{PictureChoices, PictureDialog};
+use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::take_focus;
 use crate::io;
@@ -83,6 +84,8 @@ pub(crate) struct Dialogs {
     /// The folder of the last file.
     folder: PathBuf,
     system: Option<SystemDialog>,
+    /// A dialog of the system's that is to be opened.
+    waiting: Option<(Wanted, String)>,
     /// The last one is on top.
     open: Vec<Dialog>,
 }
@@ -164,34 +167,48 @@ impl Dialogs {
         wanted: Wanted,
         name: &str,
     ) -> Result<(), &'static str> {
-        if let Some(open) = &self.system {
-            return Err(open.wanted.description().0);
+        if let Some(open) = self.system_title() {
+            return Err(open);
         }
-        let (title, mode, endings) = wanted.description();
-        let folder = self.folder();
-        let own_name = name.to_owned();
         if self.native {
-            let task = Task::start(ctx, title.to_owned(), move |_| {
-                let mut dialog = rfd::FileDialog::new()
-                    .set_title(title)
-                    .add_filter(endings.join(", "), &endings)
-                    .set_directory(folder);
-                if !own_name.is_empty() {
-                    dialog = dialog.set_file_name(own_name);
-                }
-                match mode {
-                    Mode::Open => dialog.pick_files(),
-                    Mode::Save => dialog.save_file().map(|path| vec![path]),
-                }
-            });
-            if let Ok(task) = task {
-                let (begun, name) = (Instant::now(), name.to_owned());
-                self.system = Some(SystemDialog { wanted, name, begun, task });
-                return Ok(());
-            }
+            self.waiting = Some((wanted, name.to_owned()));
+            ctx.request_repaint();
+        } else {
+            self.browse(wanted, name);
         }
-        self.browse(wanted, name);
         Ok(())
+    }
+
+    /// The title of the system's dialog that is open.
+    pub(crate) fn system_title(&self) -> Option<&'static str> {
+        let open = self.system.as_ref().map(|open| &open.wanted);
+        let wanted = open.or(self.waiting.as_ref().map(|(wanted, _)| wanted));
+        wanted.map(|wanted| wanted.description().0)
+    }
+
+    /// Opens the system's dialog that was asked for, over its parent.
+    pub(crate) fn open_system(&mut self, ctx: &Context, parent: &dyn Parent) {
+        let Some((wanted, name)) = self.waiting.take() else { return };
+        let (title, mode, endings) = wanted.description();
+        let mut dialog = rfd::FileDialog::new()
+            .set_title(title)
+            .add_filter(endings.join(", "), &endings)
+            .set_directory(self.folder())
+            .set_parent(parent);
+        if !name.is_empty() {
+            dialog = dialog.set_file_name(&name);
+        }
+        let task = Task::start(ctx, title.to_owned(), move |_| match mode {
+            Mode::Open => dialog.pick_files(),
+            Mode::Save => dialog.save_file().map(|path| vec![path]),
+        });
+        match task {
+            Ok(task) => {
+                let begun = Instant::now();
+                self.system = Some(SystemDialog { wanted, name, begun, task });
+            }
+            Err(_) => self.browse(wanted, &name),
+        }
     }
 
     /// Shows the open dialogs. Returns the answer, if any.

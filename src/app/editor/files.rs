@@ -350,13 +350,24 @@ impl App {
 
     /// As [`Self::replace`]; gives what was there.
     pub(crate) fn swap(&mut self, state: State) -> State {
-        let State { panels, theme, drawing, .. } = self.state;
+        let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
         let statistics = self.state.statistics.clone();
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
         self.end_measuring();
         self.first_steps = None;
-        let new = State { panels, theme, drawing, statistics, recent, recoverable, ..state };
+        let new = State {
+            panels,
+            theme,
+            drawing,
+            layout,
+            overlays,
+            greeting,
+            statistics,
+            recent,
+            recoverable,
+            ..state
+        };
         std::mem::replace(&mut self.state, new)
     }
 }

@@ -12,6 +12,9 @@ use egui::{Context, ThemePreference};
 
 use super::App;
 use crate::app::documents::loading::{Fetched, Opening};
+use crate::app::input::keyboard::Keyboard;
+use crate::app::input::keymap::Keymap;
+use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, Notice, State};
 use crate::app::widgets::text::file_name;
 use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Theme, Unsaved};
@@ -54,6 +57,9 @@ impl App {
         ctx.set_zoom_factor(preferences.scale);
         self.state.theme = theme;
         self.state.panels = preferences.panels;
+        self.state.overlays = preferences.overlays;
+        self.state.layout = Layout::of_shares(&preferences.shares);
+        Keyboard::set_keymap(ctx, Keymap::of_names(&preferences.keys));
         self.state.gizmo = preferences.gizmo;
         let Preferences { refines, refined, budget_ms, .. } = preferences;
         self.state.drawing = DrawingChoices { refines, refined, budget_ms };
@@ -252,6 +258,9 @@ fn preferences_now(ctx: &Context, state: &State, before: &Preferences) -> Prefer
         scale,
         window: size.map(whole).or(before.window),
         maximized,
+        shares: state.layout.shares(),
+        overlays: state.overlays,
+        keys: Keyboard::keymap(ctx).names(),
         refines: state.drawing.refines,
         refined: state.drawing.refined,
         budget_ms: state.drawing.budget_ms,

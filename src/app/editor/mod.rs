@@ -23,6 +23,7 @@ use std::time::Duration;
 
 use egui::{Context, UiBuilder, ViewportCommand};
 
+use crate::accuracy::AccuracyPreset;
 use crate::app::actions::{Action, Request};
 use crate::app::documents::dialogs::{After, Dialogs};
 use crate::app::documents::loading::{Loading, Queued, Waiting};
@@ -31,7 +32,7 @@ use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::worker::Worker;
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{self, notices, pixel};
-use crate::app::shell::Editor;
+use crate::app::shell::{Editor, Parent};
 use crate::app::state::State;
 use crate::app::state::layout::NARROW;
 use crate::app::viewport::comparison::Comparison;
@@ -126,6 +127,25 @@ impl App {
         self.dialogs.native = true;
     }
 
+    /// Draws with the accuracy of a preset.
+    pub fn use_preset(&mut self, preset: &AccuracyPreset) {
+        self.state.settings = preset.of(&self.state.settings);
+    }
+
+    /// Shows the strip of the first minute, until the first change.
+    pub const fn greet(&mut self) {
+        self.state.greeting = true;
+    }
+
+    /// Puts the strip of the first minute away if anything has begun.
+    fn end_greeting(&mut self) {
+        let State { history, path, lab, panels, .. } = &self.state;
+        let has_begun = history.position() > 0 || path.is_some() || lab.away || panels.laboratory;
+        if has_begun || !self.loading.is_empty() {
+            self.state.greeting = false;
+        }
+    }
+
     /// Shows the editor, and answers all requests.
     pub fn editor_ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
@@ -133,6 +153,7 @@ impl App {
         let _touch = self.lab.touch();
         self.begin(&ctx, &mut requests);
         self.state.zoom = ctx.zoom_factor();
+        self.state.asking = self.dialogs.system_title();
         self.state.narrow = ui.available_width() < NARROW;
         let arrangement = panels::show(ui, &self.state, &mut requests);
         let place = arrangement.picture();
@@ -144,6 +165,7 @@ impl App {
                 self.comparison.ui(&ui, rect, &self.state, &mut requests);
             }
         }
+        arrangement.greeting_ui(ui, &self.state, &mut requests);
         arrangement.splitters_ui(ui, &self.state, &mut requests);
         notices::show(&ctx, &self.state, &self.loading, &self.making.tasks, &mut requests);
         pixel::show(&ctx, &self.state, place, &mut requests);
@@ -169,6 +191,7 @@ impl App {
         if let Some(answer) = answer {
             self.take_answer(&ctx, answer);
         }
+        self.end_greeting();
         self.hear_loading(&ctx);
         self.hear_making(&ctx);
         self.hear_searches();
@@ -330,11 +353,14 @@ impl App {
 }
 
 impl Editor for App {
-    fn frame(&mut self, ui: &mut egui::Ui) {
+    fn frame(&mut self, ui: &mut egui::Ui, parent: &dyn Parent) {
         self.lab.rest();
         // A panic costs one frame, not the user's work, unless it comes in every frame.
         match catch_unwind(AssertUnwindSafe(|| self.editor_ui(ui))) {
-            Ok(()) => self.faults = 0,
+            Ok(()) => {
+                self.faults = 0;
+                self.dialogs.open_system(ui.ctx(), parent);
+            }
             Err(fault) if self.faults >= MOST_FAULTS => resume_unwind(fault),
             Err(_) => {
                 self.faults += 1;

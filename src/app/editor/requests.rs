@@ -7,11 +7,12 @@ use egui::{Context, Key};
 use glam::DVec3;
 
 use super::App;
-use crate::app::actions::{Action, Chord, FileIntent, Intent, Request, resolve};
+use crate::app::actions::{Action, Chord, FileIntent, Intent, KeyRequest, Request, resolve};
 use crate::app::documents::dialogs::{After, Wanted};
 use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::documents::picture_dialog::Purpose;
 use crate::app::input::keyboard::{Keyboard, Press};
+use crate::app::input::keymap::Keymap;
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
 use crate::edit::several::Others;
@@ -109,6 +110,8 @@ impl App {
             Request::Recover(at) => self.unless_unsaved(ctx, After::Recover(at)),
             Request::DiscardWork(at) => self.discard_work(at),
             Request::Layout(layout) => state.layout = layout,
+            Request::Keys(request) => answer_keys(ctx, request),
+            Request::EndGreeting => state.greeting = false,
             Request::Refuse(why) => self.refuse(why),
         }
     }
@@ -271,4 +274,21 @@ impl App {
     pub(crate) fn refuse(&mut self, why: String) {
         self.state.message = Some(Message { text: why, tone: Tone::Refused });
     }
+}
+
+/// Answers a request about keys.
+fn answer_keys(ctx: &Context, request: KeyRequest) {
+    let mut keymap = Keymap::clone(&Keyboard::keymap(ctx));
+    match request {
+        KeyRequest::Choose(action) => return Keyboard::choose_for(ctx, Some(action)),
+        KeyRequest::Cancel => return Keyboard::choose_for(ctx, None),
+        KeyRequest::Take(action, chord) => {
+            keymap.set(action, chord);
+            Keyboard::choose_for(ctx, None);
+        }
+        KeyRequest::Reset(action) => keymap.reset(action),
+        KeyRequest::ResetAll => keymap = Keymap::default(),
+    }
+    Keyboard::set_keymap(ctx, keymap);
+    ctx.request_repaint();
 }

@@ -89,7 +89,8 @@ fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
     let offer = match why {
         Unseen::TurnedAway { .. } => Some(Offer::TwoSides(id)),
         Unseen::Covered { .. } | Unseen::BetweenPixels => Some(Offer::Frame(id)),
-        Unseen::Transparent | Unseen::LeftOut(_) | Unseen::Unexamined => None,
+        Unseen::Transparent => Some(Offer::Opaque(id)),
+        Unseen::LeftOut(_) | Unseen::Unexamined => None,
     };
     let turned_away = matches!(why, Unseen::TurnedAway { .. });
     let (text, offer) = if !turned_away && out_of_sight(state, object, SIZE) {

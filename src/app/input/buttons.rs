@@ -32,7 +32,7 @@ impl Action {
     /// left. Gives the action back when clicked.
     pub fn menu_item(self, ui: &mut Ui, state: &State) -> Option<Self> {
         let info = self.info();
-        let key = info.keys.first().map(|key| key.name()).unwrap_or_default();
+        let key = first_key(ui, self).unwrap_or_default();
         let tick = IdSalt::new("tick");
         let atoms = (Atom::custom(tick, egui::vec2(12.0, 12.0)), info.label);
         let button = egui::Button::new(atoms).shortcut_text(key);
@@ -60,8 +60,9 @@ impl Action {
         let tip = |ui: &mut Ui| {
             let info = self.info();
             ui.label(info.hint);
-            if !info.keys.is_empty() {
-                let keys: Vec<String> = info.keys.iter().map(|key| key.name()).collect();
+            let keymap = Keyboard::keymap(ui.ctx());
+            if !keymap.keys(self).is_empty() {
+                let keys: Vec<String> = keymap.keys(self).iter().map(|key| key.name()).collect();
                 ui.label(RichText::new(format!("Key: {}", keys.join(" or "))).weak());
             }
             if let Err(why) = self.availability(state) {
@@ -83,6 +84,11 @@ impl Action {
     }
 }
 
+/// The key of an action that is shown.
+pub(crate) fn first_key(ui: &Ui, action: Action) -> Option<String> {
+    Keyboard::keymap(ui.ctx()).keys(action).first().map(|key| key.name())
+}
+
 /// The switch of an action, with its key and its explanation.
 pub(crate) fn action_switch(
     ui: &mut Ui,
@@ -93,7 +99,7 @@ pub(crate) fn action_switch(
     let info = action.info();
     let switch = Switch {
         label: info.label,
-        key: info.keys.first().map(|key| key.name()),
+        key: first_key(ui, action),
         on: action.is_on(state).unwrap_or(false),
         enabled: action.availability(state).is_ok(),
     };
@@ -119,14 +125,14 @@ pub(crate) fn action_icon(
 
 /// The choice that an action makes. While it is on it asks for nothing.
 pub(crate) fn action_choice<'a>(
+    ui: &Ui,
     of: &str,
-    label: &'a str,
-    on: bool,
+    (label, on): (&'a str, bool),
     action: Action,
     state: &State,
 ) -> Choice<'a> {
     let info = action.info();
     let refused = if on { None } else { action.availability(state).err() };
-    let key = info.keys.first().map(|key| key.name());
+    let key = first_key(ui, action);
     Choice { key, refused, ..Choice::new(of, label, on, info.hint) }
 }

@@ -6,9 +6,11 @@
 //! egui's.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 
+use super::keymap::{Keymap, chord_of};
 use crate::app::actions::{Action, Chord, Group};
 use crate::app::widgets::gestures;
 use crate::app::widgets::regions::{self, Way};
@@ -44,6 +46,9 @@ pub(crate) struct Keyboard {
     left_by_escape: bool,
     /// Whether an Esc was held back since this was last asked.
     held_escape: bool,
+    keymap: Arc<Keymap>,
+    /// The action that the next key is chosen for, and that key.
+    choosing: Option<(Action, Option<Chord>)>,
 }
 
 impl Keyboard {
@@ -62,6 +67,26 @@ impl Keyboard {
     /// What was typed for a handle since this was last asked.
     pub(crate) fn take_typed(ctx: &Context) -> String {
         std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().typed)
+    }
+
+    /// The keys of all actions.
+    pub(crate) fn keymap(ctx: &Context) -> Arc<Keymap> {
+        Arc::clone(&ctx.plugin_or_default::<Self>().lock().keymap)
+    }
+
+    /// Gives actions other keys.
+    pub(crate) fn set_keymap(ctx: &Context, keymap: Keymap) {
+        ctx.plugin_or_default::<Self>().lock().keymap = Arc::new(keymap);
+    }
+
+    /// The action that the next key is chosen for, and that key once it was pressed.
+    pub(crate) fn choosing(ctx: &Context) -> Option<(Action, Option<Chord>)> {
+        ctx.plugin_or_default::<Self>().lock().choosing
+    }
+
+    /// Lets the next key be chosen for an action, or no longer.
+    pub(crate) fn choose_for(ctx: &Context, action: Option<Action>) {
+        ctx.plugin_or_default::<Self>().lock().choosing = action.map(|action| (action, None));
     }
 
     /// What was pressed since it was last asked, in order.
@@ -136,7 +161,8 @@ impl Keyboard {
 
     /// Asks for the action whose chord fits, if it may act.
     fn ask(&mut self, owner: Owner, fits: impl Fn(&Chord) -> bool) {
-        let fitting = |action: &Action| action.info().keys.iter().copied().find(|key| fits(key));
+        let keymap = Arc::clone(&self.keymap);
+        let fitting = |action: &Action| keymap.keys(*action).iter().copied().find(|key| fits(key));
         let found = Action::ALL.iter().find_map(|action| Some((*action, fitting(action)?)));
         let Some((action, chord)) = found else { return };
         let info = action.info();
@@ -188,6 +214,20 @@ impl egui::Plugin for Keyboard {
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
         let owner = self.whose(ctx);
+        if let Some((_, chosen @ None)) = &mut self.choosing {
+            let pressed = input.events.iter().find_map(|event| match event {
+                Event::Key { key, pressed: true, modifiers, .. } => Some((*key, *modifiers)),
+                _ => None,
+            });
+            match pressed {
+                Some((Key::Escape, _)) => self.choosing = None,
+                Some((key, modifiers)) => *chosen = chord_of(key, modifiers),
+                None => {}
+            }
+            // What is chosen presses nothing and types nothing.
+            let is_key = |event: &Event| matches!(event, Event::Key { .. } | Event::Text(_));
+            input.events.retain(|event| !is_key(event));
+        }
         input.events.retain(|event| match event {
             Event::Key { key, pressed: true, modifiers, repeat, .. } => {
                 !self.key(owner, *key, *modifiers, *repeat)

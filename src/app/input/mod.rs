@@ -2,3 +2,4 @@
 
 pub(crate) mod buttons;
 pub(crate) mod keyboard;
+pub(crate) mod keymap;

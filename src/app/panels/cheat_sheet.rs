@@ -1,9 +1,11 @@
-//! The cheat sheet: every key, with what it would do now.
+//! The cheat sheet: every key, with what it would do now. Keys are changed here, too.
 
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
 use crate::app::actions::search::Search;
-use crate::app::actions::{Action, Group, Request};
+use crate::app::actions::{Action, Group, KeyRequest, Request};
+use crate::app::input::keyboard::Keyboard;
+use crate::app::input::keymap::Keymap;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls;
@@ -25,6 +27,7 @@ pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
         .fixed_size(vec2(WIDTH.min(room.x), room.y.min(520.0)))
         .show(ui.ctx(), |ui| contents(ui, state, requests));
     if !open {
+        requests.push(Request::Keys(KeyRequest::Cancel));
         requests.push(Action::CheatSheet.into());
     }
 }
@@ -56,13 +59,18 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         requests.push(Action::CheatSheet.into());
     }
     ui.data_mut(|data| data.insert_temp(id, wanted.clone()));
+    let keymap = Keyboard::keymap(ui.ctx());
+    let changes = changes_ui(ui, &keymap, requests);
+    choosing_ui(ui, &keymap, requests);
     ui.add_space(theme::GAP);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let mut search = Search::new(&wanted);
         let mut found = false;
         for group in Group::ALL {
-            let actions: Vec<Action> =
-                group.actions().filter(|it| it.score(&mut search, &wanted).is_some()).collect();
+            let actions: Vec<Action> = group
+                .actions()
+                .filter(|it| it.score_on(keymap.keys(*it), &mut search, &wanted).is_some())
+                .collect();
             if actions.is_empty() {
                 continue;
             }
@@ -70,11 +78,78 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.add_space(theme::GAP);
             ui.label(RichText::new(group.label()).strong());
             for action in actions {
-                line(ui, state, requests, action);
+                if changes {
+                    change_ui(ui, &keymap, requests, action);
+                } else {
+                    line(ui, state, requests, action);
+                }
             }
         }
         if !found {
             ui.weak("Nothing of this name, and no such key.");
+        }
+    });
+}
+
+/// The switch between pressing and changing keys; gives whether they are changed.
+fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) -> bool {
+    let id = Id::unique("keys are changed");
+    let mut changes = ui.data(|data| data.get_temp(id)).unwrap_or(false);
+    ui.horizontal(|ui| {
+        if ui.checkbox(&mut changes, "Change keys").changed() {
+            ui.data_mut(|data| data.insert_temp(id, changes));
+            requests.push(Request::Keys(KeyRequest::Cancel));
+        }
+        let any = *keymap != Keymap::default();
+        if changes && ui.add_enabled(any, egui::Button::new("Reset all keys")).clicked() {
+            requests.push(Request::Keys(KeyRequest::ResetAll));
+        }
+    });
+    changes
+}
+
+/// What is said while a key is chosen: to press one, or which action has it already.
+fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
+    let Some((action, chord)) = Keyboard::choosing(ui.ctx()) else { return };
+    let label = action.info().label;
+    let Some(chord) = chord else {
+        ui.label(format!("Press the key for \"{label}\"; Esc keeps it as it is."));
+        return;
+    };
+    let Some(other) = keymap.clash(action, chord) else {
+        requests.push(Request::Keys(KeyRequest::Take(action, chord)));
+        return;
+    };
+    ui.horizontal_wrapped(|ui| {
+        let has = other.info().label;
+        let text = format!("{chord} is the key of \"{has}\".");
+        ui.colored_label(theme::error(ui.visuals()), text);
+        if ui.button(format!("Use it for \"{label}\"")).clicked() {
+            requests.push(Request::Keys(KeyRequest::Take(action, chord)));
+        }
+        if ui.button("Keep it").clicked() {
+            requests.push(Request::Keys(KeyRequest::Cancel));
+        }
+    });
+}
+
+/// One action, with a button that chooses its key.
+fn change_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>, action: Action) {
+    let label = action.info().label;
+    ui.horizontal(|ui| {
+        let keys: Vec<String> = keymap.keys(action).iter().map(|key| key.name()).collect();
+        let text = if keys.is_empty() { "none".to_owned() } else { keys.join(", ") };
+        let button = egui::Button::new(text).min_size(vec2(KEYS - theme::GAP, theme::ROW));
+        let button = ui.add(button).accessible_name(format!("Key of {label}"));
+        if button.on_hover_text("Chooses another key").clicked() {
+            requests.push(Request::Keys(KeyRequest::Choose(action)));
+        }
+        ui.label(label);
+        if keymap.is_chosen(action) {
+            let reset = ui.small_button("Reset").accessible_name(format!("Reset key of {label}"));
+            if reset.clicked() {
+                requests.push(Request::Keys(KeyRequest::Reset(action)));
+            }
         }
     });
 }
@@ -104,7 +179,8 @@ fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action)
         controls::key_cap(ui, at, key, enabled);
         left += width + theme::GAP;
     };
-    for key in info.keys.iter().flat_map(|key| key.names()) {
+    let keymap = Keyboard::keymap(ui.ctx());
+    for key in keymap.keys(action).iter().flat_map(|key| key.names()) {
         cap(ui, &key);
     }
     let color = controls::text_color(ui, enabled);

@@ -1,6 +1,7 @@
 //! The panels around the viewport. They read the state and return requests; they change nothing.
 
 mod cheat_sheet;
+mod greeting;
 mod lab;
 mod menu_bar;
 pub(crate) mod notices;
@@ -33,6 +34,11 @@ impl Arrangement {
     /// The place that is left to the picture.
     pub(crate) const fn picture(&self) -> Rect {
         self.places.picture
+    }
+
+    /// Shows the strip of the first minute over the picture.
+    pub(crate) fn greeting_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+        greeting::show(ui, self.places.picture, state, requests);
     }
 
     /// Shows the borders that can be dragged; over the picture, which would take their presses.

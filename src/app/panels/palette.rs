@@ -10,6 +10,7 @@ use crate::accuracy::{ACCURACY_PRESETS, AXES};
 use crate::app::actions::search::{Search, Texts};
 use crate::app::actions::{Action, LabRequest, Request};
 use crate::app::input::keyboard::Keyboard;
+use crate::app::input::keymap::Keymap;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls;
@@ -94,7 +95,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
     if response.changed() {
         chosen = 0;
     }
-    let entries = found(state, &query);
+    let entries = found(&Keyboard::keymap(ui.ctx()), state, &query);
     let last = entries.len().saturating_sub(1);
     chosen = (chosen + down).saturating_sub(up).min(last);
     ui.data_mut(|data| {
@@ -132,17 +133,18 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
 }
 
 /// Everything that matches, best first.
-fn found(state: &State, query: &str) -> Vec<Entry> {
+fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
     let mut search = Search::new(query);
     let mut entries = Vec::new();
     for action in Action::ALL.iter().copied().filter(|action| *action != Action::Palette) {
-        let Some(score) = action.score(&mut search, query) else { continue };
+        let keys = keymap.keys(action);
+        let Some(score) = action.score_on(keys, &mut search, query) else { continue };
         let info = action.info();
         entries.push(Entry {
             label: info.label.to_owned(),
             kind: info.group.label(),
             hint: info.hint.to_owned(),
-            key: info.keys.first().map(|key| key.name()).unwrap_or_default(),
+            key: keys.first().map(|key| key.name()).unwrap_or_default(),
             on: action.is_on(state) == Some(true),
             refused: action.availability(state).err(),
             score,

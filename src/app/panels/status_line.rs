@@ -28,7 +28,11 @@ pub(crate) fn show(ui: &mut Ui, state: &State, _asks: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if let Some(message) = &state.message {
+            if let Some(title) = state.asking {
+                let text = format!("the dialog \"{title}\" is open");
+                let message = Message { text, tone: Tone::Done };
+                message_ui(ui, &message, ui.available_width() * 0.5);
+            } else if let Some(message) = &state.message {
                 message_ui(ui, message, ui.available_width() * 0.5);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| line_ui(ui, state));

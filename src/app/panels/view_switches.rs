@@ -38,6 +38,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         section(ui, "Light", true, |ui| {
             slots_ui(ui, state, requests);
+            action_switch(ui, state, requests, Action::ToggleAllShadows);
             normals_ui(ui, state, requests);
             for axis in AXES.iter().filter(|axis| is_of_light(axis)) {
                 axis_ui(ui, axis, state, requests);
@@ -61,7 +62,7 @@ fn actions_ui(
 ) {
     let all: Vec<Choice<'_>> = actions
         .iter()
-        .map(|(label, on, action)| action_choice(of, label, *on, *action, state))
+        .map(|(label, on, action)| action_choice(ui, of, (label, *on), *action, state))
         .collect();
     if let Some(clicked) = choices(ui, &all) {
         requests.push(actions[clicked].2.into());
@@ -85,7 +86,7 @@ pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>
         .iter()
         .map(|(label, this, action)| Choice {
             key: (*this == next).then(|| "c".to_owned()),
-            ..action_choice("Subject", label, *this == subject, *action, state)
+            ..action_choice(ui, "Subject", (label, *this == subject), *action, state)
         })
         .collect();
     if let Some(clicked) = choices(ui, &all_choices) {

@@ -21,9 +21,9 @@ struct Guest {
 }
 
 impl eframe::App for Guest {
-    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let asked = ui.input(|input| input.viewport().close_requested());
-        self.editor.frame(ui);
+        self.editor.frame(ui, frame);
         self.left = asked;
     }
 

@@ -12,6 +12,7 @@ mod window;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use egui::{Context, Ui, ViewportBuilder};
+use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
 /// What paints the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,10 +26,15 @@ pub enum Shell {
     Software,
 }
 
+/// The window, for dialogs of the system that stand over it.
+pub(crate) trait Parent: HasWindowHandle + HasDisplayHandle {}
+
+impl<T: HasWindowHandle + HasDisplayHandle> Parent for T {}
+
 /// What a shell shows.
 pub(crate) trait Editor {
     /// Shows a frame, and answers what the user did in it.
-    fn frame(&mut self, ui: &mut Ui);
+    fn frame(&mut self, ui: &mut Ui, parent: &dyn Parent);
 
     /// The user has left: the window was asked to close, and the editor did not object. A window
     /// that is lost, to a display that ends or by a fault, is not left.

@@ -255,8 +255,8 @@ impl Window {
         }
         let input = self.input();
         let asked_to_close = input.viewport().close_requested();
-        let editor = &mut self.editor;
-        let output = self.ctx.run_ui(input, |ui| editor.frame(ui));
+        let (editor, parent) = (&mut self.editor, &*self.window);
+        let output = self.ctx.run_ui(input, |ui| editor.frame(ui, parent));
         self.info.events.clear();
         let FullOutput { platform_output, textures_delta, shapes, pixels_per_point, .. } = output;
         self.textures.append(textures_delta);

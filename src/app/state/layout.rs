@@ -4,6 +4,8 @@
 //! for is worked out from them in each frame, and they stay as they are, so that panels recover
 //! when a window that was small is large again.
 
+use std::collections::BTreeMap;
+
 use egui::{Rect, pos2, vec2};
 
 use crate::scene::Panels;
@@ -104,6 +106,39 @@ pub struct Places {
     pub plan: Option<Rect>,
     /// The picture.
     pub picture: Rect,
+}
+
+impl Layout {
+    /// What the user has chosen, by the names of the borders.
+    #[must_use]
+    pub fn shares(&self) -> BTreeMap<String, f32> {
+        let chosen = |splitter: Splitter| {
+            let share = match splitter {
+                Splitter::Left => self.left,
+                Splitter::Right => self.right,
+                Splitter::Switches => self.switches,
+                Splitter::Laboratory => self.laboratory,
+                Splitter::Plan => self.plan,
+            };
+            Some((format!("{splitter:?}").to_lowercase(), share?))
+        };
+        Splitter::ALL.into_iter().filter_map(chosen).collect()
+    }
+
+    /// The layout with these shares.
+    #[must_use]
+    pub fn of_shares(shares: &BTreeMap<String, f32>) -> Self {
+        let share =
+            |splitter: Splitter| shares.get(&format!("{splitter:?}").to_lowercase()).copied();
+        Self {
+            left: share(Splitter::Left),
+            right: share(Splitter::Right),
+            switches: share(Splitter::Switches),
+            laboratory: share(Splitter::Laboratory),
+            plan: share(Splitter::Plan),
+            unfolded: None,
+        }
+    }
 }
 
 /// A part of `of`, with at least `least` for it and `rest` beside it; half if there is no room.

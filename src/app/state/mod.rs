@@ -19,7 +19,8 @@ use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selec
 use crate::lab::cost::{Costs, Explained};
 use crate::render::{Damage, PixelColor};
 use crate::scene::{
-    Command, ItemId, Light, LightKind, Object, ObjectId, Panels, Scene, Sides, View,
+    Command, ItemId, Light, LightKind, MaterialChoice, Object, ObjectId, Panels, Scene, Sides,
+    Surface, View,
 };
 use laboratory::Laboratory;
 use layout::Layout;
@@ -61,6 +62,10 @@ pub struct State {
     pub several: Others,
     /// Whether the next click into the picture aims the selected light.
     pub aiming: bool,
+    /// The title of the system's dialog that is open.
+    pub asking: Option<&'static str>,
+    /// Whether the strip of the first minute is shown.
+    pub greeting: bool,
     /// Whether the next click into the picture explains a pixel.
     pub explaining: bool,
     /// The pixel that is explained.
@@ -142,6 +147,8 @@ pub enum Offer {
     TwoSides(ObjectId),
     /// To show an object that is hidden.
     Show(ObjectId),
+    /// To make an object opaque.
+    Opaque(ObjectId),
 }
 
 impl Offer {
@@ -152,13 +159,14 @@ impl Offer {
             Self::Frame(_) => "Frame",
             Self::TwoSides(_) => "Draw both sides",
             Self::Show(_) => "Show",
+            Self::Opaque(_) => "Make opaque",
         }
     }
 
     /// The object that it is about.
     #[must_use]
     pub const fn object(self) -> ObjectId {
-        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id)) = self;
+        let (Self::Frame(id) | Self::TwoSides(id) | Self::Show(id) | Self::Opaque(id)) = self;
         id
     }
 
@@ -179,7 +187,26 @@ impl Offer {
                 let show = |object: &mut Object| object.visible = true;
                 (items::change_object(scene, id, show)?, format!("Show {name}"))
             }
+            Self::Opaque(_) => {
+                (items::change_object(scene, id, make_opaque)?, format!("Make {name} opaque"))
+            }
         })
+    }
+}
+
+/// Makes an object opaque: its own opacity becomes 1. If it was, the materials or the texture of
+/// its file hide it: it gets the first part's material as its own, or shows its material alone.
+fn make_opaque(object: &mut Object) {
+    let was_transparent = object.opacity < 1.0;
+    object.opacity = 1.0;
+    if was_transparent {
+        return;
+    }
+    let parts = u32::try_from(object.model.mesh.parts().len()).unwrap_or(u32::MAX);
+    if (0..parts).all(|part| object.part_look(part).opacity == 0.0) {
+        object.material = MaterialChoice::Own(object.part_look(0).material);
+    } else if (0..parts).any(|part| object.part_look(part).texture.is_some()) {
+        object.surface = Surface::Material;
     }
 }
 
@@ -314,6 +341,8 @@ impl State {
             gizmo: true,
             several: Others::default(),
             aiming: false,
+            asking: None,
+            greeting: false,
             explaining: false,
             explained: None,
             zoom: 1.0,

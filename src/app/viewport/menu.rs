@@ -68,6 +68,7 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
             Action::Delete,
         ],
         ItemId::Light(_) => &[
+            Action::ToggleShadows,
             Action::AimAtSelection,
             Action::AimByClick,
             Action::ToggleVisible,

@@ -54,6 +54,7 @@ fn redrawn(state: &State, changes: &Damage) -> String {
         DamageCause::Camera => "seen from elsewhere".to_owned(),
         DamageCause::Background => "another background".to_owned(),
         DamageCause::Settings => "drawn in another way".to_owned(),
+        DamageCause::Shadows => "other shadows".to_owned(),
         DamageCause::Order => "another order".to_owned(),
         DamageCause::Items(items) => reasons(items, |item| state.name(item)),
     };

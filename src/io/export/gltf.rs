@@ -24,8 +24,13 @@ use super::Content;
 use super::gltf_buffer::{Buffer, Limits, Vertices};
 use super::look::{Look, Looks, polygons};
 use crate::base::math;
-use crate::scene::{Attenuation, Camera, Light, LightKind, NONE, Object, Projection, Scene};
+use crate::scene::{
+    Attenuation, Camera, Light, LightKind, MapKind, NONE, Object, Projection, Scene,
+};
 use crate::scene::{SpotOwner, Texture, View, Wrap, dvec3};
+
+/// The maps that glTF has, too.
+const MAPS: [MapKind; 2] = [MapKind::Emission, MapKind::Normal];
 
 /// Whether the buffer is a file of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,7 +166,15 @@ impl Writer<'_> {
         }
     }
 
-    fn node(&mut self, node: Node) {
+    /// Adds a node; some readers want no two of the same name.
+    fn node(&mut self, mut node: Node) {
+        if let Some(name) = &node.name {
+            let taken =
+                |name: &String| self.root.nodes.iter().any(|it| it.name.as_ref() == Some(name));
+            let numbered = (2..).map(|number| format!("{name} {number}"));
+            let mut names = std::iter::once(name.clone()).chain(numbered);
+            node.name = names.find(|name| !taken(name));
+        }
         let node = self.root.push(node);
         self.nodes.push(node);
     }
@@ -227,10 +240,20 @@ impl Writer<'_> {
 
     fn materials(&mut self) -> Result<(), String> {
         let mut shown = Vec::new();
+        let mut left_out = false;
         for i in 0..self.looks.all.len() {
-            let texture = self.looks.all[i].texture.clone();
-            let number = texture.as_ref().map(|it| self.looks.texture_number(it));
-            shown.push(texture.zip(number));
+            let look = self.looks.all[i].clone();
+            let map = |kind| look.maps.iter().find(|map| map.0 == kind).map(|map| &map.1.texture);
+            left_out |= look.maps.iter().any(|(kind, _)| !MAPS.contains(kind));
+            let of_look = [look.texture.as_ref(), map(MAPS[0]), map(MAPS[1])];
+            shown.push(
+                of_look
+                    .map(|texture| texture.map(|it| (it.clone(), self.looks.texture_number(it)))),
+            );
+        }
+        if left_out {
+            let text = "glTF has no maps of heights, highlights, ambient light and opacity";
+            self.notes.push(format!("{text}: left out"));
         }
         for (i, bytes) in self.looks.encoded()?.into_iter().enumerate() {
             let view = self.buffer.view(&mut self.root, bytes, None);
@@ -244,12 +267,12 @@ impl Writer<'_> {
             });
         }
         for (i, shown) in shown.into_iter().enumerate() {
-            let info = shown.map(|(texture, number)| self.texture(&texture, number));
+            let infos = shown.map(|it| it.map(|(texture, number)| self.texture(&texture, number)));
             let look = self.looks.all[i].clone();
             if look.unlit {
                 self.uses("KHR_materials_unlit");
             }
-            self.root.push(surface(i, &look, info));
+            self.root.push(surface(i, &look, infos));
         }
         Ok(())
     }
@@ -422,7 +445,15 @@ impl Writer<'_> {
 }
 
 /// A material: Phong's as metallic roughness.
-fn surface(i: usize, look: &Look, info: Option<texture::Info>) -> gltf_json::Material {
+fn surface(i: usize, look: &Look, infos: [Option<texture::Info>; 3]) -> gltf_json::Material {
+    let [info, emissive, normal] = infos;
+    let normal = normal.map(|info| material::NormalTexture {
+        index: info.index,
+        scale: 1.0,
+        tex_coord: 0,
+        extensions: None,
+        extras: Default::default(),
+    });
     let base = match (&look.texture, look.colored) {
         (Some(_), _) => look.tint,
         (None, true) => [1.0; 3],
@@ -439,6 +470,9 @@ fn surface(i: usize, look: &Look, info: Option<texture::Info>) -> gltf_json::Mat
             (false, false) => AlphaMode::Opaque,
         }),
         double_sided: look.two_sided,
+        emissive_texture: emissive,
+        emissive_factor: material::EmissiveFactor(look.material.emission.map(linear)),
+        normal_texture: normal,
         name: Some(format!("material {}", i + 1)),
         pbr_metallic_roughness: material::PbrMetallicRoughness {
             base_color_factor: PbrBaseColorFactor([r, g, b, single(look.opacity)]),

@@ -2,7 +2,7 @@
 
 use crate::base::Shared;
 use crate::io::picture::PICTURE_FORMATS;
-use crate::scene::{Material, Object, Surface, Texture};
+use crate::scene::{MapKind, Material, Object, Surface, SurfaceMap, Texture};
 
 /// How a part of an object looks.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,8 @@ pub(super) struct Look {
     pub(super) two_sided: bool,
     /// Whether the texture is shown without light.
     pub(super) unlit: bool,
+    /// Its maps beside the texture, with the factor of heights.
+    pub(super) maps: Vec<(MapKind, SurfaceMap)>,
     /// Whether the vertices have colours.
     pub(super) colored: bool,
 }
@@ -36,7 +38,11 @@ impl Looks {
             texture: of_part.texture.cloned(),
             tint: if textured { object.tint.factors() } else { [1.0; 3] },
             two_sided: object.is_two_sided(),
-            unlit: textured && object.surface == Surface::Texture,
+            unlit: of_part.unlit || (textured && object.surface == Surface::Texture),
+            maps: MapKind::ALL
+                .into_iter()
+                .filter_map(|kind| Some((kind, of_part.map(kind)?.clone())))
+                .collect(),
             colored: !object.model.mesh.colors().is_empty(),
         };
         match self.all.iter().position(|other| *other == look) {

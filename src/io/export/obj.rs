@@ -12,7 +12,7 @@ use glam::{DMat3, DMat4};
 use super::Content;
 use super::look::{Look, Looks, polygons};
 use crate::base::math::normal_matrix;
-use crate::scene::{Corner, NONE, Object, Scene, View, Wrap, dvec3};
+use crate::scene::{Corner, MapKind, NONE, Object, Scene, Texture, View, Wrap, dvec3};
 
 /// How many positions, texture coordinates and normals have been written.
 #[derive(Clone, Copy, Default)]
@@ -38,8 +38,20 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
     let mut mtl = String::from("# exported by Marraztu\n");
     for number in 0..looks.all.len() {
         let look = looks.all[number].clone();
-        let texture = look.texture.as_ref().map(|texture| looks.texture_number(texture));
-        material_to(&mut mtl, stem, number, &look, texture);
+        material_to(&mut mtl, number, &look);
+        if let Some(texture) = &look.texture {
+            let number = looks.texture_number(texture);
+            map_to(&mut mtl, "map_Kd", texture, &texture_name(stem, number));
+        }
+        for (kind, map) in &look.maps {
+            let number = looks.texture_number(&map.texture);
+            let statement = if *kind == MapKind::Bump && map.gain != 1.0 {
+                format!("bump -bm {}", map.gain)
+            } else {
+                kind.statement().to_owned()
+            };
+            map_to(&mut mtl, &statement, &map.texture, &texture_name(stem, number));
+        }
     }
     let mut content = Content::default();
     for (i, bytes) in looks.encoded()?.into_iter().enumerate() {
@@ -52,9 +64,6 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
         content.notes.push(format!("hidden objects are left out: {hidden}"));
     }
     let any = |is: fn(&Look) -> bool| looks.all.iter().any(is);
-    if any(|look| look.unlit) {
-        content.notes.push("textures shown without light are lit in OBJ".to_owned());
-    }
     if any(|look| look.tint != [1.0; 3]) {
         content.notes.push("MTL has no tint of textures: it is left out".to_owned());
     }
@@ -145,16 +154,25 @@ fn turned(turn: &DMat3, normal: [f32; 3]) -> [f32; 3] {
     crate::base::math::unit(placed).unwrap_or(placed).as_vec3().to_array()
 }
 
-fn material_to(mtl: &mut String, stem: &str, number: usize, look: &Look, texture: Option<usize>) {
+fn material_to(mtl: &mut String, number: usize, look: &Look) {
     let material = &look.material;
     let _ = writeln!(mtl, "\nnewmtl material-{}", number + 1);
     let colors = [("Ka", material.ambient), ("Kd", material.diffuse), ("Ks", material.specular)];
     for (word, [r, g, b]) in colors {
         let _ = writeln!(mtl, "{word} {r} {g} {b}");
     }
-    let _ = writeln!(mtl, "Ns {}\nd {}\nillum 2", material.exponent, look.opacity);
-    let (Some(texture), Some(number)) = (&look.texture, texture) else { return };
-    mtl.push_str("map_Kd");
+    let illumination = if look.unlit { 0 } else { 2 };
+    let _ = writeln!(mtl, "Ns {}\nd {}", material.exponent, look.opacity);
+    if material.emission != [0.0; 3] {
+        let [r, g, b] = material.emission;
+        let _ = writeln!(mtl, "Ke {r} {g} {b}");
+    }
+    let _ = writeln!(mtl, "illum {illumination}");
+}
+
+/// A statement of a map: how its picture is laid, and its file.
+fn map_to(mtl: &mut String, statement: &str, texture: &Texture, file: &str) {
+    mtl.push_str(statement);
     if texture.wrap == Wrap::Clamp {
         mtl.push_str(" -clamp on");
     }
@@ -164,5 +182,5 @@ fn material_to(mtl: &mut String, stem: &str, number: usize, look: &Look, texture
     if texture.scale != [1.0; 2] {
         let _ = write!(mtl, " -s {} {} 1", texture.scale[0], texture.scale[1]);
     }
-    let _ = writeln!(mtl, " {}", texture_name(stem, number));
+    let _ = writeln!(mtl, " {file}");
 }

@@ -3,6 +3,7 @@
 //! A file that cannot be understood is set aside under another name, and said; it never stops the
 //! program.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -34,6 +35,13 @@ pub struct Preferences {
     pub window: Option<[f32; 2]>,
     /// Whether the window fills the screen.
     pub maximized: bool,
+    /// The widths in points and the shares of the panels that the user has chosen, by the names of
+    /// their borders.
+    pub shares: BTreeMap<String, f32>,
+    /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
+    pub overlays: bool,
+    /// Keys that the user has chosen: those of each action, by its name.
+    pub keys: BTreeMap<String, Vec<String>>,
     /// Whether the window refines its picture while nothing happens.
     pub refines: bool,
     /// The samples per pixel that it is refined to.
@@ -65,6 +73,9 @@ impl Default for Preferences {
             scale: 1.0,
             window: None,
             maximized: false,
+            shares: BTreeMap::new(),
+            overlays: true,
+            keys: BTreeMap::new(),
             refines: true,
             refined: Samples::Sixteen,
             budget_ms: 33,
@@ -140,6 +151,7 @@ impl Preferences {
             self.scale = 1.0;
         }
         self.window = self.window.filter(|size| size.iter().all(|x| sound(*x, 100.0, 20_000.0)));
+        self.shares.retain(|_, share| sound(*share, 0.0, 20_000.0));
         self.budget_ms = self.budget_ms.clamp(1, 1000);
         self.recent.truncate(MOST_RECENT);
         self

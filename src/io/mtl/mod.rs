@@ -141,10 +141,8 @@ impl<'a> Library<'a> {
             let kind = if other_convention && origin.hidden_by_tr {
                 material.opacity = 1.0;
                 FindingKind::MendedTransparency
-            } else if material.opacity < 0.5 {
+            } else if material.opacity == 0.0 {
                 FindingKind::Transparent
-            } else if material.opacity < 1.0 {
-                FindingKind::Translucent
             } else {
                 continue;
             };
@@ -358,7 +356,7 @@ mod tests {
     fn each_nonsense_is_mended_by_its_rule_and_listed() {
         use FindingKind::*;
         type Row = (&'static str, FindingKind, fn(&FileMaterial) -> bool);
-        let rows: [Row; 11] = [
+        let rows: [Row; 10] = [
             ("Kd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka 1 1 1\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka .5 0 0\nKd .5 0 0\nKs 0 0 0", MendedAmbient, |m| {
@@ -374,11 +372,14 @@ mod tests {
             ("Ka 0 0 0\nKd 1 -1 9\nKs 0 0 0", MendedRange, |m| {
                 m.material.diffuse == [1.0, 0.0, 1.0]
             }),
-            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nTr 0.75", Transparent, |m| m.opacity == 0.25),
-            ("Ka 0 0 0\nKd 0.5\nKs 0 0 0\nd 0.75", Translucent, |m| {
-                m.material.diffuse == [0.5; 3] && m.opacity == 0.75
-            }),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nd 0", Transparent, |m| m.opacity == 0.0),
         ];
+        for (text, opacity) in [("Tr 0.75", 0.25), ("d 0.75", 0.75), ("d 0.01\nTr 0.5", 0.01)] {
+            let (material, findings) =
+                read(&format!("newmtl m\nKa 0 0 0\nKd 0.5\nKs 0 0 0\n{text}"));
+            assert_eq!((material.opacity, findings), (opacity, Vec::new()), "{text}");
+            assert_eq!(material.material.diffuse, [0.5; 3]);
+        }
         for (text, kind, right) in rows {
             let (material, findings) = read(&format!("newmtl m\n{text}\n"));
             assert_eq!(findings, [kind], "{text}");

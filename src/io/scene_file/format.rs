@@ -84,6 +84,8 @@ pub(super) struct FileObject {
     pub(super) texture: Option<FileTexture>,
     #[serde(default = "white")]
     pub(super) tint: [u8; 3],
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub(super) opacity: f64,
     #[serde(default, with = "written_bare", skip_serializing_if = "Option::is_none")]
     pub(super) sides: Option<Sides>,
     /// The predecessor of `sides` in earlier scene files.
@@ -164,6 +166,8 @@ pub(super) struct FileLight {
     pub(super) color: [u8; 3],
     #[serde(default)]
     pub(super) attenuation: Attenuation,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) shadows: bool,
     pub(super) kind: FileLightKind,
 }
 
@@ -336,6 +340,11 @@ fn yes() -> bool {
 
 fn one() -> f64 {
     1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, clippy::float_cmp, reason = "as serde calls it")]
+fn is_one(number: &f64) -> bool {
+    *number == 1.0
 }
 
 fn crease() -> f64 {

@@ -148,6 +148,7 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
     finite("its placement", object.placement.as_flattened())?;
     let FileSpin { axes, speed, since } = object.spin;
     finite("its spin", &[speed, since])?;
+    finite("its opacity", &[object.opacity])?;
     if let Some(texture) = &object.texture {
         finite("its texture", &[texture.offset, texture.scale].concat())?;
     }
@@ -165,6 +166,7 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
         surface: object.surface,
         texture: object.texture.as_ref().map(|texture| needs.texture(texture)),
         tint: Color(object.tint),
+        opacity: object.opacity.clamp(0.0, 1.0),
         sides: read_sides(object),
         file_normals: object.file_normals,
         edge_color: Color(object.edge_color),
@@ -231,6 +233,7 @@ fn read_light(light: &FileLight) -> Result<Light, String> {
         on: light.on,
         color: Color(light.color),
         attenuation: light.attenuation,
+        shadows: light.shadows,
         kind,
     })
 }

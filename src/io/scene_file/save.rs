@@ -78,6 +78,7 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         surface,
         texture,
         tint,
+        opacity,
         sides,
         file_normals,
         edge_color,
@@ -96,6 +97,7 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         surface: *surface,
         texture,
         tint: tint.0,
+        opacity: *opacity,
         sides: Some(*sides),
         two_sided: None,
         file_normals: *file_normals,
@@ -130,7 +132,7 @@ fn file_camera(id: u32, camera: &Camera, folder: &Path) -> Result<FileCamera, St
 }
 
 fn file_light(id: u32, light: &Light) -> FileLight {
-    let Light { name, slot, on, color, attenuation, kind } = light;
+    let Light { name, slot, on, color, attenuation, shadows, kind } = light;
     let kind = match kind {
         LightKind::Ambient => FileLightKind::Ambient,
         LightKind::Sun { direction } => {
@@ -148,7 +150,8 @@ fn file_light(id: u32, light: &Light) -> FileLight {
         },
     };
     let (slot, on, color, attenuation) = (*slot, *on, color.0, *attenuation);
-    FileLight { id, name: name.clone(), slot, on, color, attenuation, kind }
+    let shadows = *shadows;
+    FileLight { id, name: name.clone(), slot, on, color, attenuation, shadows, kind }
 }
 
 fn file_owner(owner: &SpotOwner) -> FileOwner {

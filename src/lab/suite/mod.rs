@@ -76,6 +76,12 @@ pub const SUITE: &[SuiteScene] = &[
         make: scenes::depth,
     },
     SuiteScene {
+        word: "layers",
+        what: "thirty-two glass balls, one inside another, each cut through by its neighbours",
+        axes: &["transparency"],
+        make: scenes::layers,
+    },
+    SuiteScene {
         word: "bumps",
         what: "balls with a map of heights, near and far",
         axes: &["bumps", "tangents"],

@@ -259,6 +259,25 @@ pub(super) fn depth(_: u32) -> (Scene, View) {
     stage(plates, DVec3::ZERO)
 }
 
+/// Balls of glass in eight groups, each of four that are one inside another; groups that stand side
+/// by side cut through each other.
+pub(super) fn layers(detail: u32) -> (Scene, View) {
+    let model = ball((detail / 25).clamp(8, 40));
+    let balls = (0..32_u32).map(|i| {
+        let (group, within) = (i / 4, i % 4);
+        let [column, row] = [group % 4, group / 4].map(f64::from);
+        let at = DVec3::new(column * 70.0 - 105.0, 45.0 - row * 90.0, row * 20.0);
+        let scale = DVec3::splat(52.0 - 11.0 * f64::from(within));
+        let placement = DMat4::from_translation(at) * DMat4::from_scale(scale);
+        let color = [0.9, 0.6, 0.3].map(|part| part - 0.1 * f64::from(within));
+        let turned = [color[group as usize % 3], color[1], color[(group as usize + 2) % 3]];
+        let mut ball = object(model.clone(), shiny(turned, 60.0), placement);
+        ball.opacity = 0.25 + 0.1 * f64::from(within);
+        ball
+    });
+    stage(balls.collect(), DVec3::new(0.0, 0.0, 280.0))
+}
+
 /// Balls with a map of heights, the farther ones with many texels in a pixel.
 pub(super) fn bumps(_: u32) -> (Scene, View) {
     let model = own_model("dimples").expect("the program has it");

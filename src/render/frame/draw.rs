@@ -26,6 +26,8 @@ pub(crate) struct Draw {
     /// Whether the placement mirrors, so that front faces run clockwise.
     pub(crate) mirrored: bool,
     pub(crate) back: Back,
+    /// Whether back faces of opaque parts are culled though those of transparent ones are lit.
+    pub(crate) culls_opaque: bool,
     pub(crate) normals: Normals,
     pub(crate) normal_source: NormalSource,
     /// The pipeline of each part; `None` for parts that are not drawn.
@@ -138,6 +140,7 @@ impl Pipeline {
         }));
         key.extend(shaded.texture.as_ref().map(|_| "texture".to_owned()));
         key.extend(shaded.cutout.map(|_| "holes".to_owned()));
+        key.extend(shaded.opacity.map(|_| "transparent".to_owned()));
         key.extend(shaded.opacity_map.as_ref().map(|_| "opacity map".to_owned()));
         key.extend(shaded.vertex_colors.then(|| "vertex colours".to_owned()));
         key.extend(shaded.extras.key().map(str::to_owned));
@@ -157,6 +160,14 @@ impl Pipeline {
     /// Whether it needs the alpha test.
     pub(crate) const fn is_cutout(&self) -> bool {
         matches!(self, Self::Shaded(Shaded { cutout: Some(_), .. }))
+    }
+
+    /// Its opacity, if it is transparent.
+    pub(crate) const fn opacity(&self) -> Option<f64> {
+        match self {
+            Self::Shaded(Shaded { opacity, .. }) => *opacity,
+            Self::Flat(_) => None,
+        }
     }
 }
 
@@ -185,6 +196,8 @@ pub(crate) struct Shaded {
     /// For the alpha test: the material's opacity, if the texture's alpha may bring it below one
     /// half.
     pub(crate) cutout: Option<f64>,
+    /// If it is transparent: its opacity, which the texture's alpha multiplies.
+    pub(crate) opacity: Option<f64>,
     /// The map of the material's opacity, which is multiplied with it for the alpha test.
     pub(crate) opacity_map: Option<Shared<Texture>>,
     /// Light of its own, and further maps.
@@ -205,6 +218,7 @@ impl Shaded {
             tint,
             texture,
             cutout,
+            opacity,
             opacity_map,
             extras,
         } = self;
@@ -213,7 +227,8 @@ impl Shaded {
             color.map(bits).hash(hasher);
         }
         [*exponent, *floor, *least_cosine, *dropped, *cut_off].map(bits).hash(hasher);
-        (*needs_positions, *tiled, *vertex_colors, cutout.map(bits)).hash(hasher);
+        (*needs_positions, *tiled, *vertex_colors).hash(hasher);
+        (cutout.map(bits), opacity.map(bits)).hash(hasher);
         for stage in light.iter().flatten() {
             (stage.effect.name, stage.light).hash(hasher);
         }
@@ -287,6 +302,7 @@ mod tests {
             tint: [1.0; 3],
             texture: None,
             cutout: None,
+            opacity: None,
             opacity_map: None,
             extras: Extras::default(),
         };
@@ -304,6 +320,7 @@ mod tests {
             shaded(|shaded| shaded.material.floor = -3.0),
             shaded(|shaded| shaded.tint[2] = 0.5),
             shaded(|shaded| shaded.cutout = Some(1.0)),
+            shaded(|shaded| shaded.opacity = Some(1.0)),
             shaded(|shaded| shaded.vertex_colors = true),
             shaded(|shaded| {
                 shaded.extras.emission = Some(Glow { color: [0.0, 0.0, 0.5], map: None });

@@ -2,14 +2,16 @@
 
 pub(crate) mod draw;
 pub(crate) mod extras;
+pub(crate) mod shadows;
 pub(crate) mod variants;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use self::draw::{Draw, Pipeline};
+use self::shadows::Shadows;
 use self::variants::Variants;
 use super::lights::ViewLight;
-use crate::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples};
+use crate::accuracy::{Arithmetic, Filter, LeaveOut, LightAt, Samples, Transparency};
 use crate::base::color::Color;
 use crate::base::image::Size;
 use crate::scene::LightId;
@@ -36,6 +38,8 @@ pub struct FramePlan {
     pub(crate) shift: [i32; 2],
     /// The filter of textures.
     pub(crate) filter: Filter,
+    /// How transparent surfaces are laid over each other.
+    pub(crate) transparency: Transparency,
     /// The variants of stages that the settings choose.
     pub(crate) variants: Variants,
     /// The view transform.
@@ -48,6 +52,8 @@ pub struct FramePlan {
     pub(crate) lights: Vec<ViewLight>,
     /// The ids of the lights, in the same order.
     pub(crate) light_ids: Vec<LightId>,
+    /// Which lights cast shadows, and what casts them.
+    pub(crate) shadows: Shadows,
     /// What is drawn, in the order that decides between equal depths.
     pub(crate) draws: Vec<Draw>,
     /// The distinct pipelines of all draws.
@@ -88,6 +94,28 @@ impl FramePlan {
     /// of them themselves: see [`together`](crate::base::work_stealing::together).
     pub(crate) fn prepare(&self) {
         self.draws.iter().for_each(|draw| draw.prepare(self));
+        self.shadows.prepare();
+    }
+
+    /// Whether any surface is transparent.
+    pub(crate) fn is_transparent(&self) -> bool {
+        self.pipelines.iter().any(|pipeline| pipeline.opacity().is_some())
+    }
+
+    /// The place of each draw in the order from far to near, by the middles of their boxes; of
+    /// equals, the younger is the farther.
+    pub(crate) fn far_to_near(&self) -> Vec<u32> {
+        let away = |draw: &Draw| {
+            let middle = draw.model.mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
+            -draw.view_from_object.transform_point3(middle).z
+        };
+        let mut order: Vec<(f64, usize)> = self.draws.iter().map(away).zip(0..).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        let mut places = vec![0; order.len()];
+        for (place, (_, draw)) in (0..).zip(order) {
+            places[draw] = place;
+        }
+        places
     }
 
     /// Pixels.

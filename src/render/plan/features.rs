@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use super::planning::{Planner, Planning};
 use super::uses::{Effect, EffectState, EffectUse, Thing};
-use crate::accuracy::{Filter, LightAt, Settings, Tangents};
+use crate::accuracy::{Filter, LightAt, Settings, Tangents, Transparency};
 use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
 use crate::scene::{ItemId, MapKind, Normals, Object, Sides, Surface};
 
@@ -29,6 +29,7 @@ const FEATURES: &[Feature] = &[
     Feature(Effect::Normals, normals),
     Feature(Effect::Texture, texture),
     Feature(Effect::AlphaTest, holes),
+    Feature(Effect::Transparency, transparency),
     Feature(Effect::VertexColors, vertex_colors),
     Feature(Effect::Emission, emission),
     Feature(Effect::Maps, maps),
@@ -85,7 +86,7 @@ fn surfaces(it: &Facts<'_>) -> EffectState {
     if !it.draw.filled {
         EffectState::exact("edges only")
     } else if it.draw.part_pipelines.iter().all(Option::is_none) {
-        EffectState::exact("every part is hidden, or its opacity is below one half")
+        EffectState::exact("every part is hidden, or its opacity is too low")
     } else {
         EffectState::ON
     }
@@ -138,10 +139,22 @@ fn texture(it: &Facts<'_>) -> EffectState {
 fn holes(it: &Facts<'_>) -> EffectState {
     let textured = it.shaded.iter().any(|shaded| shaded.texture.is_some());
     let left_out = if textured { "every texel is opaque" } else { "no texture" };
-    if let Some(on) = any(it, |shaded| shaded.opacity_map.is_some(), "with map_d".into()) {
+    let mapped = |shaded: &Shaded| shaded.cutout.is_some() && shaded.opacity_map.is_some();
+    if let Some(on) = any(it, mapped, "with map_d".into()) {
         return on;
     }
     any(it, |shaded| shaded.cutout.is_some(), "".into()).unwrap_or(EffectState::exact(left_out))
+}
+
+fn transparency(it: &Facts<'_>) -> EffectState {
+    let how = match it.settings.transparency {
+        Transparency::Exact => "pixel by pixel, the farthest first",
+        Transparency::Objects => "object by object, the farthest first",
+        Transparency::Weighted => "a weighted mean",
+        Transparency::Threshold => return EffectState::exact("a threshold of one half"),
+    };
+    any(it, |shaded| shaded.opacity.is_some(), how.into())
+        .unwrap_or(EffectState::exact("it is opaque"))
 }
 
 /// Whether a part of the object names a map of one of these kinds.
@@ -225,6 +238,9 @@ fn back_faces(it: &Facts<'_>) -> EffectState {
         }
         Back::Culled => EffectState::exact("one side is drawn"),
         Back::Red => EffectState::On("red, not lit".into()),
+        Back::Lit if it.draw.culls_opaque => {
+            EffectState::On("lit: they show through the front".into())
+        }
         Back::Lit if it.object.sides == Sides::Auto => {
             EffectState::On("lit: the surface is open".into())
         }

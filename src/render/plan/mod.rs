@@ -5,6 +5,7 @@
 //! only some tiles need is culled tile by tile, when their depths are known (`TilePlan`).
 
 mod bounded;
+mod cover;
 pub(crate) mod features;
 mod helpers;
 mod maps;
@@ -13,6 +14,7 @@ mod planner;
 mod planning;
 mod range;
 mod rules;
+mod shadows;
 mod surfaces;
 pub(crate) mod tile;
 mod turning;
@@ -26,6 +28,7 @@ use self::uses::Notes;
 pub use self::uses::{Class, Effect, EffectState, EffectUse, Thing};
 use self::view_lights::view_lights;
 use crate::accuracy::{Arithmetic, LeaveOut, LightAt, LightValues, Samples, Settings, Shot};
+use crate::render::frame::shadows::Shadows;
 use crate::render::frame::variants::Variants;
 use crate::render::frame::{Eye, FramePlan, Rules};
 use crate::scene::Projection;
@@ -80,12 +83,14 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         lit_by_sample: by_sample && settings.samples != Samples::One,
         shift: [0; 2],
         filter: settings.filter,
+        transparency: settings.transparency,
         variants: Variants::of(settings),
         view_from_world: observer.view_from_world,
         clip_from_view: observer.clip_from_view,
         line_width: if view.wide_lines { 2 } else { 1 },
         lights: Vec::new(),
         light_ids: Vec::new(),
+        shadows: Shadows::default(),
         draws: Vec::new(),
         pipelines: Vec::new(),
         // How faint light shows in linear values depends on what else is there.
@@ -108,6 +113,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     });
     let shining = view_lights(&mut into, scene, view, &observer);
     let planner = Planner { shot, observer, shining };
+    planner.add_shadows(&mut into);
     planner.add_objects(&mut into);
     if view.marks {
         planner.add_marks(&mut into);

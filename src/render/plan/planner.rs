@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4, DVec3};
 
+use super::cover::Cover;
 use super::features::presence;
 use super::helpers;
 use super::observer::ObserverSpace;
@@ -47,7 +48,7 @@ impl Planner<'_> {
     }
 
     /// Whether objects whose spheres are outside the view are skipped: nothing of them can be
-    /// seen, and nobody asks why.
+    /// seen, and no one asks why.
     fn culls_spheres(&self, into: &Planning) -> bool {
         let view = &self.shot.view;
         into.plan.rules == Rules::Applied
@@ -67,6 +68,11 @@ impl Planner<'_> {
         } else {
             None
         }
+    }
+
+    /// Whether the view shows an object.
+    pub(super) fn is_asked_for(&self, id: ObjectId, object: &Object) -> bool {
+        self.not_asked_for(id, object).is_none()
     }
 
     fn add_object(&self, into: &mut Planning, item: ItemId, object: &Object) {
@@ -112,6 +118,7 @@ impl Planner<'_> {
             },
             mirrored: linear.determinant() < 0.0,
             back: Back::Culled,
+            culls_opaque: false,
             normals: self.shot.view.normals,
             normal_source: NormalSource::File,
             part_pipelines: Vec::new(),
@@ -147,6 +154,14 @@ impl Planner<'_> {
         let Some(bounds) = mesh.bounds() else {
             return left_out(into, item, &object.name, "it has no vertices");
         };
+        let transparency = self.shot.settings.transparency;
+        if draw.back == Back::Culled
+            && draw.filled
+            && Cover::is_any_transparent(object, transparency)
+        {
+            // What is behind its front shows through it.
+            (draw.back, draw.culls_opaque) = (Back::Lit, true);
+        }
         let thing = Thing { observer: &self.observer, draw: &draw, bounds };
         let rules = into.plan.rules;
         let reason = if mesh.polygon_count() == 0 {

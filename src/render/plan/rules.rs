@@ -6,6 +6,7 @@
 
 use super::observer::ObserverSpace;
 use super::turning::is_turned_away;
+use crate::accuracy::Transparency;
 use crate::render::frame::Rules;
 use crate::render::frame::draw::{Draw, Stage};
 use crate::render::lights::region::Region;
@@ -169,6 +170,13 @@ impl Rules {
     /// Whether a texture is left out.
     pub(super) fn texture(self, it: Option<&Texture>) -> Verdict {
         self.verdict(|| because(it.is_none(), "there is none"))
+    }
+
+    /// Whether a surface whose opacity is 1 hides what is behind it, and is not laid over it. With
+    /// other ways than the exact one that is not the same.
+    pub(super) fn layer(self, transparency: Transparency) -> Verdict {
+        let exact = transparency == Transparency::Exact;
+        self.verdict(|| Some("it is opaque")).or_else(|| because(!exact, "it is opaque"))
     }
 
     /// Whether the alpha test of a texture is left out.

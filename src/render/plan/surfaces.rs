@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use super::bounded;
+use super::cover::Cover;
 use super::maps::{decoded, emission, holds_same_alpha, mapped, mapped_ambient};
 use super::planning::{Planner, Planning, Shining};
 use super::rules::{LitSurface, Reading, TexturedSurface};
@@ -38,7 +39,7 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    fn thing(&self) -> Option<uses::Thing> {
+    pub(super) fn thing(&self) -> Option<uses::Thing> {
         Some(uses::Thing { item: self.item, name: self.object.name.clone() })
     }
 }
@@ -67,7 +68,10 @@ impl Planner<'_> {
     ) -> Option<u32> {
         let object = ground.object;
         let mut look = object.part_look(part);
-        if look.opacity < 0.5 {
+        let textured = !object.model.mesh.uvs().is_empty();
+        let settings = &self.shot.settings;
+        let cover = Cover::of(&look, textured, settings.transparency);
+        if let Cover::Nothing(_) = cover {
             return None;
         }
         let linear = into.plan.variants.are_linear();
@@ -106,8 +110,20 @@ impl Planner<'_> {
             vertex_colors: colored && !mesh.colors().is_empty(),
             tint,
             texture: texture.cloned(),
-            cutout: has_holes.then_some(look.opacity),
-            opacity_map: opacity_map.filter(|_| has_holes).cloned(),
+            cutout: match cover {
+                Cover::Threshold(opacity) => has_holes.then_some(opacity),
+                Cover::Transparent(_) | Cover::Nothing(_) => None,
+            },
+            opacity: match cover {
+                Cover::Transparent(opacity) => Some(opacity),
+                // One with a texture has an alpha test then.
+                Cover::Threshold(opacity) => Some(opacity)
+                    .filter(|_| !is_textured && rules.layer(settings.transparency).is_none()),
+                Cover::Nothing(_) => None,
+            },
+            opacity_map: opacity_map
+                .filter(|_| has_holes || matches!(cover, Cover::Transparent(_)))
+                .cloned(),
             ..lit
         };
         Some(into.pipeline(Pipeline::Shaded(shaded)))
@@ -135,6 +151,7 @@ impl Planner<'_> {
             tint: [1.0; 3],
             texture: None,
             cutout: None,
+            opacity: None,
             opacity_map: None,
             extras: Extras::default(),
         };
@@ -211,7 +228,8 @@ impl Planner<'_> {
     ) -> Vec<Stage> {
         let mut stages = Vec::new();
         let mut no_highlight = Some("no light is on it");
-        for Shining { id, name, effect, light, .. } in &self.shining {
+        for shining in &self.shining {
+            let Shining { id, name, effect, light, .. } = shining;
             let source = into.plan.lights[*light as usize];
             // Bumps turn normals any way.
             let turning = ground.turning.as_ref().filter(|_| !is_bumpy);
@@ -226,6 +244,7 @@ impl Planner<'_> {
                 state: reason.map_or(EffectState::ON, EffectState::exact),
                 pixels: None,
             });
+            self.note_shadows(into, ground, shining, reason);
             if reason.is_some() {
                 continue;
             }

@@ -13,6 +13,8 @@ pub enum Effect {
     Surfaces,
     /// A light.
     Light(LightId),
+    /// The shadows in a light.
+    Shadows(LightId),
     /// The highlights of all lights.
     Highlights,
     /// Positions and normals at every pixel.
@@ -21,6 +23,8 @@ pub enum Effect {
     Texture,
     /// The alpha test of textures.
     AlphaTest,
+    /// Transparent surfaces.
+    Transparency,
     /// The colours of vertices.
     VertexColors,
     /// Light of the surface's own.
@@ -50,10 +54,12 @@ impl Effect {
         match self {
             Self::Surfaces => "Surfaces",
             Self::Light(_) => "Light",
+            Self::Shadows(_) => "Shadows",
             Self::Highlights => "Highlights",
             Self::Normals => "Normals at pixels",
             Self::Texture => "Textures",
             Self::AlphaTest => "Holes of textures",
+            Self::Transparency => "Transparency",
             Self::VertexColors => "Vertex colours",
             Self::Emission => "Emission",
             Self::Maps => "Maps of Ka, Ks, Ns",

@@ -7,8 +7,9 @@ use super::planning::{Planning, Shining};
 use super::rules::LightFacts;
 use super::uses::{Effect, EffectState, EffectUse};
 use crate::base::{color, math};
+use crate::render::frame::shadows::ShadowSource;
 use crate::render::lights::{self, LightRow, ViewLight};
-use crate::scene::{Aim, Attenuation, LightKind, Scene, View};
+use crate::scene::{Aim, Attenuation, Light, LightKind, Scene, View};
 
 /// Transforms the lights that a frame evaluates to view space.
 pub(super) fn view_lights(
@@ -44,6 +45,7 @@ pub(super) fn view_lights(
         let (position, attenuation) =
             within_reach(place_of(&source), &light.attenuation, observer.unit);
         let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
+        into.plan.shadows.sources.push(shadow_source(light, &source).filter(|_| shines));
         into.plan.light_ids.push(id);
         into.plan.lights.push(ViewLight {
             color: match (shines, linear) {
@@ -66,6 +68,17 @@ pub(super) fn view_lights(
         });
     }
     shining
+}
+
+/// The end of the rays of shadows, if the light casts any.
+fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
+    let point = ShadowSource::Point(source.position);
+    let kind = match light.kind {
+        LightKind::Ambient => return None,
+        LightKind::Sun { .. } => ShadowSource::Direction(-math::unit(source.direction)?),
+        LightKind::Bulb { .. } | LightKind::Spot { .. } => point,
+    };
+    light.shadows.then_some(kind)
 }
 
 /// The largest distance of a light, in units of view space, whose square fits f32.

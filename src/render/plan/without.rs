@@ -18,6 +18,10 @@ impl FramePlan {
                 let index = self.light_ids.iter().position(|light| *light == id)?;
                 plan.for_each_light(|stages| stages.retain(|stage| stage.light as usize != index));
             }
+            Effect::Shadows(id) => {
+                let index = self.light_ids.iter().position(|light| *light == id)?;
+                *plan.shadows.sources.get_mut(index)? = None;
+            }
             Effect::Highlights => plan.for_each_light(|stages| {
                 stages.iter_mut().for_each(|stage| stage.highlight = Form::Plain);
             }),
@@ -28,8 +32,11 @@ impl FramePlan {
                 }
             }),
             Effect::AlphaTest => plan.for_each_shaded(|shaded| {
-                (shaded.cutout, shaded.opacity_map) = (None, None);
+                if shaded.cutout.is_some() {
+                    (shaded.cutout, shaded.opacity_map) = (None, None);
+                }
             }),
+            Effect::Transparency => plan.for_each_shaded(|shaded| shaded.opacity = None),
             Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
             Effect::Emission => plan.for_each_shaded(|shaded| shaded.extras.emission = None),
             Effect::Maps => plan.for_each_shaded(|shaded| {

@@ -50,6 +50,8 @@ pub(crate) struct Bins {
     pub(crate) queues: Box<[Queue; SMALL.len()]>,
     /// The number of triangles, or of pieces of clipped ones, in the bins.
     pub(crate) drawn: usize,
+    /// The transparent triangles, which hide nothing; `None` if the frame has none.
+    transparent: Option<Box<Self>>,
 }
 
 impl Bins {
@@ -74,12 +76,42 @@ impl Bins {
             queue.clear();
         }
         self.drawn = 0;
+        self.transparent = None;
+    }
+
+    /// Empties the bins of transparent triangles, or makes them.
+    pub(crate) fn clear_transparent(&mut self, mut bins: Box<Self>, size: Size) {
+        bins.clear(size, self.sample_positions);
+        self.transparent = Some(bins);
+    }
+
+    /// Takes the memory of the bins of transparent triangles, for the next frame.
+    pub(crate) fn take_transparent(&mut self) -> Box<Self> {
+        self.transparent.take().unwrap_or_default()
+    }
+
+    /// The bins of transparent triangles, if the frame has any.
+    pub(crate) fn transparent(&self) -> Option<&Self> {
+        self.transparent.as_deref()
+    }
+
+    /// The bins of opaque or of transparent triangles.
+    pub(crate) fn of(&mut self, transparent: bool) -> &mut Self {
+        if transparent { self.transparent.get_or_insert_default() } else { self }
+    }
+
+    /// The number of triangles, or of pieces of clipped ones, in these bins and the transparent.
+    pub(crate) fn triangles(&self) -> usize {
+        self.drawn + self.transparent().map_or(0, |bins| bins.drawn)
     }
 
     /// Whether nothing reaches into a tile.
     pub(crate) fn is_empty(&self, tile: usize) -> bool {
         let bin = &self.tiles[tile];
-        self.hits.is_empty(tile) && bin.large.is_empty() && bin.lines.is_empty()
+        self.hits.is_empty(tile)
+            && bin.large.is_empty()
+            && bin.lines.is_empty()
+            && self.transparent().is_none_or(|bins| bins.is_empty(tile))
     }
 
     /// Adds a triangle of any size with its bounding box.

@@ -13,6 +13,7 @@ use super::parts::{Parts, share_out};
 use super::starts::{Start, number};
 use super::work::{What, WorkList, piece_of};
 use super::{edges, vertex_variants, vertices};
+use crate::accuracy::Transparency;
 use crate::base::Shared;
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
@@ -52,6 +53,8 @@ pub(crate) struct ScreenGeometry {
     bins: Vec<Bins>,
     /// The samples of the pass.
     sample_positions: SamplePositions,
+    /// The place of each draw in the order from far to near, if the frame needs it.
+    far_to_near: Vec<u32>,
 }
 
 /// What the screen vertices of a draw were made of.
@@ -122,6 +125,10 @@ impl ScreenGeometry {
             start.vertex_end = vertex;
             outline += if draw.lines.edges { mesh.polygon_count() } else { 0 };
             self.starts.push(start);
+        }
+        self.far_to_near.clear();
+        if plan.transparency == Transparency::Objects && plan.is_transparent() {
+            self.far_to_near = plan.far_to_near();
         }
         // Vertices that are not kept are overwritten from here on.
         self.held.resize_with(plan.draws.len(), || None);
@@ -229,7 +236,11 @@ impl ScreenGeometry {
         }
         self.bins.resize_with(self.set_up.threads(), Bins::default);
         for bins in &mut self.bins {
+            let transparent = plan.is_transparent().then(|| bins.take_transparent());
             bins.clear(plan.size, self.sample_positions);
+            if let Some(transparent) = transparent {
+                bins.clear_transparent(transparent, plan.size);
+            }
         }
         let parts = Parts::new(plan, &self.vertices, &self.starts, &self.outlines);
         share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
@@ -273,6 +284,16 @@ impl ScreenGeometry {
         &self.bins
     }
 
+    /// The bins of transparent triangles of all threads.
+    pub(crate) fn transparent_bins(&self) -> impl Iterator<Item = &Bins> {
+        self.bins.iter().filter_map(Bins::transparent)
+    }
+
+    /// Whether a transparent triangle reaches into a tile.
+    pub(crate) fn is_layered(&self, tile: usize) -> bool {
+        self.transparent_bins().any(|bins| !bins.is_empty(tile))
+    }
+
     /// The samples of the pass.
     pub(crate) const fn sample_positions(&self) -> SamplePositions {
         self.sample_positions
@@ -288,6 +309,14 @@ impl ScreenGeometry {
     pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
         let draw = self.starts.partition_point(|start| start.end <= triangle);
         (number(draw), self.starts[draw])
+    }
+
+    /// What triangles are sorted by if draws are laid over each other as wholes: the draw's place
+    /// in the order from far to near above, and the number of the triangle below.
+    pub(crate) fn key_by_draw(&self, triangle: u32) -> u64 {
+        let (draw, _) = self.draw_of(triangle);
+        let place = self.far_to_near.get(draw as usize).map_or(0, |place| u64::from(*place) + 1);
+        place << 32 | u64::from(triangle)
     }
 
     /// The vertices of a draw, in the draw order of its mesh.
@@ -343,7 +372,7 @@ impl ScreenGeometry {
 
     /// The number of triangles that face the observer and may cover a pixel.
     pub(crate) fn triangles(&self) -> usize {
-        self.bins.iter().map(|bins| bins.drawn).sum()
+        self.bins.iter().map(Bins::triangles).sum()
     }
 }
 

@@ -4,6 +4,7 @@
 //! `work` after another: `setup` and `edges` put primitives that may be visible into `bins`, and
 //! `small` rasterizes small triangles at once, to `hits`. A `tile` then draws its hits, `large`
 //! triangles and `lines` with a depth test; the nearest primitive stays in the `visibility_buffer`.
+//! `layers` are the transparent triangles in front of it.
 //!
 //! Beside the defaults stand the variants that the settings can choose: `vertex_variants`,
 //! `setup_variants`, `coverage_variants`, `depth_format`, and `pixel_by_pixel`, which draws by
@@ -19,6 +20,7 @@ mod facing;
 pub(crate) mod geometry;
 mod hits;
 mod large;
+pub(crate) mod layers;
 pub(crate) mod lines;
 mod medium;
 mod parts;

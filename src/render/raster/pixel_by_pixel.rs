@@ -32,11 +32,24 @@ pub(crate) fn paint(
     put: Put<'_>,
 ) {
     for bins in frame.bins() {
-        for number in &bins.tiles[tile].large {
-            paint_triangle(variants, plan, frame, (bins, *number), (bounds, sample.1), put);
-        }
-        paint_lines(variants, plan, bins, (tile, bounds), sample, put);
+        paint_bins(variants, plan, frame, bins, (tile, bounds), sample, put);
     }
+}
+
+/// Draws what the bins of one thread hold of a tile.
+pub(crate) fn paint_bins(
+    variants: Variants,
+    plan: &FramePlan,
+    frame: &ScreenGeometry,
+    bins: &Bins,
+    (tile, bounds): (usize, PixelBox),
+    sample: (usize, [i32; 2]),
+    put: Put<'_>,
+) {
+    for number in &bins.tiles[tile].large {
+        paint_triangle(variants, plan, frame, (bins, *number), (bounds, sample.1), put);
+    }
+    paint_lines(variants, plan, bins, (tile, bounds), sample, put);
 }
 
 fn paint_triangle(

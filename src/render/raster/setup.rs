@@ -32,8 +32,11 @@ pub(crate) struct Setup<'a> {
     pub(crate) screen: Screen,
     /// The number of the draw's first triangle in the frame.
     pub(crate) base: u32,
-    /// Whether some triangles are not drawn or need the alpha test, so that each has to be checked.
+    /// Whether some triangles are not drawn, need the alpha test or are transparent, so that each
+    /// has to be checked.
     pub(crate) choosy: bool,
+    /// Whether all triangles that are drawn are transparent.
+    pub(crate) transparent: bool,
 }
 
 /// How a triangle is drawn.
@@ -42,6 +45,7 @@ pub(crate) enum Kind {
     Not,
     UnsnappedTriangle,
     Cutout,
+    Transparent,
 }
 
 impl<'a> Setup<'a> {
@@ -52,12 +56,25 @@ impl<'a> Setup<'a> {
         size: Size,
         base: u32,
     ) -> Self {
+        let transparent =
+            draw.uniform.is_some_and(|pipeline| pipelines[pipeline as usize].opacity().is_some());
         let choosy = draw.polygons.is_some()
             || draw.part_pipelines.iter().any(|pipeline| {
-                pipeline.is_none_or(|pipeline| pipelines[pipeline as usize].is_cutout())
+                pipeline.is_none_or(|pipeline| {
+                    let pipeline = &pipelines[pipeline as usize];
+                    pipeline.is_cutout() || (!transparent && pipeline.opacity().is_some())
+                })
             });
         let screen = Screen::new(draw.clip_from_object, size);
-        Self { draw, order: draw.model.mesh.draw_order(), vertices, screen, base, choosy }
+        Self {
+            draw,
+            order: draw.model.mesh.draw_order(),
+            vertices,
+            screen,
+            base,
+            choosy,
+            transparent,
+        }
     }
 
     /// The same for vertices relative to a sample with this offset in subpixels.
@@ -148,7 +165,12 @@ impl<'a> Setup<'a> {
             let number = number + self.base.cast_signed();
             let pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
             let side = (right - left).max(bottom - top);
-            self.sort::<S, N>(simd, triangles, &pack, (plain, side), pipelines, bins);
+            if self.choosy {
+                self.sort_kinds::<S, N>(simd, triangles, &pack, (plain, side), pipelines, bins);
+            } else {
+                let bins = bins.of(self.transparent);
+                self.sort::<S, N>(simd, triangles, &pack, (plain, side), 0, bins);
+            }
         }
         let mut odd = odd.to_bitmask();
         while odd != 0 {
@@ -174,24 +196,53 @@ impl<'a> Setup<'a> {
         )
     }
 
+    /// Sorts visible triangles of several kinds.
+    #[inline(always)]
+    fn sort_kinds<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        pack: &Pack<S>,
+        (plain, side): (mask32x16<S>, i32x16<S>),
+        pipelines: &[Pipeline],
+        bins: &mut Bins,
+    ) {
+        let [mut plain, mut cutout, transparent] =
+            self.kinds(triangles, plain.to_bitmask(), pipelines);
+        if self.draw.culls_opaque {
+            let front = self.fronts(simd, pack);
+            (plain, cutout) = (plain & front, cutout & front);
+        }
+        let mask = |bits| mask32x16::from_bitmask(simd, bits);
+        for (is_transparent, some, cutout) in [(false, plain, cutout), (true, transparent, 0)] {
+            if some | cutout != 0 {
+                let bins = bins.of(is_transparent);
+                self.sort::<S, N>(simd, triangles, pack, (mask(some), side), cutout, bins);
+            }
+        }
+    }
+
+    /// The triangles of a pack that face the observer, a bit for each.
+    #[inline(always)]
+    fn fronts<S: Simd>(&self, _: S, pack: &Pack<S>) -> u64 {
+        let [x0, y0, x1, y1, x2, y2, ..] = *pack;
+        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+        let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
+        front.to_bitmask()
+    }
+
     /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
-    /// small ones, or to the large ones.
+    /// small ones, or to the large ones; those with a bit in `cutout` need the alpha test.
     #[inline(always)]
     fn sort<S: Simd, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
         pack: &Pack<S>,
-        (mut plain, side): (mask32x16<S>, i32x16<S>),
-        pipelines: &[Pipeline],
+        (plain, side): (mask32x16<S>, i32x16<S>),
+        cutout: u64,
         bins: &mut Bins,
     ) {
-        let mut cutout = 0;
-        if self.choosy {
-            let kinds = self.kinds(triangles, plain.to_bitmask(), pipelines);
-            plain = mask32x16::from_bitmask(simd, kinds[0]);
-            cutout = kinds[1];
-        }
         let mut above = 0;
         for (queue, limit) in SMALL.into_iter().enumerate() {
             let some = plain & side.simd_gt(above) & side.simd_le(limit);
@@ -218,14 +269,15 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// The masks of the triangles that are drawn without and with the alpha test.
+    /// The masks of the triangles that are drawn without and with the alpha test, and of those that
+    /// are transparent.
     fn kinds(
         &self,
         triangles: &[DrawTriangle; PACK],
         some: u64,
         pipelines: &[Pipeline],
-    ) -> [u64; 2] {
-        let mut kinds = [0; 2];
+    ) -> [u64; 3] {
+        let mut kinds = [0; 3];
         let mut left = some;
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
@@ -234,6 +286,7 @@ impl<'a> Setup<'a> {
                 Kind::Not => {}
                 Kind::UnsnappedTriangle => kinds[0] |= 1 << lane,
                 Kind::Cutout => kinds[1] |= 1 << lane,
+                Kind::Transparent => kinds[2] |= 1 << lane,
             }
         }
         kinds
@@ -260,9 +313,10 @@ impl<'a> Setup<'a> {
             let corners = [pieces[0], pieces[i - 1], pieces[i]];
             let area = doubled_area(corners.map(|corner| corner.at()));
             let front = (area < 0) != self.draw.mirrored;
-            if area == 0 || (!front && self.draw.back == Back::Culled) {
+            if area == 0 || (!front && self.culls_back(kind)) {
                 continue;
             }
+            let bins = bins.of(kind == Kind::Transparent);
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
             let at = corners.map(|corner| corner.at());
@@ -285,13 +339,22 @@ impl<'a> Setup<'a> {
         match self.draw.part_pipelines[mesh.polygon_parts()[polygon as usize] as usize] {
             None => Kind::Not,
             Some(pipeline) if pipelines[pipeline as usize].is_cutout() => Kind::Cutout,
+            Some(pipeline) if pipelines[pipeline as usize].opacity().is_some() => Kind::Transparent,
             Some(_) => Kind::UnsnappedTriangle,
         }
+    }
+
+    /// Whether the back faces of a kind are culled.
+    pub(crate) fn culls_back(&self, kind: Kind) -> bool {
+        self.draw.back == Back::Culled || (kind != Kind::Transparent && self.draw.culls_opaque)
     }
 }
 
 /// Draws the small triangles that are still waiting.
 pub(crate) fn finish(level: Level, bins: &mut Bins) {
+    if bins.transparent().is_some() {
+        finish(level, bins.of(true));
+    }
     let many = bins.sample_positions.are_many();
     dispatch!(level, simd => {
         for queue in 0..SMALL.len() {

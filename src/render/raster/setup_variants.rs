@@ -6,7 +6,7 @@ use super::setup::{Kind, Setup};
 use super::unsnapped::UnsnappedTriangle;
 use super::vertex_variants::{FINE_GUARD, Projected, coarse, project};
 use crate::base::image::Size;
-use crate::render::frame::draw::{Back, Pipeline};
+use crate::render::frame::draw::Pipeline;
 use crate::render::frame::variants::Variants;
 use crate::render::screen::clip::{Clip, Screen};
 use crate::render::screen::coverage::{PixelBox, doubled_area};
@@ -32,7 +32,7 @@ pub(crate) fn set_up(
         for i in 2..pieces.len() {
             let corners = [pieces[0], pieces[i - 1], pieces[i]];
             let number = setup.base + triangle.number;
-            add_triangle(variants, setup, corners, (number, kind == Kind::Cutout), bins);
+            add_triangle(variants, setup, corners, (number, kind), bins);
         }
     }
 }
@@ -65,21 +65,22 @@ fn add_triangle(
     variants: Variants,
     setup: &Setup<'_>,
     corners: [Projected; 3],
-    (number, cutout): (u32, bool),
+    (number, kind): (u32, Kind),
     bins: &mut Bins,
 ) {
     let parts = f64::from(subpixels(variants));
     let snapped = corners.map(|corner| coarse(variants, corner.snapped(parts)).at());
     let area = doubled_area(snapped);
     let front = (area < 0) != setup.draw.mirrored;
-    if area == 0 || (!front && setup.draw.back == Back::Culled) {
+    if area == 0 || (!front && setup.culls_back(kind)) {
         return;
     }
     let pixels = corners.map(|corner| corner.at);
     let depths = corners.map(|corner| corner.depth);
+    let cutout = kind == Kind::Cutout;
     let plain = UnsnappedTriangle { corners: snapped, pixels, depths, number, cutout };
     let plain = plain.seen_from(setup.screen.shift(), subpixels(variants));
-    bins.add_plain(plain, around(&plain.pixels));
+    bins.of(kind == Kind::Transparent).add_plain(plain, around(&plain.pixels));
 }
 
 /// The pixels that a triangle may cover by any variant: its bounding box and a pixel more to each

@@ -240,6 +240,25 @@ impl Visibility {
         (samples, count)
     }
 
+    /// The entries of a block for one of its samples; 0 where nothing is opaque.
+    pub(crate) fn entries(
+        &mut self,
+        level: Level,
+        block: usize,
+        sample: usize,
+    ) -> [u64; BLOCK_PIXELS] {
+        if !self.shows(block) {
+            return [0; BLOCK_PIXELS];
+        }
+        if self.sample_positions.are_many() {
+            dispatch!(level, simd => self.write::<_, FOUR>(simd, block));
+            *self.plane::<FOUR>(block, sample)
+        } else {
+            dispatch!(level, simd => self.write::<_, 1>(simd, block));
+            *self.plane::<1>(block, sample)
+        }
+    }
+
     /// Ensures that a block has valid entries for `N` samples per pixel.
     #[inline(always)]
     fn write<S: Simd, const N: usize>(&mut self, simd: S, block: usize) {

@@ -99,6 +99,7 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let mixed = shaded.light.is_some()
             && plan.light_at == LightAt::Vertex
+            && shaded.extras.is_empty()
             && !plan.variants.are_linear();
         if !mixed || group.draw.back == Back::Red || plan.variants.mixes_one_by_one() {
             return false;
@@ -135,10 +136,13 @@ impl<T: ShadingNumber> Shader<T> {
             || plan.variants.root_variant().is_some()
             || plan.variants.rounding != Rounding::Nearest
             || plan.variants.are_linear();
+        let stages = shaded.light.as_deref().unwrap_or_default();
+        let is_shaded = plan.shadows.any_of(stages);
         if (is_lit && !pixels)
             || shaded.vertex_colors
             || !shaded.extras.is_empty()
             || has_variant
+            || is_shaded
             || group.draw.back == Back::Red
         {
             return false;

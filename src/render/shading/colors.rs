@@ -96,6 +96,13 @@ impl Colors {
         }
     }
 
+    /// One of them, in fixed point.
+    #[inline(always)]
+    pub(crate) const fn part(&self, i: usize) -> [u32; 3] {
+        let [red, green, blue] = &self.parts;
+        [red[i % BATCH], green[i % BATCH], blue[i % BATCH]]
+    }
+
     /// Replaces each colour by that of the slot with its number: from colours of triangles to
     /// colours of their pixels.
     pub(crate) fn hand_out(&mut self, pixels: &[i32; BATCH]) {
@@ -179,6 +186,20 @@ impl Sums {
         let sum = &mut self.sums[place % BLOCK_PIXELS];
         for (sum, byte) in sum.iter_mut().zip(color) {
             *sum += parts(byte, linear) * samples.cast_unsigned();
+        }
+    }
+
+    /// The sum of a pixel.
+    pub(crate) const fn parts(&self, place: usize) -> [u32; 3] {
+        let [red, green, blue, _] = self.sums[place % BLOCK_PIXELS];
+        [red, green, blue]
+    }
+
+    /// Adds a colour in fixed point to a pixel.
+    #[inline(always)]
+    pub(crate) fn add_parts(&mut self, place: usize, color: [u32; 3]) {
+        for (sum, part) in self.sums[place % BLOCK_PIXELS].iter_mut().zip(color) {
+            *sum += part;
         }
     }
 

@@ -6,6 +6,7 @@ use super::light::Lit;
 use super::light_terms::LightTerms;
 use crate::render::frame::FramePlan;
 use crate::render::raster::geometry::ScreenGeometry;
+use crate::render::shadow::tracer::Tracer;
 
 /// Everything that shading reads of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -15,4 +16,14 @@ pub(crate) struct ShadingContext<'a, T> {
     pub(crate) frame: &'a ScreenGeometry,
     pub(crate) lit: &'a Lit<T>,
     pub(crate) terms: &'a LightTerms<T>,
+    /// What casts shadows, if any light does.
+    pub(crate) tracer: Option<&'a Tracer<'a>>,
+}
+
+impl<'a, T> ShadingContext<'a, T> {
+    /// What casts shadows on a draw, and the caster that it is itself; `None` if it takes none.
+    pub(crate) fn tracer_of(&self, draw: u32) -> Option<(&'a Tracer<'a>, u32)> {
+        let tracer = self.tracer?;
+        Some((tracer, tracer.caster_of(draw)?))
+    }
 }

@@ -368,7 +368,7 @@ fn lit<S: Simd>(
             {
                 is_lit = true;
                 batch.darken();
-                lights.light_batch(terms, simd.level(), batch);
+                lights.light_batch(terms, simd.level(), batch, None);
             }
             let mut at = canvas.offset([column as usize, row as usize]);
             for pair in 0..PAIRS {

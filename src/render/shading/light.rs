@@ -11,6 +11,7 @@ use fearless_simd::Level;
 use glam::{DMat3, DVec3};
 
 use super::interpolated::ShadingNumber;
+use super::shadows::{BatchShadows, place_vertices};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Normalising};
 use crate::base::math::each;
@@ -18,6 +19,8 @@ use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::{Batch, LightTerm, load, set, store};
 use crate::render::plan::tile::TileLight;
+use crate::render::shadow::rays::{Origins, RayScratch};
+use crate::render::shadow::tracer::Tracer;
 use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 use crate::scene::{Facet, Normals, dvec3};
 
@@ -132,6 +135,8 @@ pub(crate) struct Lighting<'a, T> {
     pub(crate) draw: &'a Draw,
     pub(crate) stages: &'a [Stage],
     pub(crate) terms: &'a [LightTerm<T>],
+    /// What casts shadows on the draw, and the caster that it is itself.
+    pub(crate) tracer: Option<(&'a Tracer<'a>, u32)>,
 }
 
 impl<T: ShadingNumber> Table<T> {
@@ -143,7 +148,8 @@ impl<T: ShadingNumber> Table<T> {
     /// Clears the table for a draw.
     fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
         let count = place_count(draw).div_ceil(BATCH);
-        let colored = shaded.texture.is_none() && !shaded.vertex_colors && shaded.extras.is_empty();
+        let colored =
+            shaded.texture.is_none() && !shaded.vertex_colors && !shaded.extras.reads_texels();
         self.tint = colored.then(|| shaded.tint.map(T::from_f64));
         self.diffuse.clear();
         self.diffuse.resize_with(count, OnceLock::new);
@@ -157,12 +163,12 @@ impl<T: ShadingNumber> Table<T> {
         &self,
         place: u32,
         lighting: &Lighting<'_, T>,
-        batch: &mut Batch<T>,
+        (batch, scratch): (&mut Batch<T>, &mut RayScratch),
     ) -> [T; 4] {
         let (chunk, at) = (place as usize / BATCH, place as usize % BATCH);
         match self.diffuse[chunk].get() {
             Some(lights) => lights[at],
-            None => self.light(chunk, lighting, batch)[at],
+            None => self.light(chunk, lighting, (batch, scratch))[at],
         }
     }
 
@@ -180,14 +186,26 @@ impl<T: ShadingNumber> Table<T> {
         clippy::disallowed_methods,
         reason = "what lights a batch has other threads do nothing"
     )]
-    fn light(&self, chunk: usize, lighting: &Lighting<'_, T>, batch: &mut Batch<T>) -> &Lights<T> {
-        let Lighting { level, draw, stages, terms } = *lighting;
+    fn light(
+        &self,
+        chunk: usize,
+        lighting: &Lighting<'_, T>,
+        (batch, scratch): (&mut Batch<T>, &mut RayScratch),
+    ) -> &Lights<T> {
+        let Lighting { level, draw, stages, terms, tracer } = *lighting;
         let to_view = self.to_view.expect("it was made ready");
         self.diffuse[chunk].get_or_init(|| {
             put_places(draw, chunk * BATCH, batch);
+            let (positions, count) = (tracer.map(|_| batch.position), batch.len);
             T::run_variant(level, to_view.variant, Place { batch, to_view });
             batch.darken();
-            run(stages, terms, level, batch);
+            let mut place = |origins: &mut Origins| {
+                if let (Some(tracer), Some(positions)) = (tracer, &positions) {
+                    place_vertices(tracer, positions, count, origins);
+                }
+            };
+            let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, scratch, &mut place));
+            run(stages, terms, level, batch, shadows);
             let mut diffuse = [[T::default(); 4]; BATCH];
             let mut specular = [[T::default(); 4]; BATCH];
             let (tint, batch) = (self.tint, &*batch);
@@ -381,33 +399,42 @@ impl<T: Number> Kernel<T> for Place<'_, T> {
     }
 }
 
-/// Adds the light of some stages at every position of a batch.
+/// Adds the light of some stages at every position of a batch that sees it.
 pub(crate) fn run<T: ShadingNumber>(
     stages: &[Stage],
     terms: &[LightTerm<T>],
     level: Level,
     batch: &mut Batch<T>,
+    shadows: Option<BatchShadows<'_>>,
 ) {
+    let Some(mut shadows) = shadows else {
+        for (stage, term) in stages.iter().zip(terms) {
+            T::add_light(stage.variant(), level, batch, term);
+        }
+        return;
+    };
     for (stage, term) in stages.iter().zip(terms) {
-        T::add_light(stage.variant(), level, batch, term);
+        shadows.add_light(stage, term, level, batch);
     }
 }
 
 impl TileLight<'_> {
-    /// Adds the light that reaches a tile at every position of a batch.
+    /// Adds the light that reaches a tile at every position of a batch that sees it.
     pub(crate) fn light_batch<T: ShadingNumber>(
         &self,
         terms: &[LightTerm<T>],
         level: Level,
         batch: &mut Batch<T>,
+        mut shadows: Option<BatchShadows<'_>>,
     ) {
-        match self.kept {
-            None => run(self.stages, terms, level, batch),
-            Some(kept) => {
-                for place in kept {
-                    let at = *place as usize..=*place as usize;
-                    run(&self.stages[at.clone()], &terms[at], level, batch);
-                }
+        let Some(kept) = self.kept else {
+            return run(self.stages, terms, level, batch, shadows);
+        };
+        for place in kept {
+            let (stage, term) = (&self.stages[*place as usize], &terms[*place as usize]);
+            match &mut shadows {
+                None => T::add_light(stage.variant(), level, batch, term),
+                Some(shadows) => shadows.add_light(stage, term, level, batch),
             }
         }
     }

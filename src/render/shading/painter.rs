@@ -11,6 +11,7 @@ use super::colors::Sums;
 use super::context::ShadingContext;
 use super::full_blocks::{Blocks, Canvas};
 use super::interpolated::ShadingNumber;
+use super::layers::Layered;
 use super::resolve::Samples;
 use super::surface::{Out, Shader};
 use crate::base::color::Color;
@@ -64,6 +65,7 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
 pub(crate) struct Painter<T> {
     shader: Shader<T>,
     visibility: Visibility,
+    layered: Layered,
     samples: Samples,
     /// A buffer for a tile that is not painted straight into the picture.
     pixels: Vec<[u8; 4]>,
@@ -74,6 +76,7 @@ impl<T: ShadingNumber> Default for Painter<T> {
         Self {
             shader: Shader::default(),
             visibility: Visibility::default(),
+            layered: Layered::default(),
             samples: Samples::default(),
             pixels: vec![[0; 4]; TILE_SIDE * TILE_SIDE],
         }
@@ -93,16 +96,12 @@ impl<T: ShadingNumber> Painter<T> {
         tile: usize,
         band: &Mutex<Band<'_>>,
     ) {
-        let ShadingContext { level, plan, frame, .. } = *context;
+        let ShadingContext { plan, .. } = *context;
         let (size, background) = (plan.size, plan.background);
         let bounds = bounds_of(tile, size);
-        if !frame.is_empty(tile) {
-            self.visibility.draw(level, plan, frame, (tile, bounds));
-        }
-        if frame.is_empty(tile) || self.visibility.is_empty() {
+        if !self.see(context, tile, bounds) {
             return Self::fill(tile, size, background, &mut locked(band));
         }
-        self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
         let (column, columns) = Self::columns(tile, size);
         if let (true, Ok(mut band)) = (whole, band.try_lock()) {
@@ -125,6 +124,26 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
+    /// Finds what is visible in a tile. Returns whether it may be more than the background.
+    fn see(&mut self, context: &ShadingContext<'_, T>, tile: usize, bounds: PixelBox) -> bool {
+        let ShadingContext { level, plan, frame, .. } = *context;
+        if frame.is_empty(tile) {
+            return false;
+        }
+        let Self { shader, visibility, layered: Layered { layers, .. }, .. } = self;
+        visibility.draw(level, plan, frame, (tile, bounds));
+        if frame.is_layered(tile) {
+            layers.begin(level, plan, frame, (tile, bounds));
+        } else {
+            layers.begin_none();
+        }
+        if visibility.is_empty() && layers.touched() == 0 {
+            return false;
+        }
+        shader.tile.begin(plan, bounds, || layers.depths_with(visibility.depths(level)));
+        true
+    }
+
     /// Colours the blocks of a tile. Returns whether it shows anything but the background.
     fn blocks(
         &mut self,
@@ -132,7 +151,8 @@ impl<T: ShadingNumber> Painter<T> {
         bounds: PixelBox,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let mut whole = self.visibility.full_blocks();
+        let layered = self.layered.layers.touched();
+        let mut whole = self.visibility.full_blocks() & !layered;
         if whole != u64::MAX {
             for row in canvas.pixels.chunks_mut(canvas.stride).take(TILE_SIDE) {
                 row[..TILE_SIDE].fill(context.plan.background.opaque());
@@ -140,10 +160,19 @@ impl<T: ShadingNumber> Painter<T> {
         }
         let mut shows = whole != 0;
         for block in 0..BLOCK_PIXELS {
-            if let Some(number) = self.visibility.whole(block) {
+            if layered >> block & 1 != 0 {
+                let at = canvas.offset(corner_in_tile(block));
+                let mut sums = Sums::new(context.plan.variants.are_linear());
+                let corner = self.visibility.corner(block);
+                let Self { shader, visibility, layered, .. } = self;
+                layered.add(context, (shader, visibility), (block, corner), &mut sums);
+                canvas.put(at, &sums.means(context.frame.sample_positions().count().ilog2()));
+                shows = true;
+            } else if let Some(number) = self.visibility.whole(block) {
                 if whole >> block & 1 != 0 {
                     let which = (block..BLOCK_PIXELS)
                         .filter(|other| self.visibility.whole(*other) == Some(number))
+                        .filter(|other| layered >> other & 1 == 0)
                         .fold(0, |which, other| which | 1 << other);
                     whole &= !which;
                     let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
@@ -184,16 +213,12 @@ impl<T: ShadingNumber> Painter<T> {
 
     /// Adds the colours of a tile, drawn for one sample of each pixel, to the sums.
     fn add_picture(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &mut [Sums]) {
-        let ShadingContext { level, plan, frame, .. } = *context;
+        let plan = context.plan;
         let bounds = bounds_of(tile, plan.size);
-        if !frame.is_empty(tile) {
-            self.visibility.draw(level, plan, frame, (tile, bounds));
-        }
-        if frame.is_empty(tile) || self.visibility.is_empty() {
+        if !self.see(context, tile, bounds) {
             let background = plan.background.opaque();
             return to.iter_mut().for_each(|to| to.add_everywhere(background, 1));
         }
-        self.shader.tile.begin(plan, bounds, || self.visibility.depths(level));
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
         self.blocks(context, bounds, &mut canvas);
@@ -213,14 +238,15 @@ impl<T: ShadingNumber> Painter<T> {
         if !frame.sample_positions().are_many() {
             return self.add_picture(context, tile, &mut to);
         }
-        let empty = frame.is_empty(tile);
-        let bounds = bounds_of(tile, plan.size);
-        let Self { shader, visibility, samples, .. } = self;
-        if !empty {
-            visibility.draw(level, plan, frame, (tile, bounds));
-            shader.tile.begin(plan, bounds, || visibility.depths(level));
-        }
+        let empty = !self.see(context, tile, bounds_of(tile, plan.size));
         for (block, to) in to.iter_mut().enumerate() {
+            if !empty && self.layered.layers.touches(block) {
+                let corner = self.visibility.corner(block);
+                let Self { shader, visibility, layered, .. } = self;
+                layered.add(context, (shader, visibility), (block, corner), to);
+                continue;
+            }
+            let Self { shader, visibility, samples, .. } = self;
             if empty || !visibility.shows(block) {
                 to.add_everywhere(plan.background.opaque(), ALL);
                 continue;

@@ -129,7 +129,7 @@ impl<T: ShadingNumber> Shader<T> {
 }
 
 /// Adds the colour of a line or of the background.
-fn add_other<T>(
+pub(super) fn add_other<T>(
     context: &ShadingContext<'_, T>,
     number: u32,
     place: usize,

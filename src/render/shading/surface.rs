@@ -7,6 +7,7 @@
 
 use super::barycentric_variants::locate_by_variant;
 use super::barycentrics::Barycentrics;
+use super::blend::Blend;
 use super::bumps::bend;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
@@ -18,8 +19,10 @@ use super::groups::{Group, group_of, one_group};
 use super::interpolate::{Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
+use super::lit_points::place_fragments;
 use super::quantize::{Finish, Quantize, SurfaceColor};
 use super::rounding::{QuantizeWithThresholds, thresholds};
+use super::shadows::{BatchShadows, place_faces};
 use super::textured::{Placed, Points};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
@@ -30,6 +33,7 @@ use crate::render::plan::tile::TilePlan;
 use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::render::shadow::rays::{Origins, RayScratch};
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
 
@@ -45,6 +49,8 @@ pub(crate) struct Shader<T> {
     pub(crate) attributes: TriangleAttributes<T>,
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
+    /// For rays of shadows.
+    rays: RayScratch,
     /// The positions of the triangles on their texture.
     pub(super) placed: Placed,
     pub(crate) texels: Rows<T>,
@@ -61,6 +67,8 @@ pub(crate) enum Out<'a, 'b> {
     Tile(&'a mut Canvas<'b>, usize),
     /// The sums over several samples.
     Sums(&'a mut Sums),
+    /// What is behind a layer.
+    Layer(&'a mut Blend),
 }
 
 /// The result of interpolating the light of vertices.
@@ -82,6 +90,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             attributes: TriangleAttributes::default(),
             barycentrics: Barycentrics::default(),
             batch: Batch::default(),
+            rays: RayScratch::default(),
             placed: Placed::default(),
             texels: [[T::default(); BATCH]; 3],
             maps: Box::default(),
@@ -160,7 +169,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         self.colors.form = match out {
             Out::Tile(..) => Form::Pixels,
-            Out::Sums(_) => Form::Parts,
+            Out::Sums(_) | Out::Layer(_) => Form::Parts,
         };
         self.colors.linear = context.plan.variants.are_linear();
         self.group(context, group);
@@ -169,6 +178,13 @@ impl<T: ShadingNumber> Shader<T> {
             Out::Sums(sums) => {
                 let Fragments { len, pixels, shares, .. } = &self.fragments;
                 sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
+            }
+            Out::Layer(blend) => {
+                let opacities = self.opacities(context, group);
+                let pixels = &self.fragments.pixels[..self.fragments.len];
+                for (i, (place, opacity)) in pixels.iter().zip(opacities).enumerate() {
+                    blend.put(usize::from(*place), self.colors.part(i), opacity);
+                }
             }
         }
     }
@@ -249,7 +265,10 @@ impl<T: ShadingNumber> Shader<T> {
         let ShadingContext { level, plan, .. } = *context;
         let draw = group.draw;
         let extras = &shaded.extras;
-        let textured = shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels();
+        // A map of opacity is read where the fragments are.
+        let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
+        let textured =
+            shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
         let rounding = plan.variants.rounding;
         // Every pixel has its own colour.
         let each = textured || rounding == Rounding::Dithered;
@@ -369,7 +388,7 @@ impl<T: ShadingNumber> Shader<T> {
         if shaded.extras.exponent.is_some() {
             self.map_exponents(context, group, shaded, new);
         }
-        let Self { tile, fragments, attributes, barycentrics, batch, maps, .. } = self;
+        let Self { tile, fragments, attributes, barycentrics, batch, maps, rays, .. } = self;
         let light = tile.light(plan, group.pipeline, shaded);
         if light.needs_positions {
             if new {
@@ -386,7 +405,15 @@ impl<T: ShadingNumber> Shader<T> {
             attributes.forget();
         }
         batch.darken();
-        light.light_batch(terms.of(group.pipeline), level, batch);
+        let tracer = context.tracer_of(group.draw_index).filter(|_| light.needs_positions);
+        let mut place = |origins: &mut Origins| {
+            if let Some(tracer) = tracer {
+                let on = (&*fragments, &*attributes);
+                place_fragments(context, tracer, group, on, barycentrics, origins);
+            }
+        };
+        let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
+        light.light_batch(terms.of(group.pipeline), level, batch, shadows);
     }
 
     /// Gouraud shading: interpolates the light of vertices at every pixel.
@@ -405,7 +432,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let Self { fragments, attributes, barycentrics, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
-        let stored = !plan.variants.are_linear();
+        let stored = !plan.variants.are_linear() && shaded.extras.is_empty();
         if colored && stored && plan.variants.rounding == Rounding::Nearest {
             mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors));
             return Mixture::Bytes;
@@ -434,14 +461,16 @@ impl<T: ShadingNumber> Shader<T> {
         shaded: &Shaded,
         tables: [&Table<T>; 2],
     ) {
-        let Self { attributes, batch, .. } = self;
+        let Self { attributes, batch, rays, .. } = self;
         let stages = shaded.light.as_deref().unwrap_or_default();
         let terms = context.terms.of(group.pipeline);
-        let lighting = Lighting { level: context.level, draw: group.draw, stages, terms };
+        let tracer =
+            context.tracer_of(group.draw_index).filter(|_| context.plan.shadows.any_of(stages));
+        let lighting = Lighting { level: context.level, draw: group.draw, stages, terms, tracer };
         attributes.carry_light(
             group.draw,
             #[inline(always)]
-            |place, back| tables[usize::from(back)].diffuse(place, &lighting, batch),
+            |place, back| tables[usize::from(back)].diffuse(place, &lighting, (batch, rays)),
         );
     }
 
@@ -454,11 +483,18 @@ impl<T: ShadingNumber> Shader<T> {
         located: bool,
     ) {
         let ShadingContext { level, lit, terms, .. } = *context;
-        let Self { fragments, attributes, batch, .. } = self;
+        let Self { fragments, attributes, batch, rays, .. } = self;
         batch.len = attributes.count;
         lit.place_faces(level, (group.draw_index, group.draw), attributes, batch);
         batch.darken();
-        run(stages, terms.of(group.pipeline), level, batch);
+        let tracer = context.tracer_of(group.draw_index);
+        let mut place = |origins: &mut Origins| {
+            if let Some(tracer) = tracer {
+                place_faces(tracer, group.draw, attributes, origins);
+            }
+        };
+        let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
+        run(stages, terms.of(group.pipeline), level, batch, shadows);
         if located {
             for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
                 let of_faces = *row;

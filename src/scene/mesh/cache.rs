@@ -15,7 +15,7 @@ use crate::scene::mesh::build::{Outlines, triangles};
 use crate::scene::mesh::edges::{Edge, Edges};
 use crate::scene::mesh::points::shown_normal;
 use crate::scene::mesh::{Shape, index};
-use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, NormalSource, Triangle};
+use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, NormalSource, RayTree, Triangle};
 
 /// The data for flat shading of a polygon, in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,8 @@ pub enum Derived {
     Tangents(NormalSource),
     /// [`Mesh::edge_order`], [`Mesh::edges`] and [`Mesh::edge_polygons`].
     EdgeOrder,
+    /// [`Mesh::ray_tree`].
+    RayTree,
 }
 
 /// The data that has been computed.
@@ -66,6 +68,7 @@ pub(crate) struct FoundOfShape {
     edges: OnceLock<Edges>,
     edge_order: OnceLock<EdgeOrder>,
     closed: OnceLock<bool>,
+    ray_tree: OnceLock<RayTree>,
 }
 
 impl Mesh {
@@ -113,6 +116,7 @@ impl Mesh {
             Derived::DrawOrder => _ = self.draw_order(),
             Derived::Tangents(source) => _ = self.tangents(source),
             Derived::EdgeOrder => _ = self.edge_order(),
+            Derived::RayTree => _ = self.ray_tree(),
         }
     }
 
@@ -140,6 +144,12 @@ impl Mesh {
             return [3 * number, 3 * number + 1, 3 * number + 2];
         }
         each(self.triangles()[number].corners, |corner| corner as usize)
+    }
+
+    /// The vertex of a corner.
+    #[inline(always)]
+    pub(super) fn vertex_of(&self, corner: usize) -> usize {
+        self.shape.corners[corner] as usize
     }
 
     /// The uv coordinates of a triangle's corners; `None` if one has none.
@@ -224,6 +234,12 @@ impl Mesh {
 
     fn edge_table(&self) -> &Edges {
         get_or_compute(&self.shape.found.edges, || Edges::of(self))
+    }
+
+    /// The triangles in a tree of boxes, in which rays find those that they may meet.
+    #[must_use]
+    pub fn ray_tree(&self) -> &RayTree {
+        get_or_compute(&self.shape.found.ray_tree, || RayTree::new(self))
     }
 
     /// The outlines of all polygons.

@@ -19,6 +19,7 @@ pub(super) mod edge_order;
 pub(super) mod edges;
 mod fans;
 mod points;
+pub(super) mod ray_tree;
 mod splits;
 mod tangents;
 

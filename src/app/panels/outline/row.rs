@@ -229,7 +229,7 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
             actions.push(Action::ToggleVisible);
         }
         if matches!(item, ItemId::Light(_)) {
-            actions.extend([Action::AimAtSelection, Action::AimByClick]);
+            actions.extend([Action::ToggleShadows, Action::AimAtSelection, Action::AimByClick]);
         }
         if matches!(item, ItemId::Object(_)) {
             actions.extend([

@@ -82,6 +82,14 @@ impl Shown<'_> {
             let command = items::toggle_shown(scene, ItemId::Light(id));
             change(requests, self.label("Switch"), Gesture::Whole, command);
         }
+        if light.can_cast_shadows() {
+            let hint = "Objects cast shadows in its light: exact ones, without a bias to set";
+            let switch = Switch::new("Casts shadows", light.shadows).ui(ui);
+            if switch.on_hover_text(hint).clicked() {
+                let command = lights::toggle_shadows(scene, id);
+                change(requests, self.label("Shadows of"), Gesture::Whole, command);
+            }
+        }
         let mut set = |color, gesture| {
             let command = items::change_light(scene, id, |light| light.color = color);
             change(requests, self.label("Colour"), gesture, command);

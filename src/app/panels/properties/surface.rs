@@ -1,11 +1,13 @@
-//! The surface of an object: material, texture, tint.
+//! The surface of an object: material, texture, tint, opacity.
 
 use egui::Ui;
 
+use super::number_row;
 use crate::app::actions::{Request, change};
 use crate::app::state::State;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Choice, choices, row};
+use crate::app::widgets::number::Number;
 use crate::edit::{Gesture, items};
 use crate::scene::{FileMaterial, MapKind, Object, ObjectId, Surface};
 
@@ -39,6 +41,12 @@ pub(crate) fn show(
             change(requests, format!("Tint {}", object.name), gesture, command);
         }
     });
+    let hint = "How much it covers of what is behind it: 0 shows nothing of it, 1 is opaque";
+    let number = Number::new("Opacity", hint).speed(0.005).range(0.0..=1.0);
+    if let Some((opacity, gesture)) = number_row(ui, "Opacity", number, object.opacity) {
+        let command = items::change_object(&state.scene, id, |object| object.opacity = opacity);
+        change(requests, format!("Change the opacity of {}", object.name), gesture, command);
+    }
 }
 
 fn texture_ui(

@@ -1,0 +1,178 @@
+//! Fonts of the system, for names whose letters the built-in fonts do not have.
+//!
+//! Nothing is read before such a letter is to be shown. Then a thread looks through the fonts of
+//! the system, while a box stands for the letter; the font that it finds is used from the next
+//! frame on. So neither the first frame nor any other waits for a disk.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+
+use egui::Context;
+use egui::epaint::text::{
+    FallbackRequest, FontInsert, FontPriority, FontProvider, InsertFontFamily,
+};
+use egui::{FontData, FontFamily};
+use fontdb::{Database, FaceInfo, Style};
+
+/// Asks the system for fonts when letters are missing.
+pub(crate) fn install(ctx: &Context) {
+    let search = Arc::new(Search { ctx: ctx.clone(), state: Mutex::default() });
+    ctx.add_font_provider(Arc::new(SystemFonts(search)));
+}
+
+/// What is looked for, and what was found.
+#[derive(Default)]
+struct State {
+    /// The letters that the thread is to look for.
+    wanted: BTreeSet<char>,
+    /// The font of each letter; `None` if the system has none.
+    found: BTreeMap<char, Option<Font>>,
+    is_searching: bool,
+}
+
+/// A face of a font's file.
+#[derive(Clone, Debug, PartialEq)]
+struct Font {
+    name: String,
+    data: Arc<Vec<u8>>,
+    face: u32,
+}
+
+struct Search {
+    ctx: Context,
+    state: Mutex<State>,
+}
+
+struct SystemFonts(Arc<Search>);
+
+impl FontProvider for SystemFonts {
+    fn font_for(&self, request: &FallbackRequest<'_>) -> Option<FontInsert> {
+        let letter = request.cluster.chars().next()?;
+        let mut state = self.0.lock();
+        match state.found.get(&letter) {
+            Some(font) => font.as_ref().map(Font::insert),
+            None => {
+                state.wanted.insert(letter);
+                if !std::mem::replace(&mut state.is_searching, true) {
+                    begin(&self.0, &mut state);
+                }
+                None
+            }
+        }
+    }
+}
+
+impl Search {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Starts the thread.
+fn begin(search: &Arc<Search>, state: &mut State) {
+    let theirs = Arc::downgrade(search);
+    let thread = std::thread::Builder::new().name("fonts".to_owned()).spawn(move || look(&theirs));
+    // Without a thread, boxes stay.
+    state.is_searching = thread.is_ok();
+}
+
+/// Looks for fonts until no letter is wanted any more.
+fn look(search: &Weak<Search>) {
+    let mut fonts = Database::new();
+    fonts.load_system_fonts();
+    loop {
+        let Some(search) = search.upgrade() else { return };
+        let wanted = {
+            let mut state = search.lock();
+            let wanted = std::mem::take(&mut state.wanted);
+            state.is_searching = !wanted.is_empty();
+            wanted
+        };
+        if wanted.is_empty() {
+            return;
+        }
+        let mut found = BTreeMap::new();
+        for letter in wanted {
+            let known = found.values().flatten().find(|font: &&Font| font.has(letter)).cloned();
+            found.insert(letter, known.or_else(|| font_with(&fonts, letter)));
+        }
+        let is_any = found.values().any(Option::is_some);
+        search.lock().found.extend(found);
+        if is_any {
+            // The letters are asked for again, and now there is an answer.
+            search.ctx.set_font_providers(vec![Arc::new(SystemFonts(Arc::clone(&search)))]);
+        }
+    }
+}
+
+/// The most suitable font that has a letter: upright, of usual weight, without serifs.
+fn font_with(fonts: &Database, letter: char) -> Option<Font> {
+    let mut faces: Vec<&FaceInfo> = fonts.faces().collect();
+    faces.sort_by_key(|face| {
+        let is_sans = face.families.iter().any(|(name, _)| name.contains("Sans"));
+        let apart = face.weight.0.abs_diff(400);
+        (face.style != Style::Normal, apart, face.monospaced, !is_sans, &face.post_script_name)
+    });
+    faces.into_iter().find_map(|face| {
+        let font = |data: &[u8], index: u32| {
+            has(data, index, letter).then(|| Font {
+                name: format!("{} {index}", face.post_script_name),
+                data: Arc::new(data.to_vec()),
+                face: index,
+            })
+        };
+        fonts.with_face_data(face.id, font).flatten()
+    })
+}
+
+/// Whether a face has an outline for a letter.
+fn has(data: &[u8], face: u32, letter: char) -> bool {
+    ttf_parser::Face::parse(data, face).is_ok_and(|face| {
+        let glyph = face.glyph_index(letter);
+        glyph.is_some_and(|glyph| face.glyph_bounding_box(glyph).is_some())
+    })
+}
+
+impl Font {
+    fn has(&self, letter: char) -> bool {
+        has(&self.data, self.face, letter)
+    }
+
+    fn insert(&self) -> FontInsert {
+        let data = FontData { index: self.face, ..FontData::from_owned(self.data.to_vec()) };
+        let family = |family| InsertFontFamily { family, priority: FontPriority::Lowest };
+        let families = vec![family(FontFamily::Proportional), family(FontFamily::Monospace)];
+        FontInsert { name: self.name.clone(), data, families }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_font_is_found_by_a_letter_that_it_has_and_by_no_other() {
+        let mut fonts = Database::new();
+        fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+        let font = font_with(&fonts, 'ž').unwrap();
+        assert!(font.has('a') && !font.has('山'));
+        assert_eq!(font_with(&fonts, '山'), None);
+        assert_eq!(font.insert().families.len(), 2);
+    }
+
+    #[test]
+    fn a_missing_letter_is_looked_for_once_and_answered_when_it_was_found() {
+        let search = Arc::new(Search { ctx: Context::default(), state: Mutex::default() });
+        // As if the thread were looking already.
+        search.lock().is_searching = true;
+        let provider = SystemFonts(Arc::clone(&search));
+        let family = FontFamily::Proportional;
+        let ask = || provider.font_for(&FallbackRequest { cluster: "山", family: &family });
+        assert!(ask().is_none() && ask().is_none());
+        assert_eq!(search.lock().wanted.len(), 1);
+        let data = Arc::new(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+        let font = Font { name: "font".to_owned(), data, face: 0 };
+        search.lock().found.insert('山', Some(font));
+        assert_eq!(ask().unwrap().name, "font");
+    }
+}

@@ -1,0 +1,63 @@
+//! The strip of the first minute: where to begin, over the lower border of the first picture. It
+//! goes with the first change, and never takes the keyboard.
+
+use egui::{Align2, Area, Frame, Id, Order, Rect, Ui, vec2};
+
+use super::status_line::middle_elided;
+use crate::accuracy::Axis;
+use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::state::State;
+use crate::app::widgets::regions;
+use crate::app::widgets::text::file_name;
+
+/// The lessons that are offered, by their axes, and what they are about.
+const LESSONS: [(&str, &str); 3] =
+    [("samples", "Jagged edges"), ("shading", "Flat or smooth"), ("depth", "Depth that fights")];
+
+/// The number of recent files that are offered.
+const RECENT: usize = 3;
+
+/// A picture that is smaller keeps its place for itself.
+const LEAST: egui::Vec2 = vec2(420.0, 260.0);
+
+/// Shows the strip; its requests are added to `requests`.
+pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
+    let is_small = picture.width() < LEAST.x || picture.height() < LEAST.y;
+    if !state.greeting || !state.overlays || is_small {
+        return;
+    }
+    let area = Area::new(Id::unique("greeting")).order(Order::Middle).constrain_to(picture);
+    let at = picture.center_bottom() - vec2(0.0, 10.0);
+    let width = (picture.width() - 40.0).min(760.0);
+    area.pivot(Align2::CENTER_BOTTOM).fixed_pos(at).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            regions::begin(ui, "greeting");
+            ui.set_max_width(width);
+            ui.horizontal_wrapped(|ui| contents(ui, state, requests));
+        });
+    });
+}
+
+fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    ui.weak("Drop a model here, or");
+    for action in [Action::Load, Action::Open] {
+        requests.extend(action.button(ui, state).map(Request::from));
+    }
+    for path in state.recent.iter().take(RECENT) {
+        let name = middle_elided(&file_name(path), 24);
+        let button = ui.button(name);
+        if button.on_hover_text(path.display().to_string()).clicked() {
+            requests.push(Request::LoadFiles(vec![path.clone()]));
+        }
+    }
+    ui.weak("Lessons:");
+    for (key, about) in LESSONS {
+        let hint = Axis::named(key).map_or("", |axis| axis.lesson.title);
+        if ui.button(about).on_hover_text(hint).clicked() {
+            requests.push(Request::Lab(LabRequest::ShowLesson(key)));
+        }
+    }
+    if ui.button("Dismiss").on_hover_text("Puts this strip away").clicked() {
+        requests.push(Request::EndGreeting);
+    }
+}

@@ -1,0 +1,105 @@
+//! Plans shadows: which lights cast them, and which objects.
+//!
+//! Whatever is drawn filled casts shadows, seen by the observer or not, from both of its sides.
+//! What is not drawn casts none: hidden objects and parts, a wireframe, parts whose opacity is
+//! below one half, polygons that are left out, and the marks of cameras and bulbs. Light passes
+//! through holes of textures.
+
+use std::collections::BTreeSet;
+
+use glam::DMat3;
+
+use super::planning::{Planner, Planning, Shining};
+use super::surfaces::Ground;
+use super::uses::{Effect, EffectState, EffectUse};
+use crate::base::math;
+use crate::render::frame::shadows::{Caster, CasterPart, Shadows};
+use crate::scene::{Fill, ItemId, Object, ObjectId};
+
+impl Planner<'_> {
+    /// Adds what casts shadows, if any light casts them.
+    pub(super) fn add_shadows(&self, into: &mut Planning) {
+        if into.plan.shadows.sources.iter().all(Option::is_none)
+            || self.shot.view.fill == Fill::Edges
+        {
+            into.plan.shadows = Shadows::default();
+            return;
+        }
+        let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
+        objects.sort_by_key(|(id, _)| *id);
+        let shown = objects.into_iter().filter(|(id, object)| self.is_asked_for(*id, object));
+        into.plan.shadows.casters =
+            shown.filter_map(|(id, object)| self.caster(id, object)).collect();
+        if into.plan.shadows.casters.is_empty() {
+            into.plan.shadows = Shadows::default();
+        }
+    }
+
+    fn caster(&self, id: ObjectId, object: &Object) -> Option<Caster> {
+        let world_from_object = object.world_from_object(self.shot.view.time);
+        let mesh = &object.model.mesh;
+        let is_flat = !math::has_full_rank(DMat3::from_mat4(world_from_object));
+        if is_flat || mesh.polygon_count() == 0 {
+            return None;
+        }
+        let parts = (0..mesh.parts().len())
+            .map(|part| u32::try_from(part).expect("parts are numbered by 32 bits"))
+            .map(|part| caster_part(object, part))
+            .collect();
+        let selected = self.shot.view.object == Some(id);
+        let polygons = self.shot.view.polygons.as_ref().filter(|_| selected).map(|mode| {
+            if self.shot.view.polygons_stay {
+                mode.shown.clone()
+            } else {
+                BTreeSet::from([mode.current])
+            }
+        });
+        let (item, model) = (ItemId::Object(id), object.model.clone());
+        Some(Caster { item, model, world_from_object, parts, polygons })
+    }
+
+    /// Notes whether a light's shadows fall on an object; `no_light` is the reason why its light
+    /// does not, if there is one.
+    pub(super) fn note_shadows(
+        &self,
+        into: &mut Planning,
+        ground: &Ground<'_>,
+        shining: &Shining,
+        no_light: Option<&'static str>,
+    ) {
+        let Some(light) = self.shot.scene.lights.get(shining.id) else { return };
+        if !light.can_cast_shadows() {
+            return;
+        }
+        let reason = if !light.shadows {
+            Some("switched off")
+        } else if self.shot.view.fill == Fill::Edges {
+            Some("edges only")
+        } else if into.plan.shadows.source(shining.light).is_none() {
+            Some("nothing casts them")
+        } else if !matches!(ground.item, ItemId::Object(_)) {
+            Some("a mark takes none")
+        } else {
+            no_light
+        };
+        into.notes.add(|| EffectUse {
+            effect: Effect::Shadows(shining.id),
+            name: format!("Shadows of {}", shining.name),
+            on: ground.thing(),
+            state: reason.map_or(EffectState::On("exact".into()), EffectState::exact),
+            pixels: None,
+        });
+    }
+}
+
+/// How a part of an object casts shadows; `None` if it is not drawn.
+fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
+    let look = object.part_look(part);
+    if object.hidden_parts.contains(&part) || look.opacity < 0.5 {
+        return None;
+    }
+    let texture = look.texture.filter(|_| !object.model.mesh.uvs().is_empty());
+    let has_holes = |least: u8| f64::from(least) / 255.0 * look.opacity < 0.5;
+    let texture = texture.filter(|texture| has_holes(texture.picture.least_alpha()));
+    Some(CasterPart { holes: texture.map(|texture| (texture.clone(), look.opacity)) })
+}

@@ -1,0 +1,26 @@
+//! Shadows: whether a light is seen from the points that it lights.
+//!
+//! A ray runs from each lit point to the light, and any triangle between the two shades the point.
+//! All of it happens in world space: the corners of all triangles are rounded to f64 once, by one
+//! function, and from there on every decision is exact. There is no bias:
+//!
+//! * The triangle that the point lies on is left out.
+//! * A triangle shades a point only if point and light lie strictly on different sides of its
+//!   plane, so nothing shades a point in its own plane, and no light is shaded by what it lies on.
+//! * A point is as good as its triangle: if all of that lies on the light's side of another
+//!   triangle's plane, the other one does not shade the point, however its position was rounded.
+//! * A ray through an edge or a corner meets every triangle that has it, so no ray passes between
+//!   the triangles of a closed body.
+//!
+//! Up to 64 rays to one light are traced together ([`rays`]), through the boxes of a mesh in f32,
+//! padded by their error ([`boxes`]), then against triangles in f64 lanes with an error bound, and
+//! where that decides nothing by exact arithmetic ([`triangle`]). A sun is a light at 2^60 times
+//! the size of the scene: no f64 direction tells the difference.
+//!
+//! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
+//! 1997. Amanatides and Choi, "Ray Tracing Triangular Meshes", 1995, for edges seen from one point.
+
+pub(crate) mod boxes;
+pub(crate) mod rays;
+pub(crate) mod tracer;
+pub(crate) mod triangle;

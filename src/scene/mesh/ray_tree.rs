@@ -1,0 +1,244 @@
+//! The triangles of a mesh in a tree of boxes, in which rays find the few that they may meet.
+//!
+//! `obvhs` builds the tree from boxes that are brought to the unit cube, so that it meets no
+//! infinity. It needs quadratic time for boxes that coincide, so equal boxes become one leaf first.
+//! The boxes of the finished tree are those of the triangles themselves, exactly.
+//!
+//! Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
+//! Construction", 2018.
+
+use std::ops::Range;
+
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use rayon::prelude::*;
+
+use super::index;
+use crate::base::math::each;
+use crate::scene::Mesh;
+
+/// The triangles of a mesh in a tree of boxes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RayTree {
+    /// The root; it has no triangles and no node if the mesh has no triangle with an area.
+    pub root: TreeChild,
+    /// The inner nodes.
+    pub nodes: Vec<TreeNode>,
+    /// The triangles, leaf by leaf.
+    pub triangles: Vec<TreeTriangle>,
+}
+
+/// An inner node: the boxes of its two children.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TreeNode {
+    /// The least coordinates of each child's box.
+    pub low: [[f32; 3]; 2],
+    /// The largest coordinates of each child's box.
+    pub high: [[f32; 3]; 2],
+    /// The children.
+    pub children: [TreeChild; 2],
+}
+
+/// A child of a node.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TreeChild {
+    /// The index of its node in [`RayTree::nodes`], or of its first triangle.
+    pub first: u32,
+    /// The number of its triangles if it is a leaf, else 0.
+    pub count: u32,
+}
+
+impl TreeChild {
+    /// The triangles of a leaf.
+    #[must_use]
+    pub const fn triangles(self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// A triangle of the tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TreeTriangle {
+    /// Its corners in object space.
+    pub corners: [[f32; 3]; 3],
+    /// Its index in [`Mesh::triangles`].
+    pub number: u32,
+}
+
+/// A box: its least and its largest coordinates.
+type Box3 = [[f32; 3]; 2];
+
+/// No point.
+const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+
+/// The most boxes in a leaf, and the cost of a node relative to a box in it.
+const LEAF: u32 = 4;
+const NODE_COST: f32 = 1.5;
+
+/// The number of boxes up to which a tree is one leaf.
+const FEW: usize = 2;
+
+impl RayTree {
+    /// Builds the tree of a mesh.
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let groups = Groups::of(mesh);
+        if groups.boxes.is_empty() {
+            return Self::default();
+        }
+        if groups.boxes.len() <= FEW {
+            let root = TreeChild { first: 0, count: index(groups.triangles.len()) };
+            return Self { root, nodes: Vec::new(), triangles: groups.triangles };
+        }
+        let unit = in_unit_cube(&groups.boxes);
+        let numbers = (0..index(unit.len())).collect();
+        let distance = PlocSearchDistance::Medium;
+        let mut tree = PlocBuilder::with_capacity(unit.len()).build(
+            distance,
+            &unit,
+            numbers,
+            SortPrecision::U64,
+            3,
+        );
+        ReinsertionOptimizer::default().run(&mut tree, 0.05, None);
+        collapse(&mut tree, LEAF, NODE_COST);
+        Self::flattened(&tree, groups)
+    }
+
+    /// Copies the nodes of a tree, children after their parents, and computes their boxes.
+    fn flattened(tree: &Bvh2, groups: Groups) -> Self {
+        let mut flat = Self::default();
+        // The nodes that are still to be copied, with the places that refer to them.
+        let mut open = vec![(0, None::<(usize, usize)>)];
+        let mut leaf_boxes = Vec::new();
+        while let Some((place, parent)) = open.pop() {
+            let node = &tree.nodes[place];
+            let mut own = TreeChild { first: index(flat.nodes.len()), count: 0 };
+            if node.prim_count == 0 {
+                let at = flat.nodes.len();
+                flat.nodes.push(TreeNode::default());
+                let first = node.first_index as usize;
+                open.extend([(first + 1, Some((at, 1))), (first, Some((at, 0)))]);
+            } else {
+                let first = flat.triangles.len();
+                let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+                for group in &tree.primitive_indices[leaf] {
+                    let own = groups.starts[*group as usize]..groups.starts[*group as usize + 1];
+                    flat.triangles.extend_from_slice(&groups.triangles[own]);
+                }
+                own = TreeChild { first: index(first), count: index(flat.triangles.len() - first) };
+                let around = flat.triangles[first..].iter().map(|own| box_of(&own.corners));
+                leaf_boxes.push((parent, around.fold(EMPTY, union)));
+            }
+            match parent {
+                None => flat.root = own,
+                Some((at, child)) => flat.nodes[at].children[child] = own,
+            }
+        }
+        for (parent, around) in leaf_boxes {
+            let Some((at, child)) = parent else { continue };
+            (flat.nodes[at].low[child], flat.nodes[at].high[child]) = (around[0], around[1]);
+        }
+        // Children have larger numbers than their parents.
+        for at in (0..flat.nodes.len()).rev() {
+            for child in 0..2 {
+                let TreeChild { first, count } = flat.nodes[at].children[child];
+                if count == 0 {
+                    let TreeNode { low, high, .. } = flat.nodes[first as usize];
+                    let [low, high] = union([low[0], high[0]], [low[1], high[1]]);
+                    (flat.nodes[at].low[child], flat.nodes[at].high[child]) = (low, high);
+                }
+            }
+        }
+        flat
+    }
+}
+
+/// Triangles in groups of equal boxes.
+#[derive(Debug, Default)]
+struct Groups {
+    boxes: Vec<Box3>,
+    triangles: Vec<TreeTriangle>,
+    /// The first triangle of each group, and the end of the last.
+    starts: Vec<usize>,
+}
+
+impl Groups {
+    /// Those of a mesh, without triangles that have lost an edge. Of triangles that coincide in one
+    /// part, the first is kept: they block the same rays.
+    fn of(mesh: &Mesh) -> Self {
+        let positions = mesh.positions();
+        let corners = |number: u32| {
+            // 0 and -0 are one place.
+            let place = |corner: usize| each(positions[mesh.vertex_of(corner)], |x| x + 0.0);
+            each(mesh.triangle(number as usize), place)
+        };
+        let mut all: Vec<TreeTriangle> = (0..index(mesh.triangle_count()))
+            .into_par_iter()
+            .map(|number| TreeTriangle { corners: corners(number), number })
+            .filter(|it| {
+                let [a, b, c] = it.corners;
+                a != b && b != c && c != a
+            })
+            .collect();
+        let part = |it: &TreeTriangle| mesh.polygon_parts()[mesh.polygon_of(it.number) as usize];
+        let key = |it: &TreeTriangle| (bits(&box_of(&it.corners)), part(it), sorted(&it.corners));
+        all.par_sort_unstable_by_key(|it| (bits(&box_of(&it.corners)), it.number));
+        let mut groups = Self::default();
+        for own in all.chunk_by_mut(|a, b| box_of(&a.corners) == box_of(&b.corners)) {
+            if own.len() > 2 {
+                own.sort_by_key(|it| (key(it), it.number));
+            }
+            groups.boxes.push(box_of(&own[0].corners));
+            groups.starts.push(groups.triangles.len());
+            let mut last = None;
+            for it in &*own {
+                let this = Some(key(it));
+                if this != last {
+                    groups.triangles.push(*it);
+                    last = this;
+                }
+            }
+        }
+        groups.starts.push(groups.triangles.len());
+        groups
+    }
+}
+
+/// The bits of a box.
+fn bits(of: &Box3) -> [[u32; 3]; 2] {
+    of.map(|corner| corner.map(f32::to_bits))
+}
+
+/// The bits of three corners in an order that does not depend on where the triangle begins.
+fn sorted(corners: &[[f32; 3]; 3]) -> [[u32; 3]; 3] {
+    let mut all = corners.map(|corner| corner.map(f32::to_bits));
+    all.sort_unstable();
+    all
+}
+
+fn box_of(corners: &[[f32; 3]; 3]) -> Box3 {
+    corners.iter().fold(EMPTY, |around, corner| union(around, [*corner; 2]))
+}
+
+fn union([low, high]: Box3, [other_low, other_high]: Box3) -> Box3 {
+    let least = |axis: usize| low[axis].min(other_low[axis]);
+    let largest = |axis: usize| high[axis].max(other_high[axis]);
+    [std::array::from_fn(least), std::array::from_fn(largest)]
+}
+
+/// The boxes, moved and scaled into the unit cube: their order along each axis stays.
+#[expect(clippy::cast_possible_truncation, reason = "the tree may be built from rounded boxes")]
+fn in_unit_cube(boxes: &[Box3]) -> Vec<Aabb> {
+    let [low, high] = boxes.iter().fold(EMPTY, |around, own| union(around, *own));
+    let extent = (0..3).map(|axis| f64::from(high[axis]) - f64::from(low[axis]));
+    let extent = extent.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    let place = |corner: [f32; 3]| {
+        let axis = |i: usize| ((f64::from(corner[i]) - f64::from(low[i])) / extent) as f32;
+        Vec3A::new(axis(0), axis(1), axis(2))
+    };
+    boxes.par_iter().map(|[low, high]| Aabb::new(place(*low), place(*high))).collect()
+}

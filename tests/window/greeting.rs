@@ -1,0 +1,55 @@
+//! The strip of the first minute.
+//!
+//! Catches: a strip that stays, that takes keys, or that lies over the picture that is saved.
+
+use egui::Key;
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::Lower;
+
+use crate::editor::Editor;
+
+fn greeted() -> Editor {
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.harness.state_mut().greet();
+    editor.settle();
+    assert!(is_shown(&editor));
+    editor
+}
+
+fn is_shown(editor: &Editor) -> bool {
+    editor.shows("Drop a model here")
+}
+
+#[test]
+fn the_strip_goes_with_the_first_change_and_takes_no_key_before() {
+    let mut editor = greeted();
+    editor.press(Lower(Key::O));
+    assert!(editor.view().polygons.is_some() && is_shown(&editor), "a view is no change");
+    editor.press(Lower(Key::O));
+    editor.press(Lower(Key::Z));
+    assert_eq!(editor.steps(), 1);
+    assert!(!is_shown(&editor));
+    editor.perform(Action::Undo);
+    assert!(!is_shown(&editor), "it does not come back");
+}
+
+#[test]
+fn the_strip_offers_lessons_and_is_dismissed() {
+    let mut editor = greeted();
+    editor.click_label("Jagged edges");
+    assert!(editor.state().lab.away && !is_shown(&editor));
+    let mut editor = greeted();
+    editor.perform(Action::ToggleOverlays);
+    assert!(!is_shown(&editor), "without overlays the picture is alone");
+    editor.perform(Action::ToggleOverlays);
+    editor.click_label("Dismiss");
+    assert!(!is_shown(&editor));
+}
+
+#[test]
+fn a_small_picture_keeps_its_place_for_itself() {
+    let mut editor = Editor::of_size(640.0, 240.0);
+    editor.harness.state_mut().greet();
+    editor.settle();
+    assert!(!is_shown(&editor));
+}

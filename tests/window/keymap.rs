@@ -1,0 +1,62 @@
+//! Keys that the user chooses.
+//!
+//! Catches: a key that presses two actions, a clash that is not told, a choice that is forgotten.
+
+use egui::Key;
+use egui::accesskit::Role;
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::{Lower, Named};
+use marraztu::io::{OwnFolders, Preferences};
+
+use crate::editor::Editor;
+use crate::panels::click;
+
+fn choose(editor: &mut Editor, action: &str, key: Key) {
+    editor.press(Named(Key::F1));
+    if !editor.shows("Reset all keys") {
+        click(editor, Role::CheckBox, "Change keys");
+    }
+    click(editor, Role::Button, &format!("Key of {action}"));
+    assert!(editor.shows("Press the key for"));
+    editor.press(Lower(key));
+}
+
+#[test]
+fn a_clash_is_told_before_a_key_changes_its_owner() {
+    let mut editor = Editor::tall();
+    choose(&mut editor, "Undo", Key::Z);
+    assert!(editor.shows("z is the key of"), "nothing has changed yet");
+    click(&mut editor, Role::Button, "Use it for \"Undo\"");
+    editor.press(Named(Key::F1));
+    editor.perform(Action::StepXUp);
+    assert_eq!(editor.steps(), 1);
+    let at = editor.at(0.5, 0.9);
+    editor.click(at, egui::PointerButton::Primary);
+    editor.press(Lower(Key::Z));
+    assert_eq!(editor.steps(), 0, "z undoes");
+    editor.press(Named(Key::F1));
+    click(&mut editor, Role::Button, "Reset all keys");
+    editor.press(Named(Key::F1));
+    editor.click(at, egui::PointerButton::Primary);
+    editor.press(Lower(Key::Z));
+    assert_eq!(editor.steps(), 1, "z moves again");
+}
+
+#[test]
+fn chosen_keys_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let folders = OwnFolders::within(folder.path());
+    let keys = [("Redo".to_owned(), vec!["k".to_owned()])].into();
+    Preferences { keys, ..Preferences::default() }.save(&folders).unwrap();
+    let mut editor = Editor::small();
+    let (preferences, said) = Preferences::load(&folders);
+    let ctx = editor.harness.ctx.clone();
+    editor.harness.state_mut().keep_in(&ctx, folders.clone(), preferences.clone(), said);
+    editor.settle();
+    editor.perform(Action::StepXUp);
+    editor.perform(Action::Undo);
+    editor.press(Lower(Key::K));
+    assert_eq!(editor.steps(), 1);
+    editor.harness.state_mut().end_keeping();
+    assert_eq!(Preferences::load(&folders).0.keys, preferences.keys);
+}

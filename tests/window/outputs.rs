@@ -1,0 +1,86 @@
+//! Pictures with options, turntables and exports from the window.
+//!
+//! Catches: options that are not those of the file, a file that is left behind by what was
+//! cancelled, a window that waits.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use marraztu::accuracy::{Samples, Settings, Shot};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::Shifted;
+use marraztu::base::image::Size;
+use marraztu::io;
+use marraztu::render::{Renderer, plan_frame, without_ground};
+
+use crate::editor::Editor;
+use crate::panels::click;
+
+fn says(editor: &Editor, text: &str) -> bool {
+    editor.state().message.as_ref().is_some_and(|message| message.text.contains(text))
+}
+
+#[test]
+fn a_picture_has_the_size_the_samples_and_the_ground_that_were_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("large.png");
+    let mut editor = Editor::of_size(900.0, 500.0);
+    editor.press(Shifted(Key::F12));
+    click(&mut editor, Role::RadioButton, "4");
+    click(&mut editor, Role::CheckBox, "Transparent ground");
+    editor.click_label("Save...");
+    editor.type_path(&path);
+    editor.wait_until(|editor| says(editor, "Saved"));
+    let window = editor.state().statistics.size;
+    let settings = Settings { samples: Samples::Four, ..editor.state().settings };
+    let size = Size::new(window.width, window.height);
+    let shot = Shot::new(&editor.scene(), &editor.view(), &settings, size);
+    let expected = without_ground(&mut Renderer::default(), &shot).unwrap();
+    assert!(io::load_picture(&path).unwrap() == expected);
+}
+
+#[test]
+fn a_turntable_is_drawn_while_the_window_answers_and_a_cancelled_one_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut editor = Editor::small();
+    editor.perform(Action::SaveTurntable);
+    let ctx = editor.harness.ctx.clone();
+    editor.click_label("Save...");
+    editor.type_path(&folder.path().join("turn.gif"));
+    editor.wait_until(|editor| editor.shows("Drawing turn.gif") || says(editor, "Saved"));
+    editor.click_label("Cancel");
+    editor.wait_until(|editor| says(editor, "Cancelled") || says(editor, "Saved"));
+    if says(&editor, "Cancelled") {
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+    assert_eq!(editor.steps(), 0);
+    drop(ctx);
+    editor.perform(Action::SaveTurntable);
+    editor.click_label("Save...");
+    editor.type_path(&folder.path().join("frames"));
+    editor.wait_until(|editor| says(editor, "Saved"));
+    let shot = Shot::new(
+        &editor.scene(),
+        &editor.view(),
+        &editor.state().settings,
+        editor.state().statistics.size,
+    );
+    // A name without an ending has the first one: that of a GIF.
+    let gif = std::fs::read(folder.path().join("frames.gif")).unwrap();
+    assert!(gif.starts_with(b"GIF89a"));
+    assert!(Renderer::default().render(&plan_frame(&shot)).size() == shot.size);
+}
+
+#[test]
+fn a_scene_is_exported_with_notes_on_what_the_format_does_not_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("first.glb");
+    let mut editor = Editor::small();
+    editor.perform(Action::ExportScene);
+    editor.type_path(&path);
+    editor.wait_until(|editor| says(editor, "Saved"));
+    assert!(std::fs::read(&path).unwrap().starts_with(b"glTF"));
+    assert!(editor.shows("first.glb: what it does not say"));
+    let modifiers = Modifiers::NONE;
+    editor.key(Key::Escape, true, modifiers);
+    editor.settle();
+}
