@@ -503,7 +503,7 @@ fn ray<T: ShadingNumber>(
     let (position, normal) = (vec3(&batch.position), vec3(&batch.normal));
     let to_eye = vec3(&batch.to_eye);
     let travels = DVec3::from_array(light.direction);
-    let is_sun = stage.effect.name == "sun";
+    let is_sun = stage.effect.name == "Sun";
     let way = DVec3::from_array(light.position) - position;
     let (to_light, distance) = if is_sun {
         (-travels, None)
@@ -530,8 +530,8 @@ fn ray<T: ShadingNumber>(
         distance,
         attenuation: if is_sun { 1.0 } else { 1.0 / (a0 + (a1 + a2 * d) * d) },
         cone: match stage.effect.name {
-            "spot" if inside => libm::pow(cosine, light.exponent),
-            "spot" => 0.0,
+            "Spot" if inside => libm::pow(cosine, light.exponent),
+            "Spot" => 0.0,
             _ => 1.0,
         },
         shadow: 1.0,
