@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3};
 use marraztu::accuracy::{
     Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
     LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, SpecularForm,
-    SpecularPower, Subpixels, Tangents, VertexArithmetic,
+    SpecularPower, Subpixels, Tangents, Transparency, VertexArithmetic,
 };
 use marraztu::base::Shared;
 use marraztu::base::color::Color;
@@ -81,6 +81,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         surface: Surface::Texture,
         texture: Some(Shared::new(texture)),
         tint: Color([1, 2, 3]),
+        opacity: 0.375,
         sides: Sides::Two,
         file_normals: false,
         edge_color: Color([4, 5, 6]),
@@ -174,6 +175,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         tangents: Tangents::Pixel,
         bump_filter: BumpFilter::Nearest,
         light_values: LightValues::Linear,
+        transparency: Transparency::Objects,
     };
     (scene, view, settings)
 }

@@ -108,8 +108,8 @@ impl Picture {
         self.alphas().partial
     }
 
-    /// Whether, as a map of opacity, it is anywhere between nothing and all: its alpha is or, if all
-    /// of it is opaque, its colour.
+    /// Whether, as a map of opacity, it is anywhere between nothing and all. Its alpha counts; if
+    /// all of it is opaque, its colour does.
     #[must_use]
     pub fn fades(&self) -> bool {
         let Found { least, partial, grey } = self.alphas();

@@ -23,9 +23,9 @@ const RADIUS: f64 = 40.0;
 /// Texels of the map of heights.
 const TEXELS: Size = Size::new(128, 64);
 /// How often the map is repeated about the ball.
-const REPEATED: [f64; 2] = [6.0, 4.0];
+const REPEATED: [f64; 2] = [4.0, 4.0];
 /// The height of a white texel, in texels.
-const GAIN: f64 = 24.0;
+const GAIN: f64 = 20.0;
 
 /// The heights: round hills and pits, with fine grooves across them.
 fn heights() -> Picture {
@@ -35,7 +35,7 @@ fn heights() -> Picture {
         let (u, v) = (part(i % TEXELS.width, TEXELS.width), part(i / TEXELS.width, TEXELS.height));
         let hills = libm::cos(2.0 * TAU * u) * libm::cos(TAU * v);
         let grooves = libm::cos(16.0 * TAU * u);
-        let height = byte(0.5 + 0.4 * hills + 0.06 * grooves);
+        let height = byte(0.5 + 0.45 * hills + 0.02 * grooves);
         *pixel = [height, height, height, 255];
     }
     picture

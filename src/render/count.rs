@@ -149,7 +149,7 @@ impl FramePlan {
     /// Whether the observer sees the back of a triangle.
     fn is_back(&self, frame: &ScreenGeometry, draw: u32, number: u32) -> bool {
         let own = &self.draws[draw as usize];
-        let vertices = frame.corners_of(self, draw);
+        let vertices = frame.corners_of(draw);
         let order = own.model.mesh.draw_order();
         let ids = order.vertices_of(number);
         let corners = ids.map(|vertex| vertices[vertex as usize]);

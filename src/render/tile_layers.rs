@@ -91,9 +91,10 @@ impl TileLayers {
     ) {
         let Self { visibility, layers, words, .. } = self;
         words.iter_mut().for_each(Vec::clear);
-        for sample in 0..frame.sample_positions().count() {
+        let samples = frame.sample_positions().count();
+        for (sample, top) in tops.iter_mut().enumerate().take(samples) {
             let opaque = visibility.entries(level, block, sample);
-            tops[sample] = opaque;
+            *top = opaque;
             for (words, word) in words.iter_mut().zip(&opaque) {
                 words.push(*word);
             }
@@ -104,7 +105,7 @@ impl TileLayers {
                     let row = layers.row(order, i);
                     for (place, word) in row.into_iter().enumerate().filter(|(_, word)| *word != 0)
                     {
-                        tops[sample][place] = word;
+                        top[place] = word;
                         words[place].push(word);
                     }
                 }

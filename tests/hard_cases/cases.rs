@@ -129,7 +129,7 @@ pub(crate) static CASES: &[Case] = &[
     case(86, TRANSPARENCY, "D", "a fading texture is cut off at one half"),
     case(90, SURFACES, "D", "bumps on the mirrored half of a model are dents"),
     case(91, SURFACES, "R", "bumps break at a seam of the texture coordinates"),
-    case(92, SURFACES, "I", "texture coordinates without area divide by 0 and turn the surface black"),
+    case(92, SURFACES, "I", "texture coordinates without area divide by 0: the surface is black"),
     case(93, SURFACES, "R", "bumps of no height change the last bit, or cost time"),
     case(94, SURFACES, "R", "a flat map of normals tilts everything by half a step"),
     case(95, SURFACES, "Z", "what shines by itself is dimmed by light that is not there"),

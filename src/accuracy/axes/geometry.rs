@@ -59,8 +59,7 @@ pub(super) const SUBPIXELS: Axis = Axis {
             "Snaps vertices to 1/256 pixel.",
             "0.052% of the pixels"),
         choice!("bits-12" "12" subpixels = Subpixels::Bits12,
-            "Snaps vertices to 1/4096 pixel. Drawn one pixel at a time, so its time is not \
-                comparable.",
+            "Snaps vertices to 1/4096 pixel, on which all but small triangles need 64-bit numbers.",
             "0.003% of the pixels"),
     ],
     sense: anything,
@@ -84,14 +83,15 @@ pub(super) const COVERAGE: Axis = Axis {
     kind: AxisKind::Scored,
     choices: &[
         choice!("points" "Points" coverage = Coverage::Points,
-            "As ancestor A drew: points every 0.1 unit of the observer's space, each drawn \
-                separately.",
+            "As ancestor A's author wrote it: points every 0.1 unit of the observer's space, each \
+                drawn separately.",
             "holes nearer than 97 units; 17 writes per pixel at a distance of 400, 100 at 966"),
         choice!("scan-lines" "Scan lines" coverage = Coverage::ScanLines,
-            "As ancestor B drew: rows between edges that are rounded to whole pixels.",
+            "As ancestor B's author wrote it: row by row, between edges that are rounded to whole \
+                pixels.",
             "outlines a pixel too wide; every seam is drawn twice"),
         choice!("f32-edges" "32-bit edges" coverage = Coverage::F32Edges,
-            "Edge functions in 32-bit floating point, one pixel at a time.",
+            "Edge functions in 32-bit floating point, of vertices that are not snapped.",
             "pixels whose centres lie on an edge are covered twice or, by rounding, not at all"),
         choice!("exact" "Exact" coverage = Coverage::Exact,
             "Edge functions in integers, by the rule of Direct3D and Vulkan.",
@@ -118,7 +118,7 @@ pub(super) const INTERPOLATION: Axis = Axis {
     kind: AxisKind::Scored,
     choices: &[
         choice!("affine" "Affine" interpolation = Interpolation::Affine,
-            "Linearly on the screen, as ancestor B drew: one pixel at a time.",
+            "Linearly on the screen, as ancestor B drew: no division.",
             "557 texels on a wall from z 2.2 to 100"),
         choice!("every-sixteen" "Every 16 pixels" interpolation = Interpolation::EverySixteen,
             "With perspective at every sixteenth pixel of a row, linearly between them, as in \

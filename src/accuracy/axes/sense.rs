@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use crate::accuracy::{Samples, Settings};
 use crate::base::math::power_of_two_near;
-use crate::scene::{MapKind, Object, ObjectId, Scene, Surface, Texture, View};
+use crate::scene::{MapKind, Object, ObjectId, Scene, Surface, View};
 
 /// The objects that are shown.
 fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> {
@@ -44,13 +44,12 @@ pub(super) fn is_textured(object: &Object, part: u32) -> bool {
 /// Whether something behind it may be seen through it.
 pub(super) fn is_transparent(object: &Object, part: u32) -> bool {
     let look = object.part_look(part);
-    let partial = |texture: &Texture| texture.picture.has_partial_alpha();
-    let map = look.map(MapKind::Opacity).filter(|_| !object.model.mesh.uvs().is_empty());
-    (look.opacity > 0.0 && look.opacity < 1.0)
-        || (look.opacity > 0.0 && map.is_some_and(|map| map.texture.picture.fades()))
-        || (is_textured(object, part)
-            && look.opacity > 0.0
-            && look.texture.is_some_and(|texture| partial(texture)))
+    let mapped = !object.model.mesh.uvs().is_empty();
+    let map = look.map(MapKind::Opacity).filter(|_| mapped);
+    let texture = look.texture.filter(|_| mapped);
+    let fades = texture.is_some_and(|texture| texture.picture.has_partial_alpha())
+        || map.is_some_and(|map| map.texture.picture.fades());
+    look.opacity > 0.0 && (look.opacity < 1.0 || fades)
 }
 
 /// Whether it is lit, and has a map of heights or normals.

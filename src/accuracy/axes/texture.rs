@@ -67,7 +67,7 @@ pub(super) const TANGENTS: Axis = Axis {
     key: "tangents",
     label: "Tangents",
     phrase: "tangents at each {}",
-    what: "Where the tangents that bumps are laid along come from",
+    what: "How the tangents that bumps are laid along are found",
     kind: AxisKind::Model,
     choices: &[
         choice!("pixel" "Pixel" tangents = Tangents::Pixel,

@@ -6,7 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use glam::{DMat3, DMat4};
 
 use super::FramePlan;
-use super::extras::Extras;
+use super::extras::{Extras, bits};
 use crate::accuracy::{LightAt, Tangents};
 use crate::base::{Shared, color::Color};
 use crate::render::lights::{self, LightRow, PhongMaterial};
@@ -61,6 +61,10 @@ impl Draw {
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
+        // Whether a map of opacity counts by its alpha or its brightness.
+        for map in shaded.iter().filter_map(|shaded| shaded.opacity_map.as_ref()) {
+            let _least: u8 = map.picture.least_alpha();
+        }
         let is_bumpy = shaded.iter().any(|shaded| shaded.extras.bump.is_some());
         let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
         let Lines { edges, face_normals, .. } = self.lines;
@@ -236,11 +240,6 @@ impl Shaded {
         opacity_map.as_ref().map(|map| &map.source).hash(hasher);
         extras.hash_into(hasher);
     }
-}
-
-/// The bits of a number, the same for 0 and -0, which are equal.
-pub(super) fn bits(x: f64) -> u64 {
-    (x + 0.0).to_bits()
 }
 
 /// One light on one surface.

@@ -3,7 +3,6 @@
 
 use std::hash::{Hash, Hasher};
 
-use super::draw::bits;
 use crate::base::Shared;
 use crate::scene::Texture;
 
@@ -129,4 +128,9 @@ impl Extras {
             && maps(exponent, &other.exponent)
             && bumps
     }
+}
+
+/// The bits of a number, the same for 0 and -0, which are equal.
+pub(super) fn bits(x: f64) -> u64 {
+    (x + 0.0).to_bits()
 }

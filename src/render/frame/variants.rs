@@ -8,6 +8,7 @@ use crate::accuracy::{
     BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LightValues, Normalising, Rounding,
     Settings, SpecularPower, Subpixels, Tangents, VertexArithmetic,
 };
+use crate::render::screen::coverage::Grid;
 use crate::render::simd::Number;
 
 /// How bytes of texels become numbers.
@@ -97,39 +98,25 @@ impl Variants {
         (!plain).then_some(self.roots)
     }
 
+    /// The grid that corners of triangles are snapped to.
+    pub(crate) const fn grid(&self) -> Grid {
+        match (self.subpixels, self.coverage) {
+            (Subpixels::Bits12, Coverage::Exact) => Grid::Fine,
+            _ => Grid::Usual,
+        }
+    }
+
     /// Whether vertices are transformed and snapped by the defaults.
     pub(crate) fn has_default_vertices(&self) -> bool {
         self.vertices == VertexArithmetic::F64
             && matches!(self.subpixels, Subpixels::Bits8 | Subpixels::Bits12)
     }
 
-    /// Whether corners of triangles are snapped to a finer grid than the ends of lines.
-    pub(crate) fn has_fine_corners(&self) -> bool {
-        self.subpixels == Subpixels::Bits12
-    }
-
-    /// Whether triangles are rasterized one by one, pixel by pixel.
-    pub(crate) fn draws_one_by_one(&self) -> bool {
-        self.has_fine_corners()
-            || self.coverage != Coverage::Exact
-            || self.depth != DepthFormat::F32Reversed
-    }
-
-    /// Whether barycentric coordinates are computed one pixel at a time.
-    pub(crate) fn locates_one_by_one(&self) -> bool {
-        self.has_fine_corners()
-            || self.coverage != Coverage::Exact
-            || self.interpolation != Interpolation::Perspective
-    }
-
-    /// Whether interpolated colours are computed and rounded one pixel at a time.
-    pub(crate) fn mixes_one_by_one(&self) -> bool {
-        self.locates_one_by_one() || self.rounding != Rounding::Nearest
-    }
-
     /// Whether a variant may move geometry on the screen, so that nothing may be left out for its
     /// position.
     pub(crate) fn has_geometry_variant(&self) -> bool {
-        !self.has_default_vertices() || self.draws_one_by_one() || self.locates_one_by_one()
+        !self.has_default_vertices()
+            || self.grid() != Grid::Usual
+            || self.coverage != Coverage::Exact
     }
 }

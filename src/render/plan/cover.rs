@@ -17,8 +17,9 @@ pub(super) enum Cover {
 impl Cover {
     /// The cover of a part.
     ///
-    /// A texture or a map of opacity whose texels are all wholly opaque or wholly transparent is a stencil: it cuts
-    /// holes, as with [`Transparency::Threshold`], however its edges are filtered.
+    /// If all texels of a texture, or of a map of opacity, are wholly opaque or wholly transparent,
+    /// it is a stencil: it cuts holes, as with [`Transparency::Threshold`], however its edges are
+    /// filtered.
     pub(super) fn of(look: &PartLook<'_>, textured: bool, transparency: Transparency) -> Self {
         // NaN counts as opaque.
         let opacity = if look.opacity < 1.0 { look.opacity.max(0.0) } else { 1.0 };

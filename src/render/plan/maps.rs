@@ -1,7 +1,7 @@
 //! Plans the light that surfaces have of their own, and their maps beside the texture.
 
+use super::ground::{Ground, LARGEST};
 use super::planning::{Planner, Planning};
-use super::surfaces::{Ground, LARGEST};
 use crate::accuracy::LightAt;
 use crate::base::Shared;
 use crate::base::color::linear;

@@ -7,6 +7,7 @@
 mod bounded;
 mod cover;
 pub(crate) mod features;
+mod ground;
 mod helpers;
 mod maps;
 mod observer;

@@ -6,11 +6,11 @@ use glam::{DMat3, DMat4, DVec3};
 
 use super::cover::Cover;
 use super::features::presence;
+use super::ground::Ground;
 use super::helpers;
 use super::observer::ObserverSpace;
 use super::planning::{Planner, Planning};
 use super::rules::Thing;
-use super::surfaces::Ground;
 use super::turning::turning_of;
 use super::uses::{self, EffectState, EffectUse};
 use crate::accuracy::{LightAt, NormalMatrix, VertexArithmetic};

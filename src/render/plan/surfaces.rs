@@ -5,10 +5,11 @@ use std::sync::OnceLock;
 
 use super::bounded;
 use super::cover::Cover;
+use super::ground::{Ground, LARGEST};
 use super::maps::{decoded, emission, holds_same_alpha, mapped, mapped_ambient};
 use super::planning::{Planner, Planning, Shining};
 use super::rules::{LitSurface, Reading, TexturedSurface};
-use super::uses::{self, Class, Effect, EffectState, EffectUse};
+use super::uses::{Class, Effect, EffectState, EffectUse};
 use crate::accuracy::{Arithmetic, LeaveOut, LightAt, SpecularForm};
 use crate::base::image::{Picture, Size};
 use crate::base::once::get_or_compute;
@@ -20,29 +21,7 @@ use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
 use crate::render::frame::extras::Extras;
 use crate::render::lights::PhongMaterial;
 use crate::render::lights::region::Region;
-use crate::render::lights::turning::Turning;
-use crate::scene::{ItemId, MapKind, Object, PartLook, Surface, Texture, Wrap};
-
-/// What the surfaces of an object have in common.
-#[derive(Debug)]
-pub(super) struct Ground<'a> {
-    pub(super) item: ItemId,
-    pub(super) object: &'a Object,
-    /// The region in which they are lit, if it is known.
-    pub(super) region: Option<Region>,
-    /// Their normals, if they are known.
-    pub(super) turning: Option<Turning>,
-    /// See [`Shaded::tiled`].
-    pub(super) tiled: bool,
-    /// Whether their colours are visible at all.
-    pub(super) seen: bool,
-}
-
-impl Ground<'_> {
-    pub(super) fn thing(&self) -> Option<uses::Thing> {
-        Some(uses::Thing { item: self.item, name: self.object.name.clone() })
-    }
-}
+use crate::scene::{MapKind, PartLook, Surface, Texture, Wrap};
 
 /// A white texture, which leaves a surface as it is.
 fn white() -> &'static Shared<Texture> {
@@ -244,7 +223,7 @@ impl Planner<'_> {
                 state: reason.map_or(EffectState::ON, EffectState::exact),
                 pixels: None,
             });
-            self.note_shadows(into, ground, shining, reason);
+            Self::note_shadows(into, ground, shining, reason);
             if reason.is_some() {
                 continue;
             }
@@ -339,9 +318,6 @@ impl Planner<'_> {
 
 /// The lowest floor that powers are computed down to.
 const LOWEST: f64 = -60.0;
-
-/// The largest coefficient and exponent: far beyond any other light, and it fits f32.
-pub(super) const LARGEST: f64 = 1e30;
 
 /// The Phong material of a part. A file may hold any number: NaN counts as 0, and exponents below 0
 /// are raised to 0.

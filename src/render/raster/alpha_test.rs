@@ -29,7 +29,7 @@ const NEAR: f32 = 1.0 / 128.0;
 /// A triangle that needs the alpha test.
 #[derive(Debug)]
 pub(crate) struct AlphaTest<'a> {
-    weights: Weights<'a>,
+    weights: Weights,
     uvs: Uvs,
     opacity: f64,
     filter: Filter,
@@ -96,7 +96,7 @@ impl<'a> AlphaTest<'a> {
         };
         let uvs = uvs(draw, number)?;
         Some(Self {
-            weights: Weights::new(plan, draw, frame.corners_of(plan, index), number, shift),
+            weights: Weights::new(plan, draw, frame.corners_of(index), number, shift),
             uvs,
             opacity: *opacity,
             filter: plan.filter,

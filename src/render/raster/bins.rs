@@ -6,7 +6,6 @@
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
-use super::unsnapped::UnsnappedTriangle;
 use crate::base::image::Size;
 use crate::render::screen::clip::ScreenVertex;
 use crate::render::screen::coverage::PixelBox;
@@ -25,7 +24,7 @@ pub(crate) struct LargeTriangle {
 /// The primitives of one tile, besides its hits.
 #[derive(Debug, Default)]
 pub(crate) struct Bin {
-    /// Triangles, as indices into [`Bins::large`], or of those that are drawn one by one.
+    /// Triangles, as indices into [`Bins::large`].
     pub(crate) large: Vec<u32>,
     /// Lines, as indices into [`Bins::lines`].
     pub(crate) lines: Vec<u32>,
@@ -42,9 +41,9 @@ pub(crate) struct Bins {
     pub(crate) tiles: Vec<Bin>,
     pub(crate) hits: Hits,
     pub(crate) large: Vec<LargeTriangle>,
-    /// Triangles that are drawn one by one, with their bounding boxes; if there are any, no others
-    /// are drawn.
-    plain: Vec<(UnsnappedTriangle, PixelBox)>,
+    /// The corners of those triangles in pixels, before they were snapped, if the rule of coverage
+    /// needs them.
+    pub(crate) unsnapped: Vec<[[f32; 2]; 3]>,
     pub(crate) lines: Vec<ScreenLine>,
     /// Small triangles that wait to be drawn together, by the size of their boxes.
     pub(crate) queues: Box<[Queue; SMALL.len()]>,
@@ -69,7 +68,7 @@ impl Bins {
             .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
         self.hits.clear(extent, [self.columns, self.rows]);
         self.large.clear();
-        self.plain.clear();
+        self.unsnapped.clear();
         self.lines.clear();
         // A cancelled frame leaves some behind.
         for queue in self.queues.iter_mut() {
@@ -120,20 +119,6 @@ impl Bins {
         self.drawn += 1;
         self.large.push(triangle);
         self.each(bounds, |bin| bin.large.push(number));
-    }
-
-    /// Adds a triangle that is drawn pixel by pixel, with its bounding box.
-    pub(crate) fn add_plain(&mut self, triangle: UnsnappedTriangle, bounds: PixelBox) {
-        let number = u32::try_from(self.plain.len()).expect("fewer than 2^32 triangles");
-        self.drawn += 1;
-        self.plain.push((triangle, bounds));
-        self.each(bounds, |bin| bin.large.push(number));
-    }
-
-    /// A triangle that is drawn pixel by pixel, and its bounding box.
-    pub(crate) fn plain(&self, number: u32) -> (&UnsnappedTriangle, PixelBox) {
-        let (plain, bounds) = &self.plain[number as usize];
-        (plain, *bounds)
     }
 
     /// Adds a line of a width in pixels to the tiles that it crosses.

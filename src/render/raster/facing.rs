@@ -150,7 +150,9 @@ impl<'a> Facing<'a> {
         }
         let clip = corners.map(|vertex| self.screen.clip(order.position(vertex)));
         let pieces = self.screen.cut(clip);
-        let piece = |i: usize| doubled_area([pieces[0], pieces[i - 1], pieces[i]].map(|p| p.at()));
+        let piece = |i: usize| {
+            doubled_area([pieces[0], pieces[i - 1], pieces[i]].map(|p| self.screen.piece(p).at()))
+        };
         (2..pieces.len()).map(piece).sum()
     }
 }

@@ -10,9 +10,11 @@ use rayon::prelude::*;
 use super::bins::Bins;
 use super::lines::LineNumber;
 use super::parts::{Parts, share_out};
+use super::rule::{Rule as _, with_rule};
 use super::starts::{Start, number};
+use super::vertices::Vertices;
 use super::work::{What, WorkList, piece_of};
-use super::{edges, vertex_variants, vertices};
+use super::{edges, vertex_variants};
 use crate::accuracy::Transparency;
 use crate::base::Shared;
 use crate::base::cancellation::Cancellation;
@@ -24,8 +26,7 @@ use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
 use crate::render::frame::variants::Variants;
 use crate::render::screen::clip::{Screen, ScreenVertex};
-use crate::render::screen::coverage::SUBPIXELS;
-use crate::render::screen::interpolation;
+use crate::render::screen::coverage::Grid;
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::timings::{Laps, Timings};
 use crate::scene::Model;
@@ -34,9 +35,7 @@ use crate::scene::Model;
 #[derive(Debug, Default)]
 pub(crate) struct ScreenGeometry {
     /// The vertices of all draws, in the draw order of their meshes.
-    vertices: Vec<ScreenVertex>,
-    /// The same on a finer subpixel grid, if the settings choose one.
-    fine: Vec<ScreenVertex>,
+    vertices: Vertices,
     /// What the vertices of each draw were made of; `None` if they have to be transformed.
     held: Vec<Option<Held>>,
     starts: Vec<Start>,
@@ -135,7 +134,7 @@ impl ScreenGeometry {
         for ((held, draw), start) in self.held.iter_mut().zip(&plan.draws).zip(&self.starts) {
             *held = held.take().filter(|held| held.is_of(draw, plan, start.vertex));
         }
-        self.vertices.resize(vertex, ScreenVertex::default());
+        self.vertices.usual.resize(vertex, ScreenVertex::default());
         self.outlines.resize_with(outline, AtomicU8::default);
     }
 
@@ -148,7 +147,7 @@ impl ScreenGeometry {
             self.placing.add((i, draw), ((), order.x.len()), plan.size, position);
         }
         // The slices of all pieces, in the order in which they were added.
-        let (mut rest, mut pieces) = (&mut self.vertices[..], Vec::new());
+        let (mut rest, mut pieces) = (&mut self.vertices.usual[..], Vec::new());
         pieces.reserve_exact(self.placing.len());
         for (start, held) in self.starts.iter().zip(&self.held) {
             let (own, others) = rest.split_at_mut(start.vertex_end - start.vertex);
@@ -166,23 +165,12 @@ impl ScreenGeometry {
                 let screen = Screen::new(draw.clip_from_object, plan.size);
                 let order = draw.model.mesh.draw_order();
                 let out = &mut *pieces[work.place].lock().unwrap_or_else(PoisonError::into_inner);
-                if plan.variants.has_default_vertices() {
-                    vertices::transform(level, &screen, order, work.from, out);
-                } else {
-                    vertex_variants::transform(
-                        plan.variants,
-                        level,
-                        &screen,
-                        order,
-                        work.from,
-                        out,
-                    );
-                }
+                vertex_variants::transform(plan.variants, level, &screen, order, work.from, out);
                 see_from(out, plan.shift);
             }
         });
         drop(pieces);
-        self.place_finely(plan);
+        self.place_otherwise(level, plan);
         if watch.is_given_up() {
             return;
         }
@@ -191,26 +179,35 @@ impl ScreenGeometry {
         }
     }
 
-    /// Transforms corners to a finer subpixel grid, if the settings choose one.
-    fn place_finely(&mut self, plan: &FramePlan) {
-        self.fine.clear();
-        if !plan.variants.has_fine_corners() {
+    /// Transforms vertices to a finer grid, or to pixels, if the settings need that.
+    fn place_otherwise(&mut self, level: Level, plan: &FramePlan) {
+        let Vertices { usual, fine, unsnapped } = &mut self.vertices;
+        fine.clear();
+        unsnapped.clear();
+        let grid = plan.variants.grid();
+        let is_fine = grid != Grid::Usual;
+        if !is_fine && !with_rule!(plan.variants, R => R::UNSNAPPED) {
             return;
         }
-        self.fine.resize(self.vertices.len(), ScreenVertex::default());
+        fine.resize(if is_fine { usual.len() } else { 0 }, ScreenVertex::default());
+        unsnapped.resize(if is_fine { 0 } else { usual.len() }, [0.0; 2]);
         for (draw, start) in plan.draws.iter().zip(&self.starts) {
-            let screen = Screen::new(draw.clip_from_object, plan.size);
-            let order = draw.model.mesh.draw_order();
-            let own = &mut self.fine[start.vertex..start.vertex_end];
+            let screen = Screen::new(draw.clip_from_object, plan.size).on(grid);
+            let screen = screen.seen_from(grid.offset(plan.shift));
+            let (order, own) = (draw.model.mesh.draw_order(), start.vertex..start.vertex_end);
             let piece = piece_of(own.len());
-            own.par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
-                vertex_variants::transform_finely(plan.variants, &screen, order, i * piece, out);
-                see_from(
-                    out,
-                    plan.shift
-                        .map(|shift| shift * (interpolation::subpixels(plan.variants) / SUBPIXELS)),
-                );
-            });
+            if is_fine {
+                fine[own].par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
+                    let at = i * piece;
+                    vertex_variants::transform(plan.variants, level, &screen, order, at, out);
+                    see_from(out, grid.offset(plan.shift));
+                });
+            } else {
+                unsnapped[own].par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
+                    let at = i * piece;
+                    vertex_variants::to_pixels(plan.variants, level, &screen, order, at, out);
+                });
+            }
         }
     }
 
@@ -319,20 +316,10 @@ impl ScreenGeometry {
         place << 32 | u64::from(triangle)
     }
 
-    /// The vertices of a draw, in the draw order of its mesh.
-    #[inline(always)]
-    pub(crate) fn vertices_of(&self, plan: &FramePlan, draw: u32) -> &[ScreenVertex] {
-        let count = plan.draws[draw as usize].model.mesh.draw_order().x.len();
-        &self.vertices[self.starts[draw as usize].vertex..][..count]
-    }
-
     /// The corners of a draw's triangles: on the finer grid, if there is one.
-    pub(crate) fn corners_of(&self, plan: &FramePlan, draw: u32) -> &[ScreenVertex] {
-        if self.fine.is_empty() {
-            return self.vertices_of(plan, draw);
-        }
+    pub(crate) fn corners_of(&self, draw: u32) -> &[ScreenVertex] {
         let Start { vertex, vertex_end, .. } = self.starts[draw as usize];
-        &self.fine[vertex..vertex_end]
+        &self.vertices.corners()[vertex..vertex_end]
     }
 
     /// The colour of a line.

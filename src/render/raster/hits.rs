@@ -4,8 +4,11 @@
 //! are drawn. The pixels that they cover are hits. They are stored in pages, which are allocated to
 //! tiles as needed and reused in the next frame.
 
-use fearless_simd::{Bytes as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16, u32x16};
+use fearless_simd::{
+    Bytes as _, Simd, SimdBase as _, SimdMask as _, f32x16, i32x16, mask32x16, u32x16,
+};
 
+use super::depth_format::Format;
 use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::tiles::{TILE, lanes_place};
 
@@ -207,15 +210,31 @@ impl Hits {
         page
     }
 
-    /// Calls `take` with the index, the bits of the depth and the number of each hit in a tile.
+    /// Calls `take` with the index, the key of the depth and the number of each hit in a tile.
     #[inline(always)]
-    pub(crate) fn each(&self, tile: usize, mut take: impl FnMut(u32, u32, u32)) {
+    pub(crate) fn each<S: Simd, D: Format>(
+        &self,
+        (format, simd): (D, S),
+        tile: usize,
+        mut take: impl FnMut(u32, u32, u32),
+    ) {
         let mut page = self.last[tile];
+        let mut keys = [0; PAGE];
         while page != FULL {
             let Page { place, depth, number, count, previous } = &self.pages[page as usize];
+            let mut depth = depth;
+            if !D::KEEPS_BITS {
+                for at in (0..*count).step_by(PACK) {
+                    let row = f32x16::from_slice(simd, bytemuck::cast_slice(&depth[at..at + PACK]));
+                    let own = u32x16::from_slice(simd, &number[at..at + PACK]);
+                    let bias = (own >> 31) * format.lines_nearer();
+                    (format.keys(row) + bias).store_slice(&mut keys[at..at + PACK]);
+                }
+                depth = &keys;
+            }
             let rows = place[..*count].iter().zip(depth).zip(number);
-            for ((place, depth), number) in rows {
-                take(*place, *depth, *number);
+            for ((place, key), number) in rows {
+                take(*place, *key, *number);
             }
             page = *previous;
         }

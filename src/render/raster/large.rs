@@ -11,6 +11,7 @@ use fearless_simd::{
 };
 
 use super::bins::LargeTriangle;
+use super::depth_format::Format;
 use super::visibility_buffer::{in_front, put_rows};
 use crate::base::math::each;
 use crate::render::screen::coverage::{PixelBox, Triangle};
@@ -181,6 +182,7 @@ impl Large {
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
+        format: impl Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
@@ -209,7 +211,7 @@ impl Large {
             let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
             let mut covered = mask32x16::from_bitmask(simd, covered);
             if holes.there_are() {
-                let front = in_front(simd, covered, depth, self.number, visibility);
+                let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {
                     continue;
                 }
@@ -218,7 +220,7 @@ impl Large {
                 let opaque = holes.opaque(simd, pair, front, rows);
                 covered = mask32x16::from_bitmask(simd, opaque);
             }
-            put_rows(simd, covered, depth, self.number, visibility);
+            put_rows(format, simd, covered, depth, self.number, visibility);
         }
     }
 

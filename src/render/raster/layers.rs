@@ -9,16 +9,23 @@
 //! A list holds [`MOST`] layers. If a pixel has more, the farthest are taken first, and the block
 //! is gathered again for the next, so memory is bounded whatever the number of layers.
 
+use std::collections::BTreeMap;
+
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::bins::{Bins, LargeTriangle};
+use super::bins::LargeTriangle;
+use super::depth_format::{Any, Format as _, depths_between};
+use super::edges_in_floats::{Everywhere, FloatTriangle, in_pixels};
 use super::geometry::ScreenGeometry;
 use super::large::{Large, Solid, Touched};
-use super::pixel_by_pixel;
-use crate::accuracy::Transparency;
+use super::rule;
+use super::scan_lines::ScanLines;
+use super::visibility_buffer::word;
+use crate::accuracy::{Coverage, DepthFormat, Transparency};
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
-use crate::render::screen::coverage::{PixelBox, Triangle};
+use crate::render::reference::points;
+use crate::render::screen::coverage::{Grid, PixelBox, Triangle};
 use crate::render::screen::sample_positions::{FOUR, SamplePositions};
 use crate::render::screen::tiles::{BLOCK_PIXELS, block_at, within};
 
@@ -37,10 +44,32 @@ pub(crate) struct Layers {
     /// The pixels of small triangles, for each sample of each block: the pixel of the block and the
     /// word that the visibility buffer would hold.
     hits: Vec<Vec<(u8, u64)>>,
-    large: Vec<(Large, Touched)>,
+    large: Vec<(Layer, Touched)>,
+    depth_format: DepthFormat,
+    grid: Grid,
     /// The least and the largest depth.
     depths: [f32; 2],
     block: Held,
+}
+
+/// A triangle that is not small.
+#[derive(Debug)]
+enum Layer {
+    Large(Large),
+    Floats(FloatTriangle),
+    /// Scan lines, of one sample.
+    Rows(Box<ScanLines>, usize),
+}
+
+impl Layer {
+    /// The largest depth of its corners.
+    const fn high(&self) -> f32 {
+        match self {
+            Self::Large(large) => large.high,
+            Self::Floats(triangle) => triangle.high,
+            Self::Rows(rows, _) => rows.high,
+        }
+    }
 }
 
 /// The layers of a block's pixels: row after row, the farthest first.
@@ -76,6 +105,8 @@ impl Default for Layers {
             touched: 0,
             hits: vec![Vec::new(); FOUR * BLOCK_PIXELS],
             large: Vec::new(),
+            depth_format: DepthFormat::default(),
+            grid: Grid::default(),
             depths: [f32::INFINITY, 0.0],
             block: Held::default(),
         }
@@ -97,20 +128,24 @@ impl Layers {
         (tile, bounds): (usize, PixelBox),
     ) {
         (self.sample_positions, self.bounds) = (frame.sample_positions(), bounds);
+        (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
         (self.touched, self.depths) = (0, [f32::INFINITY, 0.0]);
         self.hits.iter_mut().for_each(Vec::clear);
         self.large.clear();
         for bins in frame.transparent_bins() {
-            if plan.variants.draws_one_by_one() {
-                self.add_one_by_one(plan, frame, bins, (tile, bounds));
-                continue;
-            }
             let samples = self.sample_positions.count();
-            bins.hits.each(tile, |place, depth, number| {
-                self.add_hit(place as usize, samples, u64::from(depth) << 32 | u64::from(!number));
-            });
+            let format = Any(self.depth_format);
+            dispatch!(level, simd => bins.hits.each((format, simd), tile, |place, key, number| {
+                self.add_hit(place as usize, samples, word(key, number));
+            }));
             for &number in &bins.tiles[tile].large {
-                self.add_large(level, &bins.large[number as usize]);
+                let triangle = &bins.large[number as usize];
+                match bins.unsnapped.get(number as usize) {
+                    None => self.add_large(level, triangle),
+                    Some(corners) => {
+                        self.add_variant(level, (plan, frame), (triangle, *corners));
+                    }
+                }
             }
         }
     }
@@ -121,27 +156,17 @@ impl Layers {
     fn add_hit(&mut self, place: usize, samples: usize, word: u64) {
         let (plane, pixel) = (place / BLOCK_PIXELS, place % BLOCK_PIXELS);
         self.touched |= 1 << (plane / samples);
-        let depth = f32::from_bits((word >> 32) as u32);
-        self.depths = [self.depths[0].min(depth), self.depths[1].max(depth)];
+        let [low, high] = depths_between(self.depth_format, [(word >> 32) as u32; 2]);
+        self.depths = [self.depths[0].min(low), self.depths[1].max(high)];
         self.hits[plane].push((pixel as u8, word));
     }
 
     fn add_large(&mut self, level: Level, triangle: &LargeTriangle) {
         let corners = each(triangle.corners, |corner| corner.at());
-        let reach = match self.sample_positions.are_many() {
-            true => self.sample_positions.reach::<FOUR>(),
-            false => self.sample_positions.reach::<1>(),
-        };
-        let area = PixelBox::reached(corners, reach).intersection(self.bounds);
-        let PixelBox { left, top, .. } = self.bounds;
-        let Some(edges) = Triangle::new(corners).filter(|_| !area.is_empty()) else { return };
-        let large = Large::new(triangle, &edges, [left, top]);
-        let area = PixelBox {
-            left: area.left - left,
-            top: area.top - top,
-            right: area.right - left,
-            bottom: area.bottom - top,
-        };
+        let reached = PixelBox::reached_on(self.grid, corners, self.reach());
+        let Some(area) = self.in_tile(reached) else { return };
+        let Some(edges) = Triangle::on(self.grid, corners) else { return };
+        let large = Large::new(triangle, &edges, [self.bounds.left, self.bounds.top]);
         let samples = &self.sample_positions;
         let touched = match samples.are_many() {
             true => dispatch!(level, simd => large.blocks::<_, FOUR>(simd, area, samples)),
@@ -151,37 +176,103 @@ impl Layers {
         for depth in triangle.corners.map(|corner| corner.depth) {
             self.depths = [self.depths[0].min(depth), self.depths[1].max(depth)];
         }
-        self.large.push((large, touched));
+        self.large.push((Layer::Large(large), touched));
     }
 
-    /// Adds what the chosen variants cover, pixel by pixel. Some of them cover a pixel more than
-    /// once by one triangle, whose nearest place counts.
-    fn add_one_by_one(
+    /// Adds a triangle by the chosen variant of coverage.
+    fn add_variant(
         &mut self,
-        plan: &FramePlan,
-        frame: &ScreenGeometry,
-        bins: &Bins,
-        (tile, bounds): (usize, PixelBox),
+        level: Level,
+        (plan, frame): (&FramePlan, &ScreenGeometry),
+        (triangle, corners): (&LargeTriangle, [[f32; 2]; 3]),
     ) {
-        let (samples, count) = (self.sample_positions, self.sample_positions.count());
-        let mut all = Vec::new();
-        for sample in 0..count {
-            let shift = if count == 1 { [0; 2] } else { samples.shift::<FOUR>(sample) };
-            let (at, which) = ((tile, bounds), (sample, shift));
-            pixel_by_pixel::paint_bins(plan.variants, plan, frame, bins, at, which, &mut {
-                |[x, y]: [i32; 2], key: u32, number: u32| {
-                    let plane = (block_at(x, y) * count + sample) * BLOCK_PIXELS;
-                    all.push((plane + within(x, y), number, key));
+        let depths = each(triangle.corners, |corner| corner.depth);
+        for depth in depths {
+            self.depths = [self.depths[0].min(depth), self.depths[1].max(depth)];
+        }
+        match plan.variants.coverage {
+            Coverage::Points => self.add_points(plan, frame, triangle.number),
+            Coverage::ScanLines => {
+                for sample in 0..self.sample_positions.count() {
+                    let [dx, dy] = in_pixels(self.shift(sample));
+                    let seen = each(corners, |[x, y]| [x - dx, y - dy]);
+                    let rows = ScanLines::new(seen, depths, triangle.number, self.bounds);
+                    let Some(rows) = rows else { continue };
+                    let mut touched = Touched::default();
+                    for block in rows.blocks() {
+                        touched.some |= 1 << block;
+                    }
+                    self.touched |= touched.some;
+                    self.large.push((Layer::Rows(Box::new(rows), sample), touched));
                 }
+            }
+            Coverage::Exact | Coverage::F32Edges => {
+                let reach = self.reach();
+                let reach = rule::reach(reach, rule::beyond(plan.variants.coverage));
+                let at = each(triangle.corners, |corner| corner.at());
+                let Some(area) = self.in_tile(PixelBox::reached(at, reach)) else { return };
+                let PixelBox { left, top, .. } = self.bounds;
+                let own = FloatTriangle::new(corners, depths, triangle.number, [left, top]);
+                let samples = &self.sample_positions;
+                let touched = match samples.are_many() {
+                    true => dispatch!(level, simd => own.blocks::<_, FOUR>(simd, area, samples)),
+                    false => dispatch!(level, simd => own.blocks::<_, 1>(simd, area, samples)),
+                };
+                self.touched |= touched.some;
+                self.large.push((Layer::Floats(own), touched));
+            }
+        }
+    }
+
+    /// Adds the points of a triangle. They cover a pixel more than once: the nearest counts.
+    fn add_points(&mut self, plan: &FramePlan, frame: &ScreenGeometry, number: u32) {
+        let (draw, start) = frame.draw_of(number);
+        let (draw, count) = (&plan.draws[draw as usize], self.sample_positions.count());
+        let mut all = BTreeMap::new();
+        for sample in 0..count {
+            let shift = self.shift(sample);
+            let shift = [shift[0] + plan.shift[0], shift[1] + plan.shift[1]];
+            let own = number - start.number;
+            points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
+                let (x, y) = (x - self.bounds.left, y - self.bounds.top);
+                let place = (block_at(x, y) * count + sample) * BLOCK_PIXELS + within(x, y);
+                let key = Any(self.depth_format).key(depth);
+                let nearest: &mut u32 = all.entry(place).or_default();
+                *nearest = key.max(*nearest);
             });
         }
-        all.sort_unstable_by_key(|(place, number, key)| (*place, *number, !*key));
-        all.dedup_by_key(|(place, number, _)| (*place, *number));
-        for (place, number, key) in all {
-            self.add_hit(place, count, u64::from(key) << 32 | u64::from(!number));
+        for (place, key) in all {
+            self.add_hit(place, count, word(key, number));
         }
-        // The keys of other formats are no depths.
-        self.depths = [0.0, 1.0];
+    }
+
+    /// The offset of a sample.
+    fn shift(&self, sample: usize) -> [i32; 2] {
+        if self.sample_positions.are_many() {
+            self.sample_positions.shift::<FOUR>(sample)
+        } else {
+            [0; 2]
+        }
+    }
+
+    /// How far from centres of pixels samples lie.
+    fn reach(&self) -> [[i32; 2]; 2] {
+        match self.sample_positions.are_many() {
+            true => self.sample_positions.reach::<FOUR>(),
+            false => self.sample_positions.reach::<1>(),
+        }
+    }
+
+    /// The pixels of the tile in a box, counted from the tile's first; `None` if there are none.
+    fn in_tile(&self, pixels: PixelBox) -> Option<PixelBox> {
+        let area = pixels.intersection(self.bounds);
+        let PixelBox { left, top, .. } = self.bounds;
+        (!area.is_empty()).then_some(PixelBox {
+            left: area.left - left,
+            top: area.top - top,
+            right: area.right - left,
+            bottom: area.bottom - top,
+        })
     }
 
     /// Whether a triangle touches a block.
@@ -232,7 +323,7 @@ impl Layers {
             }
         }
         let shift = if samples.are_many() { samples.shift::<FOUR>(sample) } else { [0; 2] };
-        dispatch!(level, simd => self.take_large(simd, &key, (block, shift), opaque));
+        dispatch!(level, simd => self.take_large(simd, &key, (block, sample, shift), opaque));
         self.block.end()
     }
 
@@ -241,18 +332,27 @@ impl Layers {
         &mut self,
         simd: S,
         key: &Keys<'_>,
-        (block, shift): (usize, [i32; 2]),
+        (block, sample, shift): (usize, usize, [i32; 2]),
         opaque: &[u64; BLOCK_PIXELS],
     ) {
-        let Self { large, block: held, .. } = self;
+        let Self { large, block: held, depth_format, .. } = self;
+        let format = Any(*depth_format);
         let farthest = opaque.iter().fold(u64::MAX, |least, word| *word.min(&least));
         let mut plane = [0; BLOCK_PIXELS];
         for (large, touched) in large.iter().filter(|(_, touched)| touched.some >> block & 1 != 0) {
-            if u64::from(large.high.to_bits()) << 32 | u64::from(u32::MAX) < farthest {
+            if u64::from(format.key(large.high())) << 32 | u64::from(u32::MAX) < farthest {
                 continue;
             }
             plane.fill(0);
-            large.draw(simd, (block, shift), touched.whole >> block & 1 != 0, &Solid, &mut plane);
+            let (at, whole) = ((block, shift), touched.whole >> block & 1 != 0);
+            match large {
+                Layer::Large(large) => large.draw(format, simd, at, whole, &Solid, &mut plane),
+                Layer::Floats(own) => own.draw(format, simd, at, whole, &Everywhere, &mut plane),
+                Layer::Rows(rows, own) if *own == sample => {
+                    rows.draw(format, simd, block, &Everywhere, &mut plane);
+                }
+                Layer::Rows(..) => {}
+            }
             for (pixel, (word, opaque)) in plane.iter().zip(opaque).enumerate() {
                 if word > opaque {
                     held.add(pixel, key.of(*word));

@@ -334,6 +334,7 @@ fn bounds_of<S: Simd>(
 mod tests {
     use fearless_simd::{Level, dispatch};
 
+    use super::super::depth_format::Reversed;
     use super::*;
 
     const EVERYWHERE: PixelBox = PixelBox { left: -99, top: -99, right: 199, bottom: 199 };
@@ -367,11 +368,14 @@ mod tests {
         });
         let mut pixels = Vec::new();
         for tile in 0..4 {
-            hits.each(tile, |place, _, _| {
+            let mut take = |place: u32| {
                 let (place, tile) = (place as i32, tile as i32);
                 let (block, within) = (place / 64, place % 64);
                 let x = tile % 2 * TILE + block % 8 * 8 + within % 8;
                 pixels.push((x, tile / 2 * TILE + block / 8 * 8 + within / 8));
+            };
+            dispatch!(Level::new(), simd => {
+                hits.each((Reversed, simd), tile, |place, _, _| take(place));
             });
         }
         pixels.sort_unstable();

@@ -9,6 +9,7 @@ use fearless_simd::{
 };
 
 use super::bins::LargeTriangle;
+use super::depth_format::Format;
 use super::large::Touched;
 use super::visibility_buffer::put_rows;
 use crate::base::math::each;
@@ -154,6 +155,7 @@ impl<S: Simd> Medium<S> {
     #[inline(always)]
     pub(crate) fn draw(
         &self,
+        format: impl Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         area: PixelBox,
@@ -174,7 +176,7 @@ impl<S: Simd> Medium<S> {
                 let second = self.second + gain[1] + below * self.down[1];
                 let third = self.third + gain[2] + below * self.down[2];
                 let depth = self.depths(simd, second, third);
-                put_rows(simd, covered, depth, self.number, &mut pairs[pair as usize % 4]);
+                put_rows(format, simd, covered, depth, self.number, &mut pairs[pair as usize % 4]);
             }
         }
     }

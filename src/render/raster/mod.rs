@@ -6,16 +6,16 @@
 //! triangles and `lines` with a depth test; the nearest primitive stays in the `visibility_buffer`.
 //! `layers` are the transparent triangles in front of it.
 //!
-//! Beside the defaults stand the variants that the settings can choose: `vertex_variants`,
-//! `setup_variants`, `coverage_variants`, `depth_format`, and `pixel_by_pixel`, which draws by
-//! them.
+//! What the settings can choose beside the defaults are variants of the same kernels: each `rule`
+//! of coverage and each `depth_format` is a type for which they are compiled. `vertex_variants`
+//! transforms vertices otherwise; `edges_in_floats` and `scan_lines` cover blocks by other rules.
 
 pub(crate) mod alpha_test;
 pub(crate) mod bins;
-mod coverage_variants;
 mod culling;
 pub(crate) mod depth_format;
 mod edges;
+mod edges_in_floats;
 mod facing;
 pub(crate) mod geometry;
 mod hits;
@@ -24,14 +24,14 @@ pub(crate) mod layers;
 pub(crate) mod lines;
 mod medium;
 mod parts;
-mod pixel_by_pixel;
 mod queue;
+mod rule;
+mod scan_lines;
 mod setup;
-mod setup_variants;
 mod small;
+mod small_edges;
 mod starts;
 pub(crate) mod tile;
-mod unsnapped;
 mod vertex_variants;
 pub(crate) mod vertices;
 pub(crate) mod visibility_buffer;

@@ -9,9 +9,10 @@ use super::bins::Bins;
 use super::culling::Culling;
 use super::edges::EdgeSetup;
 use super::facing::Facing;
+use super::rule::with_rule;
 use super::setup::{self, Setup};
-use super::setup_variants;
 use super::starts::{Start, number};
+use super::vertices::Vertices;
 use super::work::{What, Work};
 use crate::base::cancellation::Cancellation;
 use crate::base::work_stealing::{WorkStealing, own, together};
@@ -38,7 +39,7 @@ pub(crate) fn share_out(
             }
             parts.run(level, work, bins);
         }
-        setup::finish(level, bins);
+        with_rule!(parts.plan.variants, R => setup::finish::<R>(level, bins));
     });
 }
 
@@ -46,7 +47,7 @@ pub(crate) fn share_out(
 #[derive(Debug)]
 pub(crate) struct Parts<'a> {
     plan: &'a FramePlan,
-    vertices: &'a [ScreenVertex],
+    vertices: &'a Vertices,
     starts: &'a [Start],
     outlines: &'a [AtomicU8],
 }
@@ -54,7 +55,7 @@ pub(crate) struct Parts<'a> {
 impl<'a> Parts<'a> {
     pub(crate) fn new(
         plan: &'a FramePlan,
-        vertices: &'a [ScreenVertex],
+        vertices: &'a Vertices,
         starts: &'a [Start],
         outlines: &'a [AtomicU8],
     ) -> Self {
@@ -69,27 +70,24 @@ impl<'a> Parts<'a> {
         match what {
             What::Triangles => {
                 let pipelines = &self.plan.pipelines;
-                let setup = Setup::new(draw, pipelines, vertices, size, self.starts[i].number);
-                let setup = setup.seen_from(self.plan.shift);
+                let corners = self.corners_of(i);
+                let setup = Setup::new(draw, pipelines, corners, size, self.starts[i].number);
+                let mut setup = setup.seen_from(self.plan.shift, self.plan.variants.grid());
+                setup.coverage = self.plan.variants.coverage;
+                if !self.vertices.unsnapped.is_empty() {
+                    setup.unsnapped = &self.vertices.unsnapped[self.starts[i].vertex..];
+                }
                 let order = mesh.draw_order();
                 let triangles = &order.triangles[from..to];
-                if self.plan.variants.draws_one_by_one() {
-                    setup_variants::set_up(
-                        self.plan.variants,
-                        &setup,
-                        triangles,
-                        pipelines,
-                        (size, bins),
-                    );
-                } else if order.clusters.is_empty() {
-                    setup.run(level, triangles, pipelines, bins);
+                with_rule!(self.plan.variants, R => if order.clusters.is_empty() {
+                    setup.run::<R>(level, triangles, pipelines, bins);
                 } else {
                     let clusters = &order.clusters[from / CLUSTER..];
                     let culling = Culling::new(draw, setup.screen);
                     culling.each_left(clusters, triangles, |some| {
-                        setup.run(level, some, pipelines, bins);
+                        setup.run::<R>(level, some, pipelines, bins);
                     });
-                }
+                });
             }
             What::Facing => {
                 let triangles = &mesh.draw_order().triangles[from..to];
@@ -117,8 +115,14 @@ impl<'a> Parts<'a> {
     }
 
     fn vertices_of(&self, draw: usize) -> &'a [ScreenVertex] {
-        let count = self.plan.draws[draw].model.mesh.draw_order().x.len();
-        &self.vertices[self.starts[draw].vertex..][..count]
+        let Start { vertex, vertex_end, .. } = self.starts[draw];
+        &self.vertices.usual[vertex..vertex_end]
+    }
+
+    /// The corners of a draw's triangles.
+    fn corners_of(&self, draw: usize) -> &'a [ScreenVertex] {
+        let Start { vertex, vertex_end, .. } = self.starts[draw];
+        &self.vertices.corners()[vertex..vertex_end]
     }
 
     /// The outlines of a draw; empty if its edges are not drawn.

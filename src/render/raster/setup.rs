@@ -10,13 +10,15 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16,
 use super::bins::{Bins, LargeTriangle};
 use super::hits::PACK;
 use super::queue::{Pack, SMALL};
+use super::rule::{self, Rule};
 use super::small;
 use super::vertices::{fetch, fetch_vertices};
+use crate::accuracy::Coverage;
 use crate::base::image::Size;
 use crate::base::math::each;
 use crate::render::frame::draw::{Back, Draw, Pipeline};
 use crate::render::screen::clip::{Screen, ScreenVertex};
-use crate::render::screen::coverage::{PixelBox, SUBPIXELS, doubled_area};
+use crate::render::screen::coverage::{Grid, PixelBox, doubled_area};
 use crate::render::screen::sample_positions::FOUR;
 use crate::scene::{DrawOrder, DrawTriangle};
 
@@ -35,6 +37,9 @@ pub(crate) struct Setup<'a> {
     /// Whether some triangles are not drawn, need the alpha test or are transparent, so that each
     /// has to be checked.
     pub(crate) choosy: bool,
+    /// The vertices in pixels, before they were snapped, if the rule of coverage needs them.
+    pub(crate) unsnapped: &'a [[f32; 2]],
+    pub(crate) coverage: Coverage,
     /// Whether all triangles that are drawn are transparent.
     pub(crate) transparent: bool,
 }
@@ -43,7 +48,7 @@ pub(crate) struct Setup<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Not,
-    UnsnappedTriangle,
+    Plain,
     Cutout,
     Transparent,
 }
@@ -66,24 +71,27 @@ impl<'a> Setup<'a> {
                 })
             });
         let screen = Screen::new(draw.clip_from_object, size);
+        let order = draw.model.mesh.draw_order();
         Self {
             draw,
-            order: draw.model.mesh.draw_order(),
+            order,
             vertices,
             screen,
             base,
             choosy,
             transparent,
+            unsnapped: &[],
+            coverage: Coverage::Exact,
         }
     }
 
-    /// The same for vertices relative to a sample with this offset in subpixels.
-    pub(crate) fn seen_from(self, shift: [i32; 2]) -> Self {
-        Self { screen: self.screen.seen_from(shift), ..self }
+    /// The same for vertices relative to a sample with this offset in 1/256 pixel, on a grid.
+    pub(crate) fn seen_from(self, shift: [i32; 2], grid: Grid) -> Self {
+        Self { screen: self.screen.on(grid).seen_from(grid.offset(shift)), ..self }
     }
 
     /// Sets up some of the draw's triangles into bins.
-    pub(crate) fn run(
+    pub(crate) fn run<R: Rule>(
         &self,
         level: Level,
         triangles: &[DrawTriangle],
@@ -91,14 +99,14 @@ impl<'a> Setup<'a> {
         bins: &mut Bins,
     ) {
         if bins.sample_positions.are_many() {
-            dispatch!(level, simd => self.all::<_, FOUR>(simd, triangles, pipelines, bins));
+            dispatch!(level, simd => self.all::<_, R, FOUR>(simd, triangles, pipelines, bins));
         } else {
-            dispatch!(level, simd => self.all::<_, 1>(simd, triangles, pipelines, bins));
+            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, pipelines, bins));
         }
     }
 
     #[inline(always)]
-    fn all<S: Simd, const N: usize>(
+    fn all<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle],
@@ -107,18 +115,18 @@ impl<'a> Setup<'a> {
     ) {
         let (whole, rest) = triangles.as_chunks::<PACK>();
         for sixteen in whole {
-            self.sixteen::<S, N>(simd, sixteen, PACK, pipelines, bins);
+            self.sixteen::<S, R, N>(simd, sixteen, PACK, pipelines, bins);
         }
         if let Some(last) = rest.last() {
             let mut sixteen = [*last; PACK];
             sixteen[..rest.len()].copy_from_slice(rest);
-            self.sixteen::<S, N>(simd, &sixteen, rest.len(), pipelines, bins);
+            self.sixteen::<S, R, N>(simd, &sixteen, rest.len(), pipelines, bins);
         }
     }
 
     /// Sets up the first `count` of sixteen triangles.
     #[inline(always)]
-    fn sixteen<S: Simd, const N: usize>(
+    fn sixteen<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
@@ -132,12 +140,13 @@ impl<'a> Setup<'a> {
         let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
 
-        let half = SUBPIXELS / 2;
-        let [least, most] = bins.sample_positions.reach::<N>();
-        let left = (low_x + (half - 1 - most[0])) >> 8;
-        let right = ((high_x - (half + least[0])) >> 8) + 1;
-        let top = (low_y + (half - 1 - most[1])) >> 8;
-        let bottom = ((high_y - (half + least[1])) >> 8) + 1;
+        let (half, log2) = (R::GRID.parts() / 2, R::GRID.parts().trailing_zeros());
+        let [least, most] = self.reach::<R, N>(bins);
+        let (least, most) = (R::GRID.offset(least), R::GRID.offset(most));
+        let left = (low_x + (half - 1 - most[0])) >> log2;
+        let right = ((high_x - (half + least[0])) >> log2) + 1;
+        let top = (low_y + (half - 1 - most[1])) >> log2;
+        let bottom = ((high_y - (half + least[1])) >> log2) + 1;
         let [width, height] = bins.hits.extent();
         let seen = left.simd_lt(right)
             & top.simd_lt(bottom)
@@ -163,20 +172,27 @@ impl<'a> Setup<'a> {
                 |lane| triangles[lane].row(),
             );
             let number = number + self.base.cast_signed();
-            let pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
+            let mut pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
+            if R::UNSNAPPED && self.has_small::<R>() {
+                for corner in 0..3 {
+                    let [x, y] = self.unsnapped_corners(simd, triangles, corner);
+                    (pack[2 * corner], pack[2 * corner + 1]) = (x, y);
+                }
+            }
             let side = (right - left).max(bottom - top);
+            let places = (plain, side, area);
             if self.choosy {
-                self.sort_kinds::<S, N>(simd, triangles, &pack, (plain, side), pipelines, bins);
+                self.sort_kinds::<S, R, N>(simd, triangles, &pack, places, pipelines, bins);
             } else {
                 let bins = bins.of(self.transparent);
-                self.sort::<S, N>(simd, triangles, &pack, (plain, side), 0, bins);
+                self.sort::<S, R, N>(simd, triangles, &pack, (plain, side), 0, bins);
             }
         }
         let mut odd = odd.to_bitmask();
         while odd != 0 {
             let lane = odd.trailing_zeros() as usize;
             odd &= odd - 1;
-            self.add_odd::<N>(&triangles[lane], pipelines, bins);
+            self.add_odd::<R, N>(&triangles[lane], pipelines, bins);
         }
     }
 
@@ -196,45 +212,58 @@ impl<'a> Setup<'a> {
         )
     }
 
-    /// Sorts visible triangles of several kinds.
+    /// x and y of one corner of sixteen triangles, in pixels and before they were snapped, as bits.
     #[inline(always)]
-    fn sort_kinds<S: Simd, const N: usize>(
+    fn unsnapped_corners<S: Simd>(
+        &self,
+        simd: S,
+        triangles: &[DrawTriangle; PACK],
+        corner: usize,
+    ) -> [i32x16<S>; 2] {
+        let last = self.unsnapped.len().saturating_sub(1);
+        let [x, y, _, _] = fetch(
+            simd,
+            #[inline(always)]
+            |lane| {
+                let [x, y] = self.unsnapped[(triangles[lane].vertices[corner] as usize).min(last)];
+                [x.to_bits().cast_signed(), y.to_bits().cast_signed(), 0, 0]
+            },
+        );
+        [x, y]
+    }
+
+    /// Sorts visible triangles of several kinds, with the larger sides of their boxes and their
+    /// areas.
+    #[inline(always)]
+    fn sort_kinds<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
         pack: &Pack<S>,
-        (plain, side): (mask32x16<S>, i32x16<S>),
+        (plain, side, area): (mask32x16<S>, i32x16<S>, i32x16<S>),
         pipelines: &[Pipeline],
         bins: &mut Bins,
     ) {
         let [mut plain, mut cutout, transparent] =
             self.kinds(triangles, plain.to_bitmask(), pipelines);
         if self.draw.culls_opaque {
-            let front = self.fronts(simd, pack);
+            let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
+            let front = front.to_bitmask();
             (plain, cutout) = (plain & front, cutout & front);
         }
         let mask = |bits| mask32x16::from_bitmask(simd, bits);
         for (is_transparent, some, cutout) in [(false, plain, cutout), (true, transparent, 0)] {
             if some | cutout != 0 {
                 let bins = bins.of(is_transparent);
-                self.sort::<S, N>(simd, triangles, pack, (mask(some), side), cutout, bins);
+                self.sort::<S, R, N>(simd, triangles, pack, (mask(some), side), cutout, bins);
             }
         }
-    }
-
-    /// The triangles of a pack that face the observer, a bit for each.
-    #[inline(always)]
-    fn fronts<S: Simd>(&self, _: S, pack: &Pack<S>) -> u64 {
-        let [x0, y0, x1, y1, x2, y2, ..] = *pack;
-        let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
-        let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
-        front.to_bitmask()
     }
 
     /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
     /// small ones, or to the large ones; those with a bit in `cutout` need the alpha test.
     #[inline(always)]
-    fn sort<S: Simd, const N: usize>(
+    fn sort<S: Simd, R: Rule, const N: usize>(
         &self,
         simd: S,
         triangles: &[DrawTriangle; PACK],
@@ -244,7 +273,7 @@ impl<'a> Setup<'a> {
         bins: &mut Bins,
     ) {
         let mut above = 0;
-        for (queue, limit) in SMALL.into_iter().enumerate() {
+        for (queue, limit) in SMALL.into_iter().enumerate().filter(|_| self.has_small::<R>()) {
             let some = plain & side.simd_gt(above) & side.simd_le(limit);
             above = limit;
             let count = some.to_bitmask().count_ones() as usize;
@@ -253,7 +282,7 @@ impl<'a> Setup<'a> {
             }
             bins.drawn += count;
             if bins.queues[queue].add(pack, some, count) {
-                small::draw_full::<S, N>(simd, queue, bins);
+                small::draw_full::<S, R, N>(simd, queue, bins);
             }
         }
         let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
@@ -262,11 +291,34 @@ impl<'a> Setup<'a> {
             large &= large - 1;
             let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
             let number = self.base + triangles[lane].number;
-            let at = each(corners, |corner| corner.at());
-            let bounds = PixelBox::reached(at, bins.sample_positions.reach::<N>());
             let cutout = cutout >> lane & 1 != 0;
-            bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
+            if R::UNSNAPPED {
+                let own = each(triangles[lane].vertices, |i| self.unsnapped[i as usize]);
+                bins.unsnapped.push(own);
+            }
+            self.add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
         }
+    }
+
+    /// Adds a triangle that is not small, or not drawn with small ones.
+    #[inline(always)]
+    fn add_large<R: Rule, const N: usize>(&self, triangle: LargeTriangle, bins: &mut Bins) {
+        let at = each(triangle.corners, |corner| corner.at());
+        let reach = self.reach::<R, N>(bins);
+        bins.add_large(triangle, PixelBox::reached_on(R::GRID, at, reach));
+    }
+
+    /// How far from centres of pixels they may be covered.
+    #[inline(always)]
+    fn reach<R: Rule, const N: usize>(&self, bins: &Bins) -> [[i32; 2]; 2] {
+        let reach = bins.sample_positions.reach::<N>();
+        if R::UNSNAPPED { rule::reach(reach, rule::beyond(self.coverage)) } else { reach }
+    }
+
+    /// Whether small triangles are drawn sixteen at a time.
+    #[inline(always)]
+    fn has_small<R: Rule>(&self) -> bool {
+        !R::UNSNAPPED || self.coverage == Coverage::F32Edges
     }
 
     /// The masks of the triangles that are drawn without and with the alpha test, and of those that
@@ -284,7 +336,7 @@ impl<'a> Setup<'a> {
             left &= left - 1;
             match self.kind(triangles[lane].number, pipelines) {
                 Kind::Not => {}
-                Kind::UnsnappedTriangle => kinds[0] |= 1 << lane,
+                Kind::Plain => kinds[0] |= 1 << lane,
                 Kind::Cutout => kinds[1] |= 1 << lane,
                 Kind::Transparent => kinds[2] |= 1 << lane,
             }
@@ -293,7 +345,7 @@ impl<'a> Setup<'a> {
     }
 
     /// Adds a triangle that has to be clipped, or whose area needs 64 bits.
-    fn add_odd<const N: usize>(
+    fn add_odd<R: Rule, const N: usize>(
         &self,
         triangle: &DrawTriangle,
         pipelines: &[Pipeline],
@@ -304,11 +356,20 @@ impl<'a> Setup<'a> {
             return;
         }
         let vertices = triangle.vertices.map(|vertex| self.vertices[vertex as usize]);
-        let pieces = if vertices.iter().all(ScreenVertex::is_inside) {
-            vertices.to_vec()
+        let (mut pieces, mut unsnapped) = (Vec::new(), Vec::new());
+        if vertices.iter().all(ScreenVertex::is_inside) {
+            pieces.extend(vertices);
+            if R::UNSNAPPED {
+                unsnapped.extend(triangle.vertices.map(|i| self.unsnapped[i as usize]));
+            }
         } else {
-            self.screen.cut(self.clip_corners(triangle.vertices))
-        };
+            for clip in self.screen.cut(self.clip_corners(triangle.vertices)) {
+                pieces.push(self.screen.piece(clip));
+                if R::UNSNAPPED {
+                    unsnapped.push(self.screen.pixels_seen(clip));
+                }
+            }
+        }
         for i in 2..pieces.len() {
             let corners = [pieces[0], pieces[i - 1], pieces[i]];
             let area = doubled_area(corners.map(|corner| corner.at()));
@@ -319,9 +380,10 @@ impl<'a> Setup<'a> {
             let bins = bins.of(kind == Kind::Transparent);
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
-            let at = corners.map(|corner| corner.at());
-            let bounds = PixelBox::reached(at, bins.sample_positions.reach::<N>());
-            bins.add_large(LargeTriangle { corners, number, cutout }, bounds);
+            if R::UNSNAPPED {
+                bins.unsnapped.push([unsnapped[0], unsnapped[i - 1], unsnapped[i]]);
+            }
+            self.add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
         }
     }
 
@@ -340,7 +402,7 @@ impl<'a> Setup<'a> {
             None => Kind::Not,
             Some(pipeline) if pipelines[pipeline as usize].is_cutout() => Kind::Cutout,
             Some(pipeline) if pipelines[pipeline as usize].opacity().is_some() => Kind::Transparent,
-            Some(_) => Kind::UnsnappedTriangle,
+            Some(_) => Kind::Plain,
         }
     }
 
@@ -351,16 +413,16 @@ impl<'a> Setup<'a> {
 }
 
 /// Draws the small triangles that are still waiting.
-pub(crate) fn finish(level: Level, bins: &mut Bins) {
+pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins) {
     if bins.transparent().is_some() {
-        finish(level, bins.of(true));
+        finish::<R>(level, bins.of(true));
     }
     let many = bins.sample_positions.are_many();
     dispatch!(level, simd => {
         for queue in 0..SMALL.len() {
             match many {
-                true => small::draw_rest::<_, FOUR>(simd, queue, bins),
-                false => small::draw_rest::<_, 1>(simd, queue, bins),
+                true => small::draw_rest::<_, R, FOUR>(simd, queue, bins),
+                false => small::draw_rest::<_, R, 1>(simd, queue, bins),
             }
         }
     });

@@ -21,12 +21,15 @@
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::bins::Bins;
+use super::depth_format::{Format, depths_between, with_format};
+use super::edges_in_floats::FloatTriangle;
 use super::geometry::ScreenGeometry;
 use super::large::{Large, Solid};
+use super::lines;
 use super::visibility_buffer::{Planes, depths_of, seen, word};
-use super::{lines, pixel_by_pixel};
+use crate::accuracy::{Coverage, DepthFormat};
 use crate::render::frame::FramePlan;
-use crate::render::screen::coverage::PixelBox;
+use crate::render::screen::coverage::{Grid, PixelBox};
 use crate::render::screen::sample_positions::{FOUR, SamplePositions};
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
 
@@ -44,12 +47,23 @@ pub(crate) struct Visibility {
     /// The triangles of those blocks, as indices into `large`.
     shown: [u32; BLOCK_PIXELS],
     /// Triangles that cover a block fully.
-    large: Vec<Large>,
-    /// For each block a lower bound of its depths: all pixels are at least as near.
-    farthest: [f32; BLOCK_PIXELS],
-    /// For each fully covered block an upper bound of its depths: no pixel is nearer.
-    nearest: [f32; BLOCK_PIXELS],
+    large: Vec<Shown>,
+    /// The format of the depths.
+    depth_format: DepthFormat,
+    /// The grid of corners.
+    grid: Grid,
+    /// For each block a lower bound of its depths' keys: all pixels are at least as near.
+    farthest: [u32; BLOCK_PIXELS],
+    /// For each fully covered block an upper bound of its depths' keys: no pixel is nearer.
+    nearest: [u32; BLOCK_PIXELS],
     bounds: PixelBox,
+}
+
+/// A triangle that covers a block fully.
+#[derive(Clone, Copy, Debug)]
+enum Shown {
+    Large(Large),
+    Floats(FloatTriangle),
 }
 
 impl Default for Visibility {
@@ -61,8 +75,10 @@ impl Default for Visibility {
             whole: 0,
             shown: [0; BLOCK_PIXELS],
             large: Vec::new(),
-            farthest: [0.0; BLOCK_PIXELS],
-            nearest: [0.0; BLOCK_PIXELS],
+            depth_format: DepthFormat::default(),
+            grid: Grid::default(),
+            farthest: [0; BLOCK_PIXELS],
+            nearest: [0; BLOCK_PIXELS],
             bounds: PixelBox { left: 0, top: 0, right: 0, bottom: 0 },
         }
     }
@@ -78,65 +94,44 @@ impl Visibility {
         (tile, bounds): (usize, PixelBox),
     ) {
         self.clear(bounds, frame.sample_positions());
-        if plan.variants.draws_one_by_one() {
-            return self.draw_one_by_one(plan, frame, (tile, bounds));
-        }
-        if self.sample_positions.are_many() {
-            self.draw_in::<FOUR>(level, plan, frame, tile);
-        } else {
-            self.draw_in::<1>(level, plan, frame, tile);
-        }
+        (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
+        with_format!(plan.variants.depth, D => match self.sample_positions.are_many() {
+            true => self.draw_in::<D, FOUR>(level, plan, frame, tile),
+            false => self.draw_in::<D, 1>(level, plan, frame, tile),
+        });
     }
 
     /// Draws with `N` samples per pixel.
-    fn draw_in<const N: usize>(
+    fn draw_in<D: Format, const N: usize>(
         &mut self,
         level: Level,
         plan: &FramePlan,
         frame: &ScreenGeometry,
         tile: usize,
     ) {
-        for bins in frame.bins() {
-            dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, tile));
+        if plan.variants.coverage == Coverage::Exact {
+            for bins in frame.bins() {
+                dispatch!(level, simd => self.draw_plain::<_, D, N>(simd, bins, tile));
+            }
         }
         for bins in frame.bins() {
-            dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
+            dispatch!(level, simd => self.draw_hits::<_, D, N>(simd, bins, tile));
+            if plan.variants.coverage != Coverage::Exact {
+                dispatch!(level, simd => {
+                    self.draw_by_variant::<_, N>(simd, (plan, frame), bins, tile);
+                });
+                dispatch!(level, simd => self.draw_lines::<_, D, N>(simd, bins, plan.line_width, tile));
+                continue;
+            }
             for &number in &bins.tiles[tile].large {
                 let large = &bins.large[number as usize];
                 if large.cutout {
                     dispatch!(level, simd => {
-                        self.draw_cutout::<_, N>(simd, plan, frame, large);
+                        self.draw_cutout::<_, D, N>(simd, plan, frame, large);
                     });
                 }
             }
-            dispatch!(level, simd => self.draw_lines::<_, N>(simd, bins, plan.line_width, tile));
-        }
-    }
-
-    /// Draws everything pixel by pixel, by the chosen variants.
-    fn draw_one_by_one(
-        &mut self,
-        plan: &FramePlan,
-        frame: &ScreenGeometry,
-        (tile, bounds): (usize, PixelBox),
-    ) {
-        self.buffer.fill(0);
-        self.written = u64::MAX;
-        let (sample_positions, count) = (self.sample_positions, self.sample_positions.count());
-        for sample in 0..count {
-            let shift = if count == 1 { [0; 2] } else { sample_positions.shift::<FOUR>(sample) };
-            pixel_by_pixel::paint(
-                plan.variants,
-                plan,
-                frame,
-                (tile, bounds),
-                (sample, shift),
-                &mut |[x, y], key, number| {
-                    let plane = (block_at(x, y) * count + sample) * BLOCK_PIXELS;
-                    let word = &mut self.buffer[plane + within(x, y)];
-                    *word = (u64::from(key) << 32 | u64::from(!number)).max(*word);
-                },
-            );
+            dispatch!(level, simd => self.draw_lines::<_, D, N>(simd, bins, plan.line_width, tile));
         }
     }
 
@@ -144,7 +139,7 @@ impl Visibility {
         self.sample_positions = sample_positions;
         (self.written, self.whole) = (0, 0);
         self.large.clear();
-        self.farthest.fill(0.0);
+        self.farthest.fill(0);
         self.bounds = bounds;
     }
 
@@ -161,7 +156,10 @@ impl Visibility {
     /// The triangle that covers a block fully, if there is one; the block's entries are meaningless
     /// then.
     pub(crate) fn whole(&self, block: usize) -> Option<u32> {
-        (self.whole >> block & 1 != 0).then(|| self.large[self.shown[block] as usize].number)
+        (self.whole >> block & 1 != 0).then(|| match &self.large[self.shown[block] as usize] {
+            Shown::Large(large) => large.number,
+            Shown::Floats(triangle) => triangle.number,
+        })
     }
 
     /// The blocks that one triangle covers fully, a bit for each.
@@ -188,17 +186,16 @@ impl Visibility {
     /// Bounds of the depths of all visible triangles: the farthest and the nearest; `None` if no
     /// triangle is visible.
     pub(crate) fn depths(&self, level: Level) -> Option<[f32; 2]> {
-        // Depths are not negative, so that their bits are in the order of the numbers.
         let (mut low, mut high) = (u32::MAX, 0);
         for block in (0..BLOCK_PIXELS).filter(|block| self.shows(*block)) {
             let [own_low, own_high] = if self.whole(block).is_some() {
-                [self.farthest[block].to_bits(), self.nearest[block].to_bits()]
+                [self.farthest[block], self.nearest[block]]
             } else {
                 dispatch!(level, simd => depths_of(simd, self.block_samples(block)))
             };
             (low, high) = (low.min(own_low), high.max(own_high));
         }
-        (low <= high).then_some([low, high].map(f32::from_bits))
+        (low <= high).then(|| depths_between(self.depth_format, [low, high]))
     }
 
     /// The upper left pixel of a block.
@@ -230,8 +227,12 @@ impl Visibility {
         let mut samples = [0; FOUR];
         if self.shows(block) {
             match count {
-                1 => dispatch!(level, simd => self.write::<_, 1>(simd, block)),
-                _ => dispatch!(level, simd => self.write::<_, FOUR>(simd, block)),
+                1 => with_format!(self.depth_format, D => {
+                    dispatch!(level, simd => self.write::<_, D, 1>(simd, block));
+                }),
+                _ => with_format!(self.depth_format, D => {
+                    dispatch!(level, simd => self.write::<_, D, FOUR>(simd, block));
+                }),
             }
             for (sample, word) in samples[..count].iter_mut().enumerate() {
                 *word = self.block_samples(block)[sample * BLOCK_PIXELS + within(x, y)];
@@ -251,17 +252,21 @@ impl Visibility {
             return [0; BLOCK_PIXELS];
         }
         if self.sample_positions.are_many() {
-            dispatch!(level, simd => self.write::<_, FOUR>(simd, block));
+            with_format!(self.depth_format, D => {
+                dispatch!(level, simd => self.write::<_, D, FOUR>(simd, block));
+            });
             *self.plane::<FOUR>(block, sample)
         } else {
-            dispatch!(level, simd => self.write::<_, 1>(simd, block));
+            with_format!(self.depth_format, D => {
+                dispatch!(level, simd => self.write::<_, D, 1>(simd, block));
+            });
             *self.plane::<1>(block, sample)
         }
     }
 
     /// Ensures that a block has valid entries for `N` samples per pixel.
     #[inline(always)]
-    fn write<S: Simd, const N: usize>(&mut self, simd: S, block: usize) {
+    fn write<S: Simd, D: Format, const N: usize>(&mut self, simd: S, block: usize) {
         let bit = 1 << block;
         if self.written & bit == 0 {
             self.written |= bit;
@@ -270,8 +275,12 @@ impl Visibility {
             }
             if self.whole & bit != 0 {
                 self.whole &= !bit;
-                let large = self.large[self.shown[block] as usize];
-                self.draw_planes::<S, N>(simd, &large, block, true);
+                match self.large[self.shown[block] as usize] {
+                    Shown::Large(large) => self.draw_planes::<S, D, N>(simd, &large, block, true),
+                    Shown::Floats(triangle) => {
+                        self.draw_float_planes::<S, N>(simd, &triangle, block, true);
+                    }
+                }
             }
         }
     }
@@ -284,43 +293,47 @@ impl Visibility {
 
     /// Draws a triangle into a block that it covers fully or in part.
     #[inline(always)]
-    fn draw_planes<S: Simd, const N: usize>(
+    fn draw_planes<S: Simd, D: Format, const N: usize>(
         &mut self,
         simd: S,
         large: &Large,
         block: usize,
         whole: bool,
     ) {
-        let sample_positions = self.sample_positions;
+        let (sample_positions, format) = (self.sample_positions, D::of(self.depth_format));
         for sample in 0..N {
             let shift = sample_positions.shift::<N>(sample);
-            large.draw(simd, (block, shift), whole, &Solid, self.plane::<N>(block, sample));
+            let plane = self.plane::<N>(block, sample);
+            large.draw(format, simd, (block, shift), whole, &Solid, plane);
         }
     }
 
     #[inline(always)]
-    fn put<S: Simd, const N: usize>(
+    fn put<S: Simd, D: Format, const N: usize>(
         &mut self,
         simd: S,
         (x, y, sample): (i32, i32, usize),
         depth: f32,
         number: u32,
+        bias: u32,
     ) {
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
-        self.write::<S, N>(simd, block_at(x, y));
+        self.write::<S, D, N>(simd, block_at(x, y));
+        let word = word(D::of(self.depth_format).key(depth) + bias, number);
         let old = &mut self.plane::<N>(block_at(x, y), sample)[within(x, y)];
-        *old = word(depth, number).max(*old);
+        *old = word.max(*old);
     }
 
     /// Draws the lines of a tile that are not short.
     #[inline(always)]
-    fn draw_lines<S: Simd, const N: usize>(
+    fn draw_lines<S: Simd, D: Format, const N: usize>(
         &mut self,
         simd: S,
         bins: &Bins,
         width: i32,
         tile: usize,
     ) {
+        let bias = D::of(self.depth_format).lines_nearer();
         for &place in &bins.tiles[tile].lines {
             for sample in 0..N {
                 let line =
@@ -330,7 +343,9 @@ impl Visibility {
                     width,
                     self.bounds,
                     #[inline(always)]
-                    |x, y, depth| self.put::<S, N>(simd, (x, y, sample), depth, line.number),
+                    |x, y, depth| {
+                        self.put::<S, D, N>(simd, (x, y, sample), depth, line.number, bias);
+                    },
                 );
             }
         }
@@ -338,29 +353,34 @@ impl Visibility {
 
     /// Draws the small triangles of a tile, and lines that are short.
     #[inline(always)]
-    fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
+    fn draw_hits<S: Simd, D: Format, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
         bins.hits.each(
+            (D::of(self.depth_format), simd),
             tile,
             #[inline(always)]
-            |place, depth, number| {
+            |place, key, number| {
                 let place = place as usize % (N * PIXELS);
                 let block = place / (N * BLOCK_PIXELS);
                 if self.written >> block & 1 == 0 {
-                    self.write::<S, N>(simd, block);
+                    self.write::<S, D, N>(simd, block);
                 }
-                let word = u64::from(depth) << 32 | u64::from(!number);
-                self.buffer[place] = self.buffer[place].max(word);
+                self.buffer[place] = self.buffer[place].max(word(key, number));
             },
         );
     }
 
     /// Draws the large triangles of a tile that need no alpha test.
     #[inline(always)]
-    fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
+    fn draw_plain<S: Simd, D: Format, const N: usize>(
+        &mut self,
+        simd: S,
+        bins: &Bins,
+        tile: usize,
+    ) {
         for &number in &bins.tiles[tile].large {
             let large = &bins.large[number as usize];
             if !large.cutout {
-                self.draw_large::<S, N>(simd, large);
+                self.draw_large::<S, D, N>(simd, large);
             }
         }
     }
@@ -369,3 +389,4 @@ impl Visibility {
 #[cfg(test)]
 mod tests;
 mod triangles;
+mod variants;

@@ -1,10 +1,9 @@
-//! Variants of transforming vertices: in f32, or snapped to another subpixel grid.
+//! Variants of transforming vertices: in f32, snapped to another grid, or not snapped.
 //!
-//! Coarser subpixels are multiples of the default's, so only positions change. Finer ones are not:
-//! such corners are stored separately, in units of 1/4096 pixel, and with a guard band of 2^17
-//! pixels instead of 2^20, so that edge functions stay below 2^62.
+//! Like the default, each is a loop of plain arithmetic over rows of coordinates, compiled for each
+//! instruction set. Coarser subpixels are multiples of the default's, so only positions change.
 
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd, dispatch};
 
 use super::vertices;
 use crate::accuracy::{Subpixels, VertexArithmetic};
@@ -12,30 +11,6 @@ use crate::render::frame::variants::Variants;
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::scene::DrawOrder;
-
-/// The guard band of fine corners, in pixels.
-pub(crate) const FINE_GUARD: f64 = 131_072.0;
-
-/// A vertex that is not snapped yet.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Projected {
-    /// In pixels.
-    pub(crate) at: [f64; 2],
-    pub(crate) depth: f32,
-    pub(crate) inverse_w: f32,
-    /// Whether it is inside the clipping planes.
-    pub(crate) is_inside: bool,
-}
-
-impl Projected {
-    /// Snaps it to 1/`parts` pixel.
-    #[expect(clippy::cast_possible_truncation, reason = "the guard band holds it")]
-    pub(crate) fn snapped(&self, parts: f64) -> ScreenVertex {
-        let [x, y] = self.at.map(|pixels| libm::rint(pixels * parts) as i32);
-        let vertex = ScreenVertex::placed(Snapped { x, y }, self.depth, self.inverse_w);
-        if self.is_inside { vertex } else { vertex.beyond() }
-    }
-}
 
 /// Transforms vertices of a mesh to the screen, from number `first` on.
 pub(crate) fn transform(
@@ -49,83 +24,129 @@ pub(crate) fn transform(
     if variants.vertices == VertexArithmetic::F64 {
         vertices::transform(level, screen, order, first, out);
     } else {
-        let screen32 = Screen32::new(screen);
-        for (i, out) in out.iter_mut().enumerate() {
-            let place = [order.x[first + i], order.y[first + i], order.z[first + i]];
-            *out = screen32.vertex(screen, place).snapped(f64::from(SUBPIXELS));
-        }
+        let (screen, rows) = (Screen32::new(screen), rows(order, first, out.len()));
+        dispatch!(level, simd => chunk(simd, &screen, rows, out));
     }
-    for vertex in out {
-        *vertex = coarse(variants, *vertex);
+    if matches!(variants.subpixels, Subpixels::Bits0 | Subpixels::Bits4) {
+        dispatch!(level, _ => coarse(variants, out));
     }
 }
 
-/// Transforms vertices to the screen, snapped to 1/4096 pixel.
-pub(crate) fn transform_finely(
+/// Transforms vertices of a mesh to pixels, from number `first` on, without snapping them.
+pub(crate) fn to_pixels(
     variants: Variants,
+    level: Level,
     screen: &Screen,
     order: &DrawOrder,
     first: usize,
-    out: &mut [ScreenVertex],
+    out: &mut [[f32; 2]],
 ) {
-    let screen = screen.guarded(FINE_GUARD);
-    for (i, out) in out.iter_mut().enumerate() {
-        let place = [order.x[first + i], order.y[first + i], order.z[first + i]];
-        *out = project(variants, &screen, place).snapped(4096.0);
-    }
-}
-
-/// Projects a position of object space to the screen.
-pub(crate) fn project(variants: Variants, screen: &Screen, place: [f32; 3]) -> Projected {
+    let rows = rows(order, first, out.len());
     if variants.vertices == VertexArithmetic::F64 {
-        let clip = screen.clip(place.map(f64::from));
-        let vertex = screen.vertex(clip);
-        let (depth, inverse_w, is_inside) = (vertex.depth, vertex.inverse_w, vertex.is_inside());
-        Projected { at: screen.pixels(clip), depth, inverse_w, is_inside }
+        dispatch!(level, simd => pixels(simd, screen, rows, out));
     } else {
-        Screen32::new(screen).vertex(screen, place)
+        let screen = Screen32::new(screen);
+        dispatch!(level, simd => pixels32(simd, &screen, rows, out));
     }
 }
 
-/// Snaps a vertex to coarser subpixels, if the settings choose them.
-pub(crate) fn coarse(variants: Variants, vertex: ScreenVertex) -> ScreenVertex {
+/// The coordinates of some vertices.
+fn rows(order: &DrawOrder, first: usize, count: usize) -> [&[f32]; 3] {
+    [&order.x, &order.y, &order.z].map(|row| &row[first..first + count])
+}
+
+#[inline(always)]
+fn chunk<S: Simd>(_: S, screen: &Screen32, [x, y, z]: [&[f32]; 3], out: &mut [ScreenVertex]) {
+    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        *out = screen.vertex([*x, *y, *z]);
+    }
+}
+
+#[inline(always)]
+fn pixels<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [[f32; 2]]) {
+    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        *out = screen.pixels_seen(screen.clip([f64::from(*x), f64::from(*y), f64::from(*z)]));
+    }
+}
+
+#[inline(always)]
+fn pixels32<S: Simd>(_: S, screen: &Screen32, [x, y, z]: [&[f32]; 3], out: &mut [[f32; 2]]) {
+    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        let [x, y] = screen.pixels(screen.clip([*x, *y, *z]));
+        *out = [x - screen.shift[0], y - screen.shift[1]];
+    }
+}
+
+/// Snaps vertices to coarser subpixels, if the settings choose them.
+#[inline(always)]
+fn coarse(variants: Variants, out: &mut [ScreenVertex]) {
     let parts = match variants.subpixels {
         Subpixels::Bits0 => SUBPIXELS,
         Subpixels::Bits4 => SUBPIXELS / 16,
-        Subpixels::Bits8 | Subpixels::Bits12 => return vertex,
+        Subpixels::Bits8 | Subpixels::Bits12 => return,
     };
-    if !vertex.is_inside() {
-        return vertex;
+    for vertex in out {
+        let Snapped { x, y } = vertex.at();
+        let snap = |i: i32| i.wrapping_add(parts / 2) & -parts;
+        let at = Snapped { x: if vertex.is_inside() { snap(x) } else { x }, y: snap(y) };
+        *vertex = ScreenVertex::placed(at, vertex.depth, vertex.inverse_w);
     }
-    let Snapped { x, y } = vertex.at();
-    let snap = |i: i32| (i + parts / 2).div_euclid(parts) * parts;
-    let at = Snapped { x: snap(x), y: snap(y) };
-    ScreenVertex::placed(at, vertex.depth, vertex.inverse_w)
 }
 
 /// The transform from object space to the screen, in f32.
 struct Screen32 {
     rows: [[f32; 4]; 4],
     half: [f32; 2],
+    guard: [f32; 2],
+    parts: f32,
+    /// The sample's offset in pixels.
+    shift: [f32; 2],
 }
 
 impl Screen32 {
     #[expect(clippy::cast_possible_truncation, reason = "32 bits are meant")]
     fn new(screen: &Screen) -> Self {
         let rows = screen.rows.map(|row| row.map(|x| x as f32));
-        Self { rows, half: screen.half.map(|x| x as f32) }
+        let [half, guard] = [screen.half, screen.guard()].map(|two| two.map(|x| x as f32));
+        let shift = screen.shift_in_pixels().map(|x| x as f32);
+        Self { rows, half, guard, parts: screen.parts() as f32, shift }
     }
 
-    fn vertex(&self, screen: &Screen, [x, y, z]: [f32; 3]) -> Projected {
-        let clip = self.rows.map(|[a, b, c, d]| a * x + b * y + c * z + d);
-        let is_inside = screen.vertex(clip.map(f64::from)).is_inside();
-        let [x, y, z, w] = clip;
+    #[inline(always)]
+    fn clip(&self, [x, y, z]: [f32; 3]) -> [f32; 4] {
+        let row = |i: usize| {
+            let [a, b, c, d] = self.rows[i];
+            a * x + b * y + c * z + d
+        };
+        [row(0), row(1), row(2), row(3)]
+    }
+
+    #[inline(always)]
+    fn pixels(&self, [x, y, _, w]: [f32; 4]) -> [f32; 2] {
         let inverse_w = 1.0 / w;
-        let at = [(x * inverse_w + 1.0) * self.half[0], (1.0 - y * inverse_w) * self.half[1]];
+        [(x * inverse_w + 1.0) * self.half[0], (1.0 - y * inverse_w) * self.half[1]]
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the guard band holds it")]
+    fn vertex(&self, place: [f32; 3]) -> ScreenVertex {
+        let clip = self.clip(place);
+        let [x, y, z, w] = clip;
+        let [gx, gy] = [self.guard[0] * w, self.guard[1] * w];
+        let inside = (w - z >= 0.0)
+            & (z >= 0.0)
+            & (gx + x >= 0.0)
+            & (gx - x >= 0.0)
+            & (gy + y >= 0.0)
+            & (gy - y >= 0.0);
+        let inverse_w = 1.0 / w;
         let depth = z * inverse_w;
         let depth = if depth > 0.0 { depth } else { 0.0 };
         let depth = if depth < 1.0 { depth } else { 1.0 };
-        Projected { at: at.map(f64::from), depth, inverse_w, is_inside }
+        let [x, y] = self.pixels(clip);
+        let snap = |pixels: f32| (pixels * self.parts).round_ties_even() as i32;
+        let at = Snapped { x: if inside { snap(x) } else { ScreenVertex::BEYOND }, y: snap(y) };
+        ScreenVertex::placed(at, depth, inverse_w)
     }
 }
 
@@ -159,7 +180,15 @@ mod tests {
                 _ => exact,
             };
             let place = [13.7, -31.1, 7.3 + i as f32];
-            let got = project(ways, &screen, place).at;
+            let mut got = [[0.0; 2]];
+            let order = DrawOrder {
+                x: vec![place[0]],
+                y: vec![place[1]],
+                z: vec![place[2]],
+                ..DrawOrder::default()
+            };
+            to_pixels(ways, Level::new(), &screen, &order, 0, &mut got);
+            let got = got[0].map(f64::from);
             let want = exact.pixels(exact.clip(place.map(f64::from)));
             worst = worst.max((got[0] - want[0]).hypot(got[1] - want[1]));
         }
@@ -168,7 +197,8 @@ mod tests {
 
     #[test]
     fn vertices_are_as_far_off_as_the_table_of_axes_says() {
-        assert!(worst(VertexArithmetic::F64, 1e5) < 1e-9);
+        // What f32 can hold of a place up to 800.
+        assert!(worst(VertexArithmetic::F64, 1e5) < 5e-5);
         let composed = worst(VertexArithmetic::F32ComposedInF64, 1e5);
         assert!((1e-6..2e-4).contains(&composed), "{composed}");
         let throughout = worst(VertexArithmetic::F32, 1e5);
@@ -181,11 +211,16 @@ mod tests {
             let ways = Variants { subpixels, ..Variants::default() };
             for x in -600..600 {
                 let vertex = ScreenVertex::placed(Snapped { x, y: -x }, 0.5, 0.25);
-                let Snapped { x: got, y } = coarse(ways, vertex).at();
+                let mut all = [vertex];
+                coarse(ways, &mut all);
+                let Snapped { x: got, y } = all[0].at();
                 assert_eq!((got % parts, y % parts), (0, 0));
                 assert!((got - x).abs() * 2 <= parts && (y + x).abs() * 2 <= parts, "{x}: {got}");
             }
-            assert!(!coarse(ways, ScreenVertex::default().beyond()).is_inside());
+            let at = Snapped { x: ScreenVertex::BEYOND, y: 0 };
+            let mut all = [ScreenVertex::placed(at, 0.5, 0.25)];
+            coarse(ways, &mut all);
+            assert!(!all[0].is_inside());
         }
     }
 }

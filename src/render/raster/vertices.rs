@@ -8,6 +8,24 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, dispatch, i32x
 use crate::render::screen::clip::{Screen, ScreenVertex};
 use crate::scene::DrawOrder;
 
+/// The vertices of a frame on the screen.
+#[derive(Debug, Default)]
+pub(crate) struct Vertices {
+    /// On the usual grid.
+    pub(crate) usual: Vec<ScreenVertex>,
+    /// On a finer grid, if the settings choose one.
+    pub(crate) fine: Vec<ScreenVertex>,
+    /// In pixels, before they were snapped, if the rule of coverage needs them.
+    pub(crate) unsnapped: Vec<[f32; 2]>,
+}
+
+impl Vertices {
+    /// The corners of triangles: on the finer grid, if there is one.
+    pub(crate) fn corners(&self) -> &[ScreenVertex] {
+        if self.fine.is_empty() { &self.usual } else { &self.fine }
+    }
+}
+
 /// Transforms vertices of a mesh to the screen, from number `first` on.
 pub(crate) fn transform(
     level: Level,

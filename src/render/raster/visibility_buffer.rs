@@ -1,12 +1,13 @@
 //! The visibility buffer: the depth and the primitive of each sample.
 //!
-//! A sample's entry is one 64-bit word: the bits of the depth above, the inverted number of the
+//! A sample's entry is one 64-bit word: the key of the depth above, the inverted number of the
 //! primitive below. So the depth test is a maximum: the larger entry is visible.
 
 use fearless_simd::{
     Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, f64x8, mask32x16, u32x16,
 };
 
+use super::depth_format::Format;
 use super::lines::LineNumber;
 use crate::render::screen::sample_positions::FOUR;
 use crate::render::screen::tiles::BLOCK_PIXELS;
@@ -40,30 +41,32 @@ pub(crate) const fn seen_number(number: u32) -> Visible {
     }
 }
 
-/// The depth key of an entry: the bits of the depth in the default format.
+/// The depth of an entry, as a key of the depth format.
 pub(crate) const fn key(word: u64) -> u32 {
     (word >> 32) as u32
 }
 
+/// The entry of a primitive with a key of the depth format.
 #[inline(always)]
-pub(crate) fn word(depth: f32, number: u32) -> u64 {
-    u64::from(depth.to_bits()) << 32 | u64::from(!number)
+pub(crate) fn word(key: u32, number: u32) -> u64 {
+    u64::from(key) << 32 | u64::from(!number)
 }
 
 /// The depth test of sixteen entries, those of two rows of a block: writes the ones that a triangle
 /// with these depths covers, where it is in front.
 ///
-/// Entries are compared as f64: their bits are in the order of the numbers, since depths are from 0
-/// to 1, and every processor has a maximum of f64.
+/// Entries are compared as f64: their bits are in the order of the numbers, since keys are below the
+/// bits of infinity, and every processor has a maximum of f64.
 #[inline(always)]
 pub(crate) fn put_rows<S: Simd>(
+    format: impl Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,
     number: u32,
     visibility: &mut [u64; 16],
 ) {
-    let (upper, lower) = entries(simd, covered, depth, number);
+    let (upper, lower) = entries(format, simd, covered, depth, number);
     let (up, down) = bytemuck::cast_slice_mut::<u64, f64>(visibility).split_at_mut(8);
     for (new, row) in [(upper, up), (lower, down)] {
         let old = f64x8::from_slice(simd, row);
@@ -75,13 +78,14 @@ pub(crate) fn put_rows<S: Simd>(
 /// [`put_rows`].
 #[inline(always)]
 pub(crate) fn in_front<S: Simd>(
+    format: impl Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,
     number: u32,
     visibility: &[u64; 16],
 ) -> u64 {
-    let (upper, lower) = entries(simd, covered, depth, number);
+    let (upper, lower) = entries(format, simd, covered, depth, number);
     let (up, down) = bytemuck::cast_slice::<u64, f64>(visibility).split_at(8);
     let front = |new: f64x8<S>, row: &[f64]| new.simd_gt(f64x8::from_slice(simd, row)).to_bitmask();
     front(upper, up) | front(lower, down) << 8
@@ -90,13 +94,14 @@ pub(crate) fn in_front<S: Simd>(
 /// Entries as f64, where a triangle covers pixels, else 0.
 #[inline(always)]
 fn entries<S: Simd>(
+    format: impl Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,
     number: u32,
 ) -> (f64x8<S>, f64x8<S>) {
     let nothing = u32x16::splat(simd, 0);
-    let depth = covered.select(depth.bitcast::<u32x16<S>>(), nothing);
+    let depth = covered.select(format.keys(depth), nothing);
     let number = covered.select(u32x16::splat(simd, !number), nothing);
     let (upper, lower) = number.interleave(depth);
     (upper.bitcast(), lower.bitcast())
@@ -105,7 +110,7 @@ fn entries<S: Simd>(
 /// The entries of a block for each of four samples.
 pub(crate) type Planes = [[u64; BLOCK_PIXELS]; FOUR];
 
-/// The bits of the least and of the largest depth of the triangles in some entries.
+/// The keys of the least and of the largest depth of the triangles in some entries.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
 pub(crate) fn depths_of<S: Simd>(_: S, visibility: &[u64]) -> [u32; 2] {

@@ -10,7 +10,7 @@
 
 use glam::{DMat4, DVec3};
 
-use super::coverage::{SUBPIXELS, Snapped};
+use super::coverage::{Grid, SUBPIXELS, Snapped};
 use crate::base::image::Size;
 
 /// The guard band: the largest distance of coordinates from the picture's centre, in pixels.
@@ -53,11 +53,6 @@ impl ScreenVertex {
         Self { x: at.x, y: at.y, depth, inverse_w }
     }
 
-    /// The same, marked as beyond the clipping planes.
-    pub(crate) const fn beyond(self) -> Self {
-        Self { x: Self::BEYOND, ..self }
-    }
-
     /// A vertex at a position, for tests.
     #[cfg(test)]
     pub(crate) const fn new(at: Snapped, depth: f32) -> Self {
@@ -92,7 +87,12 @@ pub(crate) struct Screen {
     /// The sample's offset in subpixels, which is subtracted from clipped corners once they are
     /// snapped.
     shift: [i32; 2],
+    /// The parts of a pixel on the grid.
+    parts: f64,
 }
+
+/// The guard band of the fine grid, in pixels: edge functions stay below 2^62.
+const FINE_GUARD: f64 = 131_072.0;
 
 impl Screen {
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
@@ -103,6 +103,15 @@ impl Screen {
             half,
             guard: half.map(|half| GUARD / half - 1.0),
             shift: [0; 2],
+            parts: f64::from(SUBPIXELS),
+        }
+    }
+
+    /// The same with corners on this grid.
+    pub(crate) fn on(self, grid: Grid) -> Self {
+        match grid {
+            Grid::Usual => self,
+            Grid::Fine => Self { parts: f64::from(grid.parts()), ..self.guarded(FINE_GUARD) },
         }
     }
 
@@ -111,13 +120,23 @@ impl Screen {
         Self { shift, ..self }
     }
 
-    /// The sample's offset, in subpixels.
-    pub(crate) const fn shift(&self) -> [i32; 2] {
-        self.shift
+    /// The sample's offset, in pixels.
+    pub(crate) fn shift_in_pixels(&self) -> [f64; 2] {
+        self.shift.map(|by| f64::from(by) / self.parts)
+    }
+
+    /// The parts of a pixel on its grid.
+    pub(crate) const fn parts(&self) -> f64 {
+        self.parts
+    }
+
+    /// The factors of w at the sides of the guard band.
+    pub(crate) const fn guard(&self) -> [f64; 2] {
+        self.guard
     }
 
     /// The same with a guard band of this many pixels.
-    pub(crate) fn guarded(self, pixels: f64) -> Self {
+    fn guarded(self, pixels: f64) -> Self {
         Self { guard: self.half.map(|half| pixels / half - 1.0), ..self }
     }
 
@@ -171,8 +190,7 @@ impl Screen {
     #[expect(clippy::cast_possible_truncation, reason = "the lowest bits and the nearest f32")]
     fn project(&self, [x, y, z, w]: Clip) -> ScreenVertex {
         let inverse_w = 1.0 / w;
-        let parts = f64::from(SUBPIXELS);
-        let snap = |pixels: f64| ((pixels * parts + ROUND).to_bits() as u32).cast_signed();
+        let snap = |pixels: f64| ((pixels * self.parts + ROUND).to_bits() as u32).cast_signed();
         let depth = z * inverse_w;
         let depth = if depth > 0.0 { depth } else { 0.0 };
         let depth = if depth < 1.0 { depth } else { 1.0 };
@@ -185,19 +203,28 @@ impl Screen {
     }
 
     /// The position in the picture, in pixels, of a position that is inside.
+    #[inline(always)]
     pub(crate) fn pixels(&self, [x, y, _, w]: Clip) -> [f64; 2] {
         let inverse_w = 1.0 / w;
         [(x * inverse_w + 1.0) * self.half[0], (1.0 - y * inverse_w) * self.half[1]]
     }
 
-    /// Clips a triangle: the corners of the convex polygon that is left of it.
-    pub(crate) fn cut(&self, corners: [Clip; 3]) -> Vec<ScreenVertex> {
-        let corners = self.cut_in_clip(corners).into_iter();
-        corners.map(|corner| self.project(corner).seen_from(self.shift)).collect()
+    /// The same relative to the sample, in f32.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+    pub(crate) fn pixels_seen(&self, clip: Clip) -> [f32; 2] {
+        let [x, y] = self.pixels(clip);
+        let [dx, dy] = self.shift_in_pixels();
+        [(x - dx) as f32, (y - dy) as f32]
     }
 
-    /// The same, before projection.
-    pub(crate) fn cut_in_clip(&self, corners: [Clip; 3]) -> Vec<Clip> {
+    /// A corner of a triangle that was clipped.
+    pub(crate) fn piece(&self, corner: Clip) -> ScreenVertex {
+        self.project(corner).seen_from(self.shift)
+    }
+
+    /// Clips a triangle: the corners of the convex polygon that is left of it.
+    pub(crate) fn cut(&self, corners: [Clip; 3]) -> Vec<Clip> {
         let mut polygon = corners.to_vec();
         if !polygon.as_flattened().iter().all(|x| x.is_finite()) {
             return Vec::new();

@@ -15,6 +15,34 @@ use crate::base::math::each;
 /// Subpixels per pixel, in each direction.
 pub const SUBPIXELS: i32 = 256;
 
+/// The grid that corners are snapped to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Grid {
+    /// 1/256 pixel.
+    #[default]
+    Usual,
+    /// 1/4096 pixel.
+    Fine,
+}
+
+impl Grid {
+    /// The parts of a pixel, in each direction.
+    #[must_use]
+    pub const fn parts(self) -> i32 {
+        match self {
+            Self::Usual => SUBPIXELS,
+            Self::Fine => 16 * SUBPIXELS,
+        }
+    }
+
+    /// An offset in 1/256 pixel, in parts of this grid.
+    #[must_use]
+    pub const fn offset(self, [x, y]: [i32; 2]) -> [i32; 2] {
+        let times = self.parts() / SUBPIXELS;
+        [x * times, y * times]
+    }
+}
+
 /// A snapped point of the picture in subpixels, x to the right and y down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Snapped {
@@ -58,15 +86,23 @@ impl PixelBox {
     /// from `least` to `most` off the centre.
     #[inline(always)]
     #[must_use]
-    pub fn reached([a, b, c]: [Snapped; 3], [least, most]: [[i32; 2]; 2]) -> Self {
-        let half = SUBPIXELS / 2;
+    pub fn reached(corners: [Snapped; 3], reach: [[i32; 2]; 2]) -> Self {
+        Self::reached_on(Grid::Usual, corners, reach)
+    }
+
+    /// The same for points of a grid; samples lie in 1/256 pixel.
+    #[inline(always)]
+    #[must_use]
+    pub fn reached_on(grid: Grid, [a, b, c]: [Snapped; 3], [least, most]: [[i32; 2]; 2]) -> Self {
+        let (least, most) = (grid.offset(least), grid.offset(most));
+        let (parts, half) = (grid.parts(), grid.parts() / 2);
         // The first centre at or after the smallest coordinate; past the last one before the
         // largest.
         let first = |a: i32, b: i32, c: i32, most: i32| {
-            (a.min(b).min(c) + half - 1 - most).div_euclid(SUBPIXELS)
+            (a.min(b).min(c) + half - 1 - most).div_euclid(parts)
         };
         let end = |a: i32, b: i32, c: i32, least: i32| {
-            (a.max(b).max(c) - half - least).div_euclid(SUBPIXELS) + 1
+            (a.max(b).max(c) - half - least).div_euclid(parts) + 1
         };
         Self {
             left: first(a.x, b.x, c.x, most[0]),
@@ -146,6 +182,7 @@ pub struct Triangle {
     edges: [Edge; 3],
     doubled_area: i64,
     bounds: PixelBox,
+    grid: Grid,
 }
 
 /// A covered pixel.
@@ -164,7 +201,14 @@ impl Triangle {
     /// Sets up a triangle of either winding; `None` if it has no area.
     #[must_use]
     #[inline(always)]
-    pub fn new([p, q, r]: [Snapped; 3]) -> Option<Self> {
+    pub fn new(corners: [Snapped; 3]) -> Option<Self> {
+        Self::on(Grid::Usual, corners)
+    }
+
+    /// The same for corners on a grid.
+    #[must_use]
+    #[inline(always)]
+    pub fn on(grid: Grid, [p, q, r]: [Snapped; 3]) -> Option<Self> {
         let doubled_area = doubled_area([p, q, r]);
         if doubled_area == 0 {
             return None;
@@ -175,8 +219,8 @@ impl Triangle {
         } else {
             [Edge::new(r, q), Edge::new(p, r), Edge::new(q, p)]
         };
-        let bounds = PixelBox::of([p, q, r]);
-        Some(Self { edges, doubled_area: doubled_area.abs(), bounds })
+        let bounds = PixelBox::reached_on(grid, [p, q, r], [[0; 2]; 2]);
+        Some(Self { edges, doubled_area: doubled_area.abs(), bounds, grid })
     }
 
     /// Twice the area, in square parts of a pixel: more than 0.
@@ -195,7 +239,7 @@ impl Triangle {
     #[must_use]
     #[inline(always)]
     pub fn edges_at(&self, x: i32, y: i32) -> [i64; 3] {
-        let (cx, cy) = (centre(x), centre(y));
+        let (cx, cy) = (self.centre(x), self.centre(y));
         each(self.edges, |edge| edge.at(cx, cy))
     }
 
@@ -203,7 +247,7 @@ impl Triangle {
     #[inline(always)]
     #[must_use]
     pub fn steps(&self) -> [[i64; 3]; 2] {
-        let step = i64::from(SUBPIXELS);
+        let step = i64::from(self.grid.parts());
         let [p, q, r] = self.edges;
         [[p.a * step, q.a * step, r.a * step], [p.b * step, q.b * step, r.b * step]]
     }
@@ -234,11 +278,18 @@ impl Triangle {
         Some(whole)
     }
 
+    /// The centre of column or row `i`.
+    #[inline(always)]
+    fn centre(&self, i: i32) -> i64 {
+        let parts = i64::from(self.grid.parts());
+        i64::from(i) * parts + parts / 2
+    }
+
     /// Calls `cover` with every pixel inside `clip` that the triangle covers, row by row.
     #[inline(always)]
     pub fn covered(&self, clip: PixelBox, mut cover: impl FnMut(Covered)) {
         let area = self.bounds.intersection(clip);
-        let step = i64::from(SUBPIXELS);
+        let step = i64::from(self.grid.parts());
         for y in area.top..area.bottom {
             let mut edges = self.edges_at(area.left, y);
             for x in area.left..area.right {
@@ -263,12 +314,6 @@ pub fn doubled_area([p, q, r]: [Snapped; 3]) -> i64 {
     let (qx, qy) = (i64::from(q.x), i64::from(q.y));
     let (rx, ry) = (i64::from(r.x), i64::from(r.y));
     (qx - px) * (ry - py) - (qy - py) * (rx - px)
-}
-
-/// The centre of pixel `i`, in subpixels.
-#[inline(always)]
-fn centre(i: i32) -> i64 {
-    i64::from(i) * i64::from(SUBPIXELS) + i64::from(SUBPIXELS / 2)
 }
 
 #[cfg(test)]

@@ -33,16 +33,6 @@ pub(crate) const fn block_at(x: i32, y: i32) -> usize {
     (y / BLOCK * BLOCKS + x / BLOCK) as usize
 }
 
-/// The column and row in the tile, and the sample, at an index into a visibility buffer with this
-/// number of samples per pixel.
-#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
-pub(crate) const fn pixel_at(place: usize, samples: usize) -> ([i32; 2], usize) {
-    let (plane, pixel) = (place / BLOCK_PIXELS, (place % BLOCK_PIXELS) as i32);
-    let (block, sample) = ((plane / samples) as i32, plane % samples);
-    let at = [block % BLOCKS * BLOCK + pixel % BLOCK, block / BLOCKS * BLOCK + pixel / BLOCK];
-    (at, sample)
-}
-
 /// The index of a pixel in its block.
 #[inline(always)]
 pub(crate) const fn within(x: i32, y: i32) -> usize {

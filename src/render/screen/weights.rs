@@ -5,8 +5,9 @@ use fearless_simd::{Select as _, Simd, SimdBase as _, f64x8};
 use glam::DVec3;
 
 use super::clip::{Screen, ScreenVertex};
-use super::coverage::{SUBPIXELS, Snapped, Triangle};
-use super::interpolation::parts_at;
+use super::coverage::{Grid, SUBPIXELS, Snapped, Triangle};
+use super::spans::Row;
+use crate::accuracy::Interpolation;
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
@@ -14,9 +15,7 @@ use crate::render::frame::draw::Draw;
 /// The perspective-correct weights of a triangle's corners at pixels, in f64, `shift` subpixels
 /// from their centres.
 #[derive(Debug)]
-pub(crate) struct Weights<'a> {
-    plan: &'a FramePlan,
-    shift: [i32; 2],
+pub(crate) struct Weights {
     method: Method,
 }
 
@@ -25,16 +24,16 @@ pub(crate) struct Weights<'a> {
 enum Method {
     /// The triangle is clipped.
     Cut(HomogeneousWeights),
-    /// By a variant, from its corners and 1/w of each.
-    Variant([Snapped; 3], [f64; 3]),
-    /// From edge functions, if it has an area, and w of each corner.
+    /// In spans of sixteen pixels, from its corners and 1/w of each.
+    Spans([Snapped; 3], [f64; 3], Grid),
+    /// From edge functions, if it has an area, and w of each corner; 1 if there is no perspective.
     Edges(Option<Triangle>, DVec3),
 }
 
-impl<'a> Weights<'a> {
+impl Weights {
     pub(crate) fn new(
-        plan: &'a FramePlan,
-        draw: &'a Draw,
+        plan: &FramePlan,
+        draw: &Draw,
         vertices: &[ScreenVertex],
         number: u32,
         shift: [i32; 2],
@@ -46,13 +45,18 @@ impl<'a> Weights<'a> {
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
         let method = if !own.iter().all(ScreenVertex::is_inside) {
             Method::Cut(HomogeneousWeights::new(plan, draw, number, shift))
-        } else if plan.variants.locates_one_by_one() {
-            Method::Variant(own.map(|vertex| vertex.at()), w.map(|w| 1.0 / w))
         } else {
-            let triangle = Triangle::new(own.map(|vertex| vertex.at().seen_from(shift)));
-            Method::Edges(triangle, DVec3::from_array(w))
+            let grid = plan.variants.grid();
+            let corners = own.map(|vertex| vertex.at().seen_from(grid.offset(shift)));
+            match plan.variants.interpolation {
+                Interpolation::EverySixteen => Method::Spans(corners, w.map(|w| 1.0 / w), grid),
+                Interpolation::Affine => Method::Edges(Triangle::on(grid, corners), DVec3::ONE),
+                Interpolation::Perspective => {
+                    Method::Edges(Triangle::on(grid, corners), DVec3::from_array(w))
+                }
+            }
         };
-        Self { plan, shift, method }
+        Self { method }
     }
 
     /// The weights at a pixel.
@@ -63,9 +67,10 @@ impl<'a> Weights<'a> {
                 let ([second, third], _) = weights.at(pixel);
                 DVec3::new(1.0 - second - third, second, third)
             }
-            Method::Variant(corners, by_w) => {
-                let at = (pixel, self.shift);
-                let ([second, third], _) = parts_at(self.plan.variants, *corners, *by_w, at, false);
+            Method::Spans(corners, by_w, grid) => {
+                let [x, y] = pixel;
+                let row = Row::new(*corners, *by_w, y, *grid);
+                let [second, third] = row.at(x);
                 DVec3::new(1.0 - second - third, second, third)
             }
             Method::Edges(triangle, w) => {
@@ -78,9 +83,9 @@ impl<'a> Weights<'a> {
     }
 }
 
-impl Weights<'_> {
+impl Weights {
     /// The weights of the second and the third corner at eight pixels of a row, from its first on,
-    /// to a few last places; `edges` are the edge functions of both there. `None` for variants.
+    /// to a few last places; `edges` are the edge functions of both there. `None` for spans.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn of_row<S: Simd>(
@@ -91,7 +96,7 @@ impl Weights<'_> {
     ) -> Option<[f64x8<S>; 2]> {
         match &self.method {
             Method::Cut(weights) => Some(weights.of_row(simd, first).0),
-            Method::Variant(..) => None,
+            Method::Spans(..) => None,
             Method::Edges(triangle, w) => {
                 let area = triangle.as_ref()?.doubled_area() as f64;
                 let by_w = [1.0 / w.x, 1.0 / w.y, 1.0 / w.z];

@@ -9,7 +9,8 @@ use glam::DVec3;
 
 use super::fragments::Fragments;
 use super::triangle_attributes::{TriangleAttributes, picked};
-use crate::render::simd::{BATCH, Kernel, Lanes, Number, Vec3};
+use crate::accuracy::Interpolation;
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
 /// The barycentric coordinates of a list of fragments.
 #[derive(Debug)]
@@ -40,51 +41,88 @@ impl<T: Number> Barycentrics<T> {
     }
 }
 
-/// Makes linear coordinates perspective-correct.
-pub(super) struct Perspective<'a, T, const PAGES: usize> {
-    pub(super) fragments: &'a Fragments,
-    pub(super) attributes: &'a TriangleAttributes<T>,
-    pub(super) to: &'a mut Barycentrics<T>,
-}
-
-impl<T: Number, const PAGES: usize> Kernel<T> for Perspective<'_, T, PAGES> {
-    #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { fragments, attributes, to } = self;
-        for at in (0..fragments.len).step_by(M::LANES) {
-            let slots = lanes.slots(&fragments.slots, at);
-            let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
-            let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
-            to.put(lanes, at, linear, by_w);
-        }
-    }
-}
-
-impl<T: Number> Barycentrics<T> {
-    /// Makes linear coordinates perspective-correct.
-    #[inline(always)]
-    pub(super) fn put<M: Lanes<Number = T>>(
-        &mut self,
-        lanes: M,
-        at: usize,
-        linear: [M::R; 2],
-        by_w: Vec3<M::R>,
-    ) {
-        let (weights, w) = with_perspective(lanes, linear, by_w);
-        lanes.store(w, &mut self.w, at);
-        lanes.store(weights[0], &mut self.weights[0], at);
-        lanes.store(weights[1], &mut self.weights[1], at);
-    }
-}
-
-/// m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and 1 / the sum, which is the
-/// pixel's own w.
+/// The weights of the second and the third corner, and w, from coordinates that are linear on the
+/// screen. With perspective:
+///
+///   m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; and 1 / the sum, which is the
+///   pixel's own w.
+///
+/// Affine weights are the coordinates themselves. The distance is exact nevertheless: what is lit,
+/// is lit where it is. Spans of sixteen pixels begin with perspective.
 #[inline(always)]
-pub(crate) fn with_perspective<M: Lanes>(
+pub(crate) fn weighed<M: Lanes>(
+    interpolation: Interpolation,
     lanes: M,
     [second, third]: [M::R; 2],
     Vec3([w0, w1, w2]): Vec3<M::R>,
 ) -> ([M::R; 2], M::R) {
     let w = lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
-    ([second * w1 * w, third * w2 * w], w)
+    match interpolation {
+        Interpolation::Affine => ([second, third], w),
+        Interpolation::Perspective | Interpolation::EverySixteen => {
+            ([second * w1 * w, third * w2 * w], w)
+        }
+    }
+}
+
+/// Clamps linear coordinates of pixels whose centres lie outside of their triangles: negative ones
+/// count as 0, and the sum stays 1.
+pub(super) struct Clamp<'a, T> {
+    pub(super) len: usize,
+    pub(super) linear: &'a mut [[T; BATCH]; 2],
+}
+
+impl<T: Number> Kernel<T> for Clamp<'_, T> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { len, linear: [second_row, third_row] } = self;
+        let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
+        for at in (0..len).step_by(M::LANES) {
+            let (second, third) = (lanes.load(second_row, at), lanes.load(third_row, at));
+            let first = Real::max(one - second - third, zero);
+            let (second, third) = (Real::max(second, zero), Real::max(third, zero));
+            let per = one / (first + second + third);
+            lanes.store(second * per, second_row, at);
+            lanes.store(third * per, third_row, at);
+        }
+    }
+}
+
+/// Makes linear coordinates the weights of corners.
+pub(super) struct Weigh<'a, T, const PAGES: usize> {
+    pub(super) interpolation: Interpolation,
+    pub(super) fragments: &'a Fragments,
+    pub(super) attributes: &'a TriangleAttributes<T>,
+    pub(super) to: &'a mut Barycentrics<T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { interpolation, fragments, attributes, to } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
+            let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
+            to.put(interpolation, lanes, at, linear, by_w);
+        }
+    }
+}
+
+impl<T: Number> Barycentrics<T> {
+    /// Stores the weights that belong to linear coordinates.
+    #[inline(always)]
+    pub(super) fn put<M: Lanes<Number = T>>(
+        &mut self,
+        interpolation: Interpolation,
+        lanes: M,
+        at: usize,
+        linear: [M::R; 2],
+        by_w: Vec3<M::R>,
+    ) {
+        let (weights, w) = weighed(interpolation, lanes, linear, by_w);
+        lanes.store(w, &mut self.w, at);
+        lanes.store(weights[0], &mut self.weights[0], at);
+        lanes.store(weights[1], &mut self.weights[1], at);
+    }
 }

@@ -4,17 +4,26 @@
 //! fragments; everything else is coloured like other blocks.
 
 use super::context::ShadingContext;
-use super::full_blocks::{BlockLight, Blocks, Canvas, ROW};
+use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, ROW};
 use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
+use super::map_texels::{TexelSource, TexturePlacement};
 use super::surface::{Out, Shader};
 use super::texels::PlacedTexture;
-use super::textured::{Placed, TexelSource};
 use super::triangle_attributes::TriangleAttributes;
-use crate::accuracy::{LightAt, Rounding};
+use crate::accuracy::{Interpolation, LightAt, Rounding};
 use crate::render::frame::draw::{Back, Pipeline};
 use crate::render::screen::weights::HomogeneousWeights;
+
+/// How the corners of a triangle are weighted in this frame.
+fn by<'a, T>(
+    context: &'a ShadingContext<'_, T>,
+    cut: Option<&'a HomogeneousWeights>,
+) -> Corners<'a> {
+    let interpolation = context.plan.variants.interpolation;
+    Corners { cut, interpolation, thresholds: context.terms.thresholds() }
+}
 
 impl<T: ShadingNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers fully.
@@ -101,7 +110,8 @@ impl<T: ShadingNumber> Shader<T> {
             && plan.light_at == LightAt::Vertex
             && shaded.extras.is_empty()
             && !plan.variants.are_linear();
-        if !mixed || group.draw.back == Back::Red || plan.variants.mixes_one_by_one() {
+        let in_spans = plan.variants.interpolation == Interpolation::EverySixteen;
+        if !mixed || group.draw.back == Back::Red || in_spans {
             return false;
         }
         let tables = lit.tables(group.draw_index, group.pipeline);
@@ -113,7 +123,7 @@ impl<T: ShadingNumber> Shader<T> {
             self.attributes.spread(level);
         }
         let cut = self.cut_weights(context, group);
-        T::mix_blocks(level, &self.attributes, blocks, cut.as_ref(), canvas)
+        T::mix_blocks(level, &self.attributes, blocks, by(context, cut.as_ref()), canvas)
     }
 
     /// Colours fully covered blocks, a block at a time without a list of fragments, if they are lit
@@ -132,27 +142,21 @@ impl<T: ShadingNumber> Shader<T> {
         };
         let is_lit = shaded.light.is_some();
         let pixels = matches!(plan.light_at, LightAt::Pixel | LightAt::Sample);
-        let has_variant = plan.variants.locates_one_by_one()
-            || plan.variants.root_variant().is_some()
-            || plan.variants.rounding != Rounding::Nearest
-            || plan.variants.are_linear();
-        let stages = shaded.light.as_deref().unwrap_or_default();
-        let is_shaded = plan.shadows.any_of(stages);
-        if (is_lit && !pixels)
-            || shaded.vertex_colors
+        let otherwise = plan.variants.interpolation == Interpolation::EverySixteen
+            || plan.variants.are_linear()
             || !shaded.extras.is_empty()
-            || has_variant
-            || is_shaded
-            || group.draw.back == Back::Red
-        {
+            || plan.shadows.any_of(shaded.light.as_deref().unwrap_or_default());
+        if (is_lit && !pixels) || otherwise || group.draw.back == Back::Red {
             return false;
         }
         let texture = shaded.texture.as_deref();
         let source = shaded.texture.as_ref().map(|it| TexelSource::of_colors(context, it));
-        let sampler = source.and_then(|source| source.sampler(context));
+        let sampler = source.and_then(|source| source.sampler());
+        if texture.is_some() && sampler.is_none() {
+            return false;
+        }
         let new = self.take(context, group, true);
-        if let Some(texture) = texture {
-            let Some(sampler) = &sampler else { return false };
+        if let Some((texture, sampler)) = texture.zip(sampler.as_ref()) {
             if new {
                 self.place_texture(context, group, texture, sampler);
             }
@@ -162,8 +166,12 @@ impl<T: ShadingNumber> Shader<T> {
                 return false;
             }
         }
+        if new && shaded.vertex_colors {
+            self.take_vertex_colors(group, plan.variants.decoding());
+        }
         let cut = self.cut_weights(context, group);
-        let Self { tile, attributes, batch, placed: Placed { placement, far }, .. } = self;
+        let Self { tile, attributes, batch, placed, vertex_colors, .. } = self;
+        let TexturePlacement { placement, far } = placed;
         let lights = is_lit.then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
         if !needs_positions {
@@ -173,10 +181,12 @@ impl<T: ShadingNumber> Shader<T> {
             attributes.spread(level);
         }
         let light = BlockLight {
-            cut: cut.as_ref(),
+            by: by(context, cut.as_ref()),
             look: needs_positions.then(|| Look::new(plan, group.draw)),
+            roots: plan.variants.root_variant(),
             tint: shaded.tint.map(T::from_f64),
             texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, far, sampler }),
+            vertex_colors: shaded.vertex_colors.then_some(vertex_colors),
             lights,
             terms: terms.of(group.pipeline),
         };

@@ -1,8 +1,8 @@
 //! Tilts the normals of pixels by maps of heights or normals.
 //!
 //! In tangent space, with T along u, B along v and N across the surface, the normal is that of the
-//! map, or (-g dh/du, -g dh/dv, 1) with the slopes of heights h per texel and their factor g (Blinn,
-//! "Simulation of Wrinkled Surfaces", SIGGRAPH 1978). A white texel is g texels high.
+//! map, or (-g dh/du, -g dh/dv, 1) with the slopes of heights h per texel and their factor g: a
+//! white texel is g texels high. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978.
 //!
 //! T and B come from one of two places:
 //!
@@ -20,36 +20,19 @@ use glam::{DMat3, DVec3};
 use super::barycentrics::Barycentrics;
 use super::context::ShadingContext;
 use super::fragments::Fragments;
-use super::glow::{Map, MapRows};
 use super::groups::Group;
 use super::interpolate::between;
 use super::interpolated::ShadingNumber;
-use super::textured::{Points, TexelSource, Texels};
+use super::map_rows::{Map, MapRows, TangentRows};
+use super::map_texels::{Points, TexelSource, Texels};
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::accuracy::Tangents;
 use crate::render::frame::draw::Draw;
 use crate::render::frame::extras::Bump;
 use crate::render::lights::{Batch, Rows, load, set, store};
-use crate::render::simd::gather::{SLOTS, paged};
+use crate::render::simd::gather::paged;
 use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
 use crate::render::texture::uv::uvs;
-
-/// The tangents of some triangles, slot by slot.
-#[derive(Debug)]
-pub(super) struct TangentRows<T> {
-    /// At vertices: T of the first corner, and the differences of the others from it. At pixels:
-    /// the vectors whose products with N are T and B, and nothing.
-    vectors: [[[T; SLOTS]; 3]; 3],
-    /// At vertices: s.
-    signs: [T; SLOTS],
-}
-
-impl<T: Number> Default for TangentRows<T> {
-    fn default() -> Self {
-        let row = [T::default(); SLOTS];
-        Self { vectors: [[row; 3]; 3], signs: row }
-    }
-}
 
 impl<T: Number> TangentRows<T> {
     fn set(&mut self, slot: usize, vectors: [DVec3; 3]) {

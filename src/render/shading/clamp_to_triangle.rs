@@ -12,7 +12,6 @@ use fearless_simd::Level;
 use super::barycentrics::Barycentrics;
 use super::fragments::Fragments;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
-use crate::render::screen::coverage::SUBPIXELS;
 use crate::render::screen::sample_positions::ALL;
 use crate::render::screen::tiles::BLOCK;
 use crate::render::simd::gather::SLOTS;
@@ -44,7 +43,8 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { fragments, attributes, origin, to } = self;
-        let corners = corners(lanes, attributes, origin);
+        let parts = attributes.grid.parts();
+        let corners = corners(lanes, attributes, origin.map(|pixel| pixel * parts));
         let [left, top] = origin.map(|pixel| lanes.lift(f64::from(pixel)));
         let (zero, half) = (lanes.lift(0.0), lanes.lift(0.5));
         for at in (0..fragments.len).step_by(M::LANES) {
@@ -61,7 +61,7 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
                 let slots = lanes.slots(&fragments.slots, at);
                 let pick = |row: usize| lanes.pick::<4>(&corners[row], slots);
                 let (u, v) = ([pick(2), pick(3)], [pick(4), pick(5)]);
-                let per_pixel = lanes.lift(f64::from(SUBPIXELS));
+                let per_pixel = lanes.lift(f64::from(parts));
                 let from = [pick(0), pick(1)];
                 let d = [(x - left) * per_pixel - from[0], (y - top) * per_pixel - from[1]];
                 let [s, t] = nearest(d, u, v, [first, second, third]);
@@ -79,7 +79,7 @@ impl<T: Number> Kernel<T> for Hold<'_, T> {
     }
 }
 
-/// The corners of triangles in subpixels: the first, relative to the upper left corner of a pixel,
+/// The corners of triangles in subpixels: the first, relative to a point of the picture,
 /// and the vectors from it to the second and the third; x and y of each.
 #[inline(always)]
 fn corners<T: Number, M: Lanes<Number = T>>(
@@ -90,7 +90,7 @@ fn corners<T: Number, M: Lanes<Number = T>>(
     let [first, second, third] = &attributes.corners;
     let mut ways = [[0; SLOTS]; 6];
     for axis in 0..2 {
-        let from = origin[axis] * SUBPIXELS;
+        let from = origin[axis];
         for slot in 0..SLOTS {
             // Corners of clipped triangles have no screen position; they are not read.
             ways[axis][slot] = first[axis][slot].wrapping_sub(from);

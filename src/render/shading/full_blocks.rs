@@ -8,18 +8,19 @@ use fearless_simd::{
     Level, Simd, SimdBase as _, SimdInt as _, SimdNarrow as _, dispatch, f32x16, f64x8, i32x16,
 };
 
-use super::barycentrics::with_perspective;
-use super::interpolate::{Look, between, depth_between};
+use super::barycentrics::weighed;
+use super::interpolate::{CornerValues, Look, between, depth_between};
 use super::quantize::reflected;
 use super::texels::{OfFirst, PlacedTexture, product};
 use super::triangle_attributes::TriangleAttributes;
+use crate::accuracy::{Interpolation, Normalising};
 use crate::render::lights::{Batch, LightTerm, load, set, store};
 use crate::render::plan::tile::TileLight;
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{BATCH, Lanes as _, Sixteen, Vec3};
+use crate::render::simd::{BATCH, Lanes as _, Sixteen, VariantLanes, Vec3};
 use crate::render::texture::lanes::Stored;
 
 /// The pixels of a tile, in rows that begin `stride` pixels apart.
@@ -207,6 +208,7 @@ trait Points<S: Simd>: Copy {
 /// From linear coordinates and 1/w of each corner.
 #[derive(Clone, Copy)]
 struct Inside<S: Simd, L> {
+    interpolation: Interpolation,
     linear: L,
     by_w: Vec3<f32x16<S>>,
 }
@@ -217,10 +219,10 @@ impl<S: Simd, L: Linear<S>> Points<S> for Inside<S, L> {
         let [a, b, c, d] = self.linear.block(simd, first);
         let lanes = Sixteen(simd);
         [
-            with_perspective(lanes, a, self.by_w),
-            with_perspective(lanes, b, self.by_w),
-            with_perspective(lanes, c, self.by_w),
-            with_perspective(lanes, d, self.by_w),
+            weighed(self.interpolation, lanes, a, self.by_w),
+            weighed(self.interpolation, lanes, b, self.by_w),
+            weighed(self.interpolation, lanes, c, self.by_w),
+            weighed(self.interpolation, lanes, d, self.by_w),
         ]
     }
 }
@@ -248,22 +250,22 @@ fn two_rows<S: Simd>(simd: S, of: &HomogeneousWeights, [x, y]: [i32; 2]) -> Weig
 /// Evaluates an expression with the [`Points`] of the first triangle, and returns whether it has
 /// any: a triangle without area has not.
 macro_rules! with_points {
-    ($level:expr, $attributes:expr, $cut:expr, $simd:ident, $points:ident => $what:expr) => {{
+    ($level:expr, $attributes:expr, $by:expr, $simd:ident, $points:ident => $what:expr) => {{
         let attributes: &TriangleAttributes<f32> = $attributes;
-        if let Some($points) = $cut {
+        if let Some($points) = $by.cut {
             dispatch!($level, $simd => $what);
             true
         } else if attributes.wide & 1 == 0 {
             dispatch!($level, $simd => {
                 let by_w = of_first(Sixteen($simd), &attributes.by_w);
-                let $points = Inside { linear: Narrow::new($simd, attributes), by_w };
+                let $points = Inside { interpolation: $by.interpolation, linear: Narrow::new($simd, attributes), by_w };
                 $what
             });
             true
-        } else if let Some(triangle) = &Triangle::new(attributes.corners(0)) {
+        } else if let Some(triangle) = &Triangle::on(attributes.grid, attributes.corners(0)) {
             dispatch!($level, $simd => {
                 let by_w = of_first(Sixteen($simd), &attributes.by_w);
-                let $points = Inside { linear: Wide::new($simd, triangle), by_w };
+                let $points = Inside { interpolation: $by.interpolation, linear: Wide::new($simd, triangle), by_w };
                 $what
             });
             true
@@ -273,31 +275,46 @@ macro_rules! with_points {
     }};
 }
 
-/// Interpolates the colours of the first triangle in blocks that it covers fully; `cut` has its
-/// weights if it is clipped. Returns false, with nothing done, if it has no area.
+/// How the corners of a triangle are weighted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners<'a> {
+    /// Their weights, if it is clipped.
+    pub(crate) cut: Option<&'a HomogeneousWeights>,
+    /// By which interpolation, if not.
+    pub(crate) interpolation: Interpolation,
+    /// The rounding thresholds of a block's pixels.
+    pub(crate) thresholds: &'a [f32; BATCH],
+}
+
+/// Interpolates the colours of the first triangle in blocks that it covers fully. Returns false,
+/// with nothing done, if it has no area.
 pub(crate) fn mix(
     level: Level,
     attributes: &TriangleAttributes<f32>,
     blocks: Blocks,
-    cut: Option<&HomogeneousWeights>,
+    by: Corners<'_>,
     canvas: &mut Canvas<'_>,
 ) -> bool {
-    with_points!(level, attributes, cut, simd, points => {
-        mixed(simd, attributes, points, blocks, canvas);
+    with_points!(level, attributes, by, simd, points => {
+        mixed(simd, attributes, points, blocks, (by.thresholds, &mut *canvas));
     })
 }
 
 /// The lights of fully covered blocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockLight<'a, T> {
-    /// The weights of the triangle, if it is clipped.
-    pub(crate) cut: Option<&'a HomogeneousWeights>,
+    /// How the corners of the triangle are weighted.
+    pub(crate) by: Corners<'a>,
     /// How pixels become positions and normals; `None` if no light reads them.
     pub(crate) look: Option<Look<T>>,
+    /// The variant of roots, if it is not the default.
+    pub(crate) roots: Option<Normalising>,
     /// The colour of the surface itself.
     pub(crate) tint: [T; 3],
     /// The texture by which it is multiplied.
     pub(crate) texture: Option<PlacedTexture<'a>>,
+    /// The vertex colours by which it is multiplied.
+    pub(crate) vertex_colors: Option<&'a CornerValues<T>>,
     /// The lights, if it is lit.
     pub(crate) lights: Option<TileLight<'a>>,
     /// The products of the lights and the material.
@@ -313,7 +330,7 @@ pub(crate) fn light(
     (light, batch): (BlockLight<'_, f32>, &mut Batch<f32>),
     canvas: &mut Canvas<'_>,
 ) -> bool {
-    with_points!(level, attributes, light.cut, simd, points => {
+    with_points!(level, attributes, light.by, simd, points => {
         lit(simd, attributes, points, blocks, (light, &mut *batch), canvas);
     })
 }
@@ -328,10 +345,11 @@ fn lit<S: Simd>(
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let BlockLight { look, tint, texture, lights, terms, .. } = light;
+    let BlockLight { by, look, roots, tint, texture, vertex_colors, lights, terms } = light;
     let z = of_first(lanes, &attributes.z);
-    let corners = corners(lanes, attributes);
+    let corners = corners(lanes, &attributes.values);
     let tint = set(lanes, tint);
+    let is_colored = texture.is_some() || vertex_colors.is_some();
     let across = i32x16::from_slice(simd, &ACROSS);
     let down = i32x16::from_slice(simd, &DOWN);
     let [left, top] = blocks.corner;
@@ -342,16 +360,29 @@ fn lit<S: Simd>(
         #[inline(always)]
         |[column, row]| {
             let [x, y] = [left + column, top + row];
-            if look.is_some() || texture.is_some() {
+            if look.is_some() || is_colored {
                 let pairs = points.block(simd, [x, y]);
                 for ((pair, point), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
                     let (weights, w) = point;
                     if let Some(look) = &look {
                         let place = [across + x, down + y].map(|i| i.to_float::<f32x16<S>>() + 0.5);
                         let normal = between(corners, weights);
-                        let sample = look.at(lanes, normal, place, w, || depth_between(z, weights));
-                        batch.put(lanes, sample, 16 * pair);
+                        let at = (normal, place, w);
+                        match roots {
+                            None => {
+                                let depth = || depth_between(z, weights);
+                                let (normal, place, w) = at;
+                                let sample = look.at(lanes, normal, place, w, depth);
+                                batch.put(lanes, sample, 16 * pair);
+                            }
+                            Some(variant) => {
+                                let lanes = VariantLanes { lanes, variant };
+                                let depth = depth_between(z, weights);
+                                put_sample(lanes, look, at, depth, batch, 16 * pair);
+                            }
+                        }
                     }
+                    let mut own = tint;
                     if let Some(texture) = &texture {
                         let way = texture.way(simd, &OfFirst, weights);
                         let position = match texture.far.first() {
@@ -359,7 +390,13 @@ fn lit<S: Simd>(
                             None => texture.position(simd, &OfFirst, way),
                         };
                         let texel = texture.texel::<S, Stored>(simd, &OfFirst, (way, w), position);
-                        store(lanes, product(tint, texel), &mut texels, 16 * pair);
+                        own = product(own, texel);
+                    }
+                    if let Some(values) = vertex_colors {
+                        own = product(own, between(self::corners(lanes, values), weights));
+                    }
+                    if is_colored {
+                        store(lanes, own, &mut texels, 16 * pair);
                     }
                 }
             }
@@ -373,20 +410,35 @@ fn lit<S: Simd>(
             let mut at = canvas.offset([column as usize, row as usize]);
             for pair in 0..PAIRS {
                 let mut pixels = [0; 16];
-                let own = match texture {
-                    Some(_) => load(lanes, &texels, 16 * pair),
-                    None => tint,
-                };
+                let own = if is_colored { load(lanes, &texels, 16 * pair) } else { tint };
                 let color = match lights {
                     Some(_) => reflected(lanes, own, batch, 16 * pair),
                     None => own,
                 };
-                lanes.store_pixels(color, &mut pixels, 0);
+                let threshold = lanes.load(by.thresholds, 16 * pair);
+                lanes.store_pixels_by(color, threshold, &mut pixels, 0);
                 canvas.put(at, &pixels);
                 at += 2 * canvas.stride;
             }
         },
     );
+}
+
+/// Stores the samples of sixteen pixels whose roots are computed by a variant.
+#[inline(always)]
+fn put_sample<S: Simd>(
+    lanes: VariantLanes<Sixteen<S>>,
+    look: &Look<f32>,
+    (normal, place, w): (Vec3<f32x16<S>>, [f32x16<S>; 2], f32x16<S>),
+    depth: f32x16<S>,
+    batch: &mut Batch<f32>,
+    at: usize,
+) {
+    let Vec3([x, y, z]) = normal;
+    let normal = Vec3([lanes.chosen(x), lanes.chosen(y), lanes.chosen(z)]);
+    let place = [lanes.chosen(place[0]), lanes.chosen(place[1])];
+    let sample = look.at(lanes, normal, place, lanes.chosen(w), || lanes.chosen(depth));
+    batch.put(lanes, sample, at);
 }
 
 /// Three numbers of the first triangle, the same for all lanes.
@@ -395,13 +447,10 @@ fn of_first<S: Simd>(lanes: Sixteen<S>, rows: &[[f32; SLOTS]; 3]) -> Vec3<f32x16
     set(lanes, [rows[0][0], rows[1][0], rows[2][0]])
 }
 
-/// The attributes at the corners of the first triangle.
+/// The values at the corners of the first triangle.
 #[inline(always)]
-fn corners<S: Simd>(
-    lanes: Sixteen<S>,
-    attributes: &TriangleAttributes<f32>,
-) -> [Vec3<f32x16<S>>; 3] {
-    let [a, b, c] = &attributes.values;
+fn corners<S: Simd>(lanes: Sixteen<S>, values: &CornerValues<f32>) -> [Vec3<f32x16<S>>; 3] {
+    let [a, b, c] = values;
     [of_first(lanes, a), of_first(lanes, b), of_first(lanes, c)]
 }
 
@@ -411,18 +460,20 @@ fn mixed<S: Simd>(
     attributes: &TriangleAttributes<f32>,
     points: impl Points<S>,
     blocks: Blocks,
-    canvas: &mut Canvas<'_>,
+    (thresholds, canvas): (&[f32; BATCH], &mut Canvas<'_>),
 ) {
     let lanes = Sixteen(simd);
-    let corners = corners(lanes, attributes);
+    let corners = corners(lanes, &attributes.values);
     let [left, top] = blocks.corner;
     blocks.each(
         #[inline(always)]
         |[column, row]| {
             let mut at = canvas.offset([column as usize, row as usize]);
-            for (weights, _) in points.block(simd, [left + column, top + row]) {
+            let pairs = points.block(simd, [left + column, top + row]);
+            for (pair, (weights, _)) in pairs.into_iter().enumerate() {
                 let mut pixels = [0; 16];
-                lanes.store_pixels(between(corners, weights), &mut pixels, 0);
+                let threshold = lanes.load(thresholds, 16 * pair);
+                lanes.store_pixels_by(between(corners, weights), threshold, &mut pixels, 0);
                 canvas.put(at, &pixels);
                 at += 2 * canvas.stride;
             }

@@ -1,74 +1,16 @@
 //! What surfaces add to their colour beside the light of lamps, and the maps of their highlights.
 
-use super::bumps::TangentRows;
 use super::context::ShadingContext;
 use super::groups::Group;
+use super::interpolate::multiply;
 use super::interpolated::ShadingNumber;
+use super::map_rows::{Map, MapRows};
+use super::map_texels::{Points, TexelSource, Texels};
 use super::surface::Shader;
-use super::textured::{Placed, Points, TexelSource, Texels};
 use crate::render::frame::draw::Shaded;
 use crate::render::frame::extras::Extras;
-use crate::render::lights::Rows;
 use crate::render::simd::{BATCH, Vec3};
 use crate::render::texture::sample::brightness;
-
-/// Working memory for the further maps of surfaces; allocated when a surface first has one.
-#[derive(Debug)]
-pub(crate) struct MapRows<T> {
-    /// What is added to the colour of each pixel.
-    pub(super) glow: Rows<T>,
-    /// The texels of the map that is read.
-    pub(super) texels: Rows<T>,
-    /// Where each map lies.
-    placed: [Placed; Map::COUNT],
-    /// The tangents of the triangles, if they have bumps.
-    pub(super) tangents: TangentRows<T>,
-}
-
-/// The maps of a surface beside its texture.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Map {
-    Emission,
-    Ambient,
-    Specular,
-    Exponent,
-    Bump,
-}
-
-impl Map {
-    const COUNT: usize = 5;
-}
-
-impl<T: ShadingNumber> Default for MapRows<T> {
-    fn default() -> Self {
-        let rows = [[T::default(); BATCH]; 3];
-        Self {
-            glow: rows,
-            texels: rows,
-            placed: Default::default(),
-            tangents: TangentRows::default(),
-        }
-    }
-}
-
-impl<T: ShadingNumber> MapRows<T> {
-    /// Reads a map into the rows for texels, all of which were `base` before.
-    pub(super) fn read(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        points: &Points<'_, T>,
-        (map, source, what, new): (Map, TexelSource<'_>, Texels, bool),
-        base: [f64; 3],
-    ) {
-        let Self { texels, placed, .. } = self;
-        for (row, base) in texels.iter_mut().zip(base) {
-            row.fill(T::from_f64(base));
-        }
-        let placed = &mut placed[map as usize];
-        points.read(context, group, (source, what, new), placed, (base, texels));
-    }
-}
 
 impl<T: ShadingNumber> Shader<T> {
     /// As [`MapRows::read`], at the fragments of the list.
@@ -124,10 +66,9 @@ impl<T: ShadingNumber> Shader<T> {
                 }
             }
             if shaded.vertex_colors {
-                let Self { fragments, attributes, barycentrics, maps, .. } = self;
-                let points = Points { fragments, attributes, barycentrics };
-                let decoding = context.plan.variants.decoding();
-                points.multiply_vertex_colors(context.level, group, decoding, &mut maps.texels);
+                let Self { fragments, attributes, barycentrics, vertex_colors, maps, .. } = self;
+                let at = (context.level, attributes.count);
+                multiply(at, fragments, vertex_colors, barycentrics, &mut maps.texels);
             }
             self.add_glow();
         }

@@ -13,19 +13,24 @@ use glam::DMat3;
 use super::barycentrics::Barycentrics;
 use super::colors::Colors;
 use super::fragments::Fragments;
+use super::texels::product;
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::render::frame::draw::Draw;
 use crate::render::frame::{Eye, FramePlan};
-use crate::render::lights::{Batch, Rows, Sample, set, store};
+use crate::render::lights::{Batch, Rows, Sample, load, set, store};
 use crate::render::screen::coverage::SUBPIXELS;
 use crate::render::simd::gather::{SLOTS, paged};
-use crate::render::simd::{Kernel, Lanes, Number, Real, Vec3};
+use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
+
+/// Three numbers at the corners of some triangles: those of the first corner, and the differences of
+/// the second and the third from them.
+pub(crate) type CornerValues<T> = [[[T; SLOTS]; 3]; 3];
 
 /// Attributes at some pixels, interpolated between the corners.
 #[inline(always)]
 fn mixed<M: Lanes, const PAGES: usize>(
     lanes: M,
-    rows: &[[[M::Number; SLOTS]; 3]; 3],
+    rows: &CornerValues<M::Number>,
     slots: M::Slots,
     weights: [M::R; 2],
 ) -> Vec3<M::R> {
@@ -46,8 +51,8 @@ pub(crate) fn between<R: Real>([a, b, c]: [Vec3<R>; 3], [second, third]: [R; 2])
 pub(crate) enum Mixed<'a, T> {
     /// Light.
     Rows(&'a mut Rows<T>),
-    /// Colours.
-    Colors(&'a mut Colors),
+    /// Colours, with the thresholds of their rounding.
+    Colors(&'a mut Colors, &'a [T; BATCH]),
 }
 
 /// Interpolates attributes at every pixel.
@@ -84,8 +89,47 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
             let value = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
             match &mut to {
                 Mixed::Rows(rows) => store(lanes, value, rows, at),
-                Mixed::Colors(colors) => colors.store(lanes, value, at),
+                Mixed::Colors(colors, thresholds) => {
+                    colors.store_by(lanes, value, lanes.load(*thresholds, at), at);
+                }
             }
+        }
+    }
+}
+
+/// Multiplies colours by others that are interpolated between the corners.
+pub(crate) fn multiply<T: Number>(
+    (level, count): (Level, usize),
+    fragments: &Fragments,
+    values: &CornerValues<T>,
+    barycentrics: &Barycentrics<T>,
+    to: &mut Rows<T>,
+) {
+    paged!(count, PAGES => T::run(
+        level,
+        Multiply::<T, PAGES> { fragments, values, barycentrics, to },
+    ));
+}
+
+struct Multiply<'a, T, const PAGES: usize> {
+    fragments: &'a Fragments,
+    values: &'a CornerValues<T>,
+    barycentrics: &'a Barycentrics<T>,
+    to: &'a mut Rows<T>,
+}
+
+impl<T: Number, const PAGES: usize> Kernel<T> for Multiply<'_, T, PAGES> {
+    #[inline(always)]
+    fn run<M: Lanes<Number = T>>(self, lanes: M) {
+        let Self { fragments, values, barycentrics, to } = self;
+        for at in (0..fragments.len).step_by(M::LANES) {
+            let slots = lanes.slots(&fragments.slots, at);
+            let weights = [
+                lanes.load(&barycentrics.weights[0], at),
+                lanes.load(&barycentrics.weights[1], at),
+            ];
+            let value = mixed::<M, PAGES>(lanes, values, slots, weights);
+            store(lanes, product(load(lanes, to, at), value), to, at);
         }
     }
 }

@@ -3,14 +3,16 @@
 use fearless_simd::{Level, Simd, SimdBase as _, SimdInt as _, dispatch, f32x16, i32x16};
 use glam::DVec3;
 
-use super::barycentrics::{Barycentrics, Perspective};
+use super::barycentrics::{Barycentrics, Clamp, Weigh};
 use super::fragments::Fragments;
-use super::full_blocks::{self, BlockLight, Blocks, Canvas, Linear as _, Wide};
+use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _, Wide};
+use super::spans::interpolate_spans;
 use super::texels::TextureSamples;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
+use crate::accuracy::{Coverage, Interpolation};
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
-use crate::render::frame::variants::Decoding;
+use crate::render::frame::variants::{Decoding, Variants};
 use crate::render::lights::{Batch, Light, Rows, set};
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::weights::{HomogeneousWeights, barycentric, cut_place};
@@ -23,6 +25,7 @@ pub(crate) trait Interpolated: AttributeNumber {
     /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow that.
     /// Returns whether they do.
     fn find(
+        interpolation: Interpolation,
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<Self>,
@@ -41,7 +44,7 @@ pub(crate) trait Interpolated: AttributeNumber {
         level: Level,
         attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
-        cut: Option<&HomogeneousWeights>,
+        by: Corners<'_>,
         to: &mut Canvas<'_>,
     ) -> bool;
     /// Lights blocks that one triangle covers fully, if that can be done in one pass per block.
@@ -79,20 +82,39 @@ impl<T: Interpolated> Barycentrics<T> {
         attributes: &TriangleAttributes<T>,
         (plan, draw): (&FramePlan, &Draw),
     ) {
-        if fragments.shared || !T::find(level, fragments, attributes, self) {
-            T::find_linear(level, fragments, attributes, self);
-            self.find_wide(fragments, attributes);
-            if fragments.shared {
-                self.clamp_to_triangle(level, fragments, attributes);
-            }
-            let count = attributes.count;
-            paged!(count, PAGES => T::run(
-                level,
-                Perspective::<T, PAGES> { fragments, attributes, to: self },
-            ));
-            if attributes.cut != 0 {
-                self.find_cut(fragments, attributes, plan, draw);
-            }
+        let Variants { coverage, interpolation, .. } = plan.variants;
+        let outside = fragments.shared || coverage != Coverage::Exact;
+        if outside || !T::find(interpolation, level, fragments, attributes, self) {
+            self.find_step_by_step(level, fragments, attributes, (plan, draw));
+        }
+        if interpolation == Interpolation::EverySixteen {
+            interpolate_spans(fragments, attributes, self);
+        }
+    }
+
+    /// The same for all kinds of triangles, and for pixels whose centres lie outside.
+    fn find_step_by_step(
+        &mut self,
+        level: Level,
+        fragments: &Fragments,
+        attributes: &TriangleAttributes<T>,
+        (plan, draw): (&FramePlan, &Draw),
+    ) {
+        let interpolation = plan.variants.interpolation;
+        T::find_linear(level, fragments, attributes, self);
+        self.find_wide(fragments, attributes);
+        if fragments.shared {
+            self.clamp_to_triangle(level, fragments, attributes);
+        }
+        if plan.variants.coverage != Coverage::Exact {
+            T::run(level, Clamp { len: fragments.len, linear: &mut self.linear });
+        }
+        paged!(attributes.count, PAGES => T::run(
+            level,
+            Weigh::<T, PAGES> { interpolation, fragments, attributes, to: self },
+        ));
+        if attributes.cut != 0 {
+            self.find_cut(fragments, attributes, plan, draw);
         }
     }
 
@@ -136,7 +158,7 @@ impl<T: Interpolated> Barycentrics<T> {
                 continue;
             }
             if slot != last {
-                (last, triangle) = (slot, Triangle::new(attributes.corners(slot)));
+                (last, triangle) = (slot, Triangle::on(attributes.grid, attributes.corners(slot)));
             }
             if let Some(triangle) = &triangle {
                 let [second, third] = barycentric(triangle, [fragments.x[i], fragments.y[i]]);
@@ -149,6 +171,7 @@ impl<T: Interpolated> Barycentrics<T> {
 
 impl Interpolated for f64 {
     fn find(
+        _: Interpolation,
         _: Level,
         _: &Fragments,
         _: &TriangleAttributes<Self>,
@@ -169,7 +192,7 @@ impl Interpolated for f64 {
         _: Level,
         _: &TriangleAttributes<Self>,
         _: Blocks,
-        _: Option<&HomogeneousWeights>,
+        _: Corners<'_>,
         _: &mut Canvas<'_>,
     ) -> bool {
         false
@@ -201,21 +224,24 @@ impl Interpolated for f64 {
 
 impl Interpolated for f32 {
     fn find(
+        interpolation: Interpolation,
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
     ) -> bool {
         let wide = attributes.count == 1 && attributes.wide == 1;
-        if wide && let Some(triangle) = Triangle::new(attributes.corners(0)) {
-            dispatch!(level, simd => find_in_one(simd, fragments, &triangle, attributes, to));
+        if wide && let Some(triangle) = Triangle::on(attributes.grid, attributes.corners(0)) {
+            dispatch!(level, simd => find_in_one(interpolation, simd, fragments, &triangle, attributes, to));
             return true;
         }
         if (attributes.wide | attributes.cut) != 0 {
             return false;
         }
         paged!(attributes.count, PAGES => {
-            dispatch!(level, simd => find_narrow::<_, PAGES>(simd, fragments, attributes, to));
+            dispatch!(level, simd => {
+                find_narrow::<_, PAGES>(interpolation, simd, fragments, attributes, to);
+            });
         });
         true
     }
@@ -227,7 +253,9 @@ impl Interpolated for f32 {
         to: &mut Barycentrics<Self>,
     ) {
         paged!(attributes.count, PAGES => {
-            dispatch!(level, simd => find_narrow::<_, PAGES>(simd, fragments, attributes, to));
+            dispatch!(level, simd => {
+                find_narrow::<_, PAGES>(Interpolation::Perspective, simd, fragments, attributes, to);
+            });
         });
     }
 
@@ -235,10 +263,10 @@ impl Interpolated for f32 {
         level: Level,
         attributes: &TriangleAttributes<Self>,
         blocks: Blocks,
-        cut: Option<&HomogeneousWeights>,
+        by: Corners<'_>,
         to: &mut Canvas<'_>,
     ) -> bool {
-        full_blocks::mix(level, attributes, blocks, cut, to)
+        full_blocks::mix(level, attributes, blocks, by, to)
     }
 
     fn light_blocks(
@@ -282,6 +310,7 @@ impl Interpolated for f32 {
 /// Computes the coordinates in narrow triangles.
 #[inline(always)]
 fn find_narrow<S: Simd, const PAGES: usize>(
+    interpolation: Interpolation,
     simd: S,
     fragments: &Fragments,
     attributes: &TriangleAttributes<f32>,
@@ -298,7 +327,7 @@ fn find_narrow<S: Simd, const PAGES: usize>(
         lanes.store(second, &mut to.linear[0], at);
         lanes.store(third, &mut to.linear[1], at);
         let by_w = picked::<_, PAGES>(lanes, &attributes.by_w, slots);
-        to.put(lanes, at, [second, third], by_w);
+        to.put(interpolation, lanes, at, [second, third], by_w);
     }
 }
 
@@ -320,6 +349,7 @@ fn edge<S: Simd, const PAGES: usize>(
 /// Computes the coordinates in one triangle whose edge functions need more bits.
 #[inline(always)]
 fn find_in_one<S: Simd>(
+    interpolation: Interpolation,
     simd: S,
     fragments: &Fragments,
     triangle: &Triangle,
@@ -334,13 +364,13 @@ fn find_in_one<S: Simd>(
         for (pair, linear) in
             wide.block(simd, [fragments.x[0], fragments.y[0]]).into_iter().enumerate()
         {
-            to.put(lanes, 16 * pair, linear, by_w);
+            to.put(interpolation, lanes, 16 * pair, linear, by_w);
         }
         return;
     }
     for at in (0..fragments.len).step_by(16) {
         let linear = wide.scattered(simd, &fragments.x[at..at + 16], &fragments.y[at..at + 16]);
-        to.put(lanes, at, linear, by_w);
+        to.put(interpolation, lanes, at, linear, by_w);
     }
 }
 

@@ -2,14 +2,15 @@
 //! maps. Those of the last picture are reused.
 
 use super::colors::prepare_linear;
-use crate::accuracy::Filter;
+use super::rounding::block_thresholds;
+use crate::accuracy::{Filter, Rounding};
 use crate::base::Shared;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Pipeline, Shaded};
 use crate::render::frame::variants::Decoding;
 use crate::render::lights::{LightTerm, PhongMaterial};
 use crate::render::simd::power::{Power, Tables};
-use crate::render::simd::{Encoding, Number};
+use crate::render::simd::{BATCH, Encoding, Number};
 use crate::render::texture::lanes::prepare_decoding;
 use crate::render::texture::mips::Mips;
 use crate::scene::Texture;
@@ -21,8 +22,17 @@ pub(crate) struct LightTerms<T> {
     tables: Tables,
     /// Mip maps, if the filter needs them.
     mips: Vec<Mips>,
+    /// The rounding thresholds of a block's pixels.
+    thresholds: Option<(Rounding, [f32; BATCH])>,
     /// How colours are encoded, if they are linear.
     encoding: Option<Encoding>,
+}
+
+impl<T> LightTerms<T> {
+    /// The rounding thresholds of a block's pixels; only after [`prepare`](Self::prepare).
+    pub(crate) fn thresholds(&self) -> &[f32; BATCH] {
+        self.thresholds.as_ref().map_or(&[0.5; BATCH], |(_, thresholds)| thresholds)
+    }
 }
 
 impl<T: Number> LightTerms<T> {
@@ -34,6 +44,10 @@ impl<T: Number> LightTerms<T> {
             prepare_linear();
         }
         self.prepare_mips(plan);
+        let rounding = plan.variants.rounding;
+        if self.thresholds.is_none_or(|(known, _)| known != rounding) {
+            self.thresholds = Some((rounding, block_thresholds(rounding)));
+        }
         self.terms.resize_with(plan.pipelines.len(), Vec::new);
         for (terms, pipeline) in self.terms.iter_mut().zip(&plan.pipelines) {
             terms.clear();

@@ -26,7 +26,7 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
 ) {
     let ShadingContext { plan, frame, .. } = *context;
     origins.begin(Some(caster), true);
-    let vertices = frame.corners_of(plan, group.draw_index);
+    let vertices = frame.corners_of(group.draw_index);
     let (mut last, mut known) = (usize::MAX, None);
     for i in 0..fragments.len {
         let slot = fragments.slots[i].cast_unsigned() as usize;

@@ -3,14 +3,12 @@
 //! A `painter` draws tiles. For each block, `surface` lists the fragments (`fragments`), fetches
 //! the attributes of their triangles (`triangle_attributes`), computes barycentric coordinates
 //! (`barycentrics`), interpolates attributes (`interpolate`), lights fragments per pixel, face or
-//! vertex (`light`) if they see
-//! the light (`shadows`), and multiplies with the colour of the surface (`textured`). `quantize`
-//! converts the result to bytes, and `resolve` averages samples. Blocks that one triangle covers
-//! fully (`blocks`) take all of these steps in one pass, without a list (`full_blocks`). Blocks
-//! that transparent triangles reach are coloured layer by layer (`layers`), each with its
-//! `opacity`, which `blend` lays over what is behind.
+//! vertex (`light`) if they see the light (`shadows`), and multiplies with the colour of the
+//! surface (`textured`). `quantize` converts the result to bytes, and `resolve` averages samples.
+//! Blocks that one triangle covers fully (`blocks`) take all of these steps in one pass, without a
+//! list (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer
+//! (`layers`), each with its `opacity`, which `blend` lays over what is behind.
 
-mod barycentric_variants;
 pub(crate) mod barycentrics;
 mod blend;
 mod blocks;
@@ -31,12 +29,15 @@ mod layers;
 pub(crate) mod light;
 pub(crate) mod light_terms;
 mod lit_points;
+mod map_rows;
+mod map_texels;
 mod opacity;
 pub(crate) mod painter;
 pub(crate) mod quantize;
 mod resolve;
 pub(crate) mod rounding;
 pub(crate) mod shadows;
+mod spans;
 pub(crate) mod surface;
 mod texels;
 mod textured;

@@ -39,11 +39,21 @@ const fn bayer(x: i32, y: i32) -> u8 {
 
 /// The thresholds of a list of fragments.
 pub(crate) fn thresholds<T: Number>(rounding: Rounding, fragments: &Fragments) -> [T; BATCH] {
-    let mut all = [T::default(); BATCH];
+    let mut all = [T::from_f64(threshold(rounding, 0, 0)); BATCH];
+    if rounding != Rounding::Dithered {
+        return all;
+    }
     for ((to, x), y) in all.iter_mut().zip(&fragments.x).zip(&fragments.y) {
         *to = T::from_f64(threshold(rounding, *x, *y));
     }
     all
+}
+
+/// The thresholds of all pixels of a block, which are the same for every block.
+pub(crate) fn block_thresholds(rounding: Rounding) -> [f32; BATCH] {
+    let mut fragments = Fragments::default();
+    fragments.list_full_block(0, [0; 2]);
+    thresholds(rounding, &fragments)
 }
 
 /// Converts colours to bytes, like [`Quantize`](super::quantize::Quantize), with a threshold per

@@ -5,7 +5,6 @@
 //! ([`Batch`]), and converted to bytes. With flat shading, light is evaluated once for each face of
 //! the block, and no barycentric coordinates are computed.
 
-use super::barycentric_variants::locate_by_variant;
 use super::barycentrics::Barycentrics;
 use super::blend::Blend;
 use super::bumps::bend;
@@ -14,16 +13,16 @@ use super::context::ShadingContext;
 use super::face_colors::FaceColors;
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
-use super::glow::MapRows;
 use super::groups::{Group, group_of, one_group};
-use super::interpolate::{Mixed, mix, surface_samples};
+use super::interpolate::{CornerValues, Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
 use super::lit_points::place_fragments;
+use super::map_rows::MapRows;
+use super::map_texels::{Points, TexturePlacement};
 use super::quantize::{Finish, Quantize, SurfaceColor};
 use super::rounding::{QuantizeWithThresholds, thresholds};
 use super::shadows::{BatchShadows, place_faces};
-use super::textured::{Placed, Points};
 use super::triangle_attributes::TriangleAttributes;
 use crate::accuracy::{LightAt, Rounding};
 use crate::base::color::Color;
@@ -50,10 +49,12 @@ pub(crate) struct Shader<T> {
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
     /// For rays of shadows.
-    rays: RayScratch,
+    pub(super) rays: RayScratch,
     /// The positions of the triangles on their texture.
-    pub(super) placed: Placed,
+    pub(super) placed: TexturePlacement,
     pub(crate) texels: Rows<T>,
+    /// The vertex colours of the triangles.
+    pub(super) vertex_colors: CornerValues<T>,
     /// For surfaces with further maps, or light of their own.
     pub(super) maps: Box<MapRows<T>>,
     colors: Colors,
@@ -76,7 +77,7 @@ pub(crate) enum Out<'a, 'b> {
 enum Mixture {
     /// The bytes of the pixels.
     Bytes,
-    /// Their colours, as diffuse light.
+    /// Their colours, as diffuse light: they are encoded after this.
     Colors,
     /// Diffuse and specular light.
     Light,
@@ -91,8 +92,9 @@ impl<T: ShadingNumber> Default for Shader<T> {
             barycentrics: Barycentrics::default(),
             batch: Batch::default(),
             rays: RayScratch::default(),
-            placed: Placed::default(),
+            placed: TexturePlacement::default(),
             texels: [[T::default(); BATCH]; 3],
+            vertex_colors: [[[T::default(); SLOTS]; 3]; 3],
             maps: Box::default(),
             colors: Colors::default(),
             faces: FaceColors::default(),
@@ -279,7 +281,6 @@ impl<T: ShadingNumber> Shader<T> {
         let by_face = self.fragments.count <= FEW_FACES
             && !each
             && matches!(light, Some((LightAt::Face, _)))
-            && rounding == Rounding::Nearest
             && draw.back != Back::Red
             && self.colors.form == Form::Pixels;
         let numbers = &self.fragments.numbers[..self.fragments.count];
@@ -290,16 +291,6 @@ impl<T: ShadingNumber> Shader<T> {
         let new = self.take(context, group, located);
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
-            if plan.variants.locates_one_by_one() {
-                let corners = context.frame.corners_of(plan, group.draw_index);
-                locate_by_variant(
-                    plan.variants,
-                    &self.fragments,
-                    &self.attributes,
-                    corners,
-                    &mut self.barycentrics,
-                );
-            }
         }
         self.batch.len = self.fragments.len;
         let mut tint = shaded.tint;
@@ -367,8 +358,8 @@ impl<T: ShadingNumber> Shader<T> {
         let order = corners.then(|| draw.model.mesh.draw_order());
         let new = self.attributes.take(&self.fragments, order, draw_index, base);
         if new {
-            let vertices = frame.vertices_of(plan, draw_index);
-            self.attributes.find_sides(draw, plan, frame.corners_of(plan, draw_index));
+            let vertices = frame.corners_of(draw_index);
+            self.attributes.find_sides(draw, plan, vertices);
             if located {
                 self.attributes.locate(level, draw, plan, vertices);
             }
@@ -432,9 +423,9 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let Self { fragments, attributes, barycentrics, batch, colors, .. } = self;
         let colored = tables[0].is_colored();
-        let stored = !plan.variants.are_linear() && shaded.extras.is_empty();
-        if colored && stored && plan.variants.rounding == Rounding::Nearest {
-            mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors));
+        if colored && !plan.variants.are_linear() && shaded.extras.is_empty() {
+            let thresholds = &thresholds(plan.variants.rounding, fragments);
+            mix(level, fragments, attributes, barycentrics, Mixed::Colors(colors, thresholds));
             return Mixture::Bytes;
         }
         mix(level, fragments, attributes, barycentrics, Mixed::Rows(&mut batch.diffuse));

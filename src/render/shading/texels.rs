@@ -1,4 +1,4 @@
-//! Texels of fragments, sixteen at a time; the footprint of a pixel on its texture; vertex colours.
+//! Texels of fragments, sixteen at a time; the footprint of a pixel on its texture.
 
 use fearless_simd::{Simd, SimdBase as _, f32x16, i32x16};
 use glam::DVec3;
@@ -7,12 +7,11 @@ use super::barycentrics::Barycentrics;
 use super::far_texture::FarTexture;
 use super::fragments::Fragments;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
-use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
 use crate::render::frame::variants::Decoding;
 use crate::render::lights::{Rows, load, store};
-use crate::render::screen::coverage::{SUBPIXELS, doubled_area};
+use crate::render::screen::coverage::doubled_area;
 use crate::render::screen::weights::HomogeneousWeights;
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Lanes as _, Real, Sixteen, Vec3};
@@ -20,7 +19,6 @@ use crate::render::texture::lanes::{Decode, Sampler, Stored};
 use crate::render::texture::placement::{Placement, Steps};
 use crate::render::texture::sample::brightness;
 use crate::render::texture::uv::Uvs;
-use crate::scene::dvec3;
 
 /// A texture on the triangles of a list.
 #[derive(Clone, Copy, Debug)]
@@ -245,7 +243,7 @@ pub(crate) fn steps<T: AttributeNumber>(
         return None;
     }
     let by_w: [f64; 3] = [0, 1, 2].map(|corner| attributes.by_w[corner][slot].into());
-    let per_pixel = f64::from(SUBPIXELS) / area;
+    let per_pixel = f64::from(attributes.grid.parts()) / area;
     // Of the barycentric coordinates of the second and the third corner.
     let right = [c[1] - a[1], a[1] - b[1]].map(|step| step * per_pixel);
     let down = [a[0] - c[0], b[0] - a[0]].map(|step| step * per_pixel);
@@ -268,11 +266,4 @@ pub(crate) fn footprint([a, b, c]: Uvs, weights: DVec3, w: f64, steps: Steps) ->
             (b * second + c * third - way * by_w) * per
         })
     })
-}
-
-/// The interpolated vertex colour.
-#[inline(always)]
-pub(crate) fn color(corners: [[f32; 3]; 3], weights: DVec3) -> [f64; 3] {
-    let [a, b, c] = each(corners, dvec3);
-    (a + (b - a) * weights.y + (c - a) * weights.z).to_array()
 }

@@ -1,116 +1,17 @@
-//! The colour of a surface, pixel by pixel: texture, vertex colours and tint; and its further maps.
+//! The colour of a surface, pixel by pixel: texture, vertex colours and tint.
 
-use fearless_simd::{Level, dispatch};
-
-use super::barycentrics::Barycentrics;
 use super::context::ShadingContext;
-use super::far_texture::FarTexture;
-use super::fragments::Fragments;
 use super::groups::Group;
+use super::interpolate::multiply;
 use super::interpolated::ShadingNumber;
+use super::map_texels::{Points, TexelSource, Texels, place};
 use super::surface::Shader;
-use super::texels::{PlacedTexture, TextureSamples, color, footprint, steps};
-use super::triangle_attributes::TriangleAttributes;
-use crate::accuracy::Filter;
-use crate::base::Shared;
 use crate::base::color::linear;
 use crate::base::math::each;
 use crate::render::frame::draw::Shaded;
 use crate::render::frame::variants::Decoding;
-use crate::render::lights::Rows;
-use crate::render::screen::weights::HomogeneousWeights;
-use crate::render::simd::gather::SLOTS;
-use crate::render::simd::{Number, Vec3};
 use crate::render::texture::lanes::Sampler;
-use crate::render::texture::mips::Mips;
-use crate::render::texture::placement::{Placement, fits_f32, texels};
-use crate::render::texture::sample::{brightness, sample_as};
-use crate::render::texture::uv::{Uvs, uv, uvs};
 use crate::scene::Texture;
-
-/// A texture, and how its texels are read.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct TexelSource<'a> {
-    texture: &'a Texture,
-    mips: Option<&'a Mips>,
-    filter: Filter,
-    decoding: Decoding,
-}
-
-impl<'a> TexelSource<'a> {
-    /// A picture of colours, by the filter of the frame.
-    pub(super) fn of_colors<T: Number>(
-        context: &ShadingContext<'a, T>,
-        texture: &'a Shared<Texture>,
-    ) -> Self {
-        let decoding = context.plan.variants.decoding();
-        let mips = context.terms.mips_of(texture, decoding);
-        Self { texture, mips, filter: context.plan.filter, decoding }
-    }
-
-    /// A picture of numbers, which is never decoded, by the filter of the frame.
-    pub(super) fn of_numbers<T: Number>(
-        context: &ShadingContext<'a, T>,
-        texture: &'a Shared<Texture>,
-    ) -> Self {
-        let mips = context.terms.mips_of(texture, Decoding::Stored);
-        Self { texture, mips, filter: context.plan.filter, decoding: Decoding::Stored }
-    }
-
-    /// A picture of heights or normals, by the filter of bumps.
-    pub(super) fn of_bumps<T: Number>(
-        context: &ShadingContext<'a, T>,
-        texture: &'a Shared<Texture>,
-    ) -> Self {
-        let filter = context.plan.variants.bump_filter();
-        Self { filter, ..Self::of_numbers(context, texture) }
-    }
-
-    /// How lanes sample it; `None` if they cannot.
-    pub(super) fn sampler<T>(&self, context: &ShadingContext<'_, T>) -> Option<Sampler<'a>> {
-        let levels = self.mips.map_or(std::slice::from_ref(self.texture), Mips::levels);
-        let can = !context.plan.variants.locates_one_by_one();
-        Sampler::new(levels, self.filter).filter(|_| can)
-    }
-
-    /// Its texel at `uv`, and `beside` texels from there.
-    fn texel<T: ShadingNumber>(
-        &self,
-        (uv, beside): ([f64; 2], [f64; 2]),
-        footprint: impl FnOnce() -> [[f64; 2]; 2],
-    ) -> [T; 4] {
-        match self.mips {
-            Some(mips) if self.filter == Filter::Trilinear => {
-                mips.sample_beside(uv, beside, footprint())
-            }
-            _ => sample_as(self.texture, (uv, beside), self.filter, self.decoding),
-        }
-    }
-}
-
-/// Where a texture lies on the triangles of a list.
-#[derive(Debug, Default)]
-pub(crate) struct Placed {
-    pub(super) placement: Placement,
-    /// The triangles that f32 is not enough for.
-    pub(super) far: Vec<FarTexture>,
-}
-
-/// What is read from a map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Texels {
-    /// Red, green and blue, by which rows are multiplied.
-    Colors,
-    /// The slopes of heights along u and v, per texel, which replace the first two rows.
-    Slopes,
-}
-
-/// The fragments whose texels are read.
-pub(super) struct Points<'a, T> {
-    pub(super) fragments: &'a Fragments,
-    pub(super) attributes: &'a TriangleAttributes<T>,
-    pub(super) barycentrics: &'a Barycentrics<T>,
-}
 
 impl<T: ShadingNumber> Shader<T> {
     /// t at the pixels of the group: texel x tint x vertex colour, each 1 where absent. `new` says
@@ -133,10 +34,12 @@ impl<T: ShadingNumber> Shader<T> {
             points.read(context, group, of, placed, (shaded.tint, texels));
         }
         if shaded.vertex_colors {
-            let Self { fragments, attributes, barycentrics, texels, .. } = self;
-            let points = Points { fragments, attributes, barycentrics };
-            let decoding = context.plan.variants.decoding();
-            points.multiply_vertex_colors(context.level, group, decoding, texels);
+            if new {
+                self.take_vertex_colors(group, context.plan.variants.decoding());
+            }
+            let Self { fragments, attributes, barycentrics, texels, vertex_colors, .. } = self;
+            let at = (context.level, attributes.count);
+            multiply(at, fragments, vertex_colors, barycentrics, texels);
         }
     }
 
@@ -150,157 +53,22 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         place(context, group, &self.attributes, (texture, sampler), &mut self.placed);
     }
-}
-
-impl<T: ShadingNumber> Points<'_, T> {
-    /// Reads a map at all fragments: sixteen pixels at a time, and one by one where that cannot be
-    /// done. `base` is what rows of colours held before.
-    pub(super) fn read(
-        &self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        (source, what, new): (TexelSource<'_>, Texels, bool),
-        placed: &mut Placed,
-        (base, to): ([f64; 3], &mut Rows<T>),
-    ) {
-        let Self { fragments, attributes, barycentrics } = *self;
-        let mut done = 0;
-        if let Some(sampler) = source.sampler(context) {
-            if new {
-                place(context, group, attributes, (source.texture, &sampler), placed);
-            }
-            let texture =
-                PlacedTexture { placement: &placed.placement, far: &placed.far, sampler: &sampler };
-            let decoding = source.decoding;
-            let samples = TextureSamples { fragments, barycentrics, texture, decoding };
-            done = match what {
-                Texels::Colors => T::multiply_texels(context.level, attributes.count, &samples, to),
-                Texels::Slopes => T::find_slopes(context.level, attributes.count, &samples, to),
-            };
-        }
-        let slots = u64::MAX >> (SLOTS - attributes.count);
-        if done & slots != slots {
-            self.read_one_by_one(context, group, (source, what, done), (base, to));
-        }
-    }
-
-    /// Reads a map pixel by pixel, except for the triangles of the slots that are `done`.
-    fn read_one_by_one(
-        &self,
-        context: &ShadingContext<'_, T>,
-        group: &Group<'_>,
-        (source, what, done): (TexelSource<'_>, Texels, u64),
-        (base, to): ([f64; 3], &mut Rows<T>),
-    ) {
-        let plan = context.plan;
-        let Self { fragments, attributes, barycentrics } = *self;
-        let (mut corners, mut all_steps) = ([None; SLOTS], [None; SLOTS]);
-        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
-            corners[slot] = uvs(group.draw, *number);
-            if source.mips.is_some() && done >> slot & 1 == 0 {
-                all_steps[slot] = steps((plan, group.draw), attributes, slot);
-            }
-        }
-        // Dispatched so that rounding down uses the processor's instruction, if it has one.
-        dispatch!(context.level, _ => for i in 0..fragments.len {
-            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
-            if done >> slot & 1 == 1 {
-                continue;
-            }
-            // A surface without texture coordinates has no slopes.
-            let colors = what == Texels::Colors;
-            for (row, base) in to.iter_mut().zip(base) {
-                row[i] = T::from_f64(if colors { base } else { 0.0 });
-            }
-            let Some(corners) = corners[slot] else { continue };
-            let weights = barycentrics.weights(i);
-            let uv = uv(corners, weights);
-            let texel = |beside: [f64; 2]| -> [T; 4] {
-                source.texel((uv, beside), || {
-                    let steps = all_steps[slot].unwrap_or_default();
-                    footprint(corners, weights, barycentrics.w[i].into(), steps)
-                })
-            };
-            match what {
-                Texels::Colors => {
-                    for (row, part) in to.iter_mut().zip(texel([0.0; 2])) {
-                        row[i] = row[i] * part;
-                    }
-                }
-                Texels::Slopes => {
-                    let height = |beside: [f64; 2]| {
-                        let [r, g, b, _] = texel(beside);
-                        brightness(Vec3([r, g, b]))
-                    };
-                    let half = T::from_f64(0.5);
-                    to[0][i] = (height([1.0, 0.0]) - height([-1.0, 0.0])) * half;
-                    to[1][i] = (height([0.0, 1.0]) - height([0.0, -1.0])) * half;
-                }
-            }
-        });
-    }
-
-    /// Multiplies by the vertex colours.
-    pub(super) fn multiply_vertex_colors(
-        &self,
-        level: Level,
-        group: &Group<'_>,
-        decoding: Decoding,
-        to: &mut Rows<T>,
-    ) {
-        let Self { fragments, attributes, barycentrics } = *self;
-        let mut colors = [[[0.0; 3]; 3]; SLOTS];
-        for (colors, number) in colors.iter_mut().zip(&attributes.numbers[..attributes.count]) {
-            *colors = group.draw.model.mesh.triangle_colors(*number);
-            if decoding == Decoding::Linear {
-                #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
-                let decoded = |c: f32| linear(f64::from(c)) as f32;
-                *colors = each(*colors, |color| each(color, decoded));
-            }
-        }
-        dispatch!(level, _ => for i in 0..fragments.len {
-            let slot = fragments.slots[i].cast_unsigned() as usize % SLOTS;
-            let color = color(colors[slot], barycentrics.weights(i));
-            for (row, part) in to.iter_mut().zip(color) {
-                row[i] = row[i] * T::from_f64(part);
-            }
-        });
-    }
-}
-
-/// Finds where a texture lies on the triangles of a list.
-fn place<T: ShadingNumber>(
-    context: &ShadingContext<'_, T>,
-    group: &Group<'_>,
-    attributes: &TriangleAttributes<T>,
-    (texture, sampler): (&Texture, &Sampler<'_>),
-    Placed { placement, far }: &mut Placed,
-) {
-    placement.clear();
-    far.clear();
-    let mut corners: [Option<Uvs>; SLOTS] = [None; SLOTS];
-    // One after another, so that the processor fetches many at once.
-    for (corners, number) in corners.iter_mut().zip(&attributes.numbers[..attributes.count]) {
-        *corners = uvs(group.draw, *number);
-    }
-    let reads_mips = sampler.reads_mips();
-    // Dispatched so that rounding down uses the processor's instruction, if it has one.
-    dispatch!(context.level, _ => for (slot, uvs) in corners.iter().enumerate() {
-        let Some(uvs) = *uvs else { continue };
-        let texels = texels(uvs, texture);
-        if !fits_f32(&texels) {
-            let Some(own) = FarTexture::new(slot, uvs, texture, || {
-                let number = attributes.numbers[slot];
-                HomogeneousWeights::new(context.plan, group.draw, number, [0; 2])
-            }) else {
-                continue;
-            };
-            far.push(own);
-        }
-        let steps = match reads_mips {
-            true => steps((context.plan, group.draw), attributes, slot),
-            false => None,
+    /// Fetches the vertex colours at the corners of the triangles of the list.
+    pub(super) fn take_vertex_colors(&mut self, group: &Group<'_>, decoding: Decoding) {
+        let Self { attributes, vertex_colors, .. } = self;
+        let mesh = &group.draw.model.mesh;
+        let decoded = |c: f32| match decoding {
+            Decoding::Linear => linear(f64::from(c)),
+            Decoding::Stored => f64::from(c),
         };
-        placement.set(slot, texels, steps);
-    });
+        for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            let [a, b, c] = each(mesh.triangle_colors(*number), |color| each(color, decoded));
+            for part in 0..3 {
+                let row = [a[part], b[part] - a[part], c[part] - a[part]];
+                for (values, value) in vertex_colors.iter_mut().zip(row) {
+                    values[part][slot] = T::from_f64(value);
+                }
+            }
+        }
+    }
 }

@@ -15,7 +15,7 @@ use crate::render::frame::draw::{Back, Draw};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::raster::vertices::fetch_vertices;
 use crate::render::screen::clip::{Screen, ScreenVertex, faces_observer};
-use crate::render::screen::coverage::{SUBPIXELS, Snapped, doubled_area};
+use crate::render::screen::coverage::{Grid, Snapped, doubled_area};
 use crate::render::simd::gather::SLOTS;
 use crate::render::simd::{Kernel, Lanes, Number, Vec3};
 use crate::scene::{DrawOrder, Normals};
@@ -58,6 +58,8 @@ pub(crate) struct TriangleAttributes<T> {
     pub(crate) back: u64,
     /// The index of their draw in the plan.
     draw: Option<u32>,
+    /// The grid of their corners.
+    pub(crate) grid: Grid,
 }
 
 impl<T: Number> Default for TriangleAttributes<T> {
@@ -79,6 +81,7 @@ impl<T: Number> Default for TriangleAttributes<T> {
             wide: 0,
             back: 0,
             draw: None,
+            grid: Grid::Usual,
         }
     }
 }
@@ -154,6 +157,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         plan: &FramePlan,
         vertices: &[ScreenVertex],
     ) {
+        self.grid = plan.variants.grid();
         T::prepare(level, self, vertices);
         if !T::EXACT && plan.eye == Eye::Point {
             return;
@@ -223,7 +227,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
     }
 
     /// The corners of a triangle among the vertices of its draw.
-    pub(crate) fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
+    fn corners_among(&self, slot: usize, all: &[ScreenVertex]) -> [ScreenVertex; 3] {
         self.ids[slot].map(|id| all[id as usize])
     }
 
@@ -331,7 +335,8 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
         let per_area = f32x16::splat(simd, 1.0) / area.to_float::<f32x16<S>>();
         per_area.store_slice(&mut attributes.per_area[at..at + 16]);
         // a (x - p.x) + b (y - p.y) with x and y at the centre of a pixel.
-        let (half, log2) = (SUBPIXELS / 2, SUBPIXELS.trailing_zeros());
+        let parts = attributes.grid.parts();
+        let (half, log2) = (parts / 2, parts.trailing_zeros());
         let second = (vy, x0 - x2, half - x2, half - y2);
         let third = (y0 - y1, ux, half - x0, half - y0);
         for (rows, (a, b, x, y)) in attributes.edges.iter_mut().zip([second, third]) {

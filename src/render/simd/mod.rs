@@ -29,4 +29,5 @@ pub use power::Power;
 pub use real::Real;
 pub(crate) use single::log2;
 pub use sixteen::Sixteen;
+pub(crate) use variant_lanes::VariantLanes;
 pub use vec3::Vec3;

@@ -16,8 +16,9 @@ pub(crate) struct VariantLanes<M> {
 }
 
 impl<M: Lanes> VariantLanes<M> {
+    /// A number that computes roots by the variant.
     #[inline(always)]
-    const fn chosen(self, value: M::R) -> VariantNumber<M::R> {
+    pub(crate) const fn chosen(self, value: M::R) -> VariantNumber<M::R> {
         VariantNumber { value, variant: self.variant }
     }
 }

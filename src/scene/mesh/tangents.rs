@@ -28,7 +28,7 @@ impl Ops for LibmOps {
 }
 
 /// The triangles with texture coordinates, as MikkTSpace reads them.
-struct Placed<'a> {
+struct WithUvs<'a> {
     mesh: &'a Mesh,
     source: NormalSource,
     /// Their numbers.
@@ -36,14 +36,14 @@ struct Placed<'a> {
     tangents: Vec<CornerTangents>,
 }
 
-impl Placed<'_> {
+impl WithUvs<'_> {
     fn corner(&self, face: usize, vertex: usize) -> &Corner {
         let corners = self.mesh.triangle(self.numbers[face] as usize);
         &self.mesh.corners()[corners[vertex]]
     }
 }
 
-impl Geometry<LibmOps> for Placed<'_> {
+impl Geometry<LibmOps> for WithUvs<'_> {
     fn num_faces(&self) -> usize {
         self.numbers.len()
     }
@@ -71,7 +71,7 @@ impl Geometry<LibmOps> for Placed<'_> {
 
     fn set_tangent(&mut self, found: Option<TangentSpace>, face: usize, vertex: usize) {
         let number = self.numbers[face] as usize;
-        // Without a tangent, as where texture coordinates have no area, there is no bump.
+        // Without a tangent, as for texture coordinates without area, there is no bump.
         let encoded = found.map_or([0.0; 4], |it| it.tangent_encoded());
         let finite = encoded.iter().all(|x| x.is_finite());
         self.tangents[number][vertex] = if finite { encoded } else { [0.0; 4] };
@@ -90,10 +90,10 @@ impl Mesh {
             let count = self.triangle_count();
             let numbers = (0..index(count)).filter(|number| self.triangle_uvs(*number).is_some());
             let tangents = vec![[[0.0; 4]; 3]; count];
-            let mut placed = Placed { mesh: self, source, numbers: numbers.collect(), tangents };
+            let mut with_uvs = WithUvs { mesh: self, source, numbers: numbers.collect(), tangents };
             // Its error has no cases.
-            let _done = generate_tangents(&mut placed);
-            placed.tangents
+            let _done = generate_tangents(&mut with_uvs);
+            with_uvs.tangents
         })
     }
 }

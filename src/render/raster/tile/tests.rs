@@ -4,11 +4,15 @@ use super::*;
 use crate::accuracy::Samples;
 use crate::base::image::Size;
 use crate::render::raster::bins::LargeTriangle;
+use crate::render::raster::depth_format::Reversed;
+use crate::render::raster::edges_in_floats::{Everywhere, FloatTriangle};
 use crate::render::raster::queue::{ROWS, SMALL};
+use crate::render::raster::rule::{Fine, Rule, Unsnapped, Usual};
+use crate::render::raster::scan_lines::ScanLines;
 use crate::render::raster::small;
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::screen::clip::ScreenVertex;
-use crate::render::screen::coverage::{Snapped, Triangle};
+use crate::render::screen::coverage::{Grid, Snapped, Triangle};
 use crate::render::screen::sample_positions::passes;
 use crate::render::screen::tiles::TILE;
 
@@ -50,10 +54,17 @@ fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBo
 
 /// The bins with some small triangles, sixteen at the most.
 fn small(triangles: &[[Snapped; 3]], sample_positions: SamplePositions) -> Bins {
+    let numbers = |corner: Snapped| [corner.x, corner.y];
+    let rows: Vec<_> = triangles.iter().map(|corners| corners.map(numbers)).collect();
+    small_by::<Usual>(&rows, sample_positions)
+}
+
+/// The same by a rule of coverage, from the numbers that it reads.
+fn small_by<R: Rule>(triangles: &[[[i32; 2]; 3]], sample_positions: SamplePositions) -> Bins {
     let mut rows = [[0; 16]; ROWS];
     for ((lane, corners), number) in triangles.iter().enumerate().zip(0..) {
-        for (i, corner) in corners.iter().enumerate() {
-            (rows[2 * i][lane], rows[2 * i + 1][lane]) = (corner.x, corner.y);
+        for (i, [x, y]) in corners.iter().enumerate() {
+            (rows[2 * i][lane], rows[2 * i + 1][lane]) = (*x, *y);
             rows[6 + i][lane] = 0.5_f32.to_bits().cast_signed();
         }
         rows[9][lane] = number;
@@ -65,8 +76,8 @@ fn small(triangles: &[[Snapped; 3]], sample_positions: SamplePositions) -> Bins 
             *values = i32x16::from_slice(simd, row);
         }
         match sample_positions.are_many() {
-            true => small::draw::<_, FOUR>(simd, &pack, &mut bins),
-            false => small::draw::<_, 1>(simd, &pack, &mut bins),
+            true => small::draw::<_, R, FOUR>(simd, &pack, &mut bins),
+            false => small::draw::<_, R, 1>(simd, &pack, &mut bins),
         }
     });
     bins
@@ -83,12 +94,12 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
         visibility.clear(own, bins.sample_positions);
         dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
             true => {
-                visibility.draw_plain::<_, FOUR>(simd, bins, tile as usize);
-                visibility.draw_hits::<_, FOUR>(simd, bins, tile as usize);
+                visibility.draw_plain::<_, Reversed, FOUR>(simd, bins, tile as usize);
+                visibility.draw_hits::<_, Reversed, FOUR>(simd, bins, tile as usize);
             }
             false => {
-                visibility.draw_plain::<_, 1>(simd, bins, tile as usize);
-                visibility.draw_hits::<_, 1>(simd, bins, tile as usize);
+                visibility.draw_plain::<_, Reversed, 1>(simd, bins, tile as usize);
+                visibility.draw_hits::<_, Reversed, 1>(simd, bins, tile as usize);
             }
         });
         for (x, y) in (top..own.bottom).flat_map(|y| (left..own.right).map(move |x| (x, y))) {
@@ -103,10 +114,19 @@ fn seen_in(bins: &Bins) -> Vec<(i32, i32, usize)> {
 
 /// A sample is covered if the centre of its pixel is, once the corners are moved the other way.
 fn covered(corners: [Snapped; 3], sample_positions: &SamplePositions) -> Vec<(i32, i32, usize)> {
+    covered_on(Grid::Usual, corners, sample_positions)
+}
+
+fn covered_on(
+    grid: Grid,
+    corners: [Snapped; 3],
+    sample_positions: &SamplePositions,
+) -> Vec<(i32, i32, usize)> {
     let mut samples = Vec::new();
     for sample in 0..sample_positions.count() {
-        let seen_from = corners.map(|corner| corner.seen_from(shift(sample_positions, sample)));
-        if let Some(triangle) = Triangle::new(seen_from) {
+        let shift = grid.offset(shift(sample_positions, sample));
+        let seen_from = corners.map(|corner| corner.seen_from(shift));
+        if let Some(triangle) = Triangle::on(grid, seen_from) {
             triangle.covered(PICTURE, |pixel| samples.push((pixel.y, pixel.x, sample)));
         }
     }
@@ -159,6 +179,147 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
     assert_eq!(seen_in(&bins), want, "{corners:?} alone in 64 bits");
 }
 
+#[test]
+fn on_the_fine_grid_small_and_large_triangles_cover_what_the_rule_says() {
+    let mut random = numbers(11);
+    for sample_positions in middle_and_others() {
+        for extent in [1, 4, 40] {
+            for _ in 0..300 {
+                let (left, top) = (random(140), random(130));
+                let mut coordinate = |from: i32| {
+                    let place = from * 4096 + random(extent * 4096);
+                    let on_edge = if sample_positions.are_many() { 256 } else { 2048 };
+                    if random(2) == 0 { place } else { place / on_edge * on_edge }
+                };
+                let corners =
+                    [0, 1, 2].map(|_| Snapped { x: coordinate(left), y: coordinate(top) });
+                let want = covered_on(Grid::Fine, corners, &sample_positions);
+                if extent <= 4 {
+                    let numbers = corners.map(|corner| [corner.x, corner.y]);
+                    let got = seen_in(&small_by::<Fine>(&[numbers], sample_positions));
+                    assert_eq!(got, want, "{corners:?} alone");
+                }
+                let mut visibility = Visibility::default();
+                visibility.clear(TILE_BOX, sample_positions);
+                visibility.grid = Grid::Fine;
+                let corners = corners.map(|corner| ScreenVertex::new(corner, 0.5));
+                let large = LargeTriangle { corners, number: 0, cutout: false };
+                dispatch!(Level::new(), simd => match sample_positions.are_many() {
+                    true => visibility.draw_large::<_, Reversed, FOUR>(simd, &large),
+                    false => visibility.draw_large::<_, Reversed, 1>(simd, &large),
+                });
+                for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
+                    let (words, count) = visibility.samples(Level::new(), x, y);
+                    for sample in 0..count {
+                        let got = seen(words[sample]) == Visible::Triangle(0);
+                        let wanted = want.contains(&(y, x, sample));
+                        assert_eq!(got, wanted, "{x}, {y}: {corners:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The pixels of a tile that a triangle covers by edge functions in f32: a x + b y + c.
+fn by_floats([p, q, r]: [[f32; 2]; 3]) -> Vec<(i32, i32)> {
+    let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let inside = |p: [f32; 2], q: [f32; 2], x: f32, y: f32| {
+        let e = (p[1] - q[1]) * x + (q[0] - p[0]) * y + (p[0] * q[1] - p[1] * q[0]);
+        e * area.signum() >= 0.0
+    };
+    let all = (0..TILE).flat_map(|y| (0..TILE).map(move |x| (y, x)));
+    all.filter(|(y, x)| {
+        let (x, y) = (*x as f32 + 0.5, *y as f32 + 0.5);
+        inside(q, r, x, y) && inside(r, p, x, y) && inside(p, q, x, y)
+    })
+    .collect()
+}
+
+/// The pixels that a block at a time is drawn to.
+fn drawn(mut draw: impl FnMut(usize, &mut [u64; BLOCK_PIXELS])) -> Vec<(i32, i32)> {
+    let mut found = Vec::new();
+    for block in 0..64 {
+        let mut plane = [0; BLOCK_PIXELS];
+        draw(block, &mut plane);
+        let (left, top) = ((block % 8 * 8) as i32, (block / 8 * 8) as i32);
+        let shown = (0..64).zip(plane).filter(|(_, word)| *word != 0);
+        found.extend(shown.map(|(i, _)| (top + i / 8, left + i % 8)));
+    }
+    found.sort_unstable();
+    found
+}
+
+#[test]
+fn edges_in_floats_decide_by_their_formula_alone_however_large_a_triangle_is() {
+    let mut random = numbers(13);
+    let one = passes(Samples::One)[0];
+    for extent in [1, 3, 7, 50, 300] {
+        for _ in 0..300 {
+            let (left, top) = (random(60), random(60));
+            let mut coordinate = |from: i32| {
+                let place = from * 256 + random(extent * 256);
+                let place = if random(2) == 0 { place } else { place / 128 * 128 };
+                place as f32 / 256.0 + random(3) as f32 * 1e-4
+            };
+            let corners = [0, 1, 2].map(|_| [coordinate(left), coordinate(top)]);
+            let [p, q, r] = corners;
+            if (q[0] - p[0]) * (r[1] - p[1]) == (q[1] - p[1]) * (r[0] - p[0]) {
+                continue;
+            }
+            let want = by_floats(corners);
+            let triangle = FloatTriangle::new(corners, [0.5; 3], 0, [0, 0]);
+            let (mut some, mut whole) = (0, 0);
+            let got = dispatch!(Level::new(), simd => {
+                let touched = triangle.blocks::<_, 1>(simd, TILE_BOX, &one);
+                (some, whole) = (touched.some, touched.whole);
+                drawn(|block, plane| {
+                    let at = (block, [0; 2]);
+                    triangle.draw(Reversed, simd, at, false, &Everywhere, plane);
+                })
+            });
+            assert_eq!(got, want, "{corners:?}");
+            for (y, x) in &want {
+                assert!(some >> block_at(*x, *y) & 1 == 1, "{corners:?}");
+            }
+            for block in (0..64).filter(|block| whole >> block & 1 == 1) {
+                let own = want.iter().filter(|(y, x)| block_at(*x, *y) == block).count();
+                assert_eq!(own, BLOCK_PIXELS, "{corners:?}");
+            }
+            if extent <= 7 {
+                let bits = corners.map(|corner| corner.map(|x| x.to_bits().cast_signed()));
+                let seen = seen_in(&small_by::<Unsnapped>(&[bits], one));
+                let got: Vec<_> = seen.iter().map(|(y, x, _)| (*y, *x)).collect();
+                let want: Vec<_> = want.into_iter().filter(|(y, x)| *y < 64 && *x < 64).collect();
+                let got: Vec<_> = got.into_iter().filter(|(y, x)| *y < 64 && *x < 64).collect();
+                assert_eq!(got, want, "{corners:?} as a small one");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_square_of_two_halves_is_covered_twice_on_an_edge_and_at_every_seam() {
+    let count = |[x, y]: [f32; 2], cover: &dyn Fn([[f32; 2]; 3]) -> Vec<(i32, i32)>| {
+        let at = |u: f32, v: f32| [x + 20.0 * u, y + 20.0 * v];
+        let mut all = cover([at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0)]);
+        all.extend(cover([at(0.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)]));
+        let twice = all.len();
+        all.sort_unstable();
+        all.dedup();
+        (all.len(), twice)
+    };
+    // Both ends of 20 pixels, and the centres on the seam by both.
+    assert_eq!(count([5.5, 5.5], &by_floats), (441, 441 + 21));
+    let scan_lines = |corners: [[f32; 2]; 3]| {
+        let rows = ScanLines::new(corners, [0.5; 3], 0, TILE_BOX).unwrap();
+        dispatch!(Level::new(), simd => drawn(|block, plane| {
+            rows.draw(Reversed, simd, block, &Everywhere, plane);
+        }))
+    };
+    assert_eq!(count([5.2, 5.2], &scan_lines), (441, 441 + 21));
+}
+
 /// Squares that cover whole blocks, in few depths, some of them tilted.
 #[test]
 fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
@@ -181,8 +342,8 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
         visibility.clear(TILE_BOX, sample_positions);
         for large in &triangles {
             dispatch!(Level::new(), simd => match sample_positions.are_many() {
-                true => visibility.draw_large::<_, FOUR>(simd, large),
-                false => visibility.draw_large::<_, 1>(simd, large),
+                true => visibility.draw_large::<_, Reversed, FOUR>(simd, large),
+                false => visibility.draw_large::<_, Reversed, 1>(simd, large),
             });
         }
         let want = one_by_one(&triangles, &sample_positions);
@@ -217,7 +378,7 @@ fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -
             let Some(triangle) = Triangle::new(ends.map(|corner| corner.at())) else { continue };
             let seen = Large::new(&moved, &triangle, [0, 0]);
             triangle.covered(TILE_BOX, |pixel| {
-                let word = word(seen.depth(pixel.edges), large.number);
+                let word = word(seen.depth(pixel.edges).to_bits(), large.number);
                 let old = &mut words[(pixel.y * TILE + pixel.x) as usize][sample];
                 *old = word.max(*old);
             });
@@ -230,13 +391,13 @@ fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -
 fn a_pixel_is_said_to_show_what_most_of_its_samples_show() {
     let mut visibility = Visibility::default();
     visibility.clear(TILE_BOX, passes(Samples::Four)[0]);
-    let [a, b, c] = [7, 8, 9].map(|number| word(0.5, number));
+    let [a, b, c] = [7, 8, 9].map(|number| word(0.5_f32.to_bits(), number));
     let cases = [
         ([a, a, a, a], a),
         ([a, b, b, c], b),
         ([b, a, a, b], b),
         ([0, a, b, c], 0),
-        ([0, a, word(0.6, 7), c], a),
+        ([0, a, word(0.6_f32.to_bits(), 7), c], a),
     ];
     for (samples, want) in cases {
         visibility.written = 1;

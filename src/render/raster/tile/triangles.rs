@@ -2,63 +2,76 @@
 
 use fearless_simd::Simd;
 
-use super::Visibility;
+use super::{Shown, Visibility};
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::raster::alpha_test::{AlphaTest, BlockHoles};
 use crate::render::raster::bins::LargeTriangle;
+use crate::render::raster::depth_format::Format;
 use crate::render::raster::geometry::ScreenGeometry;
 use crate::render::raster::large::{Large, Solid, Touched};
 use crate::render::raster::medium::{self, Medium};
-use crate::render::screen::coverage::{PixelBox, Snapped, Triangle};
+use crate::render::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
 
 impl Visibility {
     #[inline(always)]
-    pub(super) fn draw_large<S: Simd, const N: usize>(&mut self, simd: S, large: &LargeTriangle) {
+    pub(super) fn draw_large<S: Simd, D: Format, const N: usize>(
+        &mut self,
+        simd: S,
+        large: &LargeTriangle,
+    ) {
         let corners = each(large.corners, |corner| corner.at());
         let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
-        if reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST {
-            return self.draw_medium::<S, N>(simd, large);
+        // The fine grid needs more bits.
+        let is_medium = reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST;
+        if is_medium && self.grid == Grid::Usual {
+            return self.draw_medium::<S, D, N>(simd, large);
         }
         let Some((large, area)) = self.set_up::<N>(large) else { return };
         let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let mut some = touched.some;
+        let (mut some, high) = (touched.some, D::of(self.depth_format).key(large.high));
         let mut place = None;
         while some != 0 {
             let block = some.trailing_zeros() as usize;
             some &= some - 1;
-            if large.high < self.farthest[block] {
+            if high < self.farthest[block] {
                 continue;
             }
             if touched.whole >> block & 1 != 0 {
-                self.draw_full_block::<S, N>(simd, &large, block, &mut place);
+                self.draw_full_block::<S, D, N>(simd, &large, block, &mut place);
             } else {
-                self.write::<S, N>(simd, block);
-                self.draw_planes::<S, N>(simd, &large, block, false);
+                self.write::<S, D, N>(simd, block);
+                self.draw_planes::<S, D, N>(simd, &large, block, false);
             }
         }
     }
 
     /// Draws a triangle whose bounding box is at most as large as a tile.
     #[inline(always)]
-    fn draw_medium<S: Simd, const N: usize>(&mut self, simd: S, triangle: &LargeTriangle) {
+    fn draw_medium<S: Simd, D: Format, const N: usize>(
+        &mut self,
+        simd: S,
+        triangle: &LargeTriangle,
+    ) {
         let corners = each(triangle.corners, |corner| corner.at());
         let Some(area) = self.reached::<N>(corners) else { return };
         let first = [self.bounds.left, self.bounds.top];
         let Some(medium) = Medium::new(simd, triangle, first) else { return };
         let touched = medium.blocks::<N>(simd, area, &self.sample_positions);
         let (mut some, mut whole) = (touched.some & !touched.whole, touched.whole);
+        let format = D::of(self.depth_format);
+        let high = format.key(medium.high);
         while some != 0 {
             let block = some.trailing_zeros() as usize;
             some &= some - 1;
-            if medium.high < self.farthest[block] {
+            if high < self.farthest[block] {
                 continue;
             }
-            self.write::<S, N>(simd, block);
+            self.write::<S, D, N>(simd, block);
             for sample in 0..N {
                 let shift = self.sample_positions.shift::<N>(sample);
                 let plane = self.plane::<N>(block, sample);
-                medium.draw(simd, (block, shift), area, plane);
+                medium.draw(format, simd, (block, shift), area, plane);
             }
         }
         if whole == 0 {
@@ -69,8 +82,8 @@ impl Visibility {
         while whole != 0 {
             let block = whole.trailing_zeros() as usize;
             whole &= whole - 1;
-            if large.high >= self.farthest[block] {
-                self.draw_full_block::<S, N>(simd, &large, block, &mut place);
+            if high >= self.farthest[block] {
+                self.draw_full_block::<S, D, N>(simd, &large, block, &mut place);
             }
         }
     }
@@ -78,36 +91,52 @@ impl Visibility {
     /// Draws a triangle into a block that it covers fully; `place` is its index in `large`, once it
     /// has one.
     #[inline(always)]
-    fn draw_full_block<S: Simd, const N: usize>(
+    fn draw_full_block<S: Simd, D: Format, const N: usize>(
         &mut self,
         simd: S,
         large: &Large,
         block: usize,
         place: &mut Option<u32>,
     ) {
-        let [low, high] = large.depths::<N>(block);
+        let format = D::of(self.depth_format);
+        let [low, high] = large.depths::<N>(block).map(|depth| format.key(depth));
         if high < self.farthest[block] {
             return;
         }
-        let bit = 1 << block;
-        let alone = (self.written | self.whole) & bit == 0;
-        if alone || (self.whole & bit != 0 && low > self.nearest[block]) {
-            self.shown[block] = *place.get_or_insert_with(|| {
-                self.large.push(*large);
-                u32::try_from(self.large.len() - 1).expect("fewer than 2^32 triangles")
-            });
-            self.whole |= bit;
-            self.nearest[block] = high;
-        } else {
-            self.write::<S, N>(simd, block);
-            self.draw_planes::<S, N>(simd, large, block, true);
+        if !self.show_whole(block, [low, high], place, || Shown::Large(*large)) {
+            self.write::<S, D, N>(simd, block);
+            self.draw_planes::<S, D, N>(simd, large, block, true);
         }
         self.farthest[block] = self.farthest[block].max(low);
     }
 
+    /// Notes that a triangle covers a block fully, with depths between these keys, if no entries
+    /// have to be written for that. Returns whether that was so.
+    #[inline(always)]
+    pub(super) fn show_whole(
+        &mut self,
+        block: usize,
+        [low, high]: [u32; 2],
+        place: &mut Option<u32>,
+        triangle: impl FnOnce() -> Shown,
+    ) -> bool {
+        let bit = 1 << block;
+        let alone = (self.written | self.whole) & bit == 0;
+        let noted = alone || (self.whole & bit != 0 && low > self.nearest[block]);
+        if noted {
+            self.shown[block] = *place.get_or_insert_with(|| {
+                self.large.push(triangle());
+                u32::try_from(self.large.len() - 1).expect("fewer than 2^32 triangles")
+            });
+            self.whole |= bit;
+            self.nearest[block] = high;
+        }
+        noted
+    }
+
     /// Draws a triangle with the alpha test in each sample.
     #[inline(always)]
-    pub(super) fn draw_cutout<S: Simd, const N: usize>(
+    pub(super) fn draw_cutout<S: Simd, D: Format, const N: usize>(
         &mut self,
         simd: S,
         plan: &FramePlan,
@@ -116,11 +145,12 @@ impl Visibility {
     ) {
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
         let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let mut blocks = some;
+        let format = D::of(self.depth_format);
+        let (mut blocks, high) = (some, format.key(large.high));
         while blocks != 0 {
             let block = blocks.trailing_zeros();
             blocks &= blocks - 1;
-            if large.high < self.farthest[block as usize] {
+            if high < self.farthest[block as usize] {
                 some &= !(1 << block);
             }
         }
@@ -134,16 +164,16 @@ impl Visibility {
         while some != 0 {
             let block = some.trailing_zeros() as usize;
             some &= some - 1;
-            self.write::<S, N>(simd, block);
+            self.write::<S, D, N>(simd, block);
             let (first, whole) = (self.corner(block), whole >> block & 1 != 0);
             for (sample, test) in tests.iter().enumerate() {
                 let at = (block, self.sample_positions.shift::<N>(sample));
                 let plane = self.plane::<N>(block, sample);
                 match test {
                     Some(test) => {
-                        large.draw(simd, at, whole, &BlockHoles { test, first }, plane);
+                        large.draw(format, simd, at, whole, &BlockHoles { test, first }, plane);
                     }
-                    None => large.draw(simd, at, whole, &Solid, plane),
+                    None => large.draw(format, simd, at, whole, &Solid, plane),
                 }
             }
         }
@@ -154,7 +184,7 @@ impl Visibility {
     fn set_up<const N: usize>(&self, triangle: &LargeTriangle) -> Option<(Large, PixelBox)> {
         let corners = each(triangle.corners, |corner| corner.at());
         let area = self.reached::<N>(corners)?;
-        let edges = Triangle::new(corners)?;
+        let edges = Triangle::on(self.grid, corners)?;
         Some((Large::new(triangle, &edges, [self.bounds.left, self.bounds.top]), area))
     }
 
@@ -162,8 +192,14 @@ impl Visibility {
     /// first.
     #[inline(always)]
     fn reached<const N: usize>(&self, corners: [Snapped; 3]) -> Option<PixelBox> {
-        let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
-        let area = reached.intersection(self.bounds);
+        let reach = self.sample_positions.reach::<N>();
+        self.in_tile(PixelBox::reached_on(self.grid, corners, reach))
+    }
+
+    /// The pixels of the tile in a box, counted from the tile's first.
+    #[inline(always)]
+    pub(super) fn in_tile(&self, pixels: PixelBox) -> Option<PixelBox> {
+        let area = pixels.intersection(self.bounds);
         let PixelBox { left, top, .. } = self.bounds;
         (!area.is_empty()).then_some(PixelBox {
             left: area.left - left,

@@ -1,0 +1,30 @@
+//! What the surfaces of an object have in common.
+
+use super::uses;
+use crate::render::lights::region::Region;
+use crate::render::lights::turning::Turning;
+use crate::scene::{ItemId, Object};
+
+/// What the surfaces of an object have in common.
+#[derive(Debug)]
+pub(super) struct Ground<'a> {
+    pub(super) item: ItemId,
+    pub(super) object: &'a Object,
+    /// The region in which they are lit, if it is known.
+    pub(super) region: Option<Region>,
+    /// Their normals, if they are known.
+    pub(super) turning: Option<Turning>,
+    /// See [`Shaded::tiled`].
+    pub(super) tiled: bool,
+    /// Whether their colours are visible at all.
+    pub(super) seen: bool,
+}
+
+impl Ground<'_> {
+    pub(super) fn thing(&self) -> Option<uses::Thing> {
+        Some(uses::Thing { item: self.item, name: self.object.name.clone() })
+    }
+}
+
+/// The largest coefficient and exponent: far beyond any other light, and it fits f32.
+pub(super) const LARGEST: f64 = 1e30;

@@ -1,0 +1,103 @@
+//! Rules of coverage: what kernels of set-up and of small triangles are compiled for.
+//!
+//! * By whole numbers on the usual grid: the default.
+//! * By whole numbers on a finer grid.
+//! * From corners that are not snapped: edge functions in f32; and scan lines and points, which
+//!   tiles draw alone.
+
+use fearless_simd::Simd;
+
+use super::small_edges::{Edges, FineEdges, FloatEdges, UsualEdges};
+use crate::accuracy::Coverage;
+use crate::render::frame::variants::Variants;
+use crate::render::screen::coverage::Grid;
+
+/// A rule of coverage.
+pub(crate) trait Rule: Copy {
+    /// The grid of corners.
+    const GRID: Grid = Grid::Usual;
+    /// Whether corners are needed as they were before they were snapped.
+    const UNSNAPPED: bool = false;
+    /// The edge functions of small triangles.
+    type Edges<S: Simd>: Edges<S>;
+}
+
+/// Whole numbers on the usual grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Usual;
+
+impl Rule for Usual {
+    type Edges<S: Simd> = UsualEdges<S>;
+}
+
+/// Whole numbers on the fine grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fine;
+
+impl Rule for Fine {
+    const GRID: Grid = Grid::Fine;
+    type Edges<S: Simd> = FineEdges<S>;
+}
+
+/// Corners that are not snapped: of small triangles, edge functions in f32. By rounding they may
+/// cover centres that are a little outside; scan lines, whose corners are whole pixels, up to one
+/// and a half.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unsnapped;
+
+impl Rule for Unsnapped {
+    const UNSNAPPED: bool = true;
+    type Edges<S: Simd> = FloatEdges<S>;
+}
+
+/// Evaluates an expression with the rule of coverage of a frame.
+macro_rules! with_rule {
+    ($variants:expr, $rule:ident => $what:expr) => {
+        match $crate::render::raster::rule::kind($variants) {
+            $crate::render::raster::rule::Kind::Usual => {
+                type $rule = $crate::render::raster::rule::Usual;
+                $what
+            }
+            $crate::render::raster::rule::Kind::Fine => {
+                type $rule = $crate::render::raster::rule::Fine;
+                $what
+            }
+            $crate::render::raster::rule::Kind::Unsnapped => {
+                type $rule = $crate::render::raster::rule::Unsnapped;
+                $what
+            }
+        }
+    };
+}
+pub(crate) use with_rule;
+
+/// The kinds of rules.
+pub(crate) enum Kind {
+    Usual,
+    Fine,
+    Unsnapped,
+}
+
+/// The rule of a frame.
+pub(crate) fn kind(variants: Variants) -> Kind {
+    match (variants.coverage, variants.grid()) {
+        (Coverage::Exact, Grid::Usual) => Kind::Usual,
+        (Coverage::Exact, Grid::Fine) => Kind::Fine,
+        _ => Kind::Unsnapped,
+    }
+}
+
+/// How far beyond its bounding box a triangle may cover centres, in 1/256 pixel.
+pub(crate) const fn beyond(coverage: Coverage) -> i32 {
+    match coverage {
+        Coverage::Exact => 0,
+        Coverage::F32Edges => 16,
+        Coverage::ScanLines | Coverage::Points => 384,
+    }
+}
+
+/// The least and the largest offsets of samples, with those of centres beyond a box.
+#[inline(always)]
+pub(crate) const fn reach([least, most]: [[i32; 2]; 2], by: i32) -> [[i32; 2]; 2] {
+    [[least[0] - by, least[1] - by], [most[0] + by, most[1] + by]]
+}
