@@ -58,6 +58,11 @@ impl Draw {
                 Pipeline::Flat(_) => None,
             })
             .collect();
+        for shaded in shaded.iter().filter(|shaded| shaded.opacity.is_some()) {
+            // What alphas its pictures have is asked at every fragment.
+            let pictures = shaded.texture.iter().chain(&shaded.opacity_map);
+            pictures.for_each(|texture| _ = texture.picture.least_alpha());
+        }
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;

@@ -95,9 +95,11 @@ impl Planner<'_> {
             },
             opacity: match cover {
                 Cover::Transparent(opacity) => Some(opacity),
-                // One with a texture has an alpha test then.
-                Cover::Threshold(opacity) => Some(opacity)
-                    .filter(|_| !is_textured && rules.layer(settings.transparency).is_none()),
+                // One with a texture has an alpha test then. Linear values are kept in fixed point
+                // while they are blended, which may round to another byte.
+                Cover::Threshold(opacity) => Some(opacity).filter(|_| {
+                    !is_textured && !linear && rules.layer(settings.transparency).is_none()
+                }),
                 Cover::Nothing(_) => None,
             },
             opacity_map: opacity_map
