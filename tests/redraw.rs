@@ -223,7 +223,7 @@ impl Desk {
 
     fn command(&mut self, rng: &mut Rng) -> Result<Command, Refusal> {
         let item = self.item(rng);
-        match rng.index(16) {
+        match rng.index(18) {
             0..5 => self.step(rng),
             5 => {
                 let few = self.scene.objects.len() + self.scene.cameras.len() < 8;
@@ -249,6 +249,12 @@ impl Desk {
                     _ => lights::fixed(),
                 });
                 items::insert_light(&self.scene, spot)
+            }
+            // At most one light casts shadows, since all of the picture changes with them.
+            14 if lights::casts_shadows(&self.scene) => lights::toggle_all_shadows(&self.scene),
+            14 => {
+                let all: Vec<_> = self.scene.lights.ids().collect();
+                lights::toggle_shadows(&self.scene, rng.one_of(&all))
             }
             13 => {
                 let chosen = selection::select(&self.scene, &self.view, item)?;

@@ -7,6 +7,7 @@ use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
 use super::accuracy::Accuracy;
+use super::explain::Explain;
 use super::export::Export;
 use super::keys::Keys;
 use super::lab::Lab;
@@ -76,6 +77,8 @@ pub(crate) enum Headless {
     Export(Box<Export>),
     /// Explain which effects a frame uses, which are left out and why, and what they cost
     Plan(Box<Plan>),
+    /// Explain a pixel: what it shows, and the light that its colour is made of
+    Explain(Box<Explain>),
     /// Describe files: shape, parts, materials, and what is wrong with them
     Info(Info),
     /// List every key of the editor

@@ -25,7 +25,7 @@ use super::draw_along;
 use super::failure::Failure;
 use super::render::staged;
 use super::talk::Talk;
-use super::values::{size, threads};
+use super::values::{Pixel, pixel, size, threads};
 
 /// What to measure, and what to report.
 #[derive(Debug, Args)]
@@ -94,10 +94,6 @@ pub(crate) struct Lab {
     #[command(flatten)]
     accuracy: Accuracy,
 }
-
-/// A column and a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Pixel([usize; 2]);
 
 /// Measures, and prints the report.
 pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
@@ -282,12 +278,4 @@ fn measure_words() -> PossibleValuesParser {
 fn above_zero(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
     number.ok_or_else(|| "write a number, 0 or more".to_owned())
-}
-
-fn pixel(text: &str) -> Result<Pixel, String> {
-    let parts = text.split_once(',').map(|(x, y)| (x.trim().parse(), y.trim().parse()));
-    match parts {
-        Some((Ok(x), Ok(y))) => Ok(Pixel([x, y])),
-        _ => Err("write column,row, counted from the upper left from 0, as 120,80".to_owned()),
-    }
 }

@@ -6,6 +6,7 @@
 mod accuracy;
 mod arguments;
 mod bar;
+mod explain;
 mod export;
 mod failure;
 mod info;
@@ -42,6 +43,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Headless::Info(arguments)) => info::info(&arguments),
         Some(Headless::Keys(arguments)) => keys::keys(&arguments),
         Some(Headless::Plan(arguments)) => plan::plan(&arguments),
+        Some(Headless::Explain(arguments)) => explain::explain(&arguments),
         Some(Headless::Lab(arguments)) => lab::lab(&arguments),
         Some(Headless::Verify(arguments)) => verify::verify(&arguments),
         None => open::open(&arguments.files, arguments.shell, arguments.preset),

@@ -69,6 +69,19 @@ pub(super) fn threads(text: &str) -> Result<usize, String> {
     count.ok_or_else(|| "write a whole number from 1 to 1024".to_owned())
 }
 
+/// A column and a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Pixel(pub(super) [usize; 2]);
+
+/// A column and a row, as `120,80`.
+pub(super) fn pixel(text: &str) -> Result<Pixel, String> {
+    let parts = text.split_once(',').map(|(x, y)| (x.trim().parse(), y.trim().parse()));
+    match parts {
+        Some((Ok(x), Ok(y))) => Ok(Pixel([x, y])),
+        _ => Err("write column,row, counted from the upper left from 0, as 120,80".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

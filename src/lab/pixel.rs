@@ -21,9 +21,12 @@ pub struct Row {
 #[must_use]
 pub fn rows(scene: &Scene, explained: &PixelColor) -> Vec<Row> {
     let steps = |value: [f64; 3]| value.map(|x| x * 255.0);
-    let label = |term: &Term| match term.light {
-        Some(id) => format!("{}, {}", light_name(scene, id), term.part.name()),
-        None => term.part.name().to_owned(),
+    let label = |term: &Term| {
+        let part = match term.light {
+            Some(id) => format!("{}, {}", light_name(scene, id), term.part.name()),
+            None => term.part.name().to_owned(),
+        };
+        if term.layer == 0 { part } else { format!("behind: {part}") }
     };
     let row = |term: &Term| Row { label: label(term), value: steps(term.value) };
     let mut rows: Vec<Row> = explained.terms.iter().map(row).collect();
@@ -83,6 +86,9 @@ pub fn ray_line(ray: &LightRay) -> String {
     );
     if let Some(distance) = ray.distance {
         line += &format!("  d {}  att {}", number(distance), number(ray.attenuation));
+    }
+    if ray.shadow != 1.0 {
+        line += "  in shadow";
     }
     if ray.cone != 1.0 {
         line += &format!("  spot {}", number(ray.cone));

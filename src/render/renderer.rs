@@ -11,10 +11,10 @@ use std::sync::Mutex;
 use fearless_simd::Level;
 
 use super::shading::context::ShadingContext;
-use super::shading::explain::{PixelColor, explain};
+use super::shading::explain::{Asked, PixelColor, explain};
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Painter, TileSums, bounds_of};
-use crate::accuracy::Arithmetic;
+use crate::accuracy::{Arithmetic, Samples};
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
 use crate::base::image::{Picture, Size};
@@ -23,7 +23,6 @@ use crate::render::damage::{Damage, DamageCause};
 use crate::render::frame::{FramePlan, Rules};
 use crate::render::plan::uses::EffectUse;
 use crate::render::raster::geometry::ScreenGeometry;
-use crate::render::raster::tile::Visibility;
 use crate::render::raster::visibility_buffer::Visible;
 use crate::render::raster::{depth_format, visibility_buffer};
 use crate::render::screen::sample_positions::{SamplePositions, passes, shifts};
@@ -306,13 +305,27 @@ impl Renderer {
         terms.prepare(plan);
         lit.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
-        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms, tracer: None };
+        let tracer = Tracer::new(plan);
+        let tracer = tracer.as_ref();
+        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms, tracer };
+        let [x, y] = at;
         let [columns, _] = tiles_of(plan.size);
-        let tile = usize::try_from(at[1] / TILE * columns + at[0] / TILE).expect("not negative");
+        let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
         let bounds = bounds_of(tile, plan.size);
-        let mut visibility = Visibility::default();
-        visibility.draw(level, plan, frame, (tile, bounds));
-        explain(&context, &mut visibility, bounds, at)
+        let mut tile_seen = TileLayers::default();
+        tile_seen.draw(level, plan, frame, (tile, bounds));
+        let depths = tile_seen.depths(level);
+        let mut shown = Vec::new();
+        tile_seen.each(level, frame, block_at(x % TILE, y % TILE), |place, nearest, words| {
+            if place == at {
+                // Of several samples, what most of them show.
+                let one = plan.samples == Samples::One;
+                shown = if one { words.to_vec() } else { vec![nearest] };
+            }
+        });
+        let [column, row] = at.map(|i| usize::try_from(i).expect("inside the picture"));
+        let [r, g, b, _] = self.picture.pixel(column, row);
+        explain(&context, &Asked { at, bounds, depths, words: &shown, bytes: [r, g, b] })
     }
 
     /// Marks the pixels at which the last picture shows an item, also through transparent ones: a

@@ -81,7 +81,8 @@ fn in_order(sheets: &[Sheet]) -> Vec<(u32, Sheet)> {
     (0..).zip(sheets.iter().copied()).collect()
 }
 
-/// What a pixel shows of sheets, by casting a ray; `None` too near to a border to say.
+/// What a pixel shows of sheets, by casting a ray; `None` too near to a border, or to where two
+/// sheets meet, to say: within a hundredth of a pixel.
 fn seen(sheets: &[Sheet], scene: &Scene, [x, y]: [usize; 2], side: usize) -> Option<[f64; 3]> {
     let eye = Eye::first(side);
     let near = Lens::default().near;
@@ -98,6 +99,9 @@ fn seen(sheets: &[Sheet], scene: &Scene, [x, y]: [usize; 2], side: usize) -> Opt
         }
     }
     layers.sort_by(|a, b| b.0.total_cmp(&a.0));
+    if layers.windows(2).any(|pair| pair[0].0 - pair[1].0 < 0.1) {
+        return None;
+    }
     let behind = scene.background.0.map(f64::from);
     Some(layers.iter().fold(behind, |under, (_, sheet)| over(under, sheet.color, sheet.opacity)))
 }

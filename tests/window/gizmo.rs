@@ -63,7 +63,6 @@ fn a_drag_of_a_handle_moves_along_its_axis_in_one_step_that_says_how_far() {
     let (before, steps) = (editor.scene(), editor.steps());
     let eye = editor.scene().selected_camera(&editor.view()).pose.now().eye;
     let at = pull(&mut editor, 50.0);
-    assert!(editor.shows("Ctrl snaps"));
     editor.button(at, LEFT, false);
     let moved = place(&editor) - DVec3::new(-100.0, 0.0, 0.0);
     assert!(moved.x > 5.0 && moved.y == 0.0 && moved.z == 0.0, "{moved}");
@@ -225,7 +224,7 @@ fn until_explained(editor: &mut Editor) {
 fn e_and_a_click_explain_a_pixel_and_esc_closes_it() {
     let mut editor = with_ship();
     editor.press(Lower(Key::E));
-    assert!(editor.shows("Click a pixel to explain it"));
+    assert!(editor.state().explaining);
     let at = middle(&editor) + vec2(9.0, 3.0);
     editor.click(at, LEFT);
     until_explained(&mut editor);

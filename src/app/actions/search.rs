@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     /// The words that people use, and the action that they mean.
-    const WORDS: [(&str, Action); 62] = [
+    const WORDS: [(&str, Action); 66] = [
         ("flat", Action::ToggleLightNormals),
         ("smooth", Action::ToggleLightNormals),
         ("faceted", Action::ToggleLightNormals),
@@ -197,7 +197,11 @@ mod tests {
         ("above", Action::LookTop),
         ("side view", Action::LookRight),
         ("explode", Action::Split),
-        ("gizmo", Action::ToggleOverlays),
+        ("gizmo", Action::ToggleGizmo),
+        ("manipulator", Action::ToggleGizmo),
+        ("inspect", Action::ExplainPixel),
+        ("deselect", Action::SelectNone),
+        ("numeric", Action::TypeAmount),
         ("target", Action::AimAtSelection),
         ("font size", Action::LargerText),
         ("benchmark", Action::ToggleLaboratory),

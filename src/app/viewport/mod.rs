@@ -7,6 +7,7 @@ mod axes;
 pub(crate) mod comparison;
 pub(crate) mod gizmo;
 mod marks;
+mod menu;
 mod mouse;
 mod over;
 mod overlay;
@@ -265,7 +266,7 @@ impl Viewport {
             Purpose::Menu(at) => {
                 requests.extend(item.map(Request::Select));
                 self.menu = Some(Menu { at, item });
-                egui::Popup::open_id(ctx, menu_id());
+                egui::Popup::open_id(ctx, menu::id());
             }
         }
     }
@@ -370,80 +371,6 @@ impl Viewport {
         let Some((rect, _)) = self.place else { return };
         plate_ui(ui, rect, egui::Align2::LEFT_BOTTOM, text);
     }
-
-    fn menu_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
-        let Some(menu) = self.menu else { return };
-        let popup = egui::Popup::new(menu_id(), ui.ctx().clone(), menu.at, ui.layer_id())
-            .kind(egui::PopupKind::Menu)
-            .layout(egui::Layout::top_down_justified(egui::Align::Min))
-            .style(egui::containers::menu::menu_style)
-            .accessible_name("Viewport menu")
-            .open_memory(None);
-        popup.show(|ui| {
-            let actions = match menu.item.filter(|item| state.scene.contains(*item)) {
-                Some(item) => {
-                    ui.weak(state.name(item).unwrap_or_default());
-                    ui.separator();
-                    actions_on(item)
-                }
-                None => ON_NOTHING,
-            };
-            for action in actions {
-                requests.extend(action.menu_item(ui, state).map(Request::Do));
-            }
-        });
-    }
-}
-
-/// The menu of the background.
-const ON_NOTHING: &[Action] = &[
-    Action::FrameAll,
-    Action::Load,
-    Action::AddCamera,
-    Action::AddSun,
-    Action::AddBulb,
-    Action::AddSpot,
-];
-
-/// The menu of an item.
-const fn actions_on(item: ItemId) -> &'static [Action] {
-    match item {
-        ItemId::Object(_) => &[
-            Action::FrameSelection,
-            Action::WhyUnseen,
-            Action::TogglePolygons,
-            Action::ToggleOthers,
-            Action::ToggleVisible,
-            Action::Rename,
-            Action::Duplicate,
-            Action::Split,
-            Action::AddObjectSpot,
-            Action::TakeBack,
-            Action::Delete,
-        ],
-        ItemId::Camera(_) => &[
-            Action::ToggleVisible,
-            Action::Rename,
-            Action::Duplicate,
-            Action::AddCameraSpot,
-            Action::TakeBack,
-            Action::Delete,
-        ],
-        ItemId::Light(_) => &[
-            Action::ToggleShadows,
-            Action::AimAtSelection,
-            Action::AimByClick,
-            Action::ToggleVisible,
-            Action::Rename,
-            Action::Duplicate,
-            Action::TakeBack,
-            Action::Delete,
-        ],
-    }
-}
-
-fn menu_id() -> Id {
-    Id::unique("viewport menu")
 }
 
 /// The rest of `ui`, moved to whole pixels, and its size in pixels.

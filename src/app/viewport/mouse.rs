@@ -13,12 +13,14 @@
 //!
 //! Each drag is one gesture. So are the turns of the wheel while the pointer rests.
 
+mod handles;
+
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Ui, Vec2};
 use glam::{DVec2, DVec3};
 
 use super::Purpose;
 use super::comparison;
-use super::gizmo::{Gizmo, Grab, Pull};
+use super::gizmo::{Gizmo, Grab};
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::gestures;
@@ -105,31 +107,6 @@ impl Mouse {
         self.drag.is_some()
     }
 
-    /// The handle of the gizmo that is held, once it is more than a click.
-    pub(crate) fn grab(&self) -> Option<&Grab> {
-        let moved = self.drag.is_none_or(|drag| drag.moved && !drag.over);
-        self.grab.as_deref().filter(|grab| moved || grab.is_typed())
-    }
-
-    /// Takes numbers for a handle from now on, without the mouse.
-    pub(crate) fn type_amount(&mut self, grab: Grab) {
-        if self.drag.is_none() {
-            self.count += 1;
-            self.grab = Some(Box::new(grab));
-        }
-    }
-
-    /// Whether letters and numbers are for a handle.
-    pub(crate) const fn is_typing(&self) -> bool {
-        self.grab.is_some()
-    }
-
-    /// The corners of the box that is drawn.
-    pub(crate) fn selection_box(&self) -> Option<Rect> {
-        let drag = self.drag.filter(|drag| drag.motion == Motion::Box && drag.moved && !drag.over);
-        drag.map(|drag| Rect::from_two_pos(drag.from, drag.to))
-    }
-
     /// Whether letters steer.
     pub(crate) fn is_flying(&self) -> bool {
         self.drag.is_some_and(|drag| drag.motion == Motion::Fly && !drag.over)
@@ -150,7 +127,7 @@ impl Mouse {
                 true
             }
             None if self.grab.take().is_some() => {
-                requests.push(Request::Abandon(gestures::numbered(self.count, TYPED)));
+                requests.push(Request::Abandon(self.typed_gesture()));
                 true
             }
             _ => false,
@@ -315,36 +292,6 @@ impl Mouse {
         }
     }
 
-    /// Lets the handle that is held follow the pointer and what is typed.
-    fn pull(&mut self, ui: &Ui, under: Under<'_>, requests: &mut Vec<Request>) {
-        let Some(grab) = &mut self.grab else { return };
-        let snap = ui.input(|input| input.modifiers.command);
-        let Some(drag) = &mut self.drag else {
-            let pull = Pull { to: under.rect.center(), snap: false, typed: under.typed };
-            let gesture = gestures::numbered(self.count, TYPED);
-            if grab.follow_typed(pull, gesture, requests) {
-                self.grab = None;
-            }
-            return;
-        };
-        drag.moved |= (drag.to - drag.from).length() > CLICK;
-        if !drag.moved && !grab.is_typed() && under.typed.is_empty() {
-            return;
-        }
-        let pull = Pull { to: drag.to, snap, typed: under.typed };
-        if grab.follow(pull, drag.gesture, requests) {
-            // Enter ends the drag: the button may be let go anywhere.
-            (drag.over, self.grab) = (true, None);
-        }
-    }
-
-    /// A press ends an amount that is typed: it stays as it is.
-    fn end_typing(&mut self, requests: &mut Vec<Request>) {
-        if self.grab.take().is_some_and(|grab| !grab.is_typed()) {
-            requests.push(Request::Abandon(gestures::numbered(self.count, TYPED)));
-        }
-    }
-
     /// Handles the keys that steer while the right button is held.
     fn fly(&mut self, ui: &Ui, drag: Drag, state: &State, requests: &mut Vec<Request>) {
         let held = |key| ui.input(|input| f64::from(u8::from(input.key_down(key))));
@@ -407,9 +354,6 @@ impl Mouse {
         gestures::numbered(self.count, source)
     }
 }
-
-/// What typed amounts are a gesture of.
-const TYPED: &str = "typed amount";
 
 /// The command for a movement of the pointer, in pixels.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]

@@ -19,19 +19,33 @@ use crate::scene::{Fill, ItemId, Object, ObjectId};
 impl Planner<'_> {
     /// Adds what casts shadows, if any light casts them.
     pub(super) fn add_shadows(&self, into: &mut Planning) {
-        if into.plan.shadows.sources.iter().all(Option::is_none)
-            || self.shot.view.fill == Fill::Edges
-        {
-            into.plan.shadows = Shadows::default();
-            return;
+        let is_filled = self.shot.view.fill == Fill::Filled;
+        if is_filled && into.plan.shadows.sources.iter().any(Option::is_some) {
+            let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
+            objects.sort_by_key(|(id, _)| *id);
+            let shown = objects.into_iter().filter(|(id, object)| self.is_asked_for(*id, object));
+            into.plan.shadows.casters =
+                shown.filter_map(|(id, object)| self.caster(id, object)).collect();
         }
-        let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
-        objects.sort_by_key(|(id, _)| *id);
-        let shown = objects.into_iter().filter(|(id, object)| self.is_asked_for(*id, object));
-        into.plan.shadows.casters =
-            shown.filter_map(|(id, object)| self.caster(id, object)).collect();
         if into.plan.shadows.casters.is_empty() {
             into.plan.shadows = Shadows::default();
+        }
+        for shining in &self.shining {
+            let Some(light) = self.shot.scene.lights.get(shining.id) else { continue };
+            let reason = match () {
+                () if !light.can_cast_shadows() => continue,
+                () if !light.shadows => "switched off",
+                () if !is_filled => "edges only",
+                () if into.plan.shadows.casters.is_empty() => "nothing casts them",
+                () => continue,
+            };
+            into.notes.add(|| EffectUse {
+                effect: Effect::Shadows(shining.id),
+                name: name(shining),
+                on: None,
+                state: EffectState::exact(reason),
+                pixels: None,
+            });
         }
     }
 
@@ -58,38 +72,32 @@ impl Planner<'_> {
         Some(Caster { item, model, world_from_object, parts, polygons })
     }
 
-    /// Notes whether a light's shadows fall on an object; `no_light` is the reason why its light
-    /// does not, if there is one.
+    /// Notes whether the shadows of a light that casts them fall on an object; `no_light` is the
+    /// reason why its light does not, if there is one.
     pub(super) fn note_shadows(
-        &self,
         into: &mut Planning,
         ground: &Ground<'_>,
         shining: &Shining,
         no_light: Option<&'static str>,
     ) {
-        let Some(light) = self.shot.scene.lights.get(shining.id) else { return };
-        if !light.can_cast_shadows() {
+        if into.plan.shadows.source(shining.light).is_none() {
             return;
         }
-        let reason = if !light.shadows {
-            Some("switched off")
-        } else if self.shot.view.fill == Fill::Edges {
-            Some("edges only")
-        } else if into.plan.shadows.source(shining.light).is_none() {
-            Some("nothing casts them")
-        } else if !matches!(ground.item, ItemId::Object(_)) {
-            Some("a mark takes none")
-        } else {
-            no_light
-        };
+        let is_mark = !matches!(ground.item, ItemId::Object(_));
+        let reason = if is_mark { Some("a mark takes none") } else { no_light };
         into.notes.add(|| EffectUse {
             effect: Effect::Shadows(shining.id),
-            name: format!("Shadows of {}", shining.name),
+            name: name(shining),
             on: ground.thing(),
             state: reason.map_or(EffectState::On("exact".into()), EffectState::exact),
             pixels: None,
         });
     }
+}
+
+/// The name of a light's shadows in the plan.
+fn name(shining: &Shining) -> String {
+    format!("Shadows of {}", shining.name)
 }
 
 /// How a part of an object casts shadows; `None` if it is not drawn.

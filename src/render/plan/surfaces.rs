@@ -223,7 +223,7 @@ impl Planner<'_> {
                 state: reason.map_or(EffectState::ON, EffectState::exact),
                 pixels: None,
             });
-            self.note_shadows(into, ground, shining, reason);
+            Self::note_shadows(into, ground, shining, reason);
             if reason.is_some() {
                 continue;
             }

@@ -11,15 +11,17 @@ use super::groups::{Group, group_of};
 use super::interpolate::{Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::run;
+use super::lit_points::place_fragments;
 use super::quantize::{SurfaceColor, reflected};
+use super::shadows::{BatchShadows, place_faces};
 use super::surface::Shader;
 use crate::accuracy::LightAt;
 use crate::render::frame::draw::{Back, Form, Pipeline, Shaded, Stage};
 use crate::render::frame::{Eye, FramePlan};
 use crate::render::lights::{Batch, Rows, ViewLight, store};
-use crate::render::raster::tile::Visibility;
 use crate::render::raster::visibility_buffer::{Visible, seen};
 use crate::render::screen::coverage::PixelBox;
+use crate::render::shadow::rays::{Origins, RayScratch};
 use crate::render::simd::{Kernel, Lanes, Vec3};
 use crate::scene::{ItemId, LightId};
 
@@ -82,6 +84,14 @@ pub struct Term {
     pub value: [f64; 3],
     /// How the light reaches the point; with a light's first term.
     pub ray: Option<LightRay>,
+    /// How many transparent layers lie before what it is the colour of.
+    pub layer: u32,
+}
+
+impl Term {
+    const fn new(part: Part, value: [f64; 3]) -> Self {
+        Self { part, light: None, value, ray: None, layer: 0 }
+    }
 }
 
 /// The parts that a colour can have.
@@ -104,6 +114,10 @@ pub enum Part {
     /// What the surface adds to its colour whatever the lights: emission, and ambient light that
     /// has a map of its own.
     Emission,
+    /// What is cut off above 1 before layers are blended.
+    Cut,
+    /// What another way of blending makes of the layers than one over another.
+    Blending,
     /// Light of the corners, interpolated: of all lights together.
     Corners,
 }
@@ -121,6 +135,8 @@ impl Part {
             Self::Diffuse => "diffuse",
             Self::Specular => "specular",
             Self::Emission => "emission",
+            Self::Cut => "cut off above 255",
+            Self::Blending => "way of blending",
             Self::Corners => "light of the corners",
         }
     }
@@ -145,42 +161,100 @@ pub struct LightRay {
     pub attenuation: f64,
     /// The factor of a spot's cone.
     pub cone: f64,
+    /// 0 where something stands between, else 1.
+    pub shadow: f64,
 }
 
-/// Explains a pixel of the picture whose bytes there are `bytes`.
+/// The pixel of a tile that is explained.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked<'a> {
+    /// Its column and row.
+    pub(crate) at: [i32; 2],
+    /// The pixels of its tile.
+    pub(crate) bounds: PixelBox,
+    /// The depths of all that the tile shows.
+    pub(crate) depths: Option<[f32; 2]>,
+    /// What the pixel shows: what is opaque, and the layers over it, the nearest last.
+    pub(crate) words: &'a [u64],
+    /// The bytes of the picture.
+    pub(crate) bytes: [u8; 3],
+}
+
+/// Explains a pixel.
 pub(crate) fn explain<T: ShadingNumber>(
     context: &ShadingContext<'_, T>,
-    visibility: &mut Visibility,
-    bounds: PixelBox,
-    [x, y]: [i32; 2],
+    asked: &Asked<'_>,
 ) -> PixelColor {
+    let behind = asked.words.first().copied().unwrap_or(0);
+    let (mut whole, _) = one(context, asked, behind);
+    if asked.words.len() < 2 {
+        return whole;
+    }
+    clamp(&mut whole);
+    for word in &asked.words[1..] {
+        let (mut layer, opacity) = one(context, asked, *word);
+        clamp(&mut layer);
+        let over = |front: [f64; 3], back: [f64; 3]| {
+            [0, 1, 2].map(|i| front[i] * opacity + back[i] * (1.0 - opacity))
+        };
+        layer.color = over(layer.color, whole.color);
+        layer.rounding = over(layer.rounding, whole.rounding);
+        for term in &mut layer.terms {
+            term.value = over(term.value, [0.0; 3]);
+        }
+        layer.terms.extend(whole.terms.drain(..).map(|term| Term {
+            value: over([0.0; 3], term.value),
+            layer: term.layer + 1,
+            ..term
+        }));
+        whole = layer;
+    }
+    // Layers that are not blended exactly one over another have another mean.
+    let other = [0, 1, 2].map(|i| f64::from(asked.bytes[i]) / 255.0 - whole.color[i]);
+    if other.iter().any(|x| x.abs() > 1.0 / 255.0) && !whole.linear {
+        whole.terms.push(Term::new(Part::Blending, other));
+        whole.color = plus(whole.color, other);
+    }
+    PixelColor { bytes: asked.bytes, ..whole }
+}
+
+/// Takes what is above 1 off a colour that is blended.
+fn clamp(of: &mut PixelColor) {
+    let cut = of.color.map(|x| x.clamp(0.0, 1.0) - x);
+    if cut != [0.0; 3] {
+        of.terms.push(Term::new(Part::Cut, cut));
+        of.color = plus(of.color, cut);
+    }
+}
+
+/// The colour of one of the primitives that a pixel shows, and its opacity.
+fn one<T: ShadingNumber>(
+    context: &ShadingContext<'_, T>,
+    asked: &Asked<'_>,
+    word: u64,
+) -> (PixelColor, f64) {
+    let [x, y] = asked.at;
     let at = [x, y].map(|i| usize::try_from(i).unwrap_or(0));
     let plain = |part, [r, g, b, _]: [u8; 4]| {
-        let value = [r, g, b].map(|byte| f64::from(byte) / 255.0);
-        let terms = vec![Term { part, light: None, value, ray: None }];
-        PixelColor {
-            at,
-            surface: None,
-            terms,
-            rounding: [0.0; 3],
-            color: value,
-            linear: false,
-            bytes: [r, g, b],
-        }
+        let color = [r, g, b].map(|byte| f64::from(byte) / 255.0);
+        let (rounding, terms) = ([0.0; 3], vec![Term::new(part, color)]);
+        let bytes = [r, g, b];
+        PixelColor { at, surface: None, terms, rounding, color, linear: false, bytes }
     };
-    let ShadingContext { level, plan, frame, .. } = *context;
-    match seen(visibility.word(level, x, y)) {
-        Visible::Background => plain(Part::Background, plan.background.opaque()),
-        Visible::Line(line) => plain(Part::Line, frame.line_color(plan, line)),
+    let ShadingContext { plan, frame, .. } = *context;
+    match seen(word) {
+        Visible::Background => (plain(Part::Background, plan.background.opaque()), 1.0),
+        Visible::Line(line) => (plain(Part::Line, frame.line_color(plan, line)), 1.0),
         Visible::Triangle(number) => {
             let mut shader = Shader::<T>::default();
-            shader.tile.begin(plan, bounds, || visibility.depths(level));
+            shader.tile.begin(plan, asked.bounds, || asked.depths);
             let place = usize::try_from((y & 7) * 8 + (x & 7)).unwrap_or(0);
             shader.fragments.begin_shared();
             shader.fragments.add(number, [x & !7, y & !7], place, 1);
             shader.fragments.shared = false;
-            Point { context, group: group_of(context, number), shader: &mut shader, number, at }
-                .explained()
+            let group = group_of(context, number);
+            let mut point = Point { context, group, shader: &mut shader, number, at };
+            point.explained()
         }
     }
 }
@@ -195,7 +269,7 @@ struct Point<'a, 'b, T> {
 }
 
 impl<T: ShadingNumber> Point<'_, '_, T> {
-    fn explained(mut self) -> PixelColor {
+    fn explained(&mut self) -> (PixelColor, f64) {
         let plan = self.context.plan;
         let [r, g, b, _] = self.shader.first_color(self.context, &self.group);
         let bytes = [r, g, b];
@@ -204,6 +278,7 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         let texel = first(&self.shader.texels);
         let glow = first(&self.shader.maps.glow);
         let drawn = self.shader.batch.clone();
+        let opacity = f64::from(self.shader.opacities(self.context, &self.group)[0]);
         let mut surface = self.place();
         let red = surface.back && self.group.draw.back == Back::Red;
         let shaded = match &plan.pipelines[self.group.pipeline as usize] {
@@ -211,35 +286,37 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
             Pipeline::Shaded(_) | Pipeline::Flat(_) => {
                 let part = if red { Part::BackFace } else { Part::Unlit };
                 let value = bytes.map(|byte| f64::from(byte) / 255.0);
-                let terms = vec![Term { part, light: None, value, ray: None }];
+                let terms = vec![Term::new(part, value)];
                 let (surface, at) = (Some(surface), self.at);
                 let (rounding, linear) = ([0.0; 3], false);
-                return PixelColor { at, surface, terms, rounding, color: value, linear, bytes };
+                let color = value;
+                let plain = PixelColor { at, surface, terms, rounding, color, linear, bytes };
+                return (plain, opacity);
             }
         };
         let extras = &shaded.extras;
-        let textured = shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels();
+        let fades = shaded.opacity.is_some() && shaded.opacity_map.is_some();
+        let textured =
+            shaded.texture.is_some() || shaded.vertex_colors || extras.reads_texels() || fades;
         let tint = shaded.tint.map(|x| T::from_f64(x).into());
         surface.own = if textured { texel } else { tint };
         surface.light_at = shaded.light.is_some().then_some(plan.light_at);
         let (mut terms, mut color) = match (&shaded.light, plan.light_at) {
-            (None, _) => {
-                let term = Term { part: Part::Unlit, light: None, value: surface.own, ray: None };
-                (vec![term], surface.own)
-            }
-            (Some(_), LightAt::Vertex) => self.of_corners(&mut surface, textured, of_all),
+            (None, _) => (vec![Term::new(Part::Unlit, surface.own)], surface.own),
+            (Some(_), LightAt::Vertex) => self.of_corners(&surface, textured, of_all),
             (Some(stages), LightAt::Pixel | LightAt::Sample | LightAt::Face) => {
                 self.of_lights(&mut surface, (shaded, stages), &drawn)
             }
         };
         if extras.glows().next().is_some() {
-            terms.push(Term { part: Part::Emission, light: None, value: glow, ray: None });
+            terms.push(Term::new(Part::Emission, glow));
             color = plus(color, glow);
         }
         let sum = terms.iter().fold([0.0; 3], |sum, term| plus(sum, term.value));
         let rounding = [0, 1, 2].map(|i| color[i] - sum[i]);
         let linear = plan.variants.are_linear();
-        PixelColor { at: self.at, surface: Some(surface), terms, rounding, color, linear, bytes }
+        let (at, surface) = (self.at, Some(surface));
+        (PixelColor { at, surface, terms, rounding, color, linear, bytes }, opacity)
     }
 
     /// Where the point is. Afterwards the batch holds its position and its normal.
@@ -307,17 +384,42 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
         let evaluated = |i: &usize| {
             by_face || kept.as_ref().is_none_or(|kept| kept.iter().any(|at| *at as usize == *i))
         };
+        let tracer = context.tracer_of(group.draw_index);
+        let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
+        let mut place = |origins: &mut Origins| {
+            if let Some(tracer) = tracer {
+                if by_face {
+                    place_faces(tracer, group.draw, attributes, origins);
+                } else {
+                    let on = (&*fragments, &*attributes);
+                    place_fragments(context, tracer, group, on, barycentrics, origins);
+                }
+            }
+        };
+        let mut scratch = RayScratch::default();
+        let shades = tracer.filter(|_| by_face || lit_places);
         for i in (0..stages.len()).filter(evaluated) {
-            let batch = &mut shader.batch;
+            let of = (&stages[i..=i], &lights[i..=i]);
             batch.darken();
-            run(&stages[i..=i], &lights[i..=i], level, batch, None);
+            run(of.0, of.1, level, batch, None);
+            let bright = [first(&batch.diffuse), first(&batch.specular)];
+            batch.darken();
+            let shadows =
+                shades.map(|(tracer, _)| BatchShadows::new(tracer, &mut scratch, &mut place));
+            run(of.0, of.1, level, batch, shadows);
             let parts = [first(&batch.diffuse), first(&batch.specular)];
-            terms.extend(light_terms(plan, &stages[i], batch, parts, surface.own));
+            let mut own = light_terms(plan, &stages[i], batch, parts, surface.own);
+            if let Some(ray) = own.first_mut().and_then(|term| term.ray.as_mut()) {
+                ray.shadow = if parts == bright { 1.0 } else { 0.0 };
+            }
+            terms.extend(own);
         }
         // All together, in the order of the picture.
-        shader.batch.darken();
+        batch.darken();
         for i in (0..stages.len()).filter(evaluated) {
-            run(&stages[i..=i], &lights[i..=i], level, &mut shader.batch, None);
+            let shadows =
+                shades.map(|(tracer, _)| BatchShadows::new(tracer, &mut scratch, &mut place));
+            run(&stages[i..=i], &lights[i..=i], level, batch, shadows);
         }
         shader.batch.len = 1;
         // A map of Ks multiplies all highlights together.
@@ -339,15 +441,14 @@ impl<T: ShadingNumber> Point<'_, '_, T> {
     /// The light of vertices, which was interpolated when its lights were added up already.
     fn of_corners(
         &mut self,
-        surface: &mut SurfacePoint,
+        surface: &SurfacePoint,
         textured: bool,
         [diffuse, specular]: [[f64; 3]; 2],
     ) -> (Vec<Term>, [f64; 3]) {
         let Self { context, group, shader, .. } = self;
-        let term = |value| Term { part: Part::Corners, light: None, value, ray: None };
+        let term = |value| Term::new(Part::Corners, value);
         if textured {
-            let mut sums = Batch::<T>::default();
-            sums.len = 1;
+            let mut sums = Batch::<T> { len: 1, ..Batch::default() };
             for i in 0..3 {
                 sums.diffuse[i][0] = T::from_f64(diffuse[i]);
                 sums.specular[i][0] = T::from_f64(specular[i]);
@@ -382,12 +483,12 @@ fn light_terms<T: ShadingNumber>(
     let light = &plan.lights[stage.light as usize];
     let value = [0, 1, 2].map(|i| own[i] * diffuse[i]);
     if !stage.effect.reads_positions {
-        return vec![Term { part: Part::Ambient, light: Some(id), value, ray: None }];
+        return vec![Term { light: Some(id), ..Term::new(Part::Ambient, value) }];
     }
     let ray = Some(ray(plan, stage, light, batch));
     vec![
-        Term { part: Part::Diffuse, light: Some(id), value, ray },
-        Term { part: Part::Specular, light: Some(id), value: specular, ray: None },
+        Term { light: Some(id), ray, ..Term::new(Part::Diffuse, value) },
+        Term { light: Some(id), ..Term::new(Part::Specular, specular) },
     ]
 }
 
@@ -402,7 +503,7 @@ fn ray<T: ShadingNumber>(
     let (position, normal) = (vec3(&batch.position), vec3(&batch.normal));
     let to_eye = vec3(&batch.to_eye);
     let travels = DVec3::from_array(light.direction);
-    let is_sun = stage.effect.name == "sun";
+    let is_sun = stage.effect.name == "Sun";
     let way = DVec3::from_array(light.position) - position;
     let (to_light, distance) = if is_sun {
         (-travels, None)
@@ -429,10 +530,11 @@ fn ray<T: ShadingNumber>(
         distance,
         attenuation: if is_sun { 1.0 } else { 1.0 / (a0 + (a1 + a2 * d) * d) },
         cone: match stage.effect.name {
-            "spot" if inside => libm::pow(cosine, light.exponent),
-            "spot" => 0.0,
+            "Spot" if inside => libm::pow(cosine, light.exponent),
+            "Spot" => 0.0,
             _ => 1.0,
         },
+        shadow: 1.0,
     }
 }
 

@@ -78,7 +78,7 @@ impl<'a> BatchShadows<'a> {
         let mut shaded = self.tracer.shaded(level, light, self.scratch, lit);
         let rows = batch.diffuse.iter_mut().chain(&mut batch.specular);
         if shaded == lit {
-            // Where it is not lit, nothing changed.
+            // What is not lit has not changed.
             rows.zip(rows_before()).for_each(|(row, before)| *row = *before);
             return;
         }

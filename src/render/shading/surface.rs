@@ -49,7 +49,7 @@ pub(crate) struct Shader<T> {
     pub(crate) barycentrics: Barycentrics<T>,
     pub(crate) batch: Batch<T>,
     /// For rays of shadows.
-    rays: RayScratch,
+    pub(super) rays: RayScratch,
     /// The positions of the triangles on their texture.
     pub(super) placed: TexturePlacement,
     pub(crate) texels: Rows<T>,

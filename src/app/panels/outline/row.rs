@@ -232,7 +232,12 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
             actions.extend([Action::ToggleShadows, Action::AimAtSelection, Action::AimByClick]);
         }
         if matches!(item, ItemId::Object(_)) {
-            actions.extend([Action::FrameSelection, Action::WhyUnseen, Action::Split]);
+            actions.extend([
+                Action::FrameSelection,
+                Action::ToggleOthers,
+                Action::WhyUnseen,
+                Action::Split,
+            ]);
         }
         for action in actions {
             requests.extend(action.menu_item(ui, state).map(Request::from));

@@ -6,6 +6,7 @@
 use egui::{Pos2, Rect, Vec2};
 use glam::DVec3;
 
+use super::typed::Typed;
 use super::{Gizmo, Handle, others};
 use crate::app::actions::Request;
 use crate::app::state::State;
@@ -41,36 +42,6 @@ pub(crate) struct Grab {
     asked: Option<Amount>,
     /// What it does now, in words.
     pub(crate) said: String,
-}
-
-/// What was typed: an axis, and a number.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Typed {
-    axis: Option<usize>,
-    text: String,
-}
-
-impl Typed {
-    /// Takes what was typed. Returns whether Enter ended it.
-    fn take(&mut self, text: &str) -> bool {
-        for sign in text.chars() {
-            match sign {
-                '\n' => return true,
-                '\u{8}' if self.text.pop().is_none() => self.axis = None,
-                'x' | 'X' => self.axis = Some(0),
-                'y' | 'Y' => self.axis = Some(1),
-                'z' | 'Z' => self.axis = Some(2),
-                ',' => self.text.push('.'),
-                '0'..='9' | '.' | '+' | '-' | '*' | '/' | '(' | ')' => self.text.push(sign),
-                _ => {}
-            }
-        }
-        false
-    }
-
-    fn axis(&self) -> Option<Axis> {
-        self.axis.map(|axis| Axis::ALL[axis])
-    }
 }
 
 /// What the pointer and the keyboard say in a frame.
@@ -254,7 +225,7 @@ impl Grab {
     /// What the place of the pointer means; `None` where the handle leads nowhere.
     fn of_pointer(&mut self, to: Pos2) -> Option<Amount> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
-        let middle = sight.to_view(pivot.origin);
+        let middle = sight.in_view(pivot.origin);
         let by = to - self.from;
         let growth = libm::exp2(f64::from(by.x - by.y) / DOUBLE);
         match (self.handle, pivot.kind) {
@@ -291,7 +262,7 @@ impl Grab {
     /// How far along an axis a place is, in units of the world.
     fn along(&self, axis: Axis, at: Pos2) -> Option<f64> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
-        let middle = sight.to_view(pivot.origin);
+        let middle = sight.in_view(pivot.origin);
         let ray = sight.ray(at);
         ray.on_line(middle, self.gizmo.axis(axis)?, sight.towards_eye(middle))
     }
@@ -300,14 +271,14 @@ impl Grab {
     fn moved_on(&self, middle: DVec3, normal: DVec3, to: Pos2) -> Option<DVec3> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
         let hit = |at| sight.ray(at).on_plane(middle, normal);
-        pivot.in_frame(sight.to_world(hit(to)? - hit(self.from)?))
+        pivot.in_frame(sight.in_world(hit(to)? - hit(self.from)?))
     }
 
     /// The direction to the observer, in the frame.
     fn line_of_sight(&self) -> Option<DVec3> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
-        let eye = sight.towards_eye(sight.to_view(pivot.origin));
-        math::unit(pivot.in_frame(sight.to_world(eye))?)
+        let eye = sight.towards_eye(sight.in_view(pivot.origin));
+        math::unit(pivot.in_frame(sight.in_world(eye))?)
     }
 
     /// How far a ring was turned, over several turns too.
@@ -323,7 +294,7 @@ impl Grab {
     /// The angle of a place about the ring's axis, in the world.
     fn angle_at(&self, at: Pos2) -> Option<f64> {
         let Gizmo { pivot, sight, .. } = &self.gizmo;
-        let middle = sight.to_view(pivot.origin);
+        let middle = sight.in_view(pivot.origin);
         let eye = sight.towards_eye(middle);
         let about = match self.handle {
             Handle::Ring(axis) => self.gizmo.axis(axis)?,
@@ -355,169 +326,4 @@ const fn letter(axis: Axis) -> &'static str {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::viewport::gizmo::Shape;
-    use crate::scene::Frame;
-    use egui::vec2;
-    use glam::DMat4;
-
-    fn scene(offset: DVec3, size: f64) -> State {
-        let (scene, view) = crate::io::default_scene();
-        let mut state = State::new(scene, view);
-        state.view.subject = crate::scene::Subject::Object;
-        let id = state.view.object.unwrap();
-        let m = DMat4::from_translation(offset) * DMat4::from_scale(DVec3::splat(size));
-        let command =
-            crate::edit::placement::object(&state.scene, &state.view, id, m, GesturePhase::First);
-        command.unwrap().apply(&mut state.scene).unwrap();
-        let turn = math::rotation(DVec3::Y, 0.4) * math::rotation(DVec3::X, -0.3);
-        let eye = offset + turn * DVec3::new(20.0, 5.0, 300.0) * size;
-        let camera = state.view.camera;
-        let command =
-            crate::edit::placement::camera(&state.scene, camera, eye, turn, GesturePhase::First);
-        command.unwrap().apply(&mut state.scene).unwrap();
-        state
-    }
-
-    fn placed(state: &State) -> DMat4 {
-        *state.scene.objects.get(state.view.object.unwrap()).unwrap().placement.now()
-    }
-
-    fn gizmo(state: &State) -> Gizmo {
-        let rect = Rect::from_min_size(Pos2::ZERO, vec2(800.0, 600.0));
-        Gizmo::new(state, rect, Size::new(800, 600)).unwrap()
-    }
-
-    fn end(gizmo: &Gizmo, handle: Handle) -> Pos2 {
-        let part = gizmo.parts.iter().find(|part| part.handle == handle).unwrap();
-        match &part.shape {
-            Shape::Line([_, to]) => *to,
-            Shape::Square(corners) => corners[0] + (corners[2] - corners[0]) * 0.5,
-            Shape::Ring { near, .. } => near[near.len() / 3],
-            Shape::Circle(middle, radius) => *middle + vec2(*radius, 0.0),
-            Shape::Disk(middle) => *middle,
-        }
-    }
-
-    /// Drags a handle, and applies what the last request asks for.
-    fn drag(state: &mut State, handle: Handle, by: Vec2, typed: &str) -> Option<Amount> {
-        let gizmo = gizmo(state);
-        let from = end(&gizmo, handle);
-        assert_eq!(gizmo.handle_at(from), Some(handle));
-        let mut grab = Grab::new(state, &gizmo, handle, from);
-        let mut requests = Vec::new();
-        // On the way there it goes elsewhere.
-        let pull = |to, typed| Pull { to, snap: false, typed };
-        grab.follow(pull(from + vec2(7.0, 31.0), ""), Gesture::Part(1), &mut requests);
-        grab.follow(pull(from + by, typed), Gesture::Part(1), &mut requests);
-        let Some(Request::Change { command, .. }) = requests.pop() else { return None };
-        command.apply(&mut state.scene).unwrap();
-        grab.asked
-    }
-
-    #[test]
-    fn what_is_dragged_along_an_axis_stays_under_the_pointer_at_every_size_and_distance() {
-        for (offset, size) in [(0.0, 1.0), (1e5, 1.0), (1e5, 1e-3), (-3e5, 1e3), (0.0, 1e-6)] {
-            for axis in Axis::ALL {
-                let mut state = scene(DVec3::splat(offset), size);
-                let before = gizmo(&state);
-                let from = end(&before, Handle::Axis(axis));
-                let way =
-                    from - before.sight.place(before.sight.to_view(before.pivot.origin)).unwrap();
-                drag(&mut state, Handle::Axis(axis), way * 0.4, "").unwrap();
-                let after = gizmo(&state);
-                let shift = |g: &Gizmo| g.sight.place(g.sight.to_view(g.pivot.origin)).unwrap();
-                let moved = shift(&after) - shift(&before);
-                // The handle's end was pulled, so the middle follows but for perspective.
-                assert!((moved - way * 0.4).length() < 8.0, "{axis:?} {offset} {size}: {moved:?}");
-                let delta = placed(&state).w_axis.truncate() - DVec3::splat(offset);
-                let off = delta - axis.unit() * delta[axis.index()];
-                assert!(off.length() <= offset.abs() * 1e-15, "{axis:?}: {delta}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_typed_number_is_exact_whatever_the_pointer_does() {
-        let typed = |kind, handle, text: &str| {
-            let mut state = scene(DVec3::ZERO, 1.0);
-            state.view.transformation = kind;
-            drag(&mut state, handle, vec2(13.0, 5.0), text)
-        };
-        let moving = Transformation::Translation;
-        let x = Handle::Axis(Axis::X);
-        assert_eq!(typed(moving, x, "12"), Some(Amount::Move(DVec3::X * 12.0)));
-        assert_eq!(typed(moving, x, "y-12\u{8}3"), Some(Amount::Move(DVec3::Y * -13.0)));
-        assert_eq!(
-            typed(moving, Handle::Plane(Axis::Z), "360/8"),
-            Some(Amount::Move(DVec3::new(45.0, 45.0, 0.0)))
-        );
-        let turning = Transformation::Rotation;
-        assert_eq!(
-            typed(turning, Handle::Ring(Axis::Y), "90"),
-            Some(Amount::Turn(DVec3::Y, 90.0_f64.to_radians()))
-        );
-        let scaling = Transformation::Scaling;
-        assert_eq!(typed(scaling, Handle::Middle, "2"), Some(Amount::Scale(DVec3::splat(2.0))));
-        assert_eq!(typed(scaling, x, "z3"), Some(Amount::Scale(DVec3::new(1.0, 1.0, 3.0))));
-    }
-
-    #[test]
-    fn a_scale_of_0_is_refused_and_a_negative_one_mirrors() {
-        let mut state = scene(DVec3::ZERO, 1.0);
-        state.view.transformation = Transformation::Scaling;
-        assert_eq!(drag(&mut state, Handle::Axis(Axis::X), vec2(3.0, 0.0), "0"), None);
-        drag(&mut state, Handle::Axis(Axis::X), vec2(3.0, 0.0), "-1").unwrap();
-        assert_eq!(placed(&state).x_axis.x, -1.0);
-    }
-
-    #[test]
-    fn in_the_global_frame_handles_that_turn_stand_in_the_worlds_origin() {
-        let at = DVec3::new(5.0, 6.0, 7.0);
-        for (frame, kind, origin, unit) in [
-            (Frame::Local, Transformation::Rotation, at, 3.0),
-            (Frame::Global, Transformation::Translation, at, 1.0),
-            (Frame::Global, Transformation::Rotation, DVec3::ZERO, 1.0),
-            (Frame::Global, Transformation::Scaling, DVec3::ZERO, 1.0),
-        ] {
-            let mut state = scene(at, 3.0);
-            (state.view.frame, state.view.transformation) = (frame, kind);
-            let pivot = gizmo::pivot(&state.scene, &state.view).unwrap();
-            assert_eq!((pivot.origin, pivot.unit(Axis::Y)), (origin, unit), "{frame:?} {kind:?}");
-        }
-    }
-
-    #[test]
-    fn amounts_snap_to_whole_steps_and_a_mirror_keeps_its_sign() {
-        let state = scene(DVec3::ZERO, 1.0);
-        let snap = |amount| gizmo::snapped(&state.scene, &state.view, amount);
-        let delta = DVec3::new(14.9, -5.1, 0.0);
-        assert_eq!(snap(Amount::Move(delta)), Amount::Move(DVec3::new(10.0, -10.0, 0.0)));
-        let Amount::Turn(_, radians) = snap(Amount::Turn(DVec3::X, 0.5)) else { panic!() };
-        assert!((radians.to_degrees() - 30.0).abs() < 1e-12);
-        let Amount::Scale(factors) = snap(Amount::Scale(DVec3::new(-1.4, 1.0, 0.0))) else {
-            panic!()
-        };
-        assert!((factors - DVec3::new(-1.44, 1.0, 0.0)).length() < 1e-12);
-    }
-
-    #[test]
-    fn a_ring_dragged_once_around_comes_back_and_a_half_turn_is_one() {
-        let mut state = scene(DVec3::ZERO, 1.0);
-        state.view.transformation = Transformation::Rotation;
-        let gizmo = gizmo(&state);
-        let middle = gizmo.sight.place(gizmo.sight.to_view(gizmo.pivot.origin)).unwrap();
-        let from = end(&gizmo, Handle::Outer);
-        let mut grab = Grab::new(&state, &gizmo, Handle::Outer, from);
-        let mut turned = Vec::new();
-        for i in 1..=16_u8 {
-            let angle = f32::from(i) / 8.0 * std::f32::consts::PI;
-            let to = middle + vec2(angle.cos(), -angle.sin()) * 120.0;
-            let Some(Amount::Turn(_, radians)) = grab.of_pointer(to) else { panic!() };
-            turned.push(radians.to_degrees());
-        }
-        assert!((turned[7] - 180.0).abs() < 0.5, "{turned:?}");
-        assert!((turned[15] - 360.0).abs() < 0.5, "{turned:?}");
-    }
-}
+mod tests;

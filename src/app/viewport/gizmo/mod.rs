@@ -7,6 +7,7 @@
 mod drag;
 mod show;
 mod sight;
+mod typed;
 
 use egui::{Pos2, Rect, Vec2};
 use glam::DVec3;
@@ -107,7 +108,7 @@ impl Gizmo {
     fn of(state: &State, rect: Rect, size: Size) -> Option<Self> {
         let pivot = pivot(&state.scene, &state.view).ok()?;
         let sight = Sight::new(state, rect, size);
-        let middle = sight.to_view(pivot.origin);
+        let middle = sight.in_view(pivot.origin);
         let mut gizmo = Self { pivot, sight, parts: Vec::new() };
         let place = sight.place(middle).filter(|at| rect.expand(OUTSIDE).contains(*at));
         if let Some(place) = place {

@@ -45,7 +45,7 @@ impl Sight {
     }
 
     /// A point of the world in view space.
-    pub(crate) fn to_view(&self, at: DVec3) -> DVec3 {
+    pub(crate) fn in_view(&self, at: DVec3) -> DVec3 {
         self.turned(at - self.eye)
     }
 
@@ -55,7 +55,7 @@ impl Sight {
     }
 
     /// A vector of view space in the world.
-    pub(crate) fn to_world(&self, v: DVec3) -> DVec3 {
+    pub(crate) fn in_world(&self, v: DVec3) -> DVec3 {
         self.axes * v
     }
 

@@ -1,0 +1,86 @@
+//! The menu of what is under the pointer.
+
+use egui::{Id, Ui};
+
+use super::Viewport;
+use crate::app::actions::{Action, Request};
+use crate::app::state::State;
+use crate::scene::ItemId;
+
+impl Viewport {
+    /// Shows the menu while it is open.
+    pub(super) fn menu_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+        let Some(menu) = self.menu else { return };
+        let popup = egui::Popup::new(id(), ui.ctx().clone(), menu.at, ui.layer_id())
+            .kind(egui::PopupKind::Menu)
+            .layout(egui::Layout::top_down_justified(egui::Align::Min))
+            .style(egui::containers::menu::menu_style)
+            .accessible_name("Viewport menu")
+            .open_memory(None);
+        popup.show(|ui| {
+            let actions = match menu.item.filter(|item| state.scene.contains(*item)) {
+                Some(item) => {
+                    ui.weak(state.name(item).unwrap_or_default());
+                    ui.separator();
+                    actions_on(item)
+                }
+                None => ON_NOTHING,
+            };
+            for action in actions {
+                requests.extend(action.menu_item(ui, state).map(Request::Do));
+            }
+        });
+    }
+}
+
+/// The menu of the background.
+const ON_NOTHING: &[Action] = &[
+    Action::FrameAll,
+    Action::Load,
+    Action::AddCamera,
+    Action::AddSun,
+    Action::AddBulb,
+    Action::AddSpot,
+];
+
+/// The menu of an item.
+const fn actions_on(item: ItemId) -> &'static [Action] {
+    match item {
+        ItemId::Object(_) => &[
+            Action::FrameSelection,
+            Action::WhyUnseen,
+            Action::TogglePolygons,
+            Action::ToggleOthers,
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::Split,
+            Action::AddObjectSpot,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+        ItemId::Camera(_) => &[
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::AddCameraSpot,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+        ItemId::Light(_) => &[
+            Action::ToggleShadows,
+            Action::AimAtSelection,
+            Action::AimByClick,
+            Action::ToggleVisible,
+            Action::Rename,
+            Action::Duplicate,
+            Action::TakeBack,
+            Action::Delete,
+        ],
+    }
+}
+
+/// The id of the menu.
+pub(super) fn id() -> Id {
+    Id::unique("viewport menu")
+}

@@ -1,0 +1,71 @@
+//! Handles of the gizmo and boxes, held by the mouse.
+
+use egui::{Rect, Ui};
+
+use super::{CLICK, Motion, Mouse, Under};
+use crate::app::actions::Request;
+use crate::app::viewport::gizmo::{Grab, Pull};
+use crate::app::widgets::gestures;
+use crate::edit::Gesture;
+
+impl Mouse {
+    /// The handle of the gizmo that is held, once it is more than a click.
+    pub(crate) fn grab(&self) -> Option<&Grab> {
+        let moved = self.drag.is_none_or(|drag| drag.moved && !drag.over);
+        self.grab.as_deref().filter(|grab| moved || grab.is_typed())
+    }
+
+    /// Takes numbers for a handle from now on, without the mouse.
+    pub(crate) fn type_amount(&mut self, grab: Grab) {
+        if self.drag.is_none() {
+            self.count += 1;
+            self.grab = Some(Box::new(grab));
+        }
+    }
+
+    /// Whether letters and numbers are for a handle.
+    pub(crate) const fn is_typing(&self) -> bool {
+        self.grab.is_some()
+    }
+
+    /// The corners of the box that is drawn.
+    pub(crate) fn selection_box(&self) -> Option<Rect> {
+        let drag = self.drag.filter(|drag| drag.motion == Motion::Box && drag.moved && !drag.over);
+        drag.map(|drag| Rect::from_two_pos(drag.from, drag.to))
+    }
+
+    /// Lets the handle that is held follow the pointer and what is typed.
+    pub(super) fn pull(&mut self, ui: &Ui, under: Under<'_>, requests: &mut Vec<Request>) {
+        let typed_gesture = self.typed_gesture();
+        let Some(grab) = &mut self.grab else { return };
+        let snap = ui.input(|input| input.modifiers.command);
+        let Some(drag) = &mut self.drag else {
+            let pull = Pull { to: under.rect.center(), snap: false, typed: under.typed };
+            if grab.follow_typed(pull, typed_gesture, requests) {
+                self.grab = None;
+            }
+            return;
+        };
+        drag.moved |= (drag.to - drag.from).length() > CLICK;
+        if !drag.moved && !grab.is_typed() && under.typed.is_empty() {
+            return;
+        }
+        let pull = Pull { to: drag.to, snap, typed: under.typed };
+        if grab.follow(pull, drag.gesture, requests) {
+            // Enter ends the drag: the button may be let go anywhere.
+            (drag.over, self.grab) = (true, None);
+        }
+    }
+
+    /// A press ends an amount that is typed: it stays as it is.
+    pub(super) fn end_typing(&mut self, requests: &mut Vec<Request>) {
+        if self.grab.take().is_some_and(|grab| !grab.is_typed()) {
+            requests.push(Request::Abandon(self.typed_gesture()));
+        }
+    }
+
+    /// The gesture of an amount that is typed without the mouse.
+    pub(super) fn typed_gesture(&self) -> Gesture {
+        gestures::numbered(self.count, "typed amount")
+    }
+}

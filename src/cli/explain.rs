@@ -1,0 +1,47 @@
+//! `marraztu explain`: says what a pixel shows and what its colour is made of.
+
+use std::io::Write as _;
+
+use clap::Args;
+use marraztu::accuracy::{Samples, Settings};
+use marraztu::lab::pixel;
+use marraztu::render::{Renderer, plan_frame};
+
+use super::arguments::PictureArguments;
+use super::failure::Failure;
+use super::render;
+use super::values::{Pixel, pixel as parse_pixel};
+
+/// A picture, and the pixel to explain.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Takes the files and options of `render`. Lists the surface that the pixel shows, its vectors, and
+for each light ambient, diffuse and specular, in steps of a byte: their sum, clamped and rounded, is
+the byte of the picture. A pixel of several samples is explained by the light at its centre.
+
+Examples:
+  marraztu explain --at 400,300
+  marraztu explain teapot.obj --size 200x200 --at 90,110 --shading vertex")]
+pub(crate) struct Explain {
+    #[command(flatten)]
+    picture: PictureArguments,
+
+    /// The column and the row of the pixel, from the upper left
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    at: Pixel,
+}
+
+/// Explains the pixel that the arguments name.
+pub(crate) fn explain(arguments: &Explain) -> Result<(), Failure> {
+    let stage = render::stage(&arguments.picture)?;
+    let shot = stage.shot(arguments.picture.size);
+    let shot = shot.with(Settings { samples: Samples::One, ..shot.settings });
+    let mut renderer = Renderer::default();
+    renderer.render(&plan_frame(&shot));
+    let Pixel([x, y]) = arguments.at;
+    let Some(explained) = renderer.explain(x, y) else {
+        return Err(Failure::Absent(format!("pixel {x},{y} lies outside of the picture")));
+    };
+    let text = pixel::lines(&shot.scene, &explained).join("\n") + "\n";
+    std::io::stdout().lock().write_all(text.as_bytes()).map_err(Failure::Output)
+}
