@@ -66,9 +66,13 @@ impl Draw {
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
-        // Whether a map of opacity counts by its alpha or its brightness.
-        for map in shaded.iter().filter_map(|shaded| shaded.opacity_map.as_ref()) {
-            let _least: u8 = map.picture.least_alpha();
+        // Whether a map of opacity counts by its alpha or its brightness, and whether the alpha of
+        // a texture beside it counts at all.
+        for shaded in &shaded {
+            let texture = shaded.texture.as_ref().filter(|_| shaded.opacity.is_some());
+            for map in shaded.opacity_map.iter().chain(texture) {
+                let _least: u8 = map.picture.least_alpha();
+            }
         }
         let is_bumpy = shaded.iter().any(|shaded| shaded.extras.bump.is_some());
         let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
