@@ -8,7 +8,6 @@ use crate::accuracy::{
     BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LightValues, Normalising, Rounding,
     Settings, SpecularPower, Subpixels, Tangents, VertexArithmetic,
 };
-use crate::render::screen::coverage::Grid;
 use crate::render::simd::Number;
 
 /// How bytes of texels become numbers.
@@ -18,6 +17,34 @@ pub(crate) enum Decoding {
     Stored,
     /// Decoded from sRGB.
     Linear,
+}
+
+/// The grid that corners are snapped to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Grid {
+    /// 1/256 pixel.
+    #[default]
+    Usual,
+    /// 1/4096 pixel.
+    Fine,
+}
+
+impl Grid {
+    /// The parts of a pixel, in each direction.
+    #[must_use]
+    pub const fn parts(self) -> i32 {
+        match self {
+            Self::Usual => 256,
+            Self::Fine => 4096,
+        }
+    }
+
+    /// An offset in 1/256 pixel, in parts of this grid.
+    #[must_use]
+    pub const fn offset(self, [x, y]: [i32; 2]) -> [i32; 2] {
+        let times = self.parts() / Self::Usual.parts();
+        [x * times, y * times]
+    }
 }
 
 /// The variants of a frame's stages.

@@ -13,12 +13,12 @@ use std::collections::BTreeMap;
 
 use fearless_simd::{Level, Simd, dispatch};
 
+use super::beyond;
 use super::bins::LargeTriangle;
 use super::depth_format::{Any, Format as _, depths_between};
 use super::edges_in_floats::{Everywhere, FloatTriangle, in_pixels};
 use super::geometry::ScreenGeometry;
 use super::large::{Large, Solid, Touched};
-use super::rule;
 use super::scan_lines::ScanLines;
 use super::visibility_buffer::word;
 use crate::accuracy::{Coverage, DepthFormat, Transparency};
@@ -208,7 +208,7 @@ impl Layers {
             }
             Coverage::Exact | Coverage::F32Edges => {
                 let reach = self.reach();
-                let reach = rule::reach(reach, rule::beyond(plan.variants.coverage));
+                let reach = beyond::reach(reach, beyond::beyond(plan.variants.coverage));
                 let at = each(triangle.corners, |corner| corner.at());
                 let Some(area) = self.in_tile(PixelBox::reached(at, reach)) else { return };
                 let PixelBox { left, top, .. } = self.bounds;

@@ -11,6 +11,7 @@
 //! transforms vertices otherwise; `edges_in_floats` and `scan_lines` cover blocks by other rules.
 
 pub(crate) mod alpha_test;
+mod beyond;
 pub(crate) mod bins;
 mod culling;
 pub(crate) mod depth_format;

@@ -86,18 +86,3 @@ pub(crate) fn kind(variants: Variants) -> Kind {
         _ => Kind::Unsnapped,
     }
 }
-
-/// How far beyond its bounding box a triangle may cover centres, in 1/256 pixel.
-pub(crate) const fn beyond(coverage: Coverage) -> i32 {
-    match coverage {
-        Coverage::Exact => 0,
-        Coverage::F32Edges => 16,
-        Coverage::ScanLines | Coverage::Points => 384,
-    }
-}
-
-/// The least and the largest offsets of samples, with those of centres beyond a box.
-#[inline(always)]
-pub(crate) const fn reach([least, most]: [[i32; 2]; 2], by: i32) -> [[i32; 2]; 2] {
-    [[least[0] - by, least[1] - by], [most[0] + by, most[1] + by]]
-}

@@ -7,10 +7,11 @@
 
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, dispatch, i32x16, mask32x16};
 
+use super::beyond;
 use super::bins::{Bins, LargeTriangle};
 use super::hits::PACK;
 use super::queue::{Pack, SMALL};
-use super::rule::{self, Rule};
+use super::rule::Rule;
 use super::small;
 use super::vertices::{fetch, fetch_vertices};
 use crate::accuracy::Coverage;
@@ -312,7 +313,7 @@ impl<'a> Setup<'a> {
     #[inline(always)]
     fn reach<R: Rule, const N: usize>(&self, bins: &Bins) -> [[i32; 2]; 2] {
         let reach = bins.sample_positions.reach::<N>();
-        if R::UNSNAPPED { rule::reach(reach, rule::beyond(self.coverage)) } else { reach }
+        if R::UNSNAPPED { beyond::reach(reach, beyond::beyond(self.coverage)) } else { reach }
     }
 
     /// Whether small triangles are drawn sixteen at a time.

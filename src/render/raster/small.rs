@@ -48,7 +48,7 @@ pub(crate) fn draw_rest<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize,
 #[inline(always)]
 pub(crate) fn draw<S: Simd, R: Rule, const N: usize>(simd: S, pack: &Pack<S>, bins: &mut Bins) {
     let sample_positions = bins.sample_positions;
-    let lanes = Lanes::<S, R::Edges<S>>::new::<R>(simd, pack, sample_positions.reach::<N>());
+    let lanes = Lanes::<S, R::Edges<S>>::new(simd, pack, sample_positions.reach::<N>());
     let reach = bins.hits.reach(lanes.bounds());
     lanes.each_sample::<N>(
         &sample_positions,
@@ -75,10 +75,10 @@ struct Lanes<S: Simd, E> {
 
 impl<S: Simd, E: Edges<S>> Lanes<S, E> {
     #[inline(always)]
-    fn new<R: Rule>(simd: S, pack: &Pack<S>, reach: [[i32; 2]; 2]) -> Self {
+    fn new(simd: S, pack: &Pack<S>, reach: [[i32; 2]; 2]) -> Self {
         let [x0, y0, x1, y1, x2, y2, d0, d1, d2, number] = *pack;
         let corners = [[x0, y0], [x1, y1], [x2, y2]];
-        let [left, top, right, bottom] = E::bounds::<R>(corners, reach);
+        let [left, top, right, bottom] = E::bounds(corners, reach);
         let (d0, d1, d2) =
             (d0.bitcast::<f32x16<S>>(), d1.bitcast::<f32x16<S>>(), d2.bitcast::<f32x16<S>>());
         Self {

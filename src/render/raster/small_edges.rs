@@ -11,7 +11,7 @@ use fearless_simd::{
     mask32x16,
 };
 
-use super::rule::{self, Rule};
+use super::beyond::{beyond, reach};
 use crate::accuracy::Coverage;
 use crate::base::math::each;
 use crate::render::screen::coverage::{Grid, SUBPIXELS};
@@ -30,7 +30,7 @@ pub(crate) trait Edges<S: Simd>: Copy {
     /// What the offset of a sample changes of them.
     type Shift: Copy;
     /// The pixels that triangles may cover in samples that lie this far from centres.
-    fn bounds<R: Rule>(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S>;
+    fn bounds(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S>;
     /// Sets triangles up, with the depths of their corners.
     fn new(simd: S, corners: Corners<S>, boxes: Boxes<S>, depths: [f32x16<S>; 3]) -> Self;
     /// At the first pixel of the boxes.
@@ -69,8 +69,8 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
     type Shift = [f32x16<S>; 3];
 
     #[inline(always)]
-    fn bounds<R: Rule>(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
-        snapped_bounds::<S, R>(corners, reach)
+    fn bounds(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
+        snapped_bounds(Grid::Usual, corners, reach)
     }
 
     #[inline(always)]
@@ -173,8 +173,8 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     type Shift = Self::At;
 
     #[inline(always)]
-    fn bounds<R: Rule>(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
-        snapped_bounds::<S, R>(corners, reach)
+    fn bounds(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
+        snapped_bounds(Grid::Fine, corners, reach)
     }
 
     #[inline(always)]
@@ -287,11 +287,11 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     type Shift = [f32; 2];
 
     #[inline(always)]
-    fn bounds<R: Rule>(corners: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
+    fn bounds(corners: Corners<S>, samples: [[i32; 2]; 2]) -> Boxes<S> {
         let snap =
             |x: i32x16<S>| -> i32x16<S> { (x.bitcast::<f32x16<S>>() * SUBPIXELS as f32).to_int() };
         let snapped = each(corners, |[x, y]| [snap(x), snap(y)]);
-        snapped_bounds::<S, R>(snapped, rule::reach(reach, rule::beyond(Coverage::F32Edges)))
+        snapped_bounds(Grid::Usual, snapped, reach(samples, beyond(Coverage::F32Edges)))
     }
 
     #[inline(always)]
@@ -366,10 +366,13 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
 
 /// The pixels that snapped triangles may cover.
 #[inline(always)]
-fn snapped_bounds<S: Simd, R: Rule>([p, q, r]: Corners<S>, reach: [[i32; 2]; 2]) -> Boxes<S> {
-    let (half, log2) = (R::GRID.parts() / 2, R::GRID.parts().trailing_zeros());
-    let [least, most] = reach;
-    let (least, most) = (R::GRID.offset(least), R::GRID.offset(most));
+fn snapped_bounds<S: Simd>(
+    grid: Grid,
+    [p, q, r]: Corners<S>,
+    [least, most]: [[i32; 2]; 2],
+) -> Boxes<S> {
+    let (half, log2) = (grid.parts() / 2, grid.parts().trailing_zeros());
+    let (least, most) = (grid.offset(least), grid.offset(most));
     [
         (p[0].min(q[0]).min(r[0]) + (half - 1 - most[0])) >> log2,
         (p[1].min(q[1]).min(r[1]) + (half - 1 - most[1])) >> log2,

@@ -120,7 +120,8 @@ impl Visibility {
                 dispatch!(level, simd => {
                     self.draw_by_variant::<_, N>(simd, (plan, frame), bins, tile);
                 });
-                dispatch!(level, simd => self.draw_lines::<_, D, N>(simd, bins, plan.line_width, tile));
+                let width = plan.line_width;
+                dispatch!(level, simd => self.draw_lines::<_, D, N>(simd, bins, width, tile));
                 continue;
             }
             for &number in &bins.tiles[tile].large {

@@ -55,8 +55,8 @@ pub(crate) fn word(key: u32, number: u32) -> u64 {
 /// The depth test of sixteen entries, those of two rows of a block: writes the ones that a triangle
 /// with these depths covers, where it is in front.
 ///
-/// Entries are compared as f64: their bits are in the order of the numbers, since keys are below the
-/// bits of infinity, and every processor has a maximum of f64.
+/// Entries are compared as f64: their bits are in the order of the numbers, since keys are below
+/// the bits of infinity, and every processor has a maximum of f64.
 #[inline(always)]
 pub(crate) fn put_rows<S: Simd>(
     format: impl Format,

@@ -11,37 +11,10 @@
 //! below 2^59 and nothing overflows.
 
 use crate::base::math::each;
+pub use crate::render::frame::variants::Grid;
 
 /// Subpixels per pixel, in each direction.
-pub const SUBPIXELS: i32 = 256;
-
-/// The grid that corners are snapped to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Grid {
-    /// 1/256 pixel.
-    #[default]
-    Usual,
-    /// 1/4096 pixel.
-    Fine,
-}
-
-impl Grid {
-    /// The parts of a pixel, in each direction.
-    #[must_use]
-    pub const fn parts(self) -> i32 {
-        match self {
-            Self::Usual => SUBPIXELS,
-            Self::Fine => 16 * SUBPIXELS,
-        }
-    }
-
-    /// An offset in 1/256 pixel, in parts of this grid.
-    #[must_use]
-    pub const fn offset(self, [x, y]: [i32; 2]) -> [i32; 2] {
-        let times = self.parts() / SUBPIXELS;
-        [x * times, y * times]
-    }
-}
+pub const SUBPIXELS: i32 = Grid::Usual.parts();
 
 /// A snapped point of the picture in subpixels, x to the right and y down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -258,14 +258,16 @@ macro_rules! with_points {
         } else if attributes.wide & 1 == 0 {
             dispatch!($level, $simd => {
                 let by_w = of_first(Sixteen($simd), &attributes.by_w);
-                let $points = Inside { interpolation: $by.interpolation, linear: Narrow::new($simd, attributes), by_w };
+                let linear = Narrow::new($simd, attributes);
+                let $points = Inside { interpolation: $by.interpolation, linear, by_w };
                 $what
             });
             true
         } else if let Some(triangle) = &Triangle::on(attributes.grid, attributes.corners(0)) {
             dispatch!($level, $simd => {
                 let by_w = of_first(Sixteen($simd), &attributes.by_w);
-                let $points = Inside { interpolation: $by.interpolation, linear: Wide::new($simd, triangle), by_w };
+                let linear = Wide::new($simd, triangle);
+                let $points = Inside { interpolation: $by.interpolation, linear, by_w };
                 $what
             });
             true

@@ -22,8 +22,8 @@ use crate::render::screen::coverage::SUBPIXELS;
 use crate::render::simd::gather::{SLOTS, paged};
 use crate::render::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
-/// Three numbers at the corners of some triangles: those of the first corner, and the differences of
-/// the second and the third from them.
+/// Three numbers at the corners of some triangles: those of the first corner, and the differences
+/// of the second and the third from them.
 pub(crate) type CornerValues<T> = [[[T; SLOTS]; 3]; 3];
 
 /// Attributes at some pixels, interpolated between the corners.

@@ -232,7 +232,9 @@ impl Interpolated for f32 {
     ) -> bool {
         let wide = attributes.count == 1 && attributes.wide == 1;
         if wide && let Some(triangle) = Triangle::on(attributes.grid, attributes.corners(0)) {
-            dispatch!(level, simd => find_in_one(interpolation, simd, fragments, &triangle, attributes, to));
+            dispatch!(level, simd => {
+                find_in_one(interpolation, simd, fragments, &triangle, attributes, to);
+            });
             return true;
         }
         if (attributes.wide | attributes.cut) != 0 {
@@ -253,8 +255,9 @@ impl Interpolated for f32 {
         to: &mut Barycentrics<Self>,
     ) {
         paged!(attributes.count, PAGES => {
+            let perspective = Interpolation::Perspective;
             dispatch!(level, simd => {
-                find_narrow::<_, PAGES>(Interpolation::Perspective, simd, fragments, attributes, to);
+                find_narrow::<_, PAGES>(perspective, simd, fragments, attributes, to);
             });
         });
     }
