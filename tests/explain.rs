@@ -40,9 +40,9 @@ fn adds_up(scene: &Scene, view: &View, settings: &Settings, pixels: &[[usize; 2]
                 *sum += part;
             }
         }
-        for i in 0..3 {
-            assert!((sum[i] - explained.color[i]).abs() < 1e-14, "{of}");
-            assert!(explained.rounding[i].abs() < 1e-6, "{of}");
+        for ((sum, color), rounding) in sum.iter().zip(explained.color).zip(explained.rounding) {
+            assert!((sum - color).abs() < 1e-14, "{of}");
+            assert!(rounding.abs() < 1e-6, "{of}");
         }
         if let Some(point) = explained.surface {
             assert_eq!(renderer.hit(x, y).map(|hit| hit.item), Some(point.item), "{of}");

@@ -49,7 +49,9 @@ fn over(background: [u8; 3], layers: &[([f64; 3], f64)]) -> [u8; 4] {
         let sum = layers.iter().fold(under, |under, (color, opacity)| {
             opacity * color[i].clamp(0.0, 1.0) * 255.0 + (1.0 - opacity) * under
         });
-        (sum + 0.5).floor() as u8
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+        let byte = (sum + 0.5).floor() as u8;
+        byte
     };
     [channel(0), channel(1), channel(2), 255]
 }

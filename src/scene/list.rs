@@ -16,6 +16,8 @@ use std::sync::{Arc, OnceLock};
 use imbl::ordmap::DiffItem;
 use imbl::{OrdMap, Vector};
 
+use crate::base::once::get_or_compute;
+
 /// How far apart the labels of neighbours are at first.
 const STEP: i64 = 1 << 32;
 
@@ -128,7 +130,7 @@ impl<K: Copy + Ord, T> List<K, T> {
     /// What `compute` makes of the list: computed once, and kept by all copies until they change.
     /// A list keeps one value, so all callers have to ask for the same.
     pub(super) fn derived<D: Any + Send + Sync>(&self, compute: impl FnOnce(&Self) -> D) -> Arc<D> {
-        let kept = self.derived.0.get_or_init(|| Arc::new(compute(self)));
+        let kept = get_or_compute(&self.derived.0, || Arc::new(compute(self)));
         Arc::clone(kept).downcast().expect("all callers ask for the same")
     }
 

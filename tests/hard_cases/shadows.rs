@@ -113,7 +113,7 @@ impl Shade {
     /// The pixels whose shadow is not as rays say, of those at which rays are sure; and with
     /// `naive`, which gets a point, the way to the light and all triangles, those that it gets
     /// wrong.
-    fn judge(&self, naive: &dyn Fn(DVec3, DVec3, &[[DVec3; 3]]) -> bool) -> Judged {
+    fn judge(&self, naive: &Naive<'_>) -> Judged {
         let (drawn, all) = (self.draw(), self.triangles());
         let eye = Eye { side: SIDE, at: self.eye, tangent: 2.0_f64.sqrt() - 1.0 };
         let mut judged = Judged::default();
@@ -172,6 +172,9 @@ fn coplanar(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     let n = unit((a[1] - a[0]).cross(a[2] - a[0]));
     b.iter().all(|p| n.dot(*p - a[0]).abs() < 1e-9 * (1.0 + p.length()))
 }
+
+/// Says of a point, the way to the light and all triangles whether the point is lit.
+type Naive<'a> = dyn Fn(DVec3, DVec3, &[[DVec3; 3]]) -> bool + 'a;
 
 #[derive(Default)]
 struct Judged {

@@ -132,8 +132,8 @@ fn light_that_is_left_out_as_too_faint_is_listed_with_its_bound() {
         if let LightKind::Bulb { .. } = light.kind {
             let mut faint = light.clone();
             faint.attenuation.quadratic = 100.0;
-            let item = marraztu::scene::Item::Light(id, Box::new(faint));
-            marraztu::scene::Command::Replace(item).apply(&mut scene).unwrap();
+            let item = Item::Light(id, Box::new(faint));
+            Command::Replace(item).apply(&mut scene).unwrap();
         }
     }
     let settings = Settings { leave_out: LeaveOut::HalfStep, ..Settings::default() };

@@ -272,7 +272,7 @@ mod tests {
         assert!(!parts(&state).join(BETWEEN).contains("moving"));
         state.statistics.reduction.vertex_light = true;
         state.statistics.reduction.shrink = crate::app::state::Shrink::Half;
-        state.statistics.lost = Some(3.14);
+        state.statistics.lost = Some(3.12);
         let said = "  |  while moving: light per vertex, half size (error 3.1 of 255)  |  0.0 ms";
         assert!(parts(&state).join(BETWEEN).ends_with(said));
     }

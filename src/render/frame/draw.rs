@@ -131,6 +131,7 @@ pub(crate) struct Lines {
 
 /// The stages that colour a surface, in order.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a frame has few pipelines, most of them shaded")]
 pub(crate) enum Pipeline {
     /// One colour, whatever the light.
     Flat(Color),

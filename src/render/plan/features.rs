@@ -180,7 +180,8 @@ fn emission(it: &Facts<'_>) -> EffectState {
 }
 
 fn maps(it: &Facts<'_>) -> EffectState {
-    let rows: [(&str, fn(&Shaded) -> bool); 3] = [
+    type Reads = fn(&Shaded) -> bool;
+    let rows: [(&str, Reads); 3] = [
         ("map_Ka", |shaded| shaded.extras.ambient.is_some()),
         ("map_Ks", |shaded| shaded.extras.specular.is_some()),
         ("map_Ns", |shaded| shaded.extras.exponent.is_some()),

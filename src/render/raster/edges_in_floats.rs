@@ -191,7 +191,7 @@ impl FloatTriangle {
                 true => mask32x16::from_bitmask(simd, u64::MAX),
                 false => edge(0, along).simd_ge(0.0) & second.simd_ge(0.0) & third.simd_ge(0.0),
             };
-            y = y + 2.0;
+            y += 2.0;
             if !covered.any_true() {
                 continue;
             }

@@ -181,12 +181,8 @@ mod tests {
             };
             let place = [13.7, -31.1, 7.3 + i as f32];
             let mut got = [[0.0; 2]];
-            let order = DrawOrder {
-                x: vec![place[0]],
-                y: vec![place[1]],
-                z: vec![place[2]],
-                ..DrawOrder::default()
-            };
+            let mut order = DrawOrder::default();
+            (order.x, order.y, order.z) = (vec![place[0]], vec![place[1]], vec![place[2]]);
             to_pixels(ways, Level::new(), &screen, &order, 0, &mut got);
             let got = got[0].map(f64::from);
             let want = exact.pixels(exact.clip(place.map(f64::from)));

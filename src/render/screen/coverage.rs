@@ -306,8 +306,8 @@ mod tests {
                 let weighted = |pick: fn(&Snapped) -> i32| -> i64 {
                     (0..3).map(|i| i64::from(pick(&snapped[i])) * pixel.edges[i]).sum()
                 };
-                assert_eq!(weighted(|p| p.x) / sum, centre(pixel.x));
-                assert_eq!(weighted(|p| p.y) / sum, centre(pixel.y));
+                assert_eq!(weighted(|p| p.x) / sum, triangle.centre(pixel.x));
+                assert_eq!(weighted(|p| p.y) / sum, triangle.centre(pixel.y));
             });
         }
     }

@@ -41,11 +41,9 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
         let Some((corners, weights)) = &known else { continue };
         let at_centre = weights.at([fragments.x[i], fragments.y[i]]);
         // Lit at the centre of its pixel, unless that is outside of the triangle.
-        let weights = if fragments.shared && !(at_centre.min_element() >= 0.0) {
-            barycentrics.weights(i)
-        } else {
-            at_centre
-        };
+        let is_inside = at_centre.min_element() >= 0.0;
+        let weights =
+            if is_inside || !fragments.shared { at_centre } else { barycentrics.weights(i) };
         origins.set(i, within(corners, weights), [number, number + 1]);
     }
 }

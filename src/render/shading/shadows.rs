@@ -102,9 +102,9 @@ pub(crate) fn place_vertices<T: Number>(
 ) {
     origins.begin(Some(caster), false);
     let world_from_object = tracer.placement(caster);
-    for i in 0..count {
-        let [x, y, z]: [f64; 3] =
-            [positions[0][i], positions[1][i], positions[2][i]].map(Into::into);
+    let [x, y, z] = positions;
+    for (i, ((x, y), z)) in x.iter().zip(y).zip(z).take(count).enumerate() {
+        let [x, y, z]: [f64; 3] = [*x, *y, *z].map(Into::into);
         let at = world_from_object.transform_point3(DVec3::new(x + 0.0, y + 0.0, z + 0.0));
         origins.set(i, at, [0; 2]);
     }

@@ -105,11 +105,11 @@ impl RayTree {
         );
         ReinsertionOptimizer::default().run(&mut tree, 0.05, None);
         collapse(&mut tree, LEAF, NODE_COST);
-        Self::flattened(&tree, groups)
+        Self::flattened(&tree, &groups)
     }
 
     /// Copies the nodes of a tree, children after their parents, and computes their boxes.
-    fn flattened(tree: &Bvh2, groups: Groups) -> Self {
+    fn flattened(tree: &Bvh2, groups: &Groups) -> Self {
         let mut flat = Self::default();
         // The nodes that are still to be copied, with the places that refer to them.
         let mut open = vec![(0, None::<(usize, usize)>)];

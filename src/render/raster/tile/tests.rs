@@ -210,8 +210,8 @@ fn on_the_fine_grid_small_and_large_triangles_cover_what_the_rule_says() {
                 });
                 for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
                     let (words, count) = visibility.samples(Level::new(), x, y);
-                    for sample in 0..count {
-                        let got = seen(words[sample]) == Visible::Triangle(0);
+                    for (sample, word) in words[..count].iter().enumerate() {
+                        let got = seen(*word) == Visible::Triangle(0);
                         let wanted = want.contains(&(y, x, sample));
                         assert_eq!(got, wanted, "{x}, {y}: {corners:?}");
                     }
@@ -239,10 +239,10 @@ fn by_floats([p, q, r]: [[f32; 2]; 3]) -> Vec<(i32, i32)> {
 /// The pixels that a block at a time is drawn to.
 fn drawn(mut draw: impl FnMut(usize, &mut [u64; BLOCK_PIXELS])) -> Vec<(i32, i32)> {
     let mut found = Vec::new();
-    for block in 0..64 {
+    for (block, at) in (0..64_usize).zip(0_i32..) {
         let mut plane = [0; BLOCK_PIXELS];
         draw(block, &mut plane);
-        let (left, top) = ((block % 8 * 8) as i32, (block / 8 * 8) as i32);
+        let (left, top) = (at % 8 * 8, at / 8 * 8);
         let shown = (0..64).zip(plane).filter(|(_, word)| *word != 0);
         found.extend(shown.map(|(i, _)| (top + i / 8, left + i % 8)));
     }
