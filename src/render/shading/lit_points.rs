@@ -1,7 +1,7 @@
 //! The points of triangles at which fragments are lit, in world space: rays of shadows begin there.
 //!
-//! They are computed in f64 from whole edge functions, in either arithmetic, and lie in their
-//! triangles but for the rounding of one sum.
+//! They are computed in f64 from whole edge functions, in either arithmetic, and lie inside their
+//! triangles: see [`INSIDE`].
 
 use glam::DVec3;
 
@@ -11,6 +11,7 @@ use super::fragments::Fragments;
 use super::groups::Group;
 use super::interpolated::ShadingNumber;
 use super::triangle_attributes::TriangleAttributes;
+use crate::base::math::each;
 use crate::render::screen::weights::Weights;
 use crate::render::shadow::rays::Origins;
 use crate::render::shadow::tracer::Tracer;
@@ -48,16 +49,34 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
     }
 }
 
-/// The point of a triangle with these weights of its corners, which are clamped.
+/// The least weight of a corner. A point on an edge may be rounded to either side of the face beyond
+/// it, which would then shade the point; a millionth of the triangle inwards, it is on the right
+/// side of all faces that share the edge.
+const INSIDE: f64 = 1e-6;
+
+/// The point of a triangle with these weights of its corners, which are clamped. NaN is clamped,
+/// too.
 fn within([a, b, c]: &[DVec3; 3], weights: DVec3) -> DVec3 {
-    let weights = DVec3::new(above_0(weights.x), above_0(weights.y), above_0(weights.z));
-    let sum = weights.element_sum();
-    let weights =
-        if sum > 0.0 && sum.is_finite() { weights / sum } else { DVec3::splat(1.0 / 3.0) };
-    *a + (*b - *a) * weights.y + (*c - *a) * weights.z
+    let [x, y, z] = each(weights.to_array(), |weight| weight.max(INSIDE));
+    let sum = x + y + z;
+    let [y, z] = if sum.is_finite() { [y / sum, z / sum] } else { [1.0 / 3.0; 2] };
+    *a + (*b - *a) * y + (*c - *a) * z
 }
 
-/// NaN gives 0.
-fn above_0(x: f64) -> f64 {
-    if x > 0.0 { x } else { 0.0 }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_on_edges_and_beyond_them_are_moved_inwards_and_others_are_not() {
+        let corners = [DVec3::ZERO, DVec3::X * 3.0, DVec3::Y * 3.0];
+        let inner = DVec3::new(0.5, 0.25, 0.25);
+        assert_eq!(within(&corners, inner), DVec3::new(0.75, 0.75, 0.0));
+        for weights in [[0.5, 0.5, 0.0], [1.0, 0.0, 0.0], [-0.1, 0.6, 0.5], [f64::NAN, 0.5, 0.5]] {
+            let DVec3 { x, y, .. } = within(&corners, DVec3::from_array(weights));
+            assert!(x.min(y).min(3.0 - x - y) > 1e-6, "{weights:?}: {x}, {y}");
+        }
+        let far = DVec3::new(f64::INFINITY, 0.0, 0.0);
+        assert_eq!(within(&corners, far), DVec3::new(1.0, 1.0, 0.0));
+    }
 }
