@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use crate::accuracy::LightAt;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
+use crate::render::plan::features::presence;
 use crate::render::plan::tile::TilePlan;
 use crate::render::plan::uses::{Effect, EffectUse};
 use crate::render::raster::geometry::ScreenGeometry;
@@ -92,6 +93,7 @@ impl FramePlan {
         let mut counts = Counts::default();
         // By draw and pipeline.
         let mut surfaces = BTreeMap::<(u32, u32), u64>::new();
+        let mut draws = BTreeMap::<u32, u64>::new();
         let surface = |number: u32| {
             let (draw, start) = frame.draw_of(number);
             (draw, self.draws[draw as usize].pipeline_of(number - start.number))
@@ -131,14 +133,21 @@ impl FramePlan {
                 let mut once: Vec<(u32, u32)> = own.iter().map(|number| surface(*number)).collect();
                 once.sort_unstable();
                 once.dedup();
-                for key in once {
-                    *surfaces.entry(key).or_default() += 1;
+                for key in &once {
+                    *surfaces.entry(*key).or_default() += 1;
+                }
+                once.dedup_by_key(|(draw, _)| *draw);
+                for (draw, _) in once {
+                    *draws.entry(draw).or_default() += 1;
                 }
             });
         }
+        for (draw, pixels) in draws {
+            let item = self.draws[draw as usize].item;
+            counts.add(presence(item), item, pixels);
+        }
         for ((draw, pipeline), pixels) in surfaces {
             let item = self.draws[draw as usize].item;
-            counts.add(crate::render::plan::features::presence(item), item, pixels);
             if let Pipeline::Shaded(shaded) = &self.pipelines[pipeline as usize] {
                 self.count_surface(item, pipeline, shaded, pixels, tile, &mut counts);
             }

@@ -98,11 +98,8 @@ fn a_picture_that_shows_nothing_of_an_object_says_why() {
     let err = notes(path, &["square.obj", "square.obj", "--from", "180,0", "--sides", "one"]);
     assert!(err.contains("and of 1 other object:"), "{err}");
 
-    std::fs::write(
-        path.join("clear.mtl"),
-        "newmtl clear\nKd 1 1 1\nd 0.2\nnewmtl solid\nKd 1 1 1\n",
-    )
-    .unwrap();
+    std::fs::write(path.join("clear.mtl"), "newmtl clear\nKd 1 1 1\nd 0\nnewmtl solid\nKd 1 1 1\n")
+        .unwrap();
     let clear = format!("mtllib clear.mtl\n{}", SQUARE.replace("f 1", "usemtl clear\nf 1"));
     std::fs::write(path.join("clear.obj"), clear).unwrap();
     let err = notes(path, &["clear.obj"]);

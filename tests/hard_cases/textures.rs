@@ -2,7 +2,7 @@
 //! distances at which lanes of f32 could go wrong.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::{Arithmetic, Filter, Settings};
+use marraztu::accuracy::{Arithmetic, Filter, Settings, Transparency};
 use marraztu::base::Shared;
 use marraztu::base::image::{Picture, Size};
 use marraztu::base::rng::Rng;
@@ -188,7 +188,9 @@ fn case_39_a_pixel_is_a_hole_exactly_if_its_alpha_is_below_one_half() {
     let (scene, view) = quad(wall(), uvs, &texture);
     let (mut wrong, mut holes, mut pixels) = (0, 0, 0);
     for filter in [Filter::Nearest, Filter::Bilinear, Filter::Trilinear] {
-        let picture = draw(&scene, &view, &Settings { filter, ..Settings::default() }, SIDE);
+        let transparency = Transparency::Threshold;
+        let settings = Settings { filter, transparency, ..Settings::default() };
+        let picture = draw(&scene, &view, &settings, SIDE);
         for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
             let Some(at) = place(wall(), uvs, x, y) else { continue };
             let alpha = grey(&texture, at, filter) - 127.5;

@@ -112,7 +112,8 @@ pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings 
     bench.run(candidates, &mut |_| {}).unwrap()
 }
 
-/// The first scene with a stretched triangle that has a texture and an exponent of 32.
+/// The first scene with a ball that has bumps, and a stretched triangle that is transparent and has
+/// a texture and an exponent of 32.
 fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
     use marraztu::base::Shared;
     use marraztu::scene::*;
@@ -129,7 +130,11 @@ fn textured_scene() -> (marraztu::scene::Scene, marraztu::scene::View) {
     let (wrap, source) = (Wrap::default(), std::path::PathBuf::new());
     let texture = Texture { source, picture, wrap, offset: [0.0; 2], scale: [1.0; 2] };
     object.texture = Some(Shared::new(texture));
+    object.opacity = 0.5;
     let item = Item::Object(ObjectId(100), Box::new(object));
+    Command::Insert { at: 0, item }.apply(&mut scene).unwrap();
+    let dimples = Object::new(io::own_model("dimples").unwrap(), MaterialChoice::File);
+    let item = Item::Object(ObjectId(101), Box::new(dimples));
     Command::Insert { at: 0, item }.apply(&mut scene).unwrap();
     (scene, view)
 }

@@ -42,7 +42,7 @@ fn press(editor: &mut Editor, key: Key) {
 fn reached(editor: &mut Editor) -> BTreeSet<String> {
     let window = editor.harness.ctx.content_rect();
     let mut reached = BTreeSet::new();
-    for region in 1..40 {
+    for region in 1..80 {
         editor.press(Named(Key::Escape));
         editor.settle();
         let view = editor.harness.get_by_label("Viewport").rect();

@@ -407,7 +407,7 @@ mod tests {
         );
         let Material { diffuse, specular, exponent, .. } = material.material;
         assert_eq!((diffuse, specular, exponent), ([0.5; 3], [1.0; 3], 9.0));
-        assert_eq!(findings, [FindingKind::MtlNumber]);
+        assert_eq!(findings, [FindingKind::MtlNumber, FindingKind::Illumination]);
     }
 
     #[test]

@@ -338,6 +338,6 @@ mod tests {
             Pipeline::Flat(Color::BACK_FACE).fingerprint(),
         ];
         let all: BTreeSet<u64> = others.into_iter().chain([plain]).collect();
-        assert_eq!(all.len(), 10);
+        assert_eq!(all.len(), 11);
     }
 }

@@ -232,7 +232,7 @@ mod tests {
                     1 => (random % 65_536) as f32 / 65_535.0,
                     2 => ((random % 65_536) as f32 + 0.5) / 65_535.0,
                     // Of every size.
-                    _ => f32::from_bits(random % 1024 + (random >> 10) * ONE / 16_384).min(1.0),
+                    _ => f32::from_bits(random % 1024 + (random >> 10) * (ONE / 16_384)).min(1.0),
                 }
             });
             for format in [

@@ -49,9 +49,9 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
     }
 }
 
-/// The least weight of a corner. A point on an edge may be rounded to either side of the face beyond
-/// it, which would then shade the point; a millionth of the triangle inwards, it is on the right
-/// side of all faces that share the edge.
+/// The least weight of a corner. A point on an edge may be rounded to either side of the face
+/// beyond it, which would then shade the point; a millionth of the triangle inwards, it is on the
+/// right side of all faces that share the edge.
 const INSIDE: f64 = 1e-6;
 
 /// The point of a triangle with these weights of its corners, which are clamped. NaN is clamped,
