@@ -103,7 +103,7 @@ fn a_picture_that_shows_nothing_of_an_object_says_why() {
     let clear = format!("mtllib clear.mtl\n{}", SQUARE.replace("f 1", "usemtl clear\nf 1"));
     std::fs::write(path.join("clear.obj"), clear).unwrap();
     let err = notes(path, &["clear.obj"]);
-    assert!(err.contains("nothing is seen of clear: it is transparent"), "{err}");
+    assert!(err.contains("nothing is seen of clear: it is wholly transparent"), "{err}");
 }
 
 #[test]

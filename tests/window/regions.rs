@@ -41,8 +41,8 @@ fn press(editor: &mut Editor, key: Key) {
 /// What F6 and then at most 15 presses of Tab reach, region by region.
 fn reached(editor: &mut Editor) -> BTreeSet<String> {
     let window = editor.harness.ctx.content_rect();
-    let mut reached = BTreeSet::new();
-    for region in 1..80 {
+    let (mut reached, mut firsts) = (BTreeSet::new(), Vec::new());
+    for region in 1..40 {
         editor.press(Named(Key::Escape));
         editor.settle();
         let view = editor.harness.get_by_label("Viewport").rect();
@@ -53,10 +53,14 @@ fn reached(editor: &mut Editor) -> BTreeSet<String> {
         match focused(editor) {
             Some((name, _)) if name == "Viewport" => return reached,
             None => panic!("nothing has the keyboard after F6 x {region}"),
-            Some(_) => {}
+            Some((name, _)) => firsts.push(name),
         }
         for tabs in 0..=MOST {
             if let Some((name, rect)) = focused(editor) {
+                if name == "Viewport" {
+                    // There, Tab goes to the next light or object.
+                    break;
+                }
                 assert!(window.contains_rect(rect.shrink(1.0)), "{name} is out of sight: {rect}");
                 reached.insert(name);
             }
@@ -65,7 +69,7 @@ fn reached(editor: &mut Editor) -> BTreeSet<String> {
             }
         }
     }
-    panic!("F6 never comes back to the viewport");
+    panic!("F6 never comes back to the viewport: {firsts:?}");
 }
 
 #[test]

@@ -230,7 +230,7 @@ mod tests {
                     0 => random as f32 / 16_777_216.0,
                     // Next to where a whole number begins.
                     1 => (random % 65_536) as f32 / 65_535.0,
-                    2 => ((random % 65_536) as f32 + 0.5) / 65_535.0,
+                    2 => (((random % 65_536) as f32 + 0.5) / 65_535.0).min(1.0),
                     // Of every size.
                     _ => f32::from_bits(random % 1024 + (random >> 10) * (ONE / 16_384)).min(1.0),
                 }
