@@ -59,6 +59,7 @@ fn reached(editor: &mut Editor) -> BTreeSet<String> {
             if let Some((name, rect)) = focused(editor) {
                 if name == "Viewport" {
                     // There, Tab goes to the next light or object.
+                    reached.insert(name);
                     break;
                 }
                 assert!(window.contains_rect(rect.shrink(1.0)), "{name} is out of sight: {rect}");
