@@ -14,7 +14,7 @@ pub(super) struct Ground<'a> {
     pub(super) region: Option<Region>,
     /// Their normals, if they are known.
     pub(super) turning: Option<Turning>,
-    /// See [`Shaded::tiled`].
+    /// Whether lights may be culled tile by tile, since nothing of it is clipped.
     pub(super) tiled: bool,
     /// Whether their colours are visible at all.
     pub(super) seen: bool,
