@@ -126,7 +126,8 @@ fn sum_ui(ui: &mut Ui, pixel: &ExplainedPixel, explained: &PixelColor) {
 
 /// N, V, and L and R of the strongest light, seen from the side: N points up.
 fn diagram_ui(ui: &mut Ui, pixel: &ExplainedPixel, point: &SurfacePoint, explained: &PixelColor) {
-    let lit = |term: &&Term| term.ray.is_some_and(|ray| ray.n_l > 0.0);
+    // Of the nearest surface, which N belongs to.
+    let lit = |term: &&Term| term.layer == 0 && term.ray.is_some_and(|ray| ray.n_l > 0.0);
     let bright = |term: &&Term| term.value.iter().sum::<f64>();
     let strongest =
         explained.terms.iter().filter(lit).max_by(|a, b| bright(a).total_cmp(&bright(b)));
