@@ -120,6 +120,7 @@ pub(crate) static CASES: &[Case] = &[
     case(74, SHADOWS, "I", "a light inside of a closed body shines through it"),
     case(75, SHADOWS, "R", "a bias that suits one unit of length is wrong in another"),
     case(76, SHADOWS, "I", "triangles of one plane shade each other"),
+    case(77, SHADOWS, "I", "edges speckle if a pixel has several samples"),
     case(80, TRANSPARENCY, "R", "which of two sheets in one plane is in front depends on the list"),
     case(81, TRANSPARENCY, "D", "sheets that cut through each other are wholly before or behind"),
     case(82, TRANSPARENCY, "I", "opacity 0 leaves a trace, and opacity 1 lets something through"),

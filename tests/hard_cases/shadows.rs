@@ -1,7 +1,7 @@
 //! Shadows, compared with rays that are cast one by one in f64 against every triangle.
 
 use glam::{DMat4, DVec3};
-use marraztu::accuracy::Settings;
+use marraztu::accuracy::{Samples, Settings};
 use marraztu::base::Shared;
 use marraztu::base::image::Picture;
 use marraztu::scene::{
@@ -470,6 +470,31 @@ fn case_76_triangles_of_one_plane_do_not_shade_each_other() {
         what: "pixels of a plane that the plane itself shades",
         naive: Some(("rays in f32", naive as f64)),
         ours: shaded as f64,
+        bound: 0.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
+#[test]
+fn case_77_what_is_seen_from_a_lamp_is_lit_by_it_with_several_samples_too() {
+    let eye = DVec3::Z * 400.0;
+    let stage = Shade { models: vec![(ball(12), at(100.0, 0.0, 0.0, 0.0))], light: bulb(eye), eye };
+    let mut speckles = 0;
+    for samples in [Samples::One, Samples::Four, Samples::Sixteen] {
+        let settings = Settings { samples, ..Settings::default() };
+        let [own, bright] = [true, false].map(|shadows| {
+            let (scene, view) = stage.scene(true, shadows);
+            draw(&scene, &view, &settings, SIDE)
+        });
+        assert!(bright.pixels().iter().filter(|pixel| pixel[0] > 100).count() > 1_000);
+        speckles += own.pixels().iter().zip(bright.pixels()).filter(|(a, b)| a != b).count();
+    }
+    Figure {
+        case: 77,
+        what: "pixels of a ball, seen from the lamp, that are in shadow",
+        naive: None,
+        ours: speckles as f64,
         bound: 0.0,
         unit: "pixels",
     }
