@@ -112,7 +112,8 @@ $(cat "$work/proofs")
 \`\`\`
 
 TEXT
-for group in Geometry Clipping Coverage Depth Interpolation Light Colour Camera Undo "Files and scale"; do
+for group in Geometry Clipping Coverage Depth Interpolation Light Colour Camera Undo "Files and scale" Shadows \
+  Transparency Surfaces; do
   printf '## %s\n\n' "$group"
   printf '| case | what goes wrong | measured | elsewhere | ours | bound | unit |\n'
   printf '|--:|---|---|---|--:|--:|---|\n'
