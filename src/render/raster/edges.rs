@@ -49,14 +49,13 @@ impl EdgeSetup<'_> {
 
     #[inline(always)]
     fn all<S: Simd, const N: usize>(&self, simd: S, edges: &[DrawEdge], bins: &mut Bins) {
-        let (whole, rest) = edges.as_chunks::<PACK>();
-        for sixteen in whole {
-            self.sixteen::<S, N>(simd, sixteen, PACK, bins);
-        }
-        if let Some(last) = rest.last() {
-            let mut sixteen = [*last; PACK];
-            sixteen[..rest.len()].copy_from_slice(rest);
-            self.sixteen::<S, N>(simd, &sixteen, rest.len(), bins);
+        for some in edges.chunks(PACK) {
+            let mut last = [some[0]; PACK];
+            let sixteen = some.first_chunk().unwrap_or_else(|| {
+                last[..some.len()].copy_from_slice(some);
+                &last
+            });
+            self.sixteen::<S, N>(simd, sixteen, some.len(), bins);
         }
     }
 

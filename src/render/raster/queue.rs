@@ -61,9 +61,13 @@ impl Queue {
         pack
     }
 
-    /// Removes the first [`WAITING`]; the others move up.
+    /// Removes up to [`WAITING`] triangles; the others move up.
     #[inline(always)]
     pub(super) fn forget(&mut self) {
+        if self.count < WAITING {
+            self.count = 0;
+            return;
+        }
         for row in &mut self.rows {
             let (first, others) = row.split_at_mut(WAITING);
             first[..PACK].copy_from_slice(others);

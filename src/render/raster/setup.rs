@@ -114,14 +114,13 @@ impl<'a> Setup<'a> {
         pipelines: &[Pipeline],
         bins: &mut Bins,
     ) {
-        let (whole, rest) = triangles.as_chunks::<PACK>();
-        for sixteen in whole {
-            self.sixteen::<S, R, N>(simd, sixteen, PACK, pipelines, bins);
-        }
-        if let Some(last) = rest.last() {
-            let mut sixteen = [*last; PACK];
-            sixteen[..rest.len()].copy_from_slice(rest);
-            self.sixteen::<S, R, N>(simd, &sixteen, rest.len(), pipelines, bins);
+        for some in triangles.chunks(PACK) {
+            let mut last = [some[0]; PACK];
+            let sixteen = some.first_chunk().unwrap_or_else(|| {
+                last[..some.len()].copy_from_slice(some);
+                &last
+            });
+            self.sixteen::<S, R, N>(simd, sixteen, some.len(), pipelines, bins);
         }
     }
 
@@ -181,12 +180,14 @@ impl<'a> Setup<'a> {
                 }
             }
             let side = (right - left).max(bottom - top);
-            let places = (plain, side, area);
-            if self.choosy {
-                self.sort_kinds::<S, R, N>(simd, triangles, &pack, places, pipelines, bins);
-            } else {
-                let bins = bins.of(self.transparent);
-                self.sort::<S, R, N>(simd, triangles, &pack, (plain, side), 0, bins);
+            let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
+            let (plain, front) = (plain.to_bitmask(), front.to_bitmask());
+            for (some, cutout, transparent) in self.kinds(triangles, plain, front, pipelines) {
+                if some | cutout != 0 {
+                    let some = (mask32x16::from_bitmask(simd, some), side);
+                    let bins = bins.of(transparent);
+                    self.sort::<S, R, N>(simd, triangles, &pack, some, cutout, bins);
+                }
             }
         }
         let mut odd = odd.to_bitmask();
@@ -233,34 +234,6 @@ impl<'a> Setup<'a> {
         [x, y]
     }
 
-    /// Sorts visible triangles of several kinds, with the larger sides of their boxes and their
-    /// areas.
-    #[inline(always)]
-    fn sort_kinds<S: Simd, R: Rule, const N: usize>(
-        &self,
-        simd: S,
-        triangles: &[DrawTriangle; PACK],
-        pack: &Pack<S>,
-        (plain, side, area): (mask32x16<S>, i32x16<S>, i32x16<S>),
-        pipelines: &[Pipeline],
-        bins: &mut Bins,
-    ) {
-        let [mut plain, mut cutout, transparent] =
-            self.kinds(triangles, plain.to_bitmask(), pipelines);
-        if self.draw.culls_opaque {
-            let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
-            let front = front.to_bitmask();
-            (plain, cutout) = (plain & front, cutout & front);
-        }
-        let mask = |bits| mask32x16::from_bitmask(simd, bits);
-        for (is_transparent, some, cutout) in [(false, plain, cutout), (true, transparent, 0)] {
-            if some | cutout != 0 {
-                let bins = bins.of(is_transparent);
-                self.sort::<S, R, N>(simd, triangles, pack, (mask(some), side), cutout, bins);
-            }
-        }
-    }
-
     /// Sorts visible triangles by the larger sides of their bounding boxes: into the queues of
     /// small ones, or to the large ones; those with a bit in `cutout` need the alpha test.
     #[inline(always)]
@@ -283,7 +256,7 @@ impl<'a> Setup<'a> {
             }
             bins.drawn += count;
             if bins.queues[queue].add(pack, some, count) {
-                small::draw_full::<S, R, N>(simd, queue, bins);
+                small::draw_queue::<S, R, N>(simd, queue, bins);
             }
         }
         let mut large = (plain & side.simd_gt(above)).to_bitmask() | cutout;
@@ -322,9 +295,31 @@ impl<'a> Setup<'a> {
         !R::UNSNAPPED || self.coverage == Coverage::F32Edges
     }
 
+    /// Which of the triangles in a mask are drawn: without the alpha test, with it, and whether
+    /// these are the transparent ones; `front` says which face the camera.
+    #[inline(always)]
+    fn kinds(
+        &self,
+        triangles: &[DrawTriangle; PACK],
+        some: u64,
+        front: u64,
+        pipelines: &[Pipeline],
+    ) -> [(u64, u64, bool); 2] {
+        if !self.choosy {
+            let (opaque, transparent) = if self.transparent { (0, some) } else { (some, 0) };
+            return [(opaque, 0, false), (transparent, 0, true)];
+        }
+        let [mut plain, mut cutout, transparent] =
+            self.kinds_one_by_one(triangles, some, pipelines);
+        if self.draw.culls_opaque {
+            (plain, cutout) = (plain & front, cutout & front);
+        }
+        [(plain, cutout, false), (transparent, 0, true)]
+    }
+
     /// The masks of the triangles that are drawn without and with the alpha test, and of those that
     /// are transparent.
-    fn kinds(
+    fn kinds_one_by_one(
         &self,
         triangles: &[DrawTriangle; PACK],
         some: u64,
@@ -422,8 +417,8 @@ pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins) {
     dispatch!(level, simd => {
         for queue in 0..SMALL.len() {
             match many {
-                true => small::draw_rest::<_, R, FOUR>(simd, queue, bins),
-                false => small::draw_rest::<_, R, 1>(simd, queue, bins),
+                true => small::draw_queue::<_, R, FOUR>(simd, queue, bins),
+                false => small::draw_queue::<_, R, 1>(simd, queue, bins),
             }
         }
     });

@@ -18,30 +18,30 @@ use crate::render::screen::coverage::PixelBox;
 use crate::render::screen::sample_positions::SamplePositions;
 use crate::render::simd::Real;
 
-/// Draws the triangles of a full queue, in packs of sixteen, with `N` samples per pixel.
+/// Draws the triangles that wait in a queue, in packs of sixteen, with `N` samples per pixel.
+///
+/// Compiled as a function of its own, since what calls it does so at several places.
 #[inline(always)]
-pub(crate) fn draw_full<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize, bins: &mut Bins) {
-    for at in (0..WAITING).step_by(PACK) {
-        let pack = bins.queues[queue].pack(simd, at);
-        draw::<S, R, N>(simd, &pack, bins);
-    }
-    bins.queues[queue].forget();
-}
-
-/// Draws the triangles that are left in a queue.
-#[inline(always)]
-pub(crate) fn draw_rest<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize, bins: &mut Bins) {
-    let count = std::mem::take(&mut bins.queues[queue].count);
-    for at in (0..count).step_by(PACK) {
-        let mut pack = bins.queues[queue].pack(simd, at);
-        let there = mask32x16::from_bitmask(simd, (1 << (count - at).min(PACK)) - 1);
-        // An empty box holds no pixels.
-        let nothing = i32x16::splat(simd, 0);
-        for row in &mut pack {
-            *row = there.select(*row, nothing);
-        }
-        draw::<S, R, N>(simd, &pack, bins);
-    }
+pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize, bins: &mut Bins) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let count = bins.queues[queue].count.min(WAITING);
+            for at in (0..count).step_by(PACK) {
+                let mut pack = bins.queues[queue].pack(simd, at);
+                if count - at < PACK {
+                    let there = mask32x16::from_bitmask(simd, (1 << (count - at)) - 1);
+                    // An empty box holds no pixels.
+                    let nothing = i32x16::splat(simd, 0);
+                    for row in &mut pack {
+                        *row = there.select(*row, nothing);
+                    }
+                }
+                draw::<S, R, N>(simd, &pack, bins);
+            }
+            bins.queues[queue].forget();
+        },
+    );
 }
 
 /// Draws sixteen triangles whose boxes have at most 8 x 8 pixels.

@@ -21,7 +21,7 @@
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::bins::Bins;
-use super::depth_format::{Format, depths_between, with_format};
+use super::depth_format::{Any, Format as _, depths_between, with_format};
 use super::edges_in_floats::FloatTriangle;
 use super::geometry::ScreenGeometry;
 use super::large::{Large, Solid};
@@ -95,14 +95,14 @@ impl Visibility {
     ) {
         self.clear(bounds, frame.sample_positions());
         (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
-        with_format!(plan.variants.depth, D => match self.sample_positions.are_many() {
-            true => self.draw_in::<D, FOUR>(level, plan, frame, tile),
-            false => self.draw_in::<D, 1>(level, plan, frame, tile),
-        });
+        match self.sample_positions.are_many() {
+            true => self.draw_in::<FOUR>(level, plan, frame, tile),
+            false => self.draw_in::<1>(level, plan, frame, tile),
+        }
     }
 
     /// Draws with `N` samples per pixel.
-    fn draw_in<D: Format, const N: usize>(
+    fn draw_in<const N: usize>(
         &mut self,
         level: Level,
         plan: &FramePlan,
@@ -111,28 +111,27 @@ impl Visibility {
     ) {
         if plan.variants.coverage == Coverage::Exact {
             for bins in frame.bins() {
-                dispatch!(level, simd => self.draw_plain::<_, D, N>(simd, bins, tile));
+                dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, tile));
             }
         }
         for bins in frame.bins() {
-            dispatch!(level, simd => self.draw_hits::<_, D, N>(simd, bins, tile));
+            dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
             if plan.variants.coverage != Coverage::Exact {
                 dispatch!(level, simd => {
                     self.draw_by_variant::<_, N>(simd, (plan, frame), bins, tile);
                 });
-                let width = plan.line_width;
-                dispatch!(level, simd => self.draw_lines::<_, D, N>(simd, bins, width, tile));
+                self.draw_lines::<N>(level, bins, plan.line_width, tile);
                 continue;
             }
             for &number in &bins.tiles[tile].large {
                 let large = &bins.large[number as usize];
                 if large.cutout {
                     dispatch!(level, simd => {
-                        self.draw_cutout::<_, D, N>(simd, plan, frame, large);
+                        self.draw_cutout::<_, N>(simd, plan, frame, large);
                     });
                 }
             }
-            dispatch!(level, simd => self.draw_lines::<_, D, N>(simd, bins, plan.line_width, tile));
+            self.draw_lines::<N>(level, bins, plan.line_width, tile);
         }
     }
 
@@ -228,12 +227,8 @@ impl Visibility {
         let mut samples = [0; FOUR];
         if self.shows(block) {
             match count {
-                1 => with_format!(self.depth_format, D => {
-                    dispatch!(level, simd => self.write::<_, D, 1>(simd, block));
-                }),
-                _ => with_format!(self.depth_format, D => {
-                    dispatch!(level, simd => self.write::<_, D, FOUR>(simd, block));
-                }),
+                1 => self.write::<1>(level, block),
+                _ => self.write::<FOUR>(level, block),
             }
             for (sample, word) in samples[..count].iter_mut().enumerate() {
                 *word = self.block_samples(block)[sample * BLOCK_PIXELS + within(x, y)];
@@ -253,21 +248,17 @@ impl Visibility {
             return [0; BLOCK_PIXELS];
         }
         if self.sample_positions.are_many() {
-            with_format!(self.depth_format, D => {
-                dispatch!(level, simd => self.write::<_, D, FOUR>(simd, block));
-            });
+            self.write::<FOUR>(level, block);
             *self.plane::<FOUR>(block, sample)
         } else {
-            with_format!(self.depth_format, D => {
-                dispatch!(level, simd => self.write::<_, D, 1>(simd, block));
-            });
+            self.write::<1>(level, block);
             *self.plane::<1>(block, sample)
         }
     }
 
     /// Ensures that a block has valid entries for `N` samples per pixel.
     #[inline(always)]
-    fn write<S: Simd, D: Format, const N: usize>(&mut self, simd: S, block: usize) {
+    fn write<const N: usize>(&mut self, level: Level, block: usize) {
         let bit = 1 << block;
         if self.written & bit == 0 {
             self.written |= bit;
@@ -275,14 +266,18 @@ impl Visibility {
                 self.plane::<N>(block, sample).fill(0);
             }
             if self.whole & bit != 0 {
-                self.whole &= !bit;
-                match self.large[self.shown[block] as usize] {
-                    Shown::Large(large) => self.draw_planes::<S, D, N>(simd, &large, block, true),
-                    Shown::Floats(triangle) => {
-                        self.draw_float_planes::<S, N>(simd, &triangle, block, true);
-                    }
-                }
+                self.expand::<N>(level, block);
             }
+        }
+    }
+
+    /// Writes the entries of a block that one triangle covers fully.
+    #[inline(never)]
+    fn expand<const N: usize>(&mut self, level: Level, block: usize) {
+        self.whole &= !(1 << block);
+        match self.large[self.shown[block] as usize] {
+            Shown::Large(large) => self.draw_planes::<N>(level, &large, block, true),
+            Shown::Floats(triangle) => self.draw_float_planes::<N>(level, &triangle, block, true),
         }
     }
 
@@ -293,48 +288,50 @@ impl Visibility {
     }
 
     /// Draws a triangle into a block that it covers fully or in part.
-    #[inline(always)]
-    fn draw_planes<S: Simd, D: Format, const N: usize>(
+    #[inline(never)]
+    fn draw_planes<const N: usize>(
         &mut self,
-        simd: S,
+        level: Level,
         large: &Large,
         block: usize,
         whole: bool,
     ) {
-        let (sample_positions, format) = (self.sample_positions, D::of(self.depth_format));
-        for sample in 0..N {
+        let (sample_positions, format) = (self.sample_positions, self.depth_format);
+        dispatch!(level, simd => for sample in 0..N {
             let shift = sample_positions.shift::<N>(sample);
             let plane = self.plane::<N>(block, sample);
-            large.draw(format, simd, (block, shift), whole, &Solid, plane);
-        }
+            with_format!(format, D => {
+                large.draw(D::of(format), simd, (block, shift), whole, &Solid, plane);
+            });
+        });
     }
 
     #[inline(always)]
-    fn put<S: Simd, D: Format, const N: usize>(
+    fn put<const N: usize>(
         &mut self,
-        simd: S,
+        level: Level,
         (x, y, sample): (i32, i32, usize),
         depth: f32,
         number: u32,
         bias: u32,
     ) {
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
-        self.write::<S, D, N>(simd, block_at(x, y));
-        let word = word(D::of(self.depth_format).key(depth) + bias, number);
+        self.write::<N>(level, block_at(x, y));
+        let word = word(self.key(depth) + bias, number);
         let old = &mut self.plane::<N>(block_at(x, y), sample)[within(x, y)];
         *old = word.max(*old);
     }
 
+    /// The key of a depth.
+    #[inline(always)]
+    fn key(&self, depth: f32) -> u32 {
+        Any(self.depth_format).key(depth)
+    }
+
     /// Draws the lines of a tile that are not short.
     #[inline(always)]
-    fn draw_lines<S: Simd, D: Format, const N: usize>(
-        &mut self,
-        simd: S,
-        bins: &Bins,
-        width: i32,
-        tile: usize,
-    ) {
-        let bias = D::of(self.depth_format).lines_nearer();
+    fn draw_lines<const N: usize>(&mut self, level: Level, bins: &Bins, width: i32, tile: usize) {
+        let bias = Any(self.depth_format).lines_nearer();
         for &place in &bins.tiles[tile].lines {
             for sample in 0..N {
                 let line =
@@ -345,7 +342,7 @@ impl Visibility {
                     self.bounds,
                     #[inline(always)]
                     |x, y, depth| {
-                        self.put::<S, D, N>(simd, (x, y, sample), depth, line.number, bias);
+                        self.put::<N>(level, (x, y, sample), depth, line.number, bias);
                     },
                 );
             }
@@ -354,8 +351,8 @@ impl Visibility {
 
     /// Draws the small triangles of a tile, and lines that are short.
     #[inline(always)]
-    fn draw_hits<S: Simd, D: Format, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
-        bins.hits.each(
+    fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
+        with_format!(self.depth_format, D => bins.hits.each(
             (D::of(self.depth_format), simd),
             tile,
             #[inline(always)]
@@ -363,25 +360,20 @@ impl Visibility {
                 let place = place as usize % (N * PIXELS);
                 let block = place / (N * BLOCK_PIXELS);
                 if self.written >> block & 1 == 0 {
-                    self.write::<S, D, N>(simd, block);
+                    self.write::<N>(simd.level(), block);
                 }
                 self.buffer[place] = self.buffer[place].max(word(key, number));
             },
-        );
+        ));
     }
 
     /// Draws the large triangles of a tile that need no alpha test.
     #[inline(always)]
-    fn draw_plain<S: Simd, D: Format, const N: usize>(
-        &mut self,
-        simd: S,
-        bins: &Bins,
-        tile: usize,
-    ) {
+    fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
         for &number in &bins.tiles[tile].large {
             let large = &bins.large[number as usize];
             if !large.cutout {
-                self.draw_large::<S, D, N>(simd, large);
+                self.draw_large::<S, N>(simd, large);
             }
         }
     }

@@ -53,12 +53,28 @@ impl<'a> Sampler<'a> {
 
     /// Red, green and blue, as factors, at sixteen positions in texels; `footprint` gives the
     /// square of the texels that a pixel covers.
+    ///
+    /// Compiled as a function of its own, since many kernels sample.
     #[inline(always)]
     pub(crate) fn sample<S: Simd, D: Decode>(
         &self,
         simd: S,
         position: [f32x16<S>; 2],
         footprint: impl FnOnce() -> f32x16<S>,
+    ) -> Vec3<f32x16<S>> {
+        let footprint = if self.reads_mips() { footprint() } else { position[0] };
+        simd.vectorize(
+            #[inline(always)]
+            || self.sample_in::<S, D>(simd, position, footprint),
+        )
+    }
+
+    #[inline(always)]
+    fn sample_in<S: Simd, D: Decode>(
+        &self,
+        simd: S,
+        position: [f32x16<S>; 2],
+        footprint: f32x16<S>,
     ) -> Vec3<f32x16<S>> {
         let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
         match self.filter {
@@ -68,7 +84,7 @@ impl<'a> Sampler<'a> {
                 let color = level.bilinear::<D>(simd, self, position);
                 color.times(f32x16::splat(simd, 1.0 / 255.0))
             }
-            Filter::Trilinear => self.trilinear::<S, D>(simd, position, footprint()),
+            Filter::Trilinear => self.trilinear::<S, D>(simd, position, footprint),
         }
     }
 

@@ -1,13 +1,13 @@
 //! Draws the triangles of a tile that are not small: medium and large ones, and those with holes.
 
-use fearless_simd::Simd;
+use fearless_simd::{Level, Simd};
 
 use super::{Shown, Visibility};
 use crate::base::math::each;
 use crate::render::frame::FramePlan;
 use crate::render::raster::alpha_test::{AlphaTest, BlockHoles};
 use crate::render::raster::bins::LargeTriangle;
-use crate::render::raster::depth_format::Format;
+use crate::render::raster::depth_format::{Any, Format as _, with_format};
 use crate::render::raster::geometry::ScreenGeometry;
 use crate::render::raster::large::{Large, Solid, Touched};
 use crate::render::raster::medium::{self, Medium};
@@ -15,21 +15,17 @@ use crate::render::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
 
 impl Visibility {
     #[inline(always)]
-    pub(super) fn draw_large<S: Simd, D: Format, const N: usize>(
-        &mut self,
-        simd: S,
-        large: &LargeTriangle,
-    ) {
+    pub(super) fn draw_large<S: Simd, const N: usize>(&mut self, simd: S, large: &LargeTriangle) {
         let corners = each(large.corners, |corner| corner.at());
         let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
         // The fine grid needs more bits.
         let is_medium = reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST;
         if is_medium && self.grid == Grid::Usual {
-            return self.draw_medium::<S, D, N>(simd, large);
+            return self.draw_medium::<S, N>(simd, large);
         }
         let Some((large, area)) = self.set_up::<N>(large) else { return };
         let touched = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let (mut some, high) = (touched.some, D::of(self.depth_format).key(large.high));
+        let (mut some, high) = (touched.some, self.key(large.high));
         let mut place = None;
         while some != 0 {
             let block = some.trailing_zeros() as usize;
@@ -38,42 +34,38 @@ impl Visibility {
                 continue;
             }
             if touched.whole >> block & 1 != 0 {
-                self.draw_full_block::<S, D, N>(simd, &large, block, &mut place);
+                self.draw_full_block::<N>(simd.level(), &large, block, &mut place);
             } else {
-                self.write::<S, D, N>(simd, block);
-                self.draw_planes::<S, D, N>(simd, &large, block, false);
+                self.write::<N>(simd.level(), block);
+                self.draw_planes::<N>(simd.level(), &large, block, false);
             }
         }
     }
 
     /// Draws a triangle whose bounding box is at most as large as a tile.
     #[inline(always)]
-    fn draw_medium<S: Simd, D: Format, const N: usize>(
-        &mut self,
-        simd: S,
-        triangle: &LargeTriangle,
-    ) {
+    fn draw_medium<S: Simd, const N: usize>(&mut self, simd: S, triangle: &LargeTriangle) {
         let corners = each(triangle.corners, |corner| corner.at());
         let Some(area) = self.reached::<N>(corners) else { return };
         let first = [self.bounds.left, self.bounds.top];
         let Some(medium) = Medium::new(simd, triangle, first) else { return };
         let touched = medium.blocks::<N>(simd, area, &self.sample_positions);
         let (mut some, mut whole) = (touched.some & !touched.whole, touched.whole);
-        let format = D::of(self.depth_format);
-        let high = format.key(medium.high);
-        while some != 0 {
+        let high = self.key(medium.high);
+        with_format!(self.depth_format, D => while some != 0 {
             let block = some.trailing_zeros() as usize;
             some &= some - 1;
             if high < self.farthest[block] {
                 continue;
             }
-            self.write::<S, D, N>(simd, block);
+            self.write::<N>(simd.level(), block);
+            let format = D::of(self.depth_format);
             for sample in 0..N {
                 let shift = self.sample_positions.shift::<N>(sample);
                 let plane = self.plane::<N>(block, sample);
                 medium.draw(format, simd, (block, shift), area, plane);
             }
-        }
+        });
         if whole == 0 {
             return;
         }
@@ -83,29 +75,28 @@ impl Visibility {
             let block = whole.trailing_zeros() as usize;
             whole &= whole - 1;
             if high >= self.farthest[block] {
-                self.draw_full_block::<S, D, N>(simd, &large, block, &mut place);
+                self.draw_full_block::<N>(simd.level(), &large, block, &mut place);
             }
         }
     }
 
     /// Draws a triangle into a block that it covers fully; `place` is its index in `large`, once it
     /// has one.
-    #[inline(always)]
-    fn draw_full_block<S: Simd, D: Format, const N: usize>(
+    #[inline(never)]
+    fn draw_full_block<const N: usize>(
         &mut self,
-        simd: S,
+        level: Level,
         large: &Large,
         block: usize,
         place: &mut Option<u32>,
     ) {
-        let format = D::of(self.depth_format);
-        let [low, high] = large.depths::<N>(block).map(|depth| format.key(depth));
+        let [low, high] = large.depths::<N>(block).map(|depth| self.key(depth));
         if high < self.farthest[block] {
             return;
         }
         if !self.show_whole(block, [low, high], place, || Shown::Large(*large)) {
-            self.write::<S, D, N>(simd, block);
-            self.draw_planes::<S, D, N>(simd, large, block, true);
+            self.write::<N>(level, block);
+            self.draw_planes::<N>(level, large, block, true);
         }
         self.farthest[block] = self.farthest[block].max(low);
     }
@@ -136,7 +127,7 @@ impl Visibility {
 
     /// Draws a triangle with the alpha test in each sample.
     #[inline(always)]
-    pub(super) fn draw_cutout<S: Simd, D: Format, const N: usize>(
+    pub(super) fn draw_cutout<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         plan: &FramePlan,
@@ -145,8 +136,7 @@ impl Visibility {
     ) {
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
         let Touched { mut some, whole } = large.blocks::<S, N>(simd, area, &self.sample_positions);
-        let format = D::of(self.depth_format);
-        let (mut blocks, high) = (some, format.key(large.high));
+        let (mut blocks, high) = (some, self.key(large.high));
         while blocks != 0 {
             let block = blocks.trailing_zeros();
             blocks &= blocks - 1;
@@ -164,17 +154,22 @@ impl Visibility {
         while some != 0 {
             let block = some.trailing_zeros() as usize;
             some &= some - 1;
-            self.write::<S, D, N>(simd, block);
+            self.write::<N>(simd.level(), block);
             let (first, whole) = (self.corner(block), whole >> block & 1 != 0);
+            let format = Any(self.depth_format);
             for (sample, test) in tests.iter().enumerate() {
                 let at = (block, self.sample_positions.shift::<N>(sample));
                 let plane = self.plane::<N>(block, sample);
-                match test {
-                    Some(test) => {
-                        large.draw(format, simd, at, whole, &BlockHoles { test, first }, plane);
-                    }
-                    None => large.draw(format, simd, at, whole, &Solid, plane),
-                }
+                // Compiled once, whatever `N` is.
+                simd.vectorize(
+                    #[inline(always)]
+                    || match test {
+                        Some(test) => {
+                            large.draw(format, simd, at, whole, &BlockHoles { test, first }, plane);
+                        }
+                        None => large.draw(format, simd, at, whole, &Solid, plane),
+                    },
+                );
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Draws the triangles of a tile by the variants of coverage.
 
-use fearless_simd::Simd;
+use fearless_simd::{Level, Simd, dispatch};
 
 use super::{Shown, Visibility};
 use crate::accuracy::Coverage;
@@ -9,7 +9,7 @@ use crate::render::frame::FramePlan;
 use crate::render::raster::alpha_test::AlphaTest;
 use crate::render::raster::beyond::{beyond, reach};
 use crate::render::raster::bins::Bins;
-use crate::render::raster::depth_format::{Any, Format as _};
+use crate::render::raster::depth_format::Any;
 use crate::render::raster::edges_in_floats::{Everywhere, FloatTriangle, Opaque, in_pixels};
 use crate::render::raster::geometry::ScreenGeometry;
 use crate::render::raster::scan_lines::ScanLines;
@@ -59,7 +59,7 @@ impl Visibility {
                 triangle.cutout.then(|| AlphaTest::of(plan, frame, number, shift)).flatten()
             });
             if plan.variants.coverage == Coverage::Points {
-                self.draw_points::<S, N>(simd, (plan, frame), number, &tests);
+                self.draw_points::<N>(simd.level(), (plan, frame), number, &tests);
                 continue;
             }
             let depths = each(triangle.corners, |corner| corner.depth);
@@ -88,8 +88,7 @@ impl Visibility {
         tests: &[Option<AlphaTest<'_>>; N],
     ) {
         let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
-        let format = Any(self.depth_format);
-        let (mut some, high) = (touched.some, format.key(triangle.high));
+        let (mut some, high) = (touched.some, self.key(triangle.high));
         let mut place = None;
         while some != 0 {
             let block = some.trailing_zeros() as usize;
@@ -99,8 +98,8 @@ impl Visibility {
             }
             let whole = touched.whole >> block & 1 != 0;
             if tests[0].is_some() {
-                self.write::<S, Any, N>(simd, block);
-                let first = self.corner(block);
+                self.write::<N>(simd.level(), block);
+                let (first, format) = (self.corner(block), Any(self.depth_format));
                 for (sample, test) in tests.iter().enumerate() {
                     let at = (block, self.sample_positions.shift::<N>(sample));
                     let plane = self.plane::<N>(block, sample);
@@ -110,50 +109,49 @@ impl Visibility {
                     }
                 }
             } else if whole {
-                self.draw_full_float_block::<S, N>(simd, triangle, block, &mut place);
+                self.draw_full_float_block::<N>(simd.level(), triangle, block, &mut place);
             } else {
-                self.write::<S, Any, N>(simd, block);
-                self.draw_float_planes::<S, N>(simd, triangle, block, false);
+                self.write::<N>(simd.level(), block);
+                self.draw_float_planes::<N>(simd.level(), triangle, block, false);
             }
         }
     }
 
     /// As `draw_full_block`.
-    #[inline(always)]
-    fn draw_full_float_block<S: Simd, const N: usize>(
+    #[inline(never)]
+    fn draw_full_float_block<const N: usize>(
         &mut self,
-        simd: S,
+        level: Level,
         triangle: &FloatTriangle,
         block: usize,
         place: &mut Option<u32>,
     ) {
-        let format = Any(self.depth_format);
-        let [low, high] = triangle.depths::<N>(block).map(|depth| format.key(depth));
+        let [low, high] = triangle.depths::<N>(block).map(|depth| self.key(depth));
         if high < self.farthest[block] {
             return;
         }
         if !self.show_whole(block, [low, high], place, || Shown::Floats(*triangle)) {
-            self.write::<S, Any, N>(simd, block);
-            self.draw_float_planes::<S, N>(simd, triangle, block, true);
+            self.write::<N>(level, block);
+            self.draw_float_planes::<N>(level, triangle, block, true);
         }
         self.farthest[block] = self.farthest[block].max(low);
     }
 
     /// Draws a triangle into a block that it covers fully or in part.
-    #[inline(always)]
-    pub(super) fn draw_float_planes<S: Simd, const N: usize>(
+    #[inline(never)]
+    pub(super) fn draw_float_planes<const N: usize>(
         &mut self,
-        simd: S,
+        level: Level,
         triangle: &FloatTriangle,
         block: usize,
         whole: bool,
     ) {
         let format = Any(self.depth_format);
-        for sample in 0..N {
+        dispatch!(level, simd => for sample in 0..N {
             let at = (block, self.sample_positions.shift::<N>(sample));
             let plane = self.plane::<N>(block, sample);
             triangle.draw(format, simd, at, whole, &Everywhere, plane);
-        }
+        });
     }
 
     /// Draws a triangle by scan lines.
@@ -171,23 +169,27 @@ impl Visibility {
             let seen = each(corners, |[x, y]| [x - dx, y - dy]);
             let Some(rows) = ScanLines::new(seen, depths, number, self.bounds) else { continue };
             for block in rows.blocks() {
-                self.write::<S, Any, N>(simd, block);
+                self.write::<N>(simd.level(), block);
                 let first = self.corner(block);
                 let plane = self.plane::<N>(block, sample);
-                match test {
-                    Some(test) => {
-                        rows.draw(format, simd, block, &Tested { test, first }, plane);
-                    }
-                    None => rows.draw(format, simd, block, &Everywhere, plane),
-                }
+                // Compiled once, whatever `N` is.
+                simd.vectorize(
+                    #[inline(always)]
+                    || match test {
+                        Some(test) => {
+                            rows.draw(format, simd, block, &Tested { test, first }, plane);
+                        }
+                        None => rows.draw(format, simd, block, &Everywhere, plane),
+                    },
+                );
             }
         }
     }
 
     /// Draws a triangle by points, as ancestor A's author wrote it: one after the other.
-    fn draw_points<S: Simd, const N: usize>(
+    fn draw_points<const N: usize>(
         &mut self,
-        simd: S,
+        level: Level,
         (plan, frame): (&FramePlan, &ScreenGeometry),
         number: u32,
         tests: &[Option<AlphaTest<'_>>; N],
@@ -200,7 +202,7 @@ impl Visibility {
             let own = number - start.number;
             points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
                 if test.as_ref().is_none_or(|test| test.is_opaque([x, y])) {
-                    self.put::<S, Any, N>(simd, (x, y, sample), depth, number, 0);
+                    self.put::<N>(level, (x, y, sample), depth, number, 0);
                 }
             });
         }
