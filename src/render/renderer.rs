@@ -12,8 +12,10 @@ use fearless_simd::Level;
 
 use super::shading::context::ShadingContext;
 use super::shading::explain::{Asked, PixelColor, explain};
+use super::shading::face_colors::FaceColors;
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Painter, TileSums, bounds_of};
+use super::shading::shown_faces::have_colors;
 use crate::accuracy::{Arithmetic, Samples};
 use crate::base::cancellation::Cancellation;
 use crate::base::color::Color;
@@ -307,7 +309,8 @@ impl Renderer {
         let (level, frame) = (self.level, &self.frame);
         let tracer = Tracer::new(plan);
         let tracer = tracer.as_ref();
-        let context = ShadingContext { level, plan, frame, lit: &lit, terms: &terms, tracer };
+        let (lit, terms) = (&lit, &terms);
+        let context = ShadingContext { level, plan, frame, lit, terms, faces: None, tracer };
         let [x, y] = at;
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
@@ -452,13 +455,18 @@ impl Renderer {
         watch: &Cancellation<'_>,
     ) {
         let mut laps = Laps::start();
-        let ShadingCache { terms, lit, painters } = T::cache(&mut self.caches);
+        let ShadingCache { terms, lit, faces, painters } = T::cache(&mut self.caches);
         terms.prepare(plan);
         lit.prepare(plan);
+        let looks_up = have_colors(plan) && !self.frame.sample_positions().are_many();
+        if looks_up {
+            faces.begin(self.frame.triangle_numbers());
+        }
         let (level, frame) = (self.level, &self.frame);
         let tracer = Tracer::new(plan);
         let tracer = tracer.as_ref();
-        let context = ShadingContext { level, plan, frame, lit, terms, tracer };
+        let faces = looks_up.then_some(&*faces);
+        let context = ShadingContext { level, plan, frame, lit, terms, faces, tracer };
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
         let bands: Vec<Mutex<Band<'_>>> = self
@@ -507,6 +515,7 @@ struct Pass<'a> {
 struct ShadingCache<T> {
     terms: LightTerms<T>,
     lit: Lit<T>,
+    faces: FaceColors,
     /// One for each thread.
     painters: Vec<Painter<T>>,
 }

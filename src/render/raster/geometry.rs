@@ -308,6 +308,11 @@ impl ScreenGeometry {
         (number(draw), self.starts[draw])
     }
 
+    /// The number after that of the last triangle.
+    pub(crate) fn triangle_numbers(&self) -> usize {
+        self.starts.last().map_or(0, |start| start.end as usize)
+    }
+
     /// What triangles are sorted by if draws are laid over each other as wholes: the draw's place
     /// in the order from far to near above, and the number of the triangle below.
     pub(crate) fn key_by_draw(&self, triangle: u32) -> u64 {

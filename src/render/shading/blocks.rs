@@ -9,10 +9,11 @@ use super::groups::{Group, group_of};
 use super::interpolate::Look;
 use super::interpolated::ShadingNumber;
 use super::map_texels::{TexelSource, TexturePlacement};
+use super::shown_faces::is_uniform;
 use super::surface::{Out, Shader};
 use super::texels::PlacedTexture;
 use super::triangle_attributes::TriangleAttributes;
-use crate::accuracy::{Interpolation, LightAt, Rounding};
+use crate::accuracy::{Interpolation, LightAt};
 use crate::render::frame::draw::{Back, Pipeline};
 use crate::render::screen::weights::HomogeneousWeights;
 
@@ -71,16 +72,7 @@ impl<T: ShadingNumber> Shader<T> {
         canvas: &mut Canvas<'_>,
     ) -> bool {
         let plan = context.plan;
-        let is_uniform = match &plan.pipelines[group.pipeline as usize] {
-            Pipeline::Flat(_) => true,
-            Pipeline::Shaded(shaded) => {
-                shaded.texture.is_none()
-                    && !shaded.vertex_colors
-                    && !shaded.extras.reads_texels()
-                    && plan.variants.rounding != Rounding::Dithered
-                    && (shaded.light.is_none() || plan.light_at == LightAt::Face)
-            }
-        };
+        let is_uniform = is_uniform(plan, &plan.pipelines[group.pipeline as usize]);
         if is_uniform {
             let color = self.first_color(context, group);
             blocks.each(|[column, row]| {

@@ -2,6 +2,7 @@
 
 use fearless_simd::Level;
 
+use super::face_colors::FaceColors;
 use super::light::Lit;
 use super::light_terms::LightTerms;
 use crate::render::frame::FramePlan;
@@ -16,6 +17,8 @@ pub(crate) struct ShadingContext<'a, T> {
     pub(crate) frame: &'a ScreenGeometry,
     pub(crate) lit: &'a Lit<T>,
     pub(crate) terms: &'a LightTerms<T>,
+    /// The colours of triangles, if they are looked up.
+    pub(crate) faces: Option<&'a FaceColors>,
     /// What casts shadows, if any light does.
     pub(crate) tracer: Option<&'a Tracer<'a>>,
 }

@@ -85,7 +85,6 @@ impl Fragments {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
     fn find<S: Simd>(
         &mut self,
         simd: S,
@@ -93,18 +92,7 @@ impl Fragments {
         corner: [i32; 2],
     ) -> Shown {
         self.shared = false;
-        // The number of the background is not that of any triangle.
-        let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
-        for (number, word) in numbers[MARGIN..].iter_mut().zip(visibility) {
-            *number = !(*word as u32);
-        }
-        let (mut triangles, mut background, mut left) = (0, 0, 0);
-        for at in (0..BLOCK_PIXELS).step_by(16) {
-            let own = sixteen(simd, &numbers, MARGIN + at);
-            triangles |= own.simd_lt(1 << 31).to_bitmask() << at;
-            background |= own.simd_eq(u32::MAX).to_bitmask() << at;
-            left |= own.simd_eq(sixteen(simd, &numbers, MARGIN + at - 1)).to_bitmask() << at;
-        }
+        let Runs { numbers, triangles, background, left } = Runs::find(simd, visibility);
         if triangles == 0 {
             return Shown { triangles, lines: !background };
         }
@@ -123,6 +111,16 @@ impl Fragments {
             }
         }
         Shown { triangles, lines: !triangles & !background }
+    }
+
+    /// Lists some triangles, each as if it showed in one pixel of no position.
+    pub(crate) fn list_faces(&mut self, numbers: &[u32]) {
+        self.shared = false;
+        (self.len, self.count) = (numbers.len(), numbers.len());
+        self.numbers[..numbers.len()].copy_from_slice(numbers);
+        for (slot, i) in self.slots.iter_mut().zip(0..) {
+            *slot = i;
+        }
     }
 
     /// Lists all pixels of a block that one triangle covers fully.
@@ -253,6 +251,48 @@ impl Fragments {
     /// Whether the list is the whole block, pixel by pixel in order.
     pub(crate) const fn is_whole(&self) -> bool {
         self.len == BLOCK_PIXELS
+    }
+}
+
+/// What the pixels of a block show, and where along its rows that changes.
+#[derive(Debug)]
+pub(crate) struct Runs {
+    /// The numbers of the primitives, after a margin.
+    numbers: [u32; MARGIN + BLOCK_PIXELS],
+    /// The pixels that show triangles, nothing, and the same as their left neighbours.
+    triangles: u64,
+    background: u64,
+    left: u64,
+}
+
+impl Runs {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+    pub(crate) fn find<S: Simd>(simd: S, visibility: &[u64; BLOCK_PIXELS]) -> Self {
+        // The number of the background is not that of any triangle.
+        let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
+        for (number, word) in numbers[MARGIN..].iter_mut().zip(visibility) {
+            *number = !(*word as u32);
+        }
+        let (mut triangles, mut background, mut left) = (0, 0, 0);
+        for at in (0..BLOCK_PIXELS).step_by(16) {
+            let own = sixteen(simd, &numbers, MARGIN + at);
+            triangles |= own.simd_lt(1 << 31).to_bitmask() << at;
+            background |= own.simd_eq(u32::MAX).to_bitmask() << at;
+            left |= own.simd_eq(sixteen(simd, &numbers, MARGIN + at - 1)).to_bitmask() << at;
+        }
+        Self { numbers, triangles, background, left }
+    }
+
+    /// The pixels at which runs of triangles begin.
+    pub(crate) const fn starts(&self) -> u64 {
+        self.triangles & !self.left
+    }
+
+    /// The number of the primitive at a pixel.
+    #[inline(always)]
+    pub(crate) const fn number(&self, pixel: usize) -> u32 {
+        self.numbers[MARGIN + pixel % BLOCK_PIXELS]
     }
 }
 

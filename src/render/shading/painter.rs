@@ -158,6 +158,9 @@ impl<T: ShadingNumber> Painter<T> {
                 row[..TILE_SIDE].fill(context.plan.background.opaque());
             }
         }
+        if let Some(faces) = context.faces {
+            self.shader.light_shown_faces(context, faces, &self.visibility);
+        }
         let mut shows = whole != 0;
         for block in 0..BLOCK_PIXELS {
             if layered >> block & 1 != 0 {
@@ -185,7 +188,14 @@ impl<T: ShadingNumber> Painter<T> {
                     self.block_of_samples(context, (block, corner), canvas, at)
                 } else {
                     let visibility = self.visibility.block(block);
-                    self.shader.block(context, visibility, corner, (canvas, at))
+                    let background = u32::from_le_bytes(context.plan.background.opaque());
+                    let known = context.faces.and_then(|all| all.of_block(visibility, background));
+                    if let Some(colors) = known {
+                        canvas.put(at, &colors);
+                        visibility.iter().any(|word| *word != 0)
+                    } else {
+                        self.shader.block(context, visibility, corner, (canvas, at))
+                    }
                 };
             }
         }

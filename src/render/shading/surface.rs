@@ -10,7 +10,6 @@ use super::blend::Blend;
 use super::bumps::bend;
 use super::colors::{Colors, Form, Sums};
 use super::context::ShadingContext;
-use super::face_colors::FaceColors;
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
@@ -36,9 +35,6 @@ use crate::render::shadow::rays::{Origins, RayScratch};
 use crate::render::simd::BATCH;
 use crate::render::simd::gather::SLOTS;
 
-/// The number of faces in a block up to which their colours are remembered.
-const FEW_FACES: usize = 16;
-
 /// Shades blocks. Each thread has its own.
 #[derive(Debug)]
 pub(crate) struct Shader<T> {
@@ -57,8 +53,9 @@ pub(crate) struct Shader<T> {
     pub(super) vertex_colors: CornerValues<T>,
     /// For surfaces with further maps, or light of their own.
     pub(super) maps: Box<MapRows<T>>,
-    colors: Colors,
-    faces: FaceColors,
+    pub(super) colors: Colors,
+    /// The triangles of a tile that have to be lit.
+    pub(super) new_faces: Vec<u32>,
 }
 
 /// The destination of a block's colours.
@@ -97,7 +94,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             vertex_colors: [[[T::default(); SLOTS]; 3]; 3],
             maps: Box::default(),
             colors: Colors::default(),
-            faces: FaceColors::default(),
+            new_faces: Vec::new(),
         }
     }
 }
@@ -106,7 +103,6 @@ impl<T: ShadingNumber> Shader<T> {
     /// Begins a frame.
     pub(crate) fn begin(&mut self) {
         self.attributes.forget();
-        self.faces.begin();
     }
 
     /// Colours a block, whose upper left pixel is `corner`, into a tile from index `at` on. Pixels
@@ -242,7 +238,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    fn group(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>) {
+    pub(super) fn group(&mut self, context: &ShadingContext<'_, T>, group: &Group<'_>) {
         match &context.plan.pipelines[group.pipeline as usize] {
             Pipeline::Flat(color) => self.colors.fill(color.opaque()),
             Pipeline::Shaded(shaded) => {
@@ -276,18 +272,6 @@ impl<T: ShadingNumber> Shader<T> {
         let each = textured || rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
-        // The faces of the list have one colour each, which they may have had before. Small ones
-        // show in few blocks.
-        let by_face = self.fragments.count <= FEW_FACES
-            && !each
-            && matches!(light, Some((LightAt::Face, _)))
-            && draw.back != Back::Red
-            && self.colors.form == Form::Pixels;
-        let numbers = &self.fragments.numbers[..self.fragments.count];
-        if by_face && let Some(known) = self.faces.find(numbers) {
-            self.colors.pixels = known;
-            return self.colors.hand_out(&self.fragments.slots);
-        }
         let new = self.take(context, group, located);
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
@@ -334,10 +318,6 @@ impl<T: ShadingNumber> Shader<T> {
         } else {
             let thresholds = &thresholds(rounding, &self.fragments);
             T::run(level, QuantizeWithThresholds { batch, lit, own, thresholds, colors });
-        }
-        if by_face {
-            let Fragments { numbers, count, .. } = &self.fragments;
-            self.faces.keep(&numbers[..*count], &self.colors.pixels);
         }
         if !(located || each) {
             self.colors.hand_out(&self.fragments.slots);

@@ -1,0 +1,99 @@
+//! Lights the faces that a tile shows, if each of them has one colour.
+
+use fearless_simd::{Level, Simd, dispatch};
+
+use super::colors::Form;
+use super::context::ShadingContext;
+use super::face_colors::FaceColors;
+use super::fragments::Runs;
+use super::groups::group_of;
+use super::interpolated::ShadingNumber;
+use super::surface::Shader;
+use crate::accuracy::{LightAt, Rounding};
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::Pipeline;
+use crate::render::raster::tile::Visibility;
+use crate::render::screen::tiles::BLOCK_PIXELS;
+use crate::render::simd::gather::SLOTS;
+
+/// Whether all pixels of a triangle have one colour.
+pub(crate) fn is_uniform(plan: &FramePlan, pipeline: &Pipeline) -> bool {
+    match pipeline {
+        Pipeline::Flat(_) => true,
+        Pipeline::Shaded(shaded) => {
+            shaded.texture.is_none()
+                && !shaded.vertex_colors
+                && !shaded.extras.reads_texels()
+                && plan.variants.rounding != Rounding::Dithered
+                && (shaded.light.is_none() || plan.light_at == LightAt::Face)
+        }
+    }
+}
+
+/// Whether looking the colours of triangles up pays in a frame: if those of most pixels are uniform.
+pub(crate) fn have_colors(plan: &FramePlan) -> bool {
+    let mut pipelines = plan.pipelines.iter();
+    match plan.light_at {
+        LightAt::Face => pipelines.any(|pipeline| is_uniform(plan, pipeline)),
+        _ => pipelines.all(|pipeline| is_uniform(plan, pipeline)),
+    }
+}
+
+impl<T: ShadingNumber> Shader<T> {
+    /// Lights the triangles that show in blocks which none of them covers fully, with one sample per
+    /// pixel, and whose colour is not known.
+    pub(crate) fn light_shown_faces(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        faces: &FaceColors,
+        visibility: &Visibility,
+    ) {
+        let mut new = std::mem::take(&mut self.new_faces);
+        new.clear();
+        list(context.level, faces, visibility, &mut new);
+        let mut left = &new[..];
+        while let Some(first) = left.first() {
+            let group = group_of(context, *first);
+            let end = context.frame.draw_of(*first).1.end;
+            let is_alike = |number: &u32| {
+                (group.base..end).contains(number)
+                    && (group.draw.uniform.is_some()
+                        || group.draw.pipeline_of(number - group.base) == group.pipeline)
+            };
+            let count = left.iter().take(SLOTS).take_while(|number| is_alike(number)).count();
+            let (own, others) = left.split_at(count);
+            left = others;
+            if !is_uniform(context.plan, &context.plan.pipelines[group.pipeline as usize]) {
+                continue;
+            }
+            self.fragments.list_faces(own);
+            self.colors.form = Form::Pixels;
+            self.group(context, &group);
+            for (number, color) in own.iter().zip(&self.colors.pixels) {
+                faces.put(*number, *color);
+            }
+        }
+        self.new_faces = new;
+    }
+}
+
+/// Lists the triangles of a tile that have to be lit.
+fn list(level: Level, faces: &FaceColors, visibility: &Visibility, to: &mut Vec<u32>) {
+    dispatch!(level, simd => list_in(simd, faces, visibility, to));
+}
+
+#[inline(always)]
+fn list_in<S: Simd>(simd: S, faces: &FaceColors, visibility: &Visibility, to: &mut Vec<u32>) {
+    let shown = |block: &usize| visibility.shows(*block) && visibility.whole(*block).is_none();
+    for block in (0..BLOCK_PIXELS).filter(shown) {
+        let runs = Runs::find(simd, visibility.block(block));
+        let mut starts = runs.starts();
+        while starts != 0 {
+            let number = runs.number(starts.trailing_zeros() as usize);
+            starts &= starts - 1;
+            if faces.claim(number) {
+                to.push(number);
+            }
+        }
+    }
+}
