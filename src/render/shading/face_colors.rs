@@ -39,7 +39,7 @@ impl FaceColors {
         self.entries.resize_with(triangles, AtomicU32::default);
     }
 
-    /// Whether a triangle has to be lit; if so, nobody else in this tile is told so again.
+    /// Whether a triangle has to be lit; if so, no later call for this tile says so again.
     #[inline(always)]
     pub(crate) fn claim(&self, number: u32) -> bool {
         let Some(entry) = self.entries.get(number as usize) else { return false };

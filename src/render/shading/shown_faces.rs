@@ -30,7 +30,8 @@ pub(crate) fn is_uniform(plan: &FramePlan, pipeline: &Pipeline) -> bool {
     }
 }
 
-/// Whether looking the colours of triangles up pays in a frame: if those of most pixels are uniform.
+/// Whether looking up the colours of triangles pays in a frame: if those of most pixels are
+/// uniform.
 pub(crate) fn have_colors(plan: &FramePlan) -> bool {
     let mut pipelines = plan.pipelines.iter();
     match plan.light_at {
@@ -40,8 +41,8 @@ pub(crate) fn have_colors(plan: &FramePlan) -> bool {
 }
 
 impl<T: ShadingNumber> Shader<T> {
-    /// Lights the triangles that show in blocks which none of them covers fully, with one sample per
-    /// pixel, and whose colour is not known.
+    /// Lights the triangles that show in blocks which none of them covers fully, with one sample
+    /// per pixel, and whose colour is not known.
     pub(crate) fn light_shown_faces(
         &mut self,
         context: &ShadingContext<'_, T>,
