@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Measures the suite in the laboratory, and puts its page into docs/accuracy.md, with its plots in
-# docs/pictures/accuracy: tools/accuracy.sh [PROGRAM]
+# Measures the suite in the laboratory, counts its instructions by callgrind, and puts both into
+# docs/accuracy.md, with the plots in docs/pictures/accuracy: tools/accuracy.sh [PROGRAM]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || cargo build --release --locked
@@ -11,13 +11,19 @@ trap 'rm -rf "$work"' EXIT
 rm -rf docs/pictures/accuracy docs/pictures/accuracy.svg
 mkdir docs/pictures/accuracy
 cp "$work"/*-light.svg docs/pictures/accuracy/
-python3 - "$work/page.md" <<'PYTHON'
+cargo test --locked --profile profiling --test proofs -- choices --figures "$work" >/dev/null
+python3 - "$work" <<'PYTHON'
 import pathlib, sys
 
-made = pathlib.Path(sys.argv[1]).read_text().replace("](", "](pictures/accuracy/")
-page = pathlib.Path("docs/accuracy.md")
-begin, end = "<!-- laboratory: made by tools/accuracy.sh -->\n", "<!-- laboratory: end -->"
-before, rest = page.read_text().split(begin)
-_, after = rest.split(end)
-page.write_text(before + begin + "\n" + made + "\n" + end + after)
+work, page = pathlib.Path(sys.argv[1]), pathlib.Path("docs/accuracy.md")
+text = page.read_text()
+for part, made in [
+    ("laboratory", (work / "page.md").read_text().replace("](", "](pictures/accuracy/")),
+    ("instructions", (work / "choices.md").read_text().strip() + "\n"),
+]:
+    begin, end = f"<!-- {part}: made by tools/accuracy.sh -->\n", f"<!-- {part}: end -->"
+    before, rest = text.split(begin)
+    _, after = rest.split(end)
+    text = before + begin + "\n" + made + "\n" + end + after
+page.write_text(text)
 PYTHON

@@ -5,7 +5,8 @@
 //! cargo test --test proofs                                      a quick round of each
 //! cargo test --release --test proofs -- fans --count 1000000    a million cases of one
 //! cargo test --release --test proofs -- --whole                 the numbers of docs/stability.md
-//! cargo test --release --test proofs -- instructions            count by callgrind
+//! cargo test --profile profiling --test proofs -- instructions  count by callgrind
+//! cargo test --profile profiling --test proofs -- choices       the same for each choice
 //! ```
 
 mod claims;
@@ -16,7 +17,9 @@ use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
+use marraztu::lab::suite::SuiteScene;
 
+use self::claims::choices;
 use self::claims::instructions::{self, Frame};
 use self::claims::{PROOFS, Proof, Tally};
 
@@ -26,7 +29,7 @@ use self::claims::{PROOFS, Proof, Tally};
 Cases come in batches; the number of a batch alone decides what is in it. A counterexample is named
 by its batch, and --from BATCH --count 1 checks it again.")]
 struct Arguments {
-    /// The proofs whose names contain this, or \"instructions\" [default: all proofs]
+    /// The proofs whose names contain this, \"instructions\" or \"choices\" [default: all proofs]
     name: Option<String>,
     /// The number of cases to check [default: a quick round]
     #[arg(long, value_name = "N", conflicts_with = "whole")]
@@ -46,6 +49,15 @@ struct Arguments {
     /// Draw one of the frames whose instructions are counted, and nothing else
     #[arg(long, hide = true, value_enum)]
     draw_counted: Option<Frame>,
+    /// Draw a scene of the laboratory's suite with one of the choices that are counted
+    #[arg(long, hide = true)]
+    draw_choice: Option<String>,
+    /// The number of that choice
+    #[arg(long, hide = true, default_value_t = 0)]
+    which: usize,
+    /// Count the choices of the scenes whose words contain this
+    #[arg(long, value_name = "SCENE", default_value = "", hide_default_value = true)]
+    scene: String,
     #[command(flatten)]
     libtest: Libtest,
 }
@@ -96,6 +108,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(frame) = arguments.draw_counted {
         return Ok(instructions::draw(frame)?);
     }
+    if let Some(word) = &arguments.draw_choice {
+        let scene = SuiteScene::named(word);
+        let scene = scene.ok_or_else(|| Failure::Wrong(format!("no scene is named {word}")))?;
+        return Ok(choices::draw(scene, arguments.which)?);
+    }
     if arguments.list {
         return list();
     }
@@ -105,6 +122,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.name.as_deref().unwrap_or_default();
     if name == "instructions" {
         return same_instructions();
+    }
+    if name == "choices" {
+        return count_choices(arguments);
     }
     let skipped = |proof: &Proof| arguments.libtest.skip.iter().any(|s| proof.name.contains(s));
     let chosen: Vec<&Proof> =
@@ -134,7 +154,8 @@ fn list() -> Result<(), Failure> {
     for proof in PROOFS {
         tell(&format!("{:<9} {} {}: {}", proof.name, proof.whole, proof.unit, proof.claim))?;
     }
-    tell("instructions  two frames: 100 lights that are off cost no instruction of drawing")
+    tell("instructions  two frames: 100 lights that are off cost no instruction of drawing")?;
+    tell("choices       a coarser choice takes no more instructions, unless its axis says why")
 }
 
 /// Checks cases of one proof, and prints what was counted.
@@ -214,10 +235,25 @@ const COUNTS: usize = 5;
 /// The number of instructions that this makes at most: less than one in a hundred pixels.
 const SPREAD: u64 = 160;
 
+/// Counts the instructions of each choice of accuracy on the laboratory's suite.
+fn count_choices(arguments: &Arguments) -> Result<(), Failure> {
+    let mut written = Ok(());
+    let mut each = |table: &str| written = tell(table);
+    let tables = choices::count(&arguments.scene, &mut each).map_err(Failure::Wrong)?;
+    written?;
+    match &arguments.figures {
+        Some(folder) => Ok(std::fs::write(folder.join("choices.md"), tables)?),
+        None => Ok(()),
+    }
+}
+
 /// Counts the instructions of two frames that should take the same number.
 fn same_instructions() -> Result<(), Failure> {
     let least = |frame| {
-        (0..COUNTS).try_fold(u64::MAX, |least, _| counted(frame).map(|count| least.min(count)))
+        (0..COUNTS).try_fold(u64::MAX, |least, _| {
+            let count = instructions::count(instructions::COUNTED, &["--draw-counted", frame]);
+            count.map(|count| least.min(count)).map_err(Failure::Wrong)
+        })
     };
     let (plain, off) = (least("plain")?, least("lights-off")?);
     tell(&format!(
@@ -228,19 +264,4 @@ fn same_instructions() -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Wrong("lights that are off cost instructions".to_owned()))
-}
-
-/// The number of instructions that a frame takes, by callgrind.
-fn counted(frame: &str) -> Result<u64, Failure> {
-    let output = Command::new("valgrind")
-        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-        .arg(format!("--toggle-collect={}", instructions::COUNTED))
-        .arg(std::env::current_exe()?)
-        .args(["--draw-counted", frame])
-        .output()
-        .map_err(|error| Failure::Wrong(format!("valgrind does not run: {error}")))?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    let collected = said.lines().find_map(|line| line.split_once("Collected : "));
-    let count = collected.and_then(|(_, count)| count.trim().parse().ok()).filter(|n| *n > 0);
-    count.ok_or_else(|| Failure::Wrong(format!("callgrind counted nothing; it said:\n{said}")))
 }

@@ -26,6 +26,7 @@ macro_rules! choice {
             label: $label,
             what: $what,
             error: $error,
+            slower_because: None,
             set: |settings| settings.$field = $value,
             is: |settings| settings.$field == $value,
             sense: $sense,
@@ -89,6 +90,8 @@ pub struct Choice {
     pub what: &'static str,
     /// The error to expect, in words.
     pub error: &'static str,
+    /// Why it takes longer than a more exact choice, if it does, as a clause.
+    pub slower_because: Option<&'static str>,
     /// Whether it differs from the other choices for a scene in a view; else the reason.
     pub sense: fn(&Scene, &View) -> Result<(), &'static str>,
     /// Whether it differs from the other choices beside those of the other axes; else the reason.
@@ -189,6 +192,11 @@ impl Axis {
 }
 
 impl Choice {
+    /// Says why it takes longer than a more exact choice: "edges are kept in 64 bits".
+    const fn slower_because(self, reason: &'static str) -> Self {
+        Self { slower_because: Some(reason), ..self }
+    }
+
     /// Whether it differs from the other choices for a scene in a view with these settings.
     ///
     /// # Errors

@@ -55,9 +55,34 @@ pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
     if sentences.is_empty() {
         sentences.push("No choice differs from the default beyond the noise here.".to_owned());
     }
+    sentences.extend(reasons(report, axis));
     let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
     let [width, height] = report.findings.size;
     format!("{} (At {width}x{height} on {}; noise {noise}%.)", capital.join(" "), report.scene)
+}
+
+/// Why choices take longer than more exact ones, for those that do here.
+fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
+    let rows = report.findings.rows_of(axis);
+    let mut measured: Vec<(usize, f64)> = rows
+        .filter_map(|row| {
+            let point = &report.findings.points[row.point];
+            let word = axis.chosen(&point.settings).word;
+            let place = axis.choices.iter().position(|choice| choice.word == word)?;
+            Some((place, point.ratio.quartiles.median))
+        })
+        .collect();
+    measured.sort_by_key(|(place, _)| *place);
+    let is_slower = |i: usize| {
+        let least = measured[i + 1..].iter().map(|(_, ratio)| *ratio).reduce(f64::min);
+        least.is_some_and(|least| measured[i].1 > least * (1.0 + report.findings.floor))
+    };
+    let reason = |i: usize| {
+        let choice = &axis.choices[measured[i].0];
+        let because = choice.slower_because.filter(|_| is_slower(i))?;
+        Some(format!("{} takes longer than a more exact choice: {because}.", axis.in_words(choice)))
+    };
+    (0..measured.len()).filter_map(reason).collect()
 }
 
 /// The sentences on a report.

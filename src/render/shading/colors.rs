@@ -7,6 +7,8 @@
 
 use std::sync::OnceLock;
 
+use fearless_simd::{Level, dispatch};
+
 use crate::base::color::linear;
 use crate::base::once::get_or_compute;
 use crate::render::screen::tiles::BLOCK_PIXELS;
@@ -203,9 +205,30 @@ impl Sums {
         }
     }
 
+    /// Adds a colour in fixed point to each pixel, weighted by the number of samples that show it.
+    pub(crate) fn add_to_all(
+        &mut self,
+        level: Level,
+        parts: &[[u32; 4]; BLOCK_PIXELS],
+        samples: &[i32; BLOCK_PIXELS],
+    ) {
+        dispatch!(level, _ => for ((sum, parts), samples) in
+            self.sums.iter_mut().zip(parts).zip(samples)
+        {
+            for (sum, part) in sum.iter_mut().zip(parts) {
+                *sum += part * samples.cast_unsigned();
+            }
+        });
+    }
+
     /// Adds a colour to every pixel.
     pub(crate) fn add_everywhere(&mut self, color: [u8; 4], samples: i32) {
-        (0..BLOCK_PIXELS).for_each(|place| self.add(place, color, samples));
+        let parts = color.map(|byte| parts(byte, self.linear) * samples.cast_unsigned());
+        for sum in &mut self.sums {
+            for (sum, part) in sum.iter_mut().zip(parts) {
+                *sum += part;
+            }
+        }
     }
 
     /// Adds the first of some colours, each to its pixel and weighted by its samples.
@@ -242,8 +265,6 @@ impl Sums {
 #[cfg(test)]
 #[expect(clippy::cast_possible_truncation, reason = "below 2^24")]
 mod tests {
-    use fearless_simd::{Level, dispatch};
-
     use super::*;
     use crate::render::simd::Sixteen;
     use crate::render::simd::{Exact, Number};

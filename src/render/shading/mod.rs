@@ -25,6 +25,7 @@ mod glow;
 mod groups;
 mod interpolate;
 pub(crate) mod interpolated;
+mod kept;
 mod layers;
 pub(crate) mod light;
 pub(crate) mod light_terms;

@@ -11,6 +11,7 @@ use super::colors::Sums;
 use super::context::ShadingContext;
 use super::full_blocks::{Blocks, Canvas};
 use super::interpolated::ShadingNumber;
+use super::kept::Kept;
 use super::layers::Layered;
 use super::resolve::Samples;
 use super::surface::{Out, Shader};
@@ -51,8 +52,41 @@ const ROW: usize = BLOCK as usize;
 /// Blocks in a row of a tile.
 const BLOCKS: usize = TILE_SIDE / ROW;
 
-/// The sums of a tile's colours over several passes, block by block; empty before the first.
-pub(crate) type TileSums = Mutex<Vec<Sums>>;
+/// The colours of a tile, added up over several passes.
+#[derive(Debug, Default)]
+pub(crate) struct TileSums(Mutex<TilePasses>);
+
+#[derive(Debug, Default)]
+struct TilePasses {
+    /// The samples of every pixel in passes that showed nothing but the background.
+    background: i32,
+    /// Block by block; empty until the tile shows something.
+    blocks: Vec<BlockPasses>,
+}
+
+#[derive(Clone, Debug)]
+struct BlockPasses {
+    sums: Sums,
+    kept: Kept,
+    /// The samples of every pixel that show the background and are not in the sums.
+    background: i32,
+}
+
+impl TileSums {
+    fn lock(&self) -> MutexGuard<'_, TilePasses> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl TilePasses {
+    /// The blocks, made if there are none yet.
+    fn blocks(&mut self, plan: &FramePlan) -> &mut [BlockPasses] {
+        let sums = Sums::new(plan.variants.are_linear());
+        let nothing = BlockPasses { sums, kept: Kept::default(), background: 0 };
+        self.blocks.resize(BLOCK_PIXELS, nothing);
+        &mut self.blocks
+    }
+}
 
 /// The first pixel of a block, by column and row of the tile.
 const fn corner_in_tile(block: usize) -> [usize; 2] {
@@ -221,54 +255,63 @@ impl<T: ShadingNumber> Painter<T> {
         shows
     }
 
-    /// Adds the colours of a tile, drawn for one sample of each pixel, to the sums.
-    fn add_picture(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &mut [Sums]) {
-        let plan = context.plan;
-        let bounds = bounds_of(tile, plan.size);
-        if !self.see(context, tile, bounds) {
-            let background = plan.background.opaque();
-            return to.iter_mut().for_each(|to| to.add_everywhere(background, 1));
-        }
+    /// Adds the colours of a tile, which shows something and is drawn for one sample of each pixel.
+    fn add_picture(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        bounds: PixelBox,
+        to: &mut [BlockPasses],
+    ) {
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
         self.blocks(context, bounds, &mut canvas);
         for (block, to) in to.iter_mut().enumerate() {
             let rows = canvas.pixels[canvas.offset(corner_in_tile(block))..].chunks(TILE_SIDE);
             let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
-            own.enumerate().for_each(|(columns, color)| to.add(columns, *color, 1));
+            own.enumerate().for_each(|(place, color)| to.sums.add(place, *color, 1));
         }
         self.pixels = pixels;
     }
 
     /// Adds the colours of a tile, of four samples or of one, to the sums.
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
-        let ShadingContext { level, plan, frame, .. } = *context;
-        let mut to = to.lock().unwrap_or_else(PoisonError::into_inner);
-        to.resize(BLOCK_PIXELS, Sums::new(plan.variants.are_linear()));
-        if !frame.sample_positions().are_many() {
-            return self.add_picture(context, tile, &mut to);
+        let ShadingContext { plan, frame, .. } = *context;
+        let mut to = to.lock();
+        let bounds = bounds_of(tile, plan.size);
+        let many = frame.sample_positions().are_many();
+        if !self.see(context, tile, bounds) {
+            to.background += if many { ALL } else { 1 };
+        } else if many {
+            let blocks = to.blocks(plan).iter_mut().enumerate();
+            blocks.for_each(|(block, to)| self.add_block(context, block, to));
+        } else {
+            self.add_picture(context, bounds, to.blocks(plan));
         }
-        let empty = !self.see(context, tile, bounds_of(tile, plan.size));
-        for (block, to) in to.iter_mut().enumerate() {
-            if !empty && self.layered.layers.touches(block) {
-                let corner = self.visibility.corner(block);
-                let Self { shader, visibility, layered, .. } = self;
-                layered.add(context, (shader, visibility), (block, corner), to);
-                continue;
-            }
-            let Self { shader, visibility, samples, .. } = self;
-            if empty || !visibility.shows(block) {
-                to.add_everywhere(plan.background.opaque(), ALL);
-                continue;
-            }
-            let corner = visibility.corner(block);
-            if let Some(number) = visibility.whole(block) {
-                shader.full_block(context, number, corner, &mut Out::Sums(to));
+    }
+
+    /// Adds the colours of a block of four samples.
+    fn add_block(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        block: usize,
+        BlockPasses { sums, kept, background }: &mut BlockPasses,
+    ) {
+        let Self { shader, visibility, samples, layered, .. } = self;
+        let corner = visibility.corner(block);
+        if layered.layers.touches(block) {
+            layered.add(context, (shader, visibility), (block, corner), sums);
+        } else if !visibility.shows(block) {
+            *background += ALL;
+        } else if let Some(number) = visibility.whole(block) {
+            if kept.are_all_of(number) {
+                sums.add_to_all(context.level, kept.parts(), &[ALL; BLOCK_PIXELS]);
             } else {
-                let planes = visibility.planes(block);
-                samples.compare(level, planes);
-                shader.add_samples(context, (samples, planes), corner, to);
+                shader.full_block(context, number, corner, &mut Out::Kept(sums, kept));
             }
+        } else {
+            let planes = visibility.planes(block);
+            samples.compare(context.level, planes);
+            shader.add_pass(context, (samples, planes), corner, (sums, kept));
         }
     }
 
@@ -280,10 +323,15 @@ impl<T: ShadingNumber> Painter<T> {
         of: &TileSums,
         band: &Mutex<Band<'_>>,
     ) {
-        let of = of.lock().unwrap_or_else(PoisonError::into_inner);
-        let FramePlan { size, samples, .. } = *context.plan;
+        let mut of = of.lock();
+        let FramePlan { size, samples, background, .. } = *context.plan;
+        let TilePasses { background: everywhere, blocks } = &mut *of;
+        if blocks.is_empty() {
+            return Self::fill(tile, size, background, &mut locked(band));
+        }
         let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
-        for (block, sums) in of.iter().enumerate() {
+        for (block, BlockPasses { sums, background: own, .. }) in blocks.iter_mut().enumerate() {
+            sums.add_everywhere(background.opaque(), *everywhere + *own);
             let at = canvas.offset(corner_in_tile(block));
             canvas.put(at, &sums.means(samples.count().ilog2()));
         }

@@ -10,6 +10,7 @@ use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, disp
 use super::colors::Sums;
 use super::context::ShadingContext;
 use super::interpolated::ShadingNumber;
+use super::kept::Kept;
 use super::surface::{Out, Shader};
 use crate::render::raster::visibility_buffer::{Planes, Visible, seen_number};
 use crate::render::screen::sample_positions::FOUR;
@@ -41,6 +42,26 @@ impl Samples {
     pub(crate) fn compare(&mut self, level: Level, planes: &Planes) -> bool {
         dispatch!(level, simd => self.compare_in(simd, planes));
         self.new[1..] == [0; FOUR - 1]
+    }
+
+    /// Adds the colours that are kept from earlier passes. Returns, for each sample, the pixels in
+    /// which it shows a primitive that neither an earlier sample shows nor an earlier pass has lit.
+    fn add_kept(&self, level: Level, kept: &Kept, sums: &mut Sums) -> [u64; FOUR] {
+        let mut left = self.new;
+        for (sample, left) in left.iter_mut().enumerate() {
+            if *left == 0 {
+                continue;
+            }
+            let known = *left & kept.known(level, &self.numbers[sample]);
+            if known != 0 {
+                let bit = |place: usize| i32::from(known >> place & 1 == 1);
+                let shares = &self.shares[sample];
+                let shares = std::array::from_fn(|place| shares[place] * bit(place));
+                sums.add_to_all(level, kept.parts(), &shares);
+                *left &= !known;
+            }
+        }
+        left
     }
 
     #[inline(always)]
@@ -78,6 +99,16 @@ impl Samples {
     }
 }
 
+/// What is still to be lit of a block.
+#[derive(Debug)]
+struct Unlit<'a> {
+    /// The entries of the first sample; 0 for pixels that are lit.
+    entries: &'a [u64; BLOCK_PIXELS],
+    /// For each sample, the pixels in which it shows a primitive that no earlier sample shows and
+    /// that is not lit.
+    pixels: &'a [u64; FOUR],
+}
+
 impl<T: ShadingNumber> Shader<T> {
     /// Adds the colours of a block, whose upper left pixel is `corner` and whose samples were
     /// compared. Returns whether any of them shows more than the background.
@@ -88,12 +119,45 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
         sums: &mut Sums,
     ) -> bool {
-        let mut shown = self.fragments.list(context.level, &planes[0], corner);
+        let all = Unlit { entries: &planes[0], pixels: &samples.new };
+        self.add_unlit(context, (samples, &all), corner, (sums, None))
+    }
+
+    /// Adds the colours of a block in one of several passes: those that are kept from earlier
+    /// passes, and then the others, which it lights.
+    pub(crate) fn add_pass(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        (samples, planes): (&Samples, &Planes),
+        corner: [i32; 2],
+        (sums, kept): (&mut Sums, &mut Kept),
+    ) {
+        let pixels = samples.add_kept(context.level, kept, sums);
+        if pixels != [0; FOUR] {
+            let entry = |place: usize| planes[0][place] & (pixels[0] >> place & 1).wrapping_neg();
+            let unlit = Unlit { entries: &std::array::from_fn(entry), pixels: &pixels };
+            self.add_unlit(context, (samples, &unlit), corner, (sums, Some(kept)));
+        }
+    }
+
+    /// As [`Self::add_samples`], for some of the pixels.
+    fn add_unlit(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        (samples, unlit): (&Samples, &Unlit<'_>),
+        corner: [i32; 2],
+        (sums, kept): (&mut Sums, Option<&mut Kept>),
+    ) -> bool {
+        let mut shown = self.fragments.list(context.level, unlit.entries, corner);
         if shown.triangles != 0 {
             self.fragments.share(&samples.shares[0]);
-            self.color_fragments(context, corner, &mut Out::Sums(sums));
+            let mut out = match kept {
+                Some(kept) => Out::Kept(sums, kept),
+                None => Out::Sums(sums),
+            };
+            self.color_fragments(context, corner, &mut out);
         }
-        let mut others = !shown.triangles;
+        let mut others = unlit.pixels[0] & !shown.triangles;
         while others != 0 {
             let place = others.trailing_zeros() as usize;
             others &= others - 1;
@@ -102,7 +166,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         self.fragments.begin_shared();
         for sample in 1..FOUR {
-            let mut pixels = samples.new[sample];
+            let mut pixels = unlit.pixels[sample];
             while pixels != 0 {
                 let place = pixels.trailing_zeros() as usize;
                 pixels &= pixels - 1;

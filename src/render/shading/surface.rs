@@ -15,6 +15,7 @@ use super::full_blocks::Canvas;
 use super::groups::{Group, group_of, one_group};
 use super::interpolate::{CornerValues, Mixed, mix, surface_samples};
 use super::interpolated::ShadingNumber;
+use super::kept::Kept;
 use super::light::{Lighting, Table, run};
 use super::lit_points::place_fragments;
 use super::map_rows::MapRows;
@@ -65,6 +66,8 @@ pub(crate) enum Out<'a, 'b> {
     Tile(&'a mut Canvas<'b>, usize),
     /// The sums over several samples.
     Sums(&'a mut Sums),
+    /// The same, and what later passes need not light again.
+    Kept(&'a mut Sums, &'a mut Kept),
     /// What is behind a layer.
     Layer(&'a mut Blend),
 }
@@ -167,7 +170,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         self.colors.form = match out {
             Out::Tile(..) => Form::Pixels,
-            Out::Sums(_) | Out::Layer(_) => Form::Parts,
+            Out::Sums(_) | Out::Kept(..) | Out::Layer(_) => Form::Parts,
         };
         self.colors.linear = context.plan.variants.are_linear();
         self.group(context, group);
@@ -176,6 +179,12 @@ impl<T: ShadingNumber> Shader<T> {
             Out::Sums(sums) => {
                 let Fragments { len, pixels, shares, .. } = &self.fragments;
                 sums.add_all(&self.colors, &pixels[..*len], &shares[..*len]);
+            }
+            Out::Kept(sums, kept) => {
+                let Fragments { len, pixels, shares, slots, numbers, .. } = &self.fragments;
+                let pixels = &pixels[..*len];
+                sums.add_all(&self.colors, pixels, &shares[..*len]);
+                kept.keep(&self.colors, pixels, slots, numbers);
             }
             Out::Layer(blend) => {
                 let opacities = self.opacities(context, group);

@@ -4,6 +4,7 @@
 //! same before: it plans and draws both frames, so that memory is laid out the same way.
 
 use std::hint::black_box;
+use std::process::Command;
 
 use fearless_simd::Level;
 
@@ -63,11 +64,34 @@ fn counted_frame(renderer: &mut Renderer, plan: &FramePlan) {
 }
 
 /// The best instructions that callgrind supports.
-fn level() -> Level {
+pub(super) fn level() -> Level {
     let best = Level::new();
     #[cfg(target_arch = "x86_64")]
     if let Some(avx2) = best.as_avx2() {
         return Level::Avx2(avx2);
     }
     best
+}
+
+/// The number of instructions that callgrind counts inside functions of a pattern, in a process of
+/// this program with these arguments.
+///
+/// # Errors
+/// What went wrong.
+pub(crate) fn count(pattern: &str, arguments: &[&str]) -> Result<u64, String> {
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(format!("--toggle-collect={pattern}"))
+        .arg(program)
+        .args(arguments)
+        .output()
+        .map_err(|error| format!("valgrind does not run: {error}"))?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let collected = said.lines().find_map(|line| line.split_once("Collected : "));
+    let count = collected.and_then(|(_, count)| count.trim().parse().ok()).filter(|n| *n > 0);
+    // Stripped programs have no names of functions.
+    count.ok_or_else(|| {
+        format!("callgrind counted nothing; add --profile profiling. It said:\n{said}")
+    })
 }

@@ -7,6 +7,7 @@
 #![allow(dead_code, reason = "the hard cases use a part of it")]
 
 mod absent;
+pub(crate) mod choices;
 pub(crate) mod double_double;
 pub(crate) mod exact;
 mod fans;

@@ -1,0 +1,154 @@
+//! Counts the instructions of each choice of accuracy on the scenes of the laboratory's suite: a
+//! coarser choice takes no more than a more exact one, unless its axis gives the reason.
+//!
+//! Times are noisy, and an approximation that seems to cost more than what it approximates teaches
+//! something false; callgrind counts the same number in every run. It has no AVX-512, so frames are
+//! drawn with AVX2, and by one thread.
+
+use std::fmt::Write as _;
+use std::hint::black_box;
+
+use marraztu::accuracy::{AXES, Axis, AxisKind, Settings, Shot};
+use marraztu::base::image::Size;
+use marraztu::lab::candidates::{Group, candidates};
+use marraztu::lab::suite::{SUITE, SuiteScene};
+use marraztu::render::{FramePlan, Renderer, plan_frame};
+use marraztu::scene::{Scene, View};
+use rayon::prelude::*;
+
+use super::instructions::level;
+
+/// A pattern of callgrind for the function that is counted.
+const COUNTED: &str = "*counted_choice*";
+
+/// The size of the pictures.
+const SIZE: Size = Size::new(640, 360);
+
+/// The thousandths of the scenes' triangles: as the pixels, a quarter of what the laboratory draws.
+const DETAIL: u32 = 250;
+
+/// The part by which a coarser choice may take more: what sorting and memory differ by.
+const MARGIN: f64 = 0.01;
+
+/// The settings that are counted on a scene, in this order: the default, and every other choice of
+/// its axes.
+fn counted(suite: &SuiteScene, scene: &Scene, view: &View) -> Vec<Settings> {
+    let default = Settings::default();
+    let mut found = candidates(scene, view, &default, &suite.measured(), 0).all;
+    found.retain(|candidate| matches!(candidate.group, Group::Axis(_)));
+    let others = found.into_iter().map(|it| it.settings).filter(|settings| *settings != default);
+    std::iter::once(default).chain(others).collect()
+}
+
+/// Draws a scene with one of its settings, once before and once in a call that is counted.
+///
+/// # Errors
+/// If this thread draws together with others already.
+pub(crate) fn draw(suite: &SuiteScene, which: usize) -> Result<(), rayon::ThreadPoolBuildError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build()?;
+    let (scene, view) = suite.open(DETAIL);
+    let settings = counted(suite, &scene, &view)[which];
+    let plan = plan_frame(&Shot::new(&scene, &view, &settings, SIZE));
+    let mut renderer = Renderer::new(level());
+    pool.install(|| {
+        black_box(renderer.render(&plan));
+        counted_choice(&mut renderer, &plan);
+    });
+    Ok(())
+}
+
+/// See [`COUNTED`].
+#[inline(never)]
+fn counted_choice(renderer: &mut Renderer, plan: &FramePlan) {
+    black_box(renderer.render(black_box(plan)));
+}
+
+/// Counts all choices on the scenes whose words contain a text, and returns the tables in Markdown.
+///
+/// # Errors
+/// What went wrong, or the choices that take more than a more exact one without a reason.
+pub(crate) fn count(word: &str, tell: &mut dyn FnMut(&str)) -> Result<String, String> {
+    let (mut tables, mut wrong) = (String::new(), Vec::new());
+    for suite in SUITE.iter().filter(|suite| suite.word.contains(word)) {
+        let (scene, view) = suite.open(DETAIL);
+        let settings = counted(suite, &scene, &view);
+        let counts: Result<Vec<u64>, String> =
+            (0..settings.len()).into_par_iter().map(|which| callgrind(suite, which)).collect();
+        let counts: Vec<(Settings, u64)> = settings.into_iter().zip(counts?).collect();
+        for axis in suite.measured() {
+            let own = choices_of(axis, &counts);
+            let table = table(suite, axis, &own);
+            tell(&table);
+            tables += &table;
+            wrong.extend(unexplained(suite, axis, &own));
+        }
+    }
+    if wrong.is_empty() { Ok(tables) } else { Err(wrong.join("\n")) }
+}
+
+/// The counts of an axis, from the coarsest choice to the most exact.
+fn choices_of(axis: &Axis, counts: &[(Settings, u64)]) -> Vec<(usize, u64)> {
+    let default = Settings::default();
+    let mut own: Vec<(usize, u64)> = Vec::new();
+    for (settings, count) in counts {
+        let chosen = axis.chosen(settings);
+        let others_are_usual = AXES
+            .iter()
+            .filter(|other| other.key != axis.key)
+            .all(|other| other.chosen(settings).word == other.chosen(&default).word);
+        let place = axis.choices.iter().position(|choice| choice.word == chosen.word);
+        own.extend(place.filter(|_| others_are_usual).map(|place| (place, *count)));
+    }
+    own.sort_unstable();
+    own
+}
+
+/// The choices that take more than a more exact one, without a reason.
+fn unexplained(suite: &SuiteScene, axis: &Axis, own: &[(usize, u64)]) -> Vec<String> {
+    if axis.kind == AxisKind::Model {
+        return Vec::new();
+    }
+    let mut wrong = Vec::new();
+    for (i, (place, count)) in own.iter().enumerate() {
+        let finer = own[i + 1..].iter().min_by_key(|(_, count)| *count);
+        let Some((finer, least)) = finer else { continue };
+        let (choice, more) = (&axis.choices[*place], *count as f64 / *least as f64 - 1.0);
+        if more > MARGIN && choice.slower_because.is_none() {
+            wrong.push(format!(
+                "{}: {} takes {:.1}% more instructions than {}",
+                suite.word,
+                axis.in_words(choice),
+                more * 100.0,
+                axis.in_words(&axis.choices[*finer])
+            ));
+        }
+    }
+    wrong
+}
+
+/// The counts of an axis on a scene as a table.
+fn table(suite: &SuiteScene, axis: &Axis, own: &[(usize, u64)]) -> String {
+    let default = axis.default_choice().word;
+    let usual = own.iter().find(|(place, _)| axis.choices[*place].word == default);
+    let usual = usual.map_or(f64::NAN, |(_, count)| *count as f64);
+    let mut text =
+        format!("\n| {} ({}) | instructions | times |\n|---|--:|--:|\n", axis.label, suite.word);
+    for (place, count) in own {
+        let choice = &axis.choices[*place];
+        let name = if choice.word == default {
+            format!("{} (default)", choice.label)
+        } else {
+            choice.label.to_owned()
+        };
+        let millions = *count as f64 / 1e6;
+        let _ = writeln!(text, "| {name} | {millions:.1} M | {:.3} |", *count as f64 / usual);
+    }
+    text
+}
+
+/// The number of instructions of the counted call.
+fn callgrind(suite: &SuiteScene, which: usize) -> Result<u64, String> {
+    let which = which.to_string();
+    let draw = ["--draw-choice", suite.word, "--which", which.as_str()];
+    super::instructions::count(COUNTED, &draw)
+}
