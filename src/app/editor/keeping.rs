@@ -17,8 +17,8 @@ use crate::app::input::keymap::Keymap;
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, Notice, State};
 use crate::app::widgets::text::file_name;
-use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Theme, Unsaved};
-use crate::scene::{Panels, Scene};
+use crate::io::{self, Abandoned, Journal, OwnFolders, Panels, Preferences, Theme, Unsaved};
+use crate::scene::Scene;
 
 /// The seconds without a change after which preferences are written.
 const QUIET: f64 = 1.0;
