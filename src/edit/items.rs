@@ -307,8 +307,20 @@ pub fn change_light(
     id: LightId,
     change: impl FnOnce(&mut Light),
 ) -> Result<Command, Refusal> {
+    try_change_light(scene, id, |light| {
+        change(light);
+        Ok(())
+    })
+}
+
+/// Changes a light, unless the change is refused.
+pub(super) fn try_change_light(
+    scene: &Scene,
+    id: LightId,
+    change: impl FnOnce(&mut Light) -> Result<(), Refusal>,
+) -> Result<Command, Refusal> {
     let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
-    change(&mut light);
+    change(&mut light)?;
     Ok(Command::Replace(Item::Light(id, Box::new(light))))
 }
 

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::items::{change_light, check_owner};
+use super::items::{change_light, check_owner, try_change_light};
 use super::{Refusal, set_transform};
 use crate::scene::{
-    Aim, AnchorMut, Attenuation, Command, CommandError, HALF_APERTURE, Item, LightId, LightKind,
+    Aim, AnchorMut, Attenuation, Command, CommandError, HALF_APERTURE, LightId, LightKind,
     LightNumber, Orbit, Scene, SpotOwner, Subject, Tracked, View,
 };
 
@@ -116,10 +116,11 @@ pub fn set_number(
     if !to.is_finite() {
         return Err(Refusal::TooLarge);
     }
-    let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
-    let own = (number.get_mut)(&mut light.kind).ok_or(Refusal::NotASpot)?;
-    *own = to.clamp(0.0, number.largest);
-    Ok(Command::Replace(Item::Light(id, Box::new(light))))
+    try_change_light(scene, id, |light| {
+        let own = (number.get_mut)(&mut light.kind).ok_or(Refusal::NotASpot)?;
+        *own = to.clamp(0.0, number.largest);
+        Ok(())
+    })
 }
 
 /// Attaches a spot to another owner.
@@ -128,14 +129,15 @@ pub fn set_number(
 /// If the light is not a spot, or the owner is not there.
 pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, Refusal> {
     check_owner(scene, &to)?;
-    let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
-    match light.kind.anchor_mut() {
-        AnchorMut::Owner(owner) => *owner = to,
-        AnchorMut::Everywhere | AnchorMut::Direction(_) | AnchorMut::Position(_) => {
-            return Err(Refusal::NotASpot);
+    try_change_light(scene, id, |light| match light.kind.anchor_mut() {
+        AnchorMut::Owner(owner) => {
+            *owner = to;
+            Ok(())
         }
-    }
-    Ok(Command::Replace(Item::Light(id, Box::new(light))))
+        AnchorMut::Everywhere | AnchorMut::Direction(_) | AnchorMut::Position(_) => {
+            Err(Refusal::NotASpot)
+        }
+    })
 }
 
 /// Sets the key of a light.

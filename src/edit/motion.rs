@@ -3,10 +3,10 @@
 //! Before a motion changes, the rotation so far is applied to the placement and the motion restarts
 //! from there, so that nothing jumps on the screen.
 
-use super::items::change_object;
+use super::items::{change_object, try_change_light};
 use super::{GesturePhase, Refusal};
 use crate::base::math::Axis;
-use crate::scene::{AnchorMut, Command, Item, LightId, ObjectId, Orbit, Scene, Spin};
+use crate::scene::{AnchorMut, Command, LightId, ObjectId, Orbit, Scene, Spin};
 
 /// Starts or stops the spin of an object about one of its axes.
 ///
@@ -81,11 +81,12 @@ pub fn set_orbit(
     if !(to.speed.is_finite() && time.is_finite()) {
         return Err(Refusal::TooLarge);
     }
-    let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
-    let orbit = light.kind.orbit_mut().ok_or(Refusal::NotABulb)?;
-    let before = std::mem::replace(orbit, Orbit { since: time, ..to });
-    if let (true, AnchorMut::Position(position)) = (before.on, light.kind.anchor_mut()) {
-        *position = phase.apply(position, before.at(*position.now(), time));
-    }
-    Ok(Command::Replace(Item::Light(id, Box::new(light))))
+    try_change_light(scene, id, |light| {
+        let orbit = light.kind.orbit_mut().ok_or(Refusal::NotABulb)?;
+        let before = std::mem::replace(orbit, Orbit { since: time, ..to });
+        if let (true, AnchorMut::Position(position)) = (before.on, light.kind.anchor_mut()) {
+            *position = phase.apply(position, before.at(*position.now(), time));
+        }
+        Ok(())
+    })
 }

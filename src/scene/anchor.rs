@@ -79,6 +79,7 @@ pub struct Aim {
 
 /// Circling the world's Y axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Orbit {
     /// Whether it circles.
     pub on: bool,

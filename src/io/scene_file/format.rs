@@ -10,7 +10,7 @@ use super::fields::{Numbers, white, yes};
 use super::light::FileLight;
 use super::view::FileView;
 use crate::accuracy::Settings;
-use crate::scene::{Lens, MaterialChoice, Sides, Surface, UpAxis, Winding, Wrap};
+use crate::scene::{Lens, MaterialChoice, Sides, Spin, Surface, UpAxis, Winding, Wrap};
 
 /// The version that is written, and the latest that is read.
 pub(super) const VERSION: u32 = 1;
@@ -73,7 +73,7 @@ pub(super) struct FileObject {
     #[serde(default = "identity")]
     pub(super) placement: [[f64; 4]; 4],
     #[serde(default)]
-    pub(super) spin: FileSpin,
+    pub(super) spin: Spin,
     #[serde(default = "silver")]
     pub(super) material: MaterialChoice,
     #[serde(default)]
@@ -105,21 +105,6 @@ pub(super) struct FileTexture {
     pub(super) offset: [f64; 2],
     #[serde(default = "ones")]
     pub(super) scale: [f64; 2],
-}
-
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct FileSpin {
-    pub(super) axes: [bool; 3],
-    pub(super) speed: f64,
-    pub(super) since: f64,
-}
-
-impl Default for FileSpin {
-    fn default() -> Self {
-        let crate::scene::Spin { axes, speed, since } = crate::scene::Spin::default();
-        Self { axes, speed, since }
-    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]

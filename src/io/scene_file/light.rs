@@ -36,28 +36,13 @@ pub(super) enum FileLightKind {
     Bulb {
         position: [f64; 3],
         #[serde(default)]
-        orbit: FileOrbit,
+        orbit: Orbit,
     },
     Spot {
         owner: FileOwner,
         half_aperture: f64,
         exponent: f64,
     },
-}
-
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct FileOrbit {
-    pub(super) on: bool,
-    pub(super) speed: f64,
-    pub(super) since: f64,
-}
-
-impl Default for FileOrbit {
-    fn default() -> Self {
-        let Orbit { on, speed, since } = Orbit::default();
-        Self { on, speed, since }
-    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -77,9 +62,7 @@ pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
             FileLightKind::Sun { direction: direction.now().to_array() }
         }
         LightKind::Bulb { position, orbit } => {
-            let Orbit { on, speed, since } = *orbit;
-            let orbit = FileOrbit { on, speed, since };
-            FileLightKind::Bulb { position: position.now().to_array(), orbit }
+            FileLightKind::Bulb { position: position.now().to_array(), orbit: *orbit }
         }
         LightKind::Spot { owner, half_aperture, exponent } => FileLightKind::Spot {
             owner: file_owner(owner),
@@ -112,11 +95,10 @@ pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
         FileLightKind::Sun { direction } => {
             LightKind::Sun { direction: Tracked::new(read_direction(direction)?) }
         }
-        FileLightKind::Bulb { position, orbit: FileOrbit { on, speed, since } } => {
+        FileLightKind::Bulb { position, orbit } => {
             finite("its place", &position)?;
-            finite("its orbit", &[speed, since])?;
-            let position = Tracked::new(DVec3::from_array(position));
-            LightKind::Bulb { position, orbit: Orbit { on, speed, since } }
+            finite("its orbit", &[orbit.speed, orbit.since])?;
+            LightKind::Bulb { position: Tracked::new(DVec3::from_array(position)), orbit }
         }
         FileLightKind::Spot { ref owner, half_aperture, exponent } => {
             let right =

@@ -8,16 +8,14 @@ use std::collections::BTreeSet;
 use glam::{DMat3, DMat4, DVec3};
 
 use super::fields::finite;
-use super::format::{
-    FileCamera, FileMode, FileModel, FileObject, FileScene, FileSpin, FileTexture,
-};
+use super::format::{FileCamera, FileMode, FileModel, FileObject, FileScene, FileTexture};
 use super::light::read_light;
 use super::view::read_view;
 use crate::base::{Shared, color::Color};
 use crate::io::findings::{FindingKind, Findings};
 use crate::scene::{
     Camera, CameraId, CameraMode, Command, CommandError, Item, LightId, List, MaterialChoice,
-    Model, Object, ObjectId, Pose, Scene, Sides, Spin, SpotOwner, Texture, Tracked, View,
+    Model, Object, ObjectId, Pose, Scene, Sides, SpotOwner, Texture, Tracked, View,
 };
 
 /// The most items of a kind in a scene: each is looked up among all others.
@@ -139,8 +137,7 @@ fn read_material(material: &MaterialChoice) -> Result<MaterialChoice, String> {
 
 fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String> {
     finite("its placement", object.placement.as_flattened())?;
-    let FileSpin { axes, speed, since } = object.spin;
-    finite("its spin", &[speed, since])?;
+    finite("its spin", &[object.spin.speed, object.spin.since])?;
     finite("its opacity", &[object.opacity])?;
     if let Some(texture) = &object.texture {
         finite("its texture", &[texture.offset, texture.scale].concat())?;
@@ -154,7 +151,7 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
         model,
         hidden_parts,
         placement: Tracked::new(DMat4::from_cols_array_2d(&object.placement)),
-        spin: Spin { axes, speed, since },
+        spin: object.spin,
         material: read_material(&object.material)?,
         surface: object.surface,
         texture: object.texture.as_ref().map(|texture| needs.texture(texture)),

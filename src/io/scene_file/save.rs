@@ -5,18 +5,14 @@
 use std::path::Path;
 
 use super::fields::Numbers;
-use super::format::{
-    FileCamera, FileMode, FileModel, FileObject, FileScene, FileSpin, FileTexture, VERSION,
-};
+use super::format::{FileCamera, FileMode, FileModel, FileObject, FileScene, FileTexture, VERSION};
 use super::light::file_light;
 use super::paths::relative;
 use super::view::FileView;
 use crate::accuracy::Settings;
 use crate::io::window_state::WindowState;
 use crate::io::{is_example, own_texture};
-use crate::scene::{
-    Camera, CameraMode, LoadOptions, Model, Object, Pose, Scene, Spin, Texture, View,
-};
+use crate::scene::{Camera, CameraMode, LoadOptions, Model, Object, Pose, Scene, Texture, View};
 
 /// A scene with its view and settings, in the types of the file. `folder` is the file's, absolute.
 ///
@@ -86,7 +82,6 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         file_normals,
         edge_color,
     } = object;
-    let Spin { axes, speed, since } = *spin;
     let texture = texture.as_ref().map(|texture| file_texture(texture, folder)).transpose()?;
     Ok(FileObject {
         id,
@@ -95,7 +90,7 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         model: file_model(model, folder)?,
         hidden_parts: Numbers::of(hidden_parts),
         placement: placement.now().to_cols_array_2d(),
-        spin: FileSpin { axes, speed, since },
+        spin: *spin,
         material: material.clone(),
         surface: *surface,
         texture,
