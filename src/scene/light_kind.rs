@@ -223,3 +223,54 @@ impl LightKind {
         anchored && self.numbers().all(|(row, number)| row.is_valid(number))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Light;
+
+    #[test]
+    fn a_number_of_a_light_is_read_where_it_is_written() {
+        for mut light in Light::five() {
+            for number in LIGHT_NUMBERS {
+                let is_there = (number.get)(&light.kind).is_some();
+                match (number.get_mut)(&mut light.kind) {
+                    Some(own) => *own = 12.5,
+                    None => assert!(!is_there, "{}", number.name),
+                }
+                assert_eq!((number.get)(&light.kind), is_there.then_some(12.5), "{}", number.name);
+            }
+            assert!(light.kind.is_valid());
+            for number in LIGHT_NUMBERS {
+                for wrong in [-1.0, number.largest * 2.0, f64::NAN] {
+                    let mut kind = light.kind.clone();
+                    if let Some(own) = (number.get_mut)(&mut kind) {
+                        *own = wrong;
+                        assert!(!kind.is_valid(), "{} {wrong}", number.name);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_light_is_changed_where_it_is_anchored() {
+        let moved = DVec3::new(1.0, 2.0, 3.0);
+        for mut light in Light::five() {
+            match light.kind.anchor_mut() {
+                AnchorMut::Everywhere => {}
+                AnchorMut::Direction(own) | AnchorMut::Position(own) => *own = Tracked::new(moved),
+                AnchorMut::Owner(own) => *own = SpotOwner::SelectedCamera,
+            }
+            let (position, direction) = (light.kind.has_position(), light.kind.has_direction());
+            match light.kind.anchor() {
+                Anchor::Everywhere => assert!(!position && !direction),
+                Anchor::Direction(own) => assert!(*own.now() == moved && !position && direction),
+                Anchor::Position(own) => assert!(*own.now() == moved && position && !direction),
+                Anchor::Owner(own) => {
+                    assert!(*own == SpotOwner::SelectedCamera && position && direction);
+                }
+            }
+        }
+    }
+}

@@ -126,7 +126,7 @@ pub fn to_text(
     text_with_window(path, scene, view, settings, &WindowState::DEFAULT)
 }
 
-fn text_with_window(
+pub(in crate::io) fn text_with_window(
     path: &Path,
     scene: &Scene,
     view: &View,
