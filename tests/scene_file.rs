@@ -17,15 +17,15 @@ use marraztu::base::image::{Picture, Size};
 use marraztu::base::math;
 use marraztu::edit::items::set_crease;
 use marraztu::io::{
-    FindingKind, Progress, SceneFileError, default_scene, load, load_texture, open, open_with,
-    save, save_picture, to_text,
+    FindingKind, Panels, Progress, SceneFileError, WindowState, default_scene, load, load_texture,
+    open, open_with, save, save_picture, save_with_window, to_text,
 };
 use marraztu::scene::{
     Aim, Attenuation, Camera, CameraId, CameraMode, Command, Crease, Fill, Frame, Item, Lens,
     Light, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength, Normals,
-    Object, ObjectId, Observer, Orbit, Panels, PolygonMode, Pose, PresetId, Projection, Scale,
-    Scene, Sides, Spin, SpotOwner, Steps, Subject, Surface, Texture, Tracked, Transformation,
-    UpAxis, View, Winding, Wrap,
+    Object, ObjectId, Observer, Orbit, PolygonMode, Pose, PresetId, Projection, Scale, Scene,
+    Sides, Spin, SpotOwner, Steps, Subject, Surface, Texture, Tracked, Transformation, UpAxis,
+    View, Winding, Wrap,
 };
 use proptest::prelude::*;
 
@@ -152,9 +152,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         normal_length: NormalLength::BySize,
         wide_lines: true,
         marks: false,
-        coarse_while_moving: false,
         time: a,
-        panels: Panels { outline: false, statistics: true, plan: true, ..Panels::DEFAULT },
     };
     let settings = Settings {
         arithmetic: Arithmetic::F64,
@@ -207,12 +205,15 @@ proptest! {
         let folder = folder();
         let (scene, view, settings) = rich(folder.path(), numbers);
         let path = folder.path().join("scenes.marraztu");
-        save(&path, &scene, &view, &settings).unwrap();
+        let panels = Panels { outline: false, statistics: true, plan: true, ..Panels::DEFAULT };
+        let window = WindowState { coarse_while_moving: false, panels };
+        save_with_window(&path, &scene, &view, &settings, &window).unwrap();
         let opened = open(&path, &Progress::new()).unwrap();
         let scene = without_stacks(&scene);
         prop_assert_eq!(&opened.scene, &scene);
         prop_assert_eq!(opened.view, view);
         prop_assert_eq!(opened.settings, settings);
+        prop_assert_eq!(opened.window, window);
         let bits = |scene: &Scene| {
             let placements = scene.objects.iter().map(|(_, o)| *o.placement.now());
             placements.flat_map(|m| m.to_cols_array().map(f64::to_bits)).collect::<Vec<_>>()

@@ -7,9 +7,5 @@ mod shot;
 
 pub use axes::{AXES, Axis, AxisKind, Choice, Lesson, uncapitalized};
 pub use presets::{ACCURACY_PRESETS, AccuracyPreset};
-pub use settings::{
-    Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LeaveOut, LightAt,
-    LightValues, NormalMatrix, Normalising, Rounding, Samples, Settings, SpecularForm,
-    SpecularPower, Subpixels, Tangents, Transparency, VertexArithmetic,
-};
+pub use settings::*;
 pub use shot::Shot;

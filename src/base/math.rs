@@ -12,7 +12,7 @@
 //! Sines and cosines come from the `libm` crate, glam's too, so they have the same bits on every
 //! machine.
 
-use glam::{DMat3, DMat4, DQuat, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 
 use super::image::Size;
@@ -198,12 +198,6 @@ fn shorter_side(size: Size) -> DVec2 {
 #[must_use]
 pub fn placed(axes: DMat3, origin: DVec3) -> DMat4 {
     DMat4::from_mat3_translation(axes, origin)
-}
-
-/// The rotation of `m`, without scale and mirroring, as a quaternion; only for showing angles.
-#[must_use]
-pub fn turn_of(m: DMat3) -> DQuat {
-    DQuat::from_mat3(&frame(m.z_axis, m.y_axis, DMat3::IDENTITY))
 }
 
 /// Whether all numbers of two matrices have the same bits.

@@ -12,9 +12,12 @@ use marraztu::scene::CommandError;
 /// Why a command fails, in one sentence.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// Invalid arguments.
+    /// Invalid arguments, or arguments that contradict each other.
+    #[error("{0}")]
+    Usage(String),
+    /// Arguments that cannot be parsed.
     #[error(transparent)]
-    Usage(Box<clap::Error>),
+    Unparsed(Box<clap::Error>),
     /// The error has been printed already.
     #[error("some of it failed")]
     Told,
@@ -51,6 +54,11 @@ pub(crate) enum Failure {
          files"
     )]
     Start(#[from] StartError),
+}
+
+/// Invalid arguments, or arguments that contradict each other.
+pub(crate) fn usage(reason: &str) -> Failure {
+    Failure::Usage(reason.to_owned())
 }
 
 impl From<CommandError> for Failure {

@@ -10,7 +10,8 @@ use marraztu::scene::{LoadOptions, Observer, Projection, Scene, View};
 use super::arguments::Info;
 use super::failure::Failure;
 use super::say;
-use super::stage::{Stage, input, is_scene, is_standard, load};
+use super::stage::{Stage, input, is_scene, load};
+use super::values::is_standard;
 
 /// Describes each file; the others are described even if one cannot be read.
 pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {

@@ -6,6 +6,7 @@
 mod accuracy;
 mod arguments;
 mod bar;
+mod commands;
 mod explain;
 mod export;
 mod failure;
@@ -25,9 +26,10 @@ mod verify;
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
 
-use self::arguments::{Arguments, Headless};
+use self::commands::{Arguments, Headless};
 use self::failure::Failure;
 
 /// Runs the command that the arguments of this process name.
@@ -50,7 +52,10 @@ pub(crate) fn run() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Usage(wrong)) => usage(&wrong),
+        Err(Failure::Usage(reason)) => {
+            usage(&Arguments::command().error(ErrorKind::ArgumentConflict, reason))
+        }
+        Err(Failure::Unparsed(wrong)) => usage(&wrong),
         Err(Failure::Told) => ExitCode::FAILURE,
         Err(failure) => {
             say("error", &failure);

@@ -9,9 +9,9 @@ use marraztu::accuracy::AccuracyPreset;
 use marraztu::app::Shell;
 use marraztu::io;
 
-use super::arguments::Arguments;
-use super::failure::Failure;
-use super::stage::{is_standard, usage};
+use super::commands::Arguments;
+use super::failure::{Failure, usage};
+use super::values::is_standard;
 
 /// Opens the editor with these files, which have to exist.
 pub(crate) fn open(
@@ -20,7 +20,7 @@ pub(crate) fn open(
     preset: Option<&'static AccuracyPreset>,
 ) -> Result<(), Failure> {
     if let Some(wrong) = misspelt() {
-        return Err(Failure::Usage(Box::new(wrong)));
+        return Err(Failure::Unparsed(Box::new(wrong)));
     }
     if files.iter().any(|file| is_standard(file)) {
         return Err(usage("the editor opens files; `marraztu render -` reads standard input"));

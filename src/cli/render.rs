@@ -14,8 +14,8 @@ use super::accuracy::Accuracy;
 use super::arguments::{PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces};
 use super::bar::Bar;
 use super::draw_along;
-use super::failure::Failure;
-use super::stage::{Stage, usage};
+use super::failure::{Failure, usage};
+use super::stage::Stage;
 use super::talk::note;
 use super::target::Target;
 

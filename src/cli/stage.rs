@@ -4,8 +4,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use clap::CommandFactory;
-use clap::error::ErrorKind;
 use marraztu::accuracy::{Settings, Shot};
 use marraztu::base::Shared;
 use marraztu::base::image::Size;
@@ -14,9 +12,10 @@ use marraztu::io::{self, Finding, Input, LoadError, Loaded, Progress};
 use marraztu::scene::{Command, LoadOptions, MaterialChoice, Model, Object, Scene, Sides, View};
 use rayon::prelude::*;
 
-use super::arguments::{Arguments, Reading};
+use super::arguments::Reading;
 use super::bar::Bar;
-use super::failure::Failure;
+use super::failure::{Failure, usage};
+use super::values::is_standard;
 
 /// A scene with its view and settings, and the findings of its files.
 #[derive(Debug)]
@@ -162,11 +161,6 @@ pub(crate) fn input(files: &[PathBuf]) -> Result<Option<Input>, Failure> {
     }
 }
 
-/// Whether a file's name stands for standard input or output.
-pub(crate) fn is_standard(file: &Path) -> bool {
-    file == Path::new("-")
-}
-
 /// Reads several models at a time, since one small file leaves most threads idle.
 fn load_all(
     files: &[&PathBuf],
@@ -190,9 +184,4 @@ fn load_all(
 /// Whether a file's name is that of a scene.
 pub(crate) fn is_scene(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(io::SCENE_ENDING))
-}
-
-/// Invalid arguments, or arguments that contradict each other.
-pub(crate) fn usage(reason: &str) -> Failure {
-    Failure::Usage(Box::new(Arguments::command().error(ErrorKind::ArgumentConflict, reason)))
 }

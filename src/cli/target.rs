@@ -9,8 +9,9 @@ use marraztu::io::{self, PICTURE_FORMATS};
 use marraztu::scene::Scene;
 
 use super::arguments::Render;
-use super::failure::Failure;
-use super::stage::{Stage, is_scene, is_standard, usage};
+use super::failure::{Failure, usage};
+use super::stage::{Stage, is_scene};
+use super::values::is_standard;
 
 /// The picture's name if no file gives it one.
 const UNNAMED: &str = "scene";

@@ -13,9 +13,10 @@ use super::arguments::PictureArguments;
 use super::bar::Bar;
 use super::failure::Failure;
 use super::render::stage;
-use super::stage::{Stage, is_standard};
+use super::stage::Stage;
 use super::talk::note;
 use super::target::default_name;
+use super::values::is_standard;
 
 /// The most pictures of a turn: one for each tenth of a degree.
 const MOST_FRAMES: i64 = 3600;

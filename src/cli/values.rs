@@ -1,5 +1,7 @@
 //! Parses values of options.
 
+use std::path::Path;
+
 use marraztu::base::color::Color;
 use marraztu::base::image::Size;
 
@@ -19,6 +21,11 @@ const COLORS: [(&str, [u8; 3]); 10] = [
     ("cyan", [0, 255, 255]),
     ("magenta", [255, 0, 255]),
 ];
+
+/// Whether a file's name stands for standard input or output.
+pub(crate) fn is_standard(file: &Path) -> bool {
+    file == Path::new("-")
+}
 
 /// A picture's size: "800x600", or "800" for a square.
 pub(super) fn size(text: &str) -> Result<Size, String> {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{GesturePhase, Refusal, framing, lights, placement, set_transform};
 use crate::base::math;
-use crate::scene::{Aim, Command, LightId, LightKind, Scene, SpotOwner, Tracked, View};
+use crate::scene::{Aim, Anchor, Command, LightId, LightOrigin, Scene, SpotOwner, Tracked, View};
 
 /// How far from the middle of the scene the mark of a sun stands, in its radii.
 const SUN: f64 = 0.6;
@@ -18,10 +18,7 @@ const NEAR: f64 = 0.1;
 /// If it is neither a spot nor a sun.
 pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
     let (id, light) = set_transform::selected_light(scene, view)?;
-    match light.kind {
-        LightKind::Spot { .. } | LightKind::Sun { .. } => Ok(id),
-        LightKind::Ambient | LightKind::Bulb { .. } => Err(Refusal::NotAimed),
-    }
+    if light.kind.has_direction() { Ok(id) } else { Err(Refusal::NotAimed) }
 }
 
 /// The position and the direction of a light, for its mark and to aim it.
@@ -30,21 +27,20 @@ pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
 /// ambient light stands nowhere.
 #[must_use]
 pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
-    match &scene.lights.get(id)?.kind {
-        LightKind::Ambient => None,
-        LightKind::Sun { direction } => {
+    let LightOrigin { position, direction } =
+        scene.light_origin(view, &scene.lights.get(id)?.kind)?;
+    match (position, direction) {
+        (None, None) => None,
+        (None, Some(direction)) => {
             let ids: Vec<_> = scene.objects.ids().collect();
             let sphere = framing::sphere(scene, view, &ids);
             let (centre, radius) =
                 sphere.map_or((DVec3::ZERO, 100.0), |sphere| (sphere.centre, sphere.radius));
-            let direction = *direction.now();
             Some(Aim { position: centre - direction * (SUN * radius).max(1e-3), direction })
         }
-        LightKind::Bulb { position, orbit } => {
-            let position = orbit.at(*position.now(), view.time);
-            Some(Aim { position, direction: DVec3::NEG_Y })
+        (Some(position), direction) => {
+            Some(Aim { position, direction: direction.unwrap_or(DVec3::NEG_Y) })
         }
-        LightKind::Spot { owner, .. } => scene.aim(view, owner),
     }
 }
 
@@ -82,12 +78,12 @@ pub fn aim(
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     let from = stands(scene, view, id).ok_or(Refusal::NotAimed)?.position;
     let direction = math::unit(at - from).ok_or(Refusal::AimedAtItself)?;
-    match &light.kind {
-        LightKind::Ambient | LightKind::Bulb { .. } => Err(Refusal::NotAimed),
-        LightKind::Sun { .. } | LightKind::Spot { owner: SpotOwner::Fixed(_), .. } => {
+    match light.kind.anchor() {
+        Anchor::Everywhere | Anchor::Position(_) => Err(Refusal::NotAimed),
+        Anchor::Direction(_) | Anchor::Owner(SpotOwner::Fixed(_)) => {
             placement::light_direction(scene, id, direction, phase)
         }
-        LightKind::Spot { .. } => {
+        Anchor::Owner(_) => {
             let aim = Aim { position: from, direction };
             lights::set_owner(scene, id, SpotOwner::Fixed(Tracked::new(aim)))
         }

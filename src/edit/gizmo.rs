@@ -7,9 +7,7 @@ use glam::{DMat3, DVec3};
 
 use super::{GesturePhase, Refusal, aiming, set_transform, steps, transform};
 use crate::base::math::{self, Axis};
-use crate::scene::{
-    Command, Frame, LightKind, Observer, Scene, SpotOwner, Subject, Transformation, View,
-};
+use crate::scene::{Command, Frame, Observer, Scene, Subject, Transformation, View};
 
 /// Where the handles of the selected item stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,19 +95,10 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
         }
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
-            set_transform::place_of(light)?;
-            let kind = match (&light.kind, kind) {
-                (LightKind::Sun { .. }, _) => Transformation::Rotation,
-                (LightKind::Bulb { .. }, _) => Transformation::Translation,
-                (LightKind::Spot { owner: SpotOwner::Fixed(_), .. }, kind)
-                    if kind != Transformation::Scaling =>
-                {
-                    kind
-                }
-                (LightKind::Spot { .. } | LightKind::Ambient, _) => {
-                    return Err(Refusal::LightScaled);
-                }
-            };
+            let kind = set_transform::transformation_of(light, kind)?;
+            if kind == Transformation::Scaling {
+                return Err(Refusal::LightScaled);
+            }
             let origin = aiming::stands(scene, view, id).ok_or(Refusal::Ambient)?.position;
             Ok(Pivot { kind, origin, axes: DMat3::IDENTITY })
         }

@@ -8,8 +8,9 @@ use super::Refusal;
 use super::names::Names;
 use crate::base::Shared;
 use crate::scene::{
-    Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId, LightKind,
-    MaterialChoice, Model, Object, ObjectId, Pose, Scene, Shape, Smoothing, SpotOwner, Tracked,
+    AnchorMut, Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId,
+    LightKind, MaterialChoice, Model, Object, ObjectId, Pose, Scene, Shape, Smoothing, SpotOwner,
+    Tracked,
 };
 
 /// The maximum number of parts to split at once, so that the outline stays readable.
@@ -57,7 +58,7 @@ pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoi
 /// # Errors
 /// If it is a spot of an object or a camera that is not there.
 pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> {
-    put_light(scene, Light::new(light_name(&kind), 0, kind))
+    put_light(scene, Light::new(&light_name(&kind), 0, kind))
 }
 
 /// Adds a copy of an item, without its stack of transformations.
@@ -78,13 +79,10 @@ pub fn duplicate(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
         }
         ItemId::Light(id) => {
             let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
-            match &mut light.kind {
-                LightKind::Sun { direction } => *direction = Tracked::new(*direction.now()),
-                LightKind::Bulb { position, .. } => *position = Tracked::new(*position.now()),
-                LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } => {
-                    *aim = Tracked::new(*aim.now());
-                }
-                LightKind::Ambient | LightKind::Spot { .. } => {}
+            match light.kind.anchor_mut() {
+                AnchorMut::Direction(v) | AnchorMut::Position(v) => *v = Tracked::new(*v.now()),
+                AnchorMut::Owner(SpotOwner::Fixed(aim)) => *aim = Tracked::new(*aim.now()),
+                AnchorMut::Everywhere | AnchorMut::Owner(_) => {}
             }
             put_light(scene, light)
         }
@@ -103,7 +101,7 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
         return Err(CommandError::LastCamera.into());
     }
     let attached = |light: &Light| {
-        let LightKind::Spot { owner, .. } = &light.kind else { return false };
+        let Some(owner) = light.kind.owner() else { return false };
         match owner {
             SpotOwner::Object(owner) => id == ItemId::Object(*owner),
             SpotOwner::Camera(owner) => id == ItemId::Camera(*owner),
@@ -309,8 +307,20 @@ pub fn change_light(
     id: LightId,
     change: impl FnOnce(&mut Light),
 ) -> Result<Command, Refusal> {
+    try_change_light(scene, id, |light| {
+        change(light);
+        Ok(())
+    })
+}
+
+/// Changes a light, unless the change is refused.
+pub(super) fn try_change_light(
+    scene: &Scene,
+    id: LightId,
+    change: impl FnOnce(&mut Light) -> Result<(), Refusal>,
+) -> Result<Command, Refusal> {
     let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
-    change(&mut light);
+    change(&mut light)?;
     Ok(Command::Replace(Item::Light(id, Box::new(light))))
 }
 
@@ -322,7 +332,7 @@ fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
 }
 
 fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
-    if let LightKind::Spot { owner, .. } = &light.kind {
+    if let Some(owner) = light.kind.owner() {
         check_owner(scene, owner)?;
     }
     let mut names: Names<'_> = scene.lights.iter().map(|(_, other)| &*other.name).collect();
@@ -340,18 +350,13 @@ fn one_or_batch(mut commands: Vec<Command>) -> Command {
     if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) }
 }
 
-const fn light_name(kind: &LightKind) -> &'static str {
-    match kind {
-        LightKind::Ambient => "ambient",
-        LightKind::Sun { .. } => "sun",
-        LightKind::Bulb { .. } => "bulb",
-        LightKind::Spot { owner: SpotOwner::SelectedObject | SpotOwner::Object(_), .. } => {
-            "object spot"
-        }
-        LightKind::Spot { owner: SpotOwner::SelectedCamera | SpotOwner::Camera(_), .. } => {
-            "camera spot"
-        }
-        LightKind::Spot { owner: SpotOwner::Fixed(_), .. } => "spot",
+/// The name of a new light: its kind, behind what it is attached to.
+fn light_name(kind: &LightKind) -> String {
+    let name = kind.info().name;
+    match kind.owner() {
+        Some(SpotOwner::SelectedObject | SpotOwner::Object(_)) => format!("object {name}"),
+        Some(SpotOwner::SelectedCamera | SpotOwner::Camera(_)) => format!("camera {name}"),
+        Some(SpotOwner::Fixed(_)) | None => name.to_owned(),
     }
 }
 

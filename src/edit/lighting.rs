@@ -20,7 +20,8 @@ use super::items::change_light;
 use super::{Refusal, framing};
 use crate::base::color::Color;
 use crate::scene::{
-    Attenuation, Command, Light, LightKind, Object, ObjectId, Scene, SpotOwner, Tracked, View,
+    Anchor, AnchorMut, Attenuation, Command, Light, LightOrigin, Object, ObjectId, Scene,
+    SpotOwner, Tracked, View,
 };
 
 /// The distance of the first scene's camera, for which its lights are made.
@@ -75,15 +76,14 @@ fn place(light: &mut Light, centre: DVec3, scale: f64) {
     if scaled.is_valid() {
         light.attenuation = scaled;
     }
-    match &mut light.kind {
-        LightKind::Ambient => {}
-        LightKind::Sun { direction } => *direction = Tracked::new(-KEY_FROM),
-        LightKind::Bulb { position, .. } => {
+    match light.kind.anchor_mut() {
+        AnchorMut::Direction(direction) => *direction = Tracked::new(-KEY_FROM),
+        AnchorMut::Position(position) => {
             *position = Tracked::new(centre + BULB * scale);
             light.on = false;
         }
-        LightKind::Spot { owner: SpotOwner::SelectedObject, .. } => light.on = false,
-        LightKind::Spot { .. } => {}
+        AnchorMut::Owner(SpotOwner::SelectedObject) => light.on = false,
+        AnchorMut::Everywhere | AnchorMut::Owner(_) => {}
     }
 }
 
@@ -93,7 +93,7 @@ fn balance(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     let ambient: f64 = scene
         .lights
         .iter()
-        .filter(|(_, light)| light.on && matches!(light.kind, LightKind::Ambient))
+        .filter(|(_, light)| light.on && matches!(light.kind.anchor(), Anchor::Everywhere))
         .map(|(_, light)| strength(light))
         .fold(0.0, f64::max);
     let diffuse = most_diffuse(scene, view, centre, radius);
@@ -147,19 +147,15 @@ fn most_diffuse(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
 /// The light that arrives at `p`, as the direction towards it times its strength. `None` if it has
 /// no direction.
 fn light_at(light: &Light, scene: &Scene, view: &View, p: DVec3) -> Option<DVec3> {
-    let lamp = |position: DVec3| {
-        let to = position - p;
-        let d = to.length();
-        let Attenuation { constant, linear, quadratic } = light.attenuation;
-        (d > 0.0).then(|| to / d * strength(light) / (constant + linear * d + quadratic * d * d))
+    let LightOrigin { position, direction } = scene.light_origin(view, &light.kind)?;
+    // In the middle of its cone a spot is as bright as a bulb.
+    let Some(position) = position else {
+        return direction.map(|direction| -direction * strength(light));
     };
-    match &light.kind {
-        LightKind::Ambient => None,
-        LightKind::Sun { direction } => Some(-*direction.now() * strength(light)),
-        LightKind::Bulb { position, .. } => lamp(*position.now()),
-        // In the middle of its cone a spot is as bright as a bulb.
-        LightKind::Spot { owner, .. } => lamp(scene.aim(view, owner)?.position),
-    }
+    let to = position - p;
+    let d = to.length();
+    let Attenuation { constant, linear, quadratic } = light.attenuation;
+    (d > 0.0).then(|| to / d * strength(light) / (constant + linear * d + quadratic * d * d))
 }
 
 /// The brightest channel of a light, 0 to 1.

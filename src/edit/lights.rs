@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::items::{change_light, check_owner};
+use super::items::{change_light, check_owner, try_change_light};
 use super::{Refusal, set_transform};
 use crate::scene::{
-    Aim, Attenuation, Command, CommandError, LightId, LightKind, Orbit, Scene, SpotOwner, Subject,
-    Tracked, View,
+    Aim, AnchorMut, Attenuation, Command, CommandError, HALF_APERTURE, LightId, LightKind,
+    LightNumber, Orbit, Scene, SpotOwner, Subject, Tracked, View,
 };
 
 /// The degrees by which a press of `+` or `-` opens or closes a spot.
@@ -94,37 +94,33 @@ pub fn step_color(
 /// At the end of the range, for other lights, and while the subject is not lights.
 pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Result<Command, Refusal> {
     let (id, light) = subject_light(scene, view)?;
-    let LightKind::Spot { half_aperture: old, .. } = light.kind else {
-        return Err(Refusal::NotASpot);
-    };
-    let new = (old + degrees).clamp(0.0, 90.0);
+    let old = (HALF_APERTURE.get)(&light.kind).ok_or(Refusal::NotASpot)?;
+    let new = (old + degrees).clamp(0.0, HALF_APERTURE.largest);
     if new == old {
         let limit = if degrees < 0.0 { 0 } else { 90 };
         return Err(Refusal::Limit("the half-aperture", limit));
     }
-    set_aperture(scene, id, new)
+    set_number(scene, id, &HALF_APERTURE, new)
 }
 
-/// Sets the half-aperture of a spot in degrees, clamped to 0 to 90.
+/// Sets a number of a light, clamped to what is valid.
 ///
 /// # Errors
-/// If the light is not a spot, or the number is NaN.
-pub fn set_aperture(scene: &Scene, id: LightId, degrees: f64) -> Result<Command, Refusal> {
-    if degrees.is_nan() {
-        return Err(Refusal::TooLarge);
-    }
-    change_spot(scene, id, |_, half_aperture, _| *half_aperture = degrees.clamp(0.0, 90.0))
-}
-
-/// Sets the exponent of a spot, at least 0, which concentrates its light along the axis.
-///
-/// # Errors
-/// If the light is not a spot, or the number is not finite.
-pub fn set_exponent(scene: &Scene, id: LightId, to: f64) -> Result<Command, Refusal> {
+/// If the light has no such number, or the number is not finite.
+pub fn set_number(
+    scene: &Scene,
+    id: LightId,
+    number: &LightNumber,
+    to: f64,
+) -> Result<Command, Refusal> {
     if !to.is_finite() {
         return Err(Refusal::TooLarge);
     }
-    change_spot(scene, id, |_, _, exponent| *exponent = to.max(0.0))
+    try_change_light(scene, id, |light| {
+        let own = (number.get_mut)(&mut light.kind).ok_or(Refusal::NotASpot)?;
+        *own = to.clamp(0.0, number.largest);
+        Ok(())
+    })
 }
 
 /// Attaches a spot to another owner.
@@ -133,7 +129,15 @@ pub fn set_exponent(scene: &Scene, id: LightId, to: f64) -> Result<Command, Refu
 /// If the light is not a spot, or the owner is not there.
 pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, Refusal> {
     check_owner(scene, &to)?;
-    change_spot(scene, id, |owner, _, _| *owner = to)
+    try_change_light(scene, id, |light| match light.kind.anchor_mut() {
+        AnchorMut::Owner(owner) => {
+            *owner = to;
+            Ok(())
+        }
+        AnchorMut::Everywhere | AnchorMut::Direction(_) | AnchorMut::Position(_) => {
+            Err(Refusal::NotASpot)
+        }
+    })
 }
 
 /// Sets the key of a light.
@@ -197,22 +201,6 @@ pub fn toggle_all_shadows(scene: &Scene) -> Result<Command, Refusal> {
 #[must_use]
 pub fn casts_shadows(scene: &Scene) -> bool {
     scene.lights.iter().any(|(_, light)| light.can_cast_shadows() && light.shadows)
-}
-
-fn change_spot(
-    scene: &Scene,
-    id: LightId,
-    change: impl FnOnce(&mut SpotOwner, &mut f64, &mut f64),
-) -> Result<Command, Refusal> {
-    let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
-    if !matches!(light.kind, LightKind::Spot { .. }) {
-        return Err(Refusal::NotASpot);
-    }
-    change_light(scene, id, |light| {
-        if let LightKind::Spot { owner, half_aperture, exponent } = &mut light.kind {
-            change(owner, half_aperture, exponent);
-        }
-    })
 }
 
 /// The selected light, while the subject is lights.

@@ -3,10 +3,10 @@
 //! Before a motion changes, the rotation so far is applied to the placement and the motion restarts
 //! from there, so that nothing jumps on the screen.
 
-use super::items::change_object;
+use super::items::{change_object, try_change_light};
 use super::{GesturePhase, Refusal};
 use crate::base::math::Axis;
-use crate::scene::{Command, Item, LightId, LightKind, ObjectId, Orbit, Scene, Spin};
+use crate::scene::{AnchorMut, Command, LightId, ObjectId, Orbit, Scene, Spin};
 
 /// Starts or stops the spin of an object about one of its axes.
 ///
@@ -63,7 +63,7 @@ pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Ref
 /// If the light is no bulb, or is gone.
 pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Result<Command, Refusal> {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
-    let LightKind::Bulb { orbit, .. } = &light.kind else { return Err(Refusal::NotABulb) };
+    let orbit = light.kind.orbit().ok_or(Refusal::NotABulb)?;
     set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, GesturePhase::First)
 }
 
@@ -81,13 +81,12 @@ pub fn set_orbit(
     if !(to.speed.is_finite() && time.is_finite()) {
         return Err(Refusal::TooLarge);
     }
-    let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
-    let LightKind::Bulb { position, orbit } = &mut light.kind else {
-        return Err(Refusal::NotABulb);
-    };
-    if orbit.on {
-        *position = phase.apply(position, orbit.at(*position.now(), time));
-    }
-    *orbit = Orbit { since: time, ..to };
-    Ok(Command::Replace(Item::Light(id, Box::new(light))))
+    try_change_light(scene, id, |light| {
+        let orbit = light.kind.orbit_mut().ok_or(Refusal::NotABulb)?;
+        let before = std::mem::replace(orbit, Orbit { since: time, ..to });
+        if let (true, AnchorMut::Position(position)) = (before.on, light.kind.anchor_mut()) {
+            *position = phase.apply(position, before.at(*position.now(), time));
+        }
+        Ok(())
+    })
 }

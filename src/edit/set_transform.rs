@@ -8,8 +8,8 @@ use glam::{DMat3, DMat4, DVec3};
 use super::{GesturePhase, Refusal};
 use crate::base::math;
 use crate::scene::{
-    Aim, CameraId, CameraMode, Command, CommandError, Item, Lens, Light, LightId, LightKind,
-    Object, ObjectId, Pose, Scene, SpotOwner, Tracked, View,
+    Aim, Anchor, AnchorMut, CameraId, CameraMode, Command, CommandError, Item, Lens, Light,
+    LightId, Object, ObjectId, Pose, Scene, SpotOwner, Tracked, Transformation, View,
 };
 
 /// The selected object.
@@ -137,16 +137,29 @@ pub(super) enum LightPlace {
 
 /// The part of the light that can be transformed, or why none can.
 pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
-    match &light.kind {
-        LightKind::Ambient => Err(Refusal::Ambient),
-        LightKind::Sun { direction } => Ok(LightPlace::Direction(*direction.now())),
-        LightKind::Bulb { position, .. } => Ok(LightPlace::Position(*position.now())),
-        LightKind::Spot { owner, .. } => match owner {
+    match light.kind.anchor() {
+        Anchor::Everywhere => Err(Refusal::Ambient),
+        Anchor::Direction(direction) => Ok(LightPlace::Direction(*direction.now())),
+        Anchor::Position(position) => Ok(LightPlace::Position(*position.now())),
+        Anchor::Owner(owner) => match owner {
             SpotOwner::Fixed(aim) => Ok(LightPlace::Aim(*aim.now())),
             SpotOwner::SelectedObject | SpotOwner::Object(_) => Err(Refusal::SpotFollows("object")),
             SpotOwner::SelectedCamera | SpotOwner::Camera(_) => Err(Refusal::SpotFollows("camera")),
         },
     }
+}
+
+/// What x, y and z do to a light if `chosen` is asked for: a sun can only be turned and a bulb only
+/// be moved, whatever is chosen.
+///
+/// # Errors
+/// If the light has no position or direction of its own.
+pub fn transformation_of(light: &Light, chosen: Transformation) -> Result<Transformation, Refusal> {
+    Ok(match place_of(light)? {
+        LightPlace::Direction(_) => Transformation::Rotation,
+        LightPlace::Position(_) => Transformation::Translation,
+        LightPlace::Aim(_) => chosen,
+    })
 }
 
 /// The light under `id` at another place of its own kind.
@@ -160,21 +173,21 @@ pub(super) fn light(
     // Checked before anything is placed: directions have length 1, places are finite.
     let direction = |v: DVec3| math::unit(v).ok_or(Refusal::TooLarge);
     let position = |v: DVec3| if v.is_finite() { Ok(v) } else { Err(Refusal::TooLarge) };
-    match (&mut light.kind, place) {
-        (LightKind::Sun { direction: placed }, LightPlace::Direction(to)) => {
+    match (light.kind.anchor_mut(), place) {
+        (AnchorMut::Direction(placed), LightPlace::Direction(to)) => {
             *placed = phase.apply(placed, direction(to)?);
         }
-        (LightKind::Bulb { position: placed, .. }, LightPlace::Position(to)) => {
+        (AnchorMut::Position(placed), LightPlace::Position(to)) => {
             *placed = phase.apply(placed, position(to)?);
         }
-        (LightKind::Spot { owner: SpotOwner::Fixed(placed), .. }, LightPlace::Aim(to)) => {
+        (AnchorMut::Owner(SpotOwner::Fixed(placed)), LightPlace::Aim(to)) => {
             let to = Aim { position: position(to.position)?, direction: direction(to.direction)? };
             *placed = phase.apply(placed, to);
         }
-        (LightKind::Ambient, _) => return Err(Refusal::Ambient),
-        (LightKind::Sun { .. }, _) => return Err(Refusal::SunMoved),
-        (LightKind::Bulb { .. }, _) => return Err(Refusal::BulbTurned),
-        (LightKind::Spot { .. }, _) => {
+        (AnchorMut::Everywhere, _) => return Err(Refusal::Ambient),
+        (AnchorMut::Direction(_), _) => return Err(Refusal::SunMoved),
+        (AnchorMut::Position(_), _) => return Err(Refusal::BulbTurned),
+        (AnchorMut::Owner(_), _) => {
             place_of(&light)?;
             return Err(Refusal::Gone);
         }

@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 
 use super::{Refusal, items, placement, selection};
 use crate::scene::{
-    Camera, Command, Item, ItemId, Light, LightKind, Object, Scene, SpotOwner, Subject, Tracked,
-    View,
+    Anchor, AnchorMut, Camera, Command, Item, ItemId, LIGHT_NUMBERS, Light, LightKind, Object,
+    Scene, SpotOwner, Subject, Tracked, View,
 };
 
 /// Items that are selected beside the one that the keys act on.
@@ -230,47 +230,54 @@ fn light_alike(before: &Light, after: &Light, own: &mut Light) {
     set(&before.attenuation.constant, &attenuation.constant, &mut own.attenuation.constant);
     set(&before.attenuation.linear, &attenuation.linear, &mut own.attenuation.linear);
     set(&before.attenuation.quadratic, &attenuation.quadratic, &mut own.attenuation.quadratic);
-    match (&before.kind, &after.kind, &mut own.kind) {
-        (
-            LightKind::Sun { direction: old },
-            LightKind::Sun { direction: new },
-            LightKind::Sun { direction },
-        ) if old.now() != new.now() => {
+    if std::mem::discriminant(&after.kind) == std::mem::discriminant(&own.kind) {
+        kind_alike(&before.kind, &after.kind, &mut own.kind);
+    }
+}
+
+/// What of a light was changed, in another of the same kind.
+fn kind_alike(before: &LightKind, after: &LightKind, own: &mut LightKind) {
+    for number in LIGHT_NUMBERS {
+        let (old, new) = ((number.get)(before), (number.get)(after));
+        if let (Some(old), Some(new), Some(own)) = (old, new, (number.get_mut)(own)) {
+            set(&old, &new, own);
+        }
+    }
+    if let (Some(old), Some(new), Some(own)) = (before.orbit(), after.orbit(), own.orbit_mut()) {
+        set(old, new, own);
+    }
+    match (before.anchor(), after.anchor(), own.anchor_mut()) {
+        (Anchor::Direction(old), Anchor::Direction(new), AnchorMut::Direction(direction))
+            if old.now() != new.now() =>
+        {
             *direction = follow(old, new, direction, *new.now());
         }
-        (
-            LightKind::Bulb { position: old, orbit: old_orbit },
-            LightKind::Bulb { position: new, orbit: new_orbit },
-            LightKind::Bulb { position, orbit },
-        ) => {
-            set(old_orbit, new_orbit, orbit);
-            if old.now() != new.now() {
-                let to = vector(*old.now(), *new.now(), *position.now());
-                *position = follow(old, new, position, to);
-            }
+        (Anchor::Position(old), Anchor::Position(new), AnchorMut::Position(position))
+            if old.now() != new.now() =>
+        {
+            let to = vector(*old.now(), *new.now(), *position.now());
+            *position = follow(old, new, position, to);
         }
-        (
-            LightKind::Spot { owner: old, half_aperture: old_aperture, exponent: old_exponent },
-            LightKind::Spot { owner: new, half_aperture: new_aperture, exponent: new_exponent },
-            LightKind::Spot { owner, half_aperture, exponent },
-        ) => {
-            set(old_aperture, new_aperture, half_aperture);
-            set(old_exponent, new_exponent, exponent);
-            match (old, new, &mut *owner) {
-                (SpotOwner::Fixed(old), SpotOwner::Fixed(new), SpotOwner::Fixed(aim))
-                    if old.now() != new.now() =>
-                {
-                    let mut to = *aim.now();
-                    let (was, is) = (old.now(), new.now());
-                    to.position = vector(was.position, is.position, to.position);
-                    set(&was.direction, &is.direction, &mut to.direction);
-                    *aim = follow(old, new, aim, to);
-                }
-                (SpotOwner::Fixed(_), SpotOwner::Fixed(_), _) => {}
-                (old, new, owner) => set(old, new, owner),
-            }
+        (Anchor::Owner(old), Anchor::Owner(new), AnchorMut::Owner(owner)) => {
+            owner_alike(old, new, owner);
         }
         _ => {}
+    }
+}
+
+fn owner_alike(before: &SpotOwner, after: &SpotOwner, own: &mut SpotOwner) {
+    match (before, after, &mut *own) {
+        (SpotOwner::Fixed(old), SpotOwner::Fixed(new), SpotOwner::Fixed(aim))
+            if old.now() != new.now() =>
+        {
+            let mut to = *aim.now();
+            let (was, is) = (old.now(), new.now());
+            to.position = vector(was.position, is.position, to.position);
+            set(&was.direction, &is.direction, &mut to.direction);
+            *aim = follow(old, new, aim, to);
+        }
+        (SpotOwner::Fixed(_), SpotOwner::Fixed(_), _) => {}
+        (old, new, own) => set(old, new, own),
     }
 }
 

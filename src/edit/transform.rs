@@ -9,11 +9,12 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
+pub use super::set_transform::transformation_of;
 use super::set_transform::{self, LightPlace};
 use super::{GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Aim, CameraMode, Command, Frame, Item, LightKind, Orbit, Pose, Scene, SpotOwner, Subject,
+    Aim, AnchorMut, CameraMode, Command, Frame, Item, Orbit, Pose, Scene, SpotOwner, Subject,
     Transformation, View,
 };
 
@@ -122,11 +123,9 @@ pub fn translate(
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
             // A bulb that circles is moved as it is seen: its place is turned before it is shown.
-            let delta = if let LightKind::Bulb { orbit, .. } = &light.kind {
+            let delta = light.kind.orbit().map_or(delta, |orbit| {
                 Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
-            } else {
-                delta
-            };
+            });
             let place = match set_transform::place_of(light)? {
                 LightPlace::Direction(_) => return Err(Refusal::SunMoved),
                 LightPlace::Position(position) => LightPlace::Position(position + delta),
@@ -228,13 +227,12 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
             let (id, light) = set_transform::selected_light(scene, view)?;
             set_transform::place_of(light)?;
             let mut light = light.clone();
-            match &mut light.kind {
-                LightKind::Sun { direction } => *direction = direction.undone().ok_or(nothing)?,
-                LightKind::Bulb { position, .. } => *position = position.undone().ok_or(nothing)?,
-                LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } => {
-                    *aim = aim.undone().ok_or(nothing)?;
+            match light.kind.anchor_mut() {
+                AnchorMut::Direction(v) | AnchorMut::Position(v) => {
+                    *v = v.undone().ok_or(nothing)?;
                 }
-                LightKind::Ambient | LightKind::Spot { .. } => return Err(nothing),
+                AnchorMut::Owner(SpotOwner::Fixed(aim)) => *aim = aim.undone().ok_or(nothing)?,
+                AnchorMut::Everywhere | AnchorMut::Owner(_) => return Err(nothing),
             }
             Ok(Command::Replace(Item::Light(id, Box::new(light))))
         }

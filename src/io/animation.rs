@@ -32,9 +32,6 @@ pub enum AnimationFormat {
 }
 
 impl AnimationFormat {
-    /// The endings of the files, the usual one first; a name without an ending is a folder.
-    pub const ENDINGS: [&'static str; 3] = ["gif", "png", "apng"];
-
     /// The form that the name of a file asks for.
     ///
     /// # Errors

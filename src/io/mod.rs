@@ -25,6 +25,7 @@ mod read;
 mod replace;
 mod scene_file;
 mod texture;
+mod window_state;
 
 pub use animation::{Animation, AnimationFormat, AnimationWriter};
 pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
@@ -41,7 +42,10 @@ pub use picture::{PICTURE_FORMATS, PictureFormat, check_picture_target, save_pic
 pub use progress::{Cancelled, Progress};
 pub use read::check_file;
 pub use replace::SaveError;
-pub use scene_file::{Opened, SCENE_ENDING, SceneFileError, open, open_with, save, to_text};
+pub use scene_file::{
+    Opened, SCENE_ENDING, SceneFileError, open, open_with, save, save_with_window, to_text,
+};
 pub use texture::{
     load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
 };
+pub use window_state::{Panels, WindowState};

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::accuracy::LightAt;
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::{Form, Pipeline, Shaded, Stage};
-use crate::render::plan::features::presence;
+use crate::render::plan::features::{of_surface, presence};
 use crate::render::plan::tile::TilePlan;
 use crate::render::plan::uses::{Effect, EffectUse};
 use crate::render::raster::geometry::ScreenGeometry;
@@ -212,15 +212,9 @@ impl FramePlan {
         let features = [
             (Effect::Highlights, mirrors),
             (Effect::Normals, self.light_at == LightAt::Pixel && light.needs_positions),
-            (Effect::Texture, shaded.texture.is_some()),
-            (Effect::AlphaTest, shaded.cutout.is_some()),
-            (Effect::Transparency, shaded.opacity.is_some()),
-            (Effect::VertexColors, shaded.vertex_colors),
-            (Effect::Emission, shaded.extras.emission.is_some()),
-            (Effect::Maps, shaded.extras.has_maps()),
-            (Effect::Bumps, shaded.extras.bump.is_some()),
         ];
-        for (effect, _) in features.into_iter().filter(|(_, there)| *there) {
+        let of_light = features.into_iter().filter(|(_, there)| *there).map(|(effect, _)| effect);
+        for effect in of_light.chain(of_surface(shaded)) {
             counts.add(effect, item, pixels);
         }
         counts.off_by = counts.off_by.max(light.dropped + shaded.cut_off);

@@ -4,9 +4,7 @@
 //! change and its undo cannot drift apart. Since everything large in a scene is shared, a change of
 //! an item holds the whole item as it will be, and its inverse holds the item as it was.
 
-use super::{
-    Camera, CameraId, ItemId, Light, LightId, LightKind, Object, ObjectId, Scene, SpotOwner,
-};
+use super::{Camera, CameraId, ItemId, Light, LightId, Object, ObjectId, Scene};
 use crate::base::color::Color;
 
 /// One change to a scene.
@@ -77,22 +75,7 @@ impl Item {
                 if !light.attenuation.is_valid() {
                     return Some(CommandError::Attenuation);
                 }
-                match &light.kind {
-                    LightKind::Ambient => true,
-                    LightKind::Sun { direction } => direction.now().is_finite(),
-                    LightKind::Bulb { position, .. } => position.now().is_finite(),
-                    LightKind::Spot { owner, half_aperture, exponent } => {
-                        let aim = match owner {
-                            SpotOwner::Fixed(aim) => {
-                                aim.now().position.is_finite() && aim.now().direction.is_finite()
-                            }
-                            _ => true,
-                        };
-                        aim && (0.0..=90.0).contains(half_aperture)
-                            && exponent.is_finite()
-                            && *exponent >= 0.0
-                    }
-                }
+                light.kind.is_valid()
             }
         };
         (!finite).then_some(CommandError::NotFinite)

@@ -1,10 +1,10 @@
 //! The lights of a scene.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{CameraId, ObjectId, Tracked};
-use crate::base::{color::Color, math};
+use super::{Anchor, LightKind, Orbit, SpotOwner, Tracked};
+use crate::base::color::Color;
 
 /// A light.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,97 +52,11 @@ impl Attenuation {
     }
 }
 
-/// The kind of a light.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LightKind {
-    /// Ambient: from everywhere.
-    Ambient,
-    /// Directional: from infinitely far away.
-    Sun {
-        /// The direction in which its light travels, of length 1.
-        direction: Tracked<DVec3>,
-    },
-    /// A point light, in all directions.
-    Bulb {
-        /// Its position.
-        position: Tracked<DVec3>,
-        /// Circling the world's Y axis.
-        orbit: Orbit,
-    },
-    /// A point light with a cone.
-    Spot {
-        /// What it is attached to.
-        owner: SpotOwner,
-        /// Degrees from the axis to the edge of the cone: 0 to 90.
-        half_aperture: f64,
-        /// How strongly its light is concentrated along the axis: at least 0.
-        exponent: f64,
-    },
-}
-
-/// What a spot is attached to. It shines from there along -Z.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SpotOwner {
-    /// The selected object, whichever it is.
-    SelectedObject,
-    /// The selected camera, whichever it is.
-    SelectedCamera,
-    /// This object.
-    Object(ObjectId),
-    /// This camera.
-    Camera(CameraId),
-    /// Nothing: it has a position and a direction of its own.
-    Fixed(Tracked<Aim>),
-}
-
-/// A position and a direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aim {
-    /// The position.
-    pub position: DVec3,
-    /// The direction, of length 1.
-    pub direction: DVec3,
-}
-
-/// Circling the world's Y axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Orbit {
-    /// Whether it circles.
-    pub on: bool,
-    /// Degrees per second.
-    pub speed: f64,
-    /// When it began, in seconds of the scene's clock.
-    pub since: f64,
-}
-
-impl Default for Orbit {
-    fn default() -> Self {
-        Self { on: false, speed: 30.0, since: 0.0 }
-    }
-}
-
-impl Orbit {
-    /// The position of a bulb at `time` (seconds of the scene's clock) if it is placed at
-    /// `position`.
-    #[must_use]
-    pub fn at(&self, position: DVec3, time: f64) -> DVec3 {
-        if !self.on {
-            return position;
-        }
-        let degrees = (self.speed * (time - self.since)) % 360.0;
-        let turn: DMat3 = math::rotation(DVec3::Y, degrees.to_radians());
-        turn * position
-    }
-}
-
 impl Light {
     /// Whether it can cast shadows: it comes from somewhere.
     #[must_use]
     pub const fn can_cast_shadows(&self) -> bool {
-        match self.kind {
-            LightKind::Ambient => false,
-            LightKind::Sun { .. } | LightKind::Bulb { .. } | LightKind::Spot { .. } => true,
-        }
+        !matches!(self.kind.anchor(), Anchor::Everywhere)
     }
 
     /// A white light that is on.

@@ -2,54 +2,62 @@
 //!
 //! This is plain data: nothing here draws, reads files or knows of windows.
 
+mod anchor;
 mod bounds;
 mod camera;
 mod command;
 mod light;
+mod light_kind;
 mod list;
 mod material;
 mod mesh;
 mod model;
 mod object;
 mod shapes;
+mod smoothing;
 mod spheres;
 mod surface_map;
+mod texture;
 mod tracked;
 pub mod triangulate;
 mod view;
 
+pub use anchor::{Aim, Anchor, AnchorMut, LightOrigin, Orbit, SpotOwner};
 pub use bounds::Bounds;
 pub use camera::{Camera, CameraMode, Lens, Pose};
 pub use command::{Command, CommandError, Item};
-pub use light::{Aim, Attenuation, Light, LightKind, Orbit, SpotOwner};
+pub use light::{Attenuation, Light};
+pub use light_kind::{
+    CONCENTRATION, HALF_APERTURE, LIGHT_NUMBERS, LightKind, LightKindInfo, LightNumber,
+};
 pub use list::List;
 pub use material::{Material, MaterialChoice, PRESETS, Preset, PresetId};
-pub use mesh::build::CornerLists;
 pub use mesh::cache::{Derived, Facet};
-pub use mesh::clusters::{CLUSTER, Cluster};
-pub use mesh::draw_order::{DrawOrder, DrawTriangle, NormalSource, Points};
+pub use mesh::clusters::{CLUSTER, Cluster, DrawTriangle};
+pub use mesh::draw_order::{DrawOrder, NormalSource, Points};
 pub use mesh::edge_order::{DrawEdge, EdgeOrder};
 pub use mesh::edges::Edge;
+pub use mesh::outlines::CornerLists;
 pub use mesh::ray_tree::{RayTree, TreeChild, TreeNode, TreeTriangle};
 pub use mesh::{
     Corner, Mesh, MeshError, MeshSource, NONE, Part, Point, SourceCorner, Triangle, dvec3, newell,
 };
-pub use model::{
-    Crease, FileMaterial, LoadOptions, Model, Scale, Smoothing, Texture, UpAxis, Winding, Wrap,
-};
+pub use model::{FileMaterial, LoadOptions, Model, Scale, UpAxis, Winding};
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use shapes::Shape;
+pub use smoothing::{Crease, Smoothing};
 pub use spheres::Spheres;
 pub use surface_map::{MapKind, SurfaceMap, SurfaceMaps};
+pub use texture::{Texture, Wrap};
 pub use tracked::Tracked;
 pub use view::{
-    Fill, Frame, NormalLength, Normals, Observer, Panels, PolygonMode, Projection, Steps, Subject,
+    Fill, Frame, NormalLength, Normals, Observer, PolygonMode, Projection, Steps, Subject,
     Transformation, View,
 };
 
 use std::collections::BTreeSet;
 
-use glam::{DMat3, DMat4};
+use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
 use crate::base::{color::Color, math};
@@ -138,7 +146,8 @@ impl Scene {
     /// before other lights.
     #[must_use]
     pub fn first_view(&self) -> View {
-        let sun = self.lights.iter().find(|(_, light)| matches!(light.kind, LightKind::Sun { .. }));
+        let is_sun = |light: &Light| matches!(light.kind.anchor(), Anchor::Direction(_));
+        let sun = self.lights.iter().find(|(_, light)| is_sun(light));
         let light = sun.map(|(id, _)| id).or_else(|| self.lights.first());
         let camera = self.cameras.first().unwrap_or(CameraId(0));
         View::new(self.objects.first(), camera, light)
@@ -174,6 +183,22 @@ impl Scene {
             SpotOwner::Fixed(aim) => return Some(*aim.now()),
         }?;
         Some(Aim { position: frame.w_axis.truncate(), direction: -frame.z_axis.truncate() })
+    }
+
+    /// The position and direction of a light now; `None` if its owner is gone.
+    #[must_use]
+    pub fn light_origin(&self, view: &View, kind: &LightKind) -> Option<LightOrigin> {
+        let circled = |at: DVec3| kind.orbit().map_or(at, |orbit| orbit.at(at, view.time));
+        let (position, direction) = match kind.anchor() {
+            Anchor::Everywhere => (None, None),
+            Anchor::Direction(direction) => (None, Some(*direction.now())),
+            Anchor::Position(position) => (Some(circled(*position.now())), None),
+            Anchor::Owner(owner) => {
+                let Aim { position, direction } = self.aim(view, owner)?;
+                (Some(position), Some(direction))
+            }
+        };
+        Some(LightOrigin { position, direction })
     }
 
     /// `world_from_view` of the observer: the selected object's frame if the view says so and there

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Material, Mesh, SurfaceMaps};
-use crate::base::image::Picture;
+use super::{Crease, Material, Mesh, SurfaceMaps, Texture};
 use crate::base::{Shared, color::Color};
 
 /// The content of a file as it was loaded. Objects share it, and it never changes.
@@ -153,64 +152,6 @@ impl TryFrom<f64> for Scale {
     }
 }
 
-/// The angle between the normals of two faces up to which the edge between them is smooth: 0 to 180
-/// degrees.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
-#[serde(into = "f64", try_from = "f64")]
-pub struct Crease(f64);
-
-impl Crease {
-    /// All faces around a vertex are smooth with each other, whether they share edges or not.
-    pub const SMOOTH: Self = Self(180.0);
-
-    /// `degrees`, if they are from 0 to 180.
-    #[must_use]
-    pub fn new(degrees: f64) -> Option<Self> {
-        (0.0..=180.0).contains(&degrees).then_some(Self(degrees))
-    }
-
-    /// The angle in degrees.
-    #[must_use]
-    pub const fn get(self) -> f64 {
-        self.0
-    }
-}
-
-impl Default for Crease {
-    fn default() -> Self {
-        Self(60.0)
-    }
-}
-
-impl From<Crease> for f64 {
-    fn from(crease: Crease) -> Self {
-        crease.0
-    }
-}
-
-impl TryFrom<f64> for Crease {
-    type Error = &'static str;
-
-    fn try_from(degrees: f64) -> Result<Self, Self::Error> {
-        Self::new(degrees).ok_or("a crease angle must be from 0 to 180 degrees")
-    }
-}
-
-/// Which polygons share the normals that are computed for their corners.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Smoothing {
-    /// Those that are connected by edges no sharper than this.
-    Crease(Crease),
-    /// Those in the same smoothing group: the group of each polygon, 0 for none.
-    Groups(Vec<u32>),
-}
-
-impl Default for Smoothing {
-    fn default() -> Self {
-        Self::Crease(Crease::SMOOTH)
-    }
-}
-
 /// Which way a file's polygons run.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
@@ -238,32 +179,6 @@ pub struct FileMaterial {
     pub maps: SurfaceMaps,
     /// Whether Kd alone is shown, whatever the light: `illum 0`.
     pub unlit: bool,
-}
-
-/// A picture for a surface, and how it is laid over it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Texture {
-    /// Its file.
-    pub source: PathBuf,
-    /// Its texels, rows from the top, which other textures may share. The uv (0, 0) is the lower
-    /// left corner.
-    pub picture: Shared<Picture>,
-    /// What a uv outside 0 to 1 shows: `-clamp on` is the border; otherwise the picture repeats.
-    pub wrap: Wrap,
-    /// `-o u v`, added after scaling.
-    pub offset: [f64; 2],
-    /// `-s u v`, multiplied by the uv.
-    pub scale: [f64; 2],
-}
-
-/// What a texture shows outside its borders.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Wrap {
-    /// Its repetitions.
-    #[default]
-    Repeat,
-    /// The texels of its border.
-    Clamp,
 }
 
 #[cfg(test)]

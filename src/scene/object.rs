@@ -69,6 +69,7 @@ pub enum Sides {
 
 /// A rotation about the object's own axes over time, after its placement: M Rx Ry Rz.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Spin {
     /// Whether it turns about X, Y and Z.
     pub axes: [bool; 3],

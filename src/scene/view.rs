@@ -52,52 +52,8 @@ pub struct View {
     pub wide_lines: bool,
     /// Whether the markers of cameras and bulbs are drawn.
     pub marks: bool,
-    /// Whether pictures may be coarser while something moves, if they would come too late
-    /// otherwise.
-    pub coarse_while_moving: bool,
     /// Seconds of the scene's clock.
     pub time: f64,
-    /// Which panels are open.
-    pub panels: Panels,
-}
-
-/// Which panels are open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Panels {
-    /// The list of objects, cameras and lights.
-    pub outline: bool,
-    /// The properties of the selected item.
-    pub properties: bool,
-    /// The switches of the view.
-    pub view: bool,
-    /// The plan of the frame.
-    pub statistics: bool,
-    /// The settings of accuracy.
-    pub plan: bool,
-    /// The list of keys.
-    pub cheat_sheet: bool,
-    /// The laboratory.
-    pub laboratory: bool,
-}
-
-impl Panels {
-    /// The panels of the first start.
-    pub const DEFAULT: Self = Self {
-        outline: true,
-        properties: true,
-        view: true,
-        statistics: false,
-        plan: false,
-        cheat_sheet: false,
-        laboratory: false,
-    };
-}
-
-impl Default for Panels {
-    fn default() -> Self {
-        Self::DEFAULT
-    }
 }
 
 impl View {
@@ -126,9 +82,7 @@ impl View {
             normal_length: NormalLength::Units,
             wide_lines: false,
             marks: true,
-            coarse_while_moving: true,
             time: 0.0,
-            panels: Panels::DEFAULT,
         }
     }
 }

@@ -73,6 +73,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     let scene = {
         let mut editor = Editor::keeping(folder.path());
         assert_eq!(editor.is_offered(), 0);
+        editor.perform_all(&[Action::ToggleStatistics, Action::ToggleCoarse]);
         editor.press(Lower(Key::Z));
         editor.press(Lower(Key::X));
         editor.harness.state().wait_for_journal();
@@ -91,6 +92,7 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     };
     assert_eq!(camera(&editor.scene()), camera(&scene));
     assert!(!editor.state().history.is_saved());
+    assert!(editor.state().panels.statistics && !editor.state().coarse_while_moving);
     editor.harness.state().wait_for_journal();
     // It is the work of this program now: killed at once, it is offered again.
     drop(editor);

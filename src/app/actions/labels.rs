@@ -4,8 +4,8 @@ use super::table::Action;
 use crate::app::state::State;
 use crate::app::widgets::number::short;
 use crate::base::math::Axis;
-use crate::edit::transform::distance;
-use crate::scene::{CameraMode, LightKind, SpotOwner, Subject, Transformation};
+use crate::edit::transform::{self, distance};
+use crate::scene::{CameraMode, Subject, Transformation};
 
 /// What a step of x, y or z does to the selected item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,11 +60,12 @@ impl Action {
 
 fn deed(state: &State, axis: Axis) -> Deed {
     let view = &state.view;
-    let chosen = match view.transformation {
+    let deed = |transformation| match transformation {
         Transformation::Translation => Deed::Move,
         Transformation::Rotation => Deed::Turn,
         Transformation::Scaling => Deed::Scale,
     };
+    let chosen = deed(view.transformation);
     match view.subject {
         Subject::Object => chosen,
         Subject::Camera => {
@@ -77,12 +78,8 @@ fn deed(state: &State, axis: Axis) -> Deed {
         }
         Subject::Light => {
             let light = view.light.and_then(|id| state.scene.lights.get(id));
-            match light.map(|light| &light.kind) {
-                Some(LightKind::Sun { .. }) => Deed::Turn,
-                Some(LightKind::Bulb { .. }) => Deed::Move,
-                Some(LightKind::Spot { owner: SpotOwner::Fixed(_), .. }) => chosen,
-                Some(LightKind::Spot { .. } | LightKind::Ambient) | None => chosen,
-            }
+            let does = light.map(|light| transform::transformation_of(light, view.transformation));
+            does.and_then(Result::ok).map_or(chosen, deed)
         }
     }
 }

@@ -10,5 +10,5 @@ mod table;
 pub use chord::Chord;
 pub use request::{Also, KeyRequest, LabRequest, Request};
 pub(crate) use request::{change, change_view};
-pub(crate) use resolve::{FileIntent, Intent, resolve};
+pub(crate) use resolve::{ADD_LIGHTS, FileIntent, Intent, resolve};
 pub use table::{Action, ActionInfo, Group};

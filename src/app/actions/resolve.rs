@@ -20,9 +20,10 @@ use crate::edit::transform::Sign;
 use crate::edit::{
     GesturePhase, Refusal, aiming, framing, gizmo, items, lights, selection, shapes, transform,
 };
+use crate::io::Panels;
 use crate::scene::{
     CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
-    Panels, Projection, Scene, Shape, SpotOwner, Subject, Transformation, View,
+    Projection, Scene, Shape, SpotOwner, Subject, Transformation, View,
 };
 
 /// What an action means.
@@ -68,6 +69,8 @@ pub(crate) enum Intent {
     Overlays,
     /// Handles over the picture are shown or hidden.
     Gizmo,
+    /// Pictures may be coarser while something moves, or not.
+    Coarse,
     /// An axis and a number are taken from the keyboard.
     TypeAmount,
     /// These are selected beside the selected item.
@@ -112,6 +115,9 @@ const LIGHT_SWITCHES: [Action; 10] = [
     Action::Light8,
     Action::Light9,
 ];
+
+/// The actions that add a light with a position or direction of its own, in the order of menus.
+pub(crate) const ADD_LIGHTS: [Action; 3] = [Action::AddSun, Action::AddBulb, Action::AddSpot];
 
 /// What `action` means in this phase of a gesture.
 ///
@@ -240,7 +246,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
         Action::ToggleOverlays => Ok(Intent::Overlays),
         Action::ToggleGizmo => Ok(Intent::Gizmo),
-        Action::ToggleCoarse => viewed(state, |view| view.coarse_while_moving ^= true),
+        Action::ToggleCoarse => Ok(Intent::Coarse),
         Action::ToggleRefine => {
             let refines = !state.drawing.refines;
             Ok(Intent::Drawing(DrawingChoices { refines, ..state.drawing }))
@@ -465,7 +471,7 @@ impl Action {
             Self::AimByClick => state.aiming,
             Self::ExplainPixel => state.explaining,
             Self::Palette => state.palette,
-            Self::ToggleCoarse => view.coarse_while_moving,
+            Self::ToggleCoarse => state.coarse_while_moving,
             Self::ToggleRefine => state.drawing.refines,
             Self::ToggleLightNormals => view.normals == Normals::Face,
             Self::ToggleAllShadows => lights::casts_shadows(scene),

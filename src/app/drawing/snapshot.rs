@@ -15,6 +15,8 @@ pub(crate) struct Snapshot {
     pub(crate) size: Size,
     /// Whether the scene is moving, so that the picture may be drawn at reduced quality.
     pub(crate) moving: bool,
+    /// Whether it ever may be.
+    pub(crate) coarse: bool,
     /// The time that a picture may take while the scene is moving.
     pub(crate) budget: Duration,
     /// The samples per pixel that the picture is refined to while nothing happens.

@@ -176,7 +176,7 @@ impl ViewportRenderer {
         let applicable = applicable(snapshot);
         let begun = (self.clock)();
         let measured = self.quality.unmeasured(applicable, snapshot.budget);
-        if let Some(reduction) = measured.filter(|_| snapshot.view.coarse_while_moving) {
+        if let Some(reduction) = measured.filter(|_| snapshot.coarse) {
             if self.finer.redraw(&planned(snapshot, reduction), wanted).is_err() {
                 return Finer::Disturbed;
             }
@@ -308,7 +308,8 @@ mod tests {
         let (scene, view) = io::default_scene();
         let budget = Duration::from_millis(33);
         let (settings, moving, explain, outlined) = (Settings::default(), false, false, Vec::new());
-        Snapshot { scene, view, settings, size, moving, budget, refined: None, explain, outlined }
+        let (coarse, refined) = (true, None);
+        Snapshot { scene, view, settings, size, moving, coarse, budget, refined, explain, outlined }
     }
 
     /// The same in another colour, for which everything has to be drawn.

@@ -17,8 +17,8 @@ use crate::app::input::keymap::Keymap;
 use crate::app::state::layout::Layout;
 use crate::app::state::{DrawingChoices, Notice, State};
 use crate::app::widgets::text::file_name;
-use crate::io::{self, Abandoned, Journal, OwnFolders, Preferences, Theme, Unsaved};
-use crate::scene::{Panels, Scene};
+use crate::io::{self, Abandoned, Journal, OwnFolders, Panels, Preferences, Theme, Unsaved};
+use crate::scene::Scene;
 
 /// The seconds without a change after which preferences are written.
 const QUIET: f64 = 1.0;
@@ -94,7 +94,8 @@ impl App {
             } else if keeping.kept.as_ref() != Some(scene) {
                 keeping.kept = Some(scene.clone());
                 let (scene, view, file) = (scene.clone(), view.clone(), path.clone());
-                journal.keep(Unsaved { scene, view, settings: *settings, file });
+                let window = own.window();
+                journal.keep(Unsaved { scene, view, settings: *settings, window, file });
             }
             if let Some(fault) = journal.fault() {
                 state.notices.retain(|notice| !notice.text.starts_with(NOT_KEPT));
@@ -300,7 +301,9 @@ mod tests {
         let (scene, view) = io::default_scene();
         let file = Some(PathBuf::from("/somewhere/harbour.marraztu"));
         let journal = Journal::begin(&folders).unwrap();
-        journal.keep(Unsaved { scene, view, settings: crate::accuracy::Settings::default(), file });
+        let settings = crate::accuracy::Settings::default();
+        let window = io::WindowState::DEFAULT;
+        journal.keep(Unsaved { scene, view, settings, window, file });
         journal.wait();
         drop(journal);
         let all = Abandoned::all(&folders);

@@ -287,10 +287,21 @@ impl App {
         let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
         let explain = self.state.panels.plan;
         let outlined = self.state.outlined();
+        let coarse = self.state.coarse_while_moving;
         let budget = Duration::from_millis(self.state.drawing.budget_ms.into());
-        let (moving, refined) = (false, self.state.refined_to());
-        let mut wanted =
-            Snapshot { scene, view, settings, size, moving, budget, refined, explain, outlined };
+        let refined = self.state.refined_to();
+        let mut wanted = Snapshot {
+            scene,
+            view,
+            settings,
+            size,
+            moving: false,
+            coarse,
+            budget,
+            refined,
+            explain,
+            outlined,
+        };
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         if held || ctx.input(|input| !input.events.is_empty()) {
             worker.stir();
@@ -300,7 +311,7 @@ impl App {
         let drawing = worker.is_drawing() && !self.state.is_animated();
         let happening = Happening { changed, held, drawing };
         let moving = self.motion.notice(now, happening);
-        wanted.moving = moving && wanted.view.coarse_while_moving;
+        wanted.moving = moving && coarse;
         if let Some(rest) = self.motion.rest(now) {
             ctx.request_repaint_after(Duration::from_secs_f64(rest));
         }

@@ -158,6 +158,7 @@ impl App {
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
             Ok(Intent::Overlays) => self.state.overlays ^= true,
             Ok(Intent::Gizmo) => self.state.gizmo ^= true,
+            Ok(Intent::Coarse) => self.state.coarse_while_moving ^= true,
             Ok(Intent::TypeAmount) => self.type_amount(ctx),
             Ok(Intent::Others(others)) => self.state.several = others,
             Ok(Intent::AimByClick) => {

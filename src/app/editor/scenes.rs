@@ -15,7 +15,6 @@ use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
 use crate::edit::selection;
 use crate::io::{self, LoadError, Opened, SCENE_ENDING, SceneFileError};
-use crate::scene::View;
 
 impl App {
     /// Saves the scene to its file, or asks for a file; then does `after`.
@@ -38,9 +37,9 @@ impl App {
     /// Saves the scene to `path`.
     pub(crate) fn save_to(&mut self, ctx: &Context, path: PathBuf, after: Option<After>) {
         let path = if is_scene(&path) { path } else { with_ending(path) };
-        let State { scene, view, settings, panels, .. } = &self.state;
-        let view = View { panels: *panels, ..view.clone() };
-        if let Err(error) = io::save(&path, scene, &view, settings) {
+        let State { scene, view, settings, .. } = &self.state;
+        let window = self.state.window();
+        if let Err(error) = io::save_with_window(&path, scene, view, settings, &window) {
             self.dialogs.tell_fault(format!("{error}."));
             return;
         }
@@ -122,8 +121,7 @@ impl App {
     }
 
     fn show_scene(&mut self, ctx: &Context, path: &Path, opened: Opened) {
-        let Opened { scene, view, settings, findings } = opened;
-        let panels = view.panels;
+        let Opened { scene, view, window, settings, findings } = opened;
         let mut state = State { settings, ..State::new(scene, view) };
         selection::settle(&state.scene, &mut state.view);
         state.tell(Some(format!("Opened {}", path.display())));
@@ -135,7 +133,7 @@ impl App {
         // An example is saved under a name of its own.
         state.path = (!io::is_example(path)).then(|| path.to_owned());
         self.replace(state);
-        self.state.panels = panels;
+        self.state.set_window(window);
         if !self.settle_recovered(path) {
             self.note_recent(path);
         }

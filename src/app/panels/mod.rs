@@ -63,7 +63,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> A
         layout.unfolded = Some(Side::Outline);
     }
     let outline = state.panels.outline || state.renaming.is_some();
-    let panels = crate::scene::Panels { outline, ..state.panels };
+    let panels = crate::io::Panels { outline, ..state.panels };
     let places = layout.divide(area, panels);
     if let Some(rect) = places.strip {
         ui.painter().rect_filled(rect, 0.0, fill);

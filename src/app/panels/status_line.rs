@@ -11,10 +11,9 @@ use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::short;
-use crate::edit::steps;
+use crate::edit::{steps, transform};
 use crate::scene::{
-    CameraMode, Fill, Frame, ItemId, LightKind, Observer, Projection, SpotOwner, Subject,
-    Transformation,
+    CameraMode, Fill, Frame, ItemId, Observer, Projection, Subject, Transformation,
 };
 
 /// What stands between the parts of the line.
@@ -170,13 +169,10 @@ fn selected(state: &State) -> String {
 fn transformation(state: &State) -> Result<Transformation, &'static str> {
     let (scene, view) = (&state.scene, &state.view);
     let Some(ItemId::Light(id)) = state.selected() else { return Ok(view.transformation) };
-    match scene.lights.get(id).map(|light| &light.kind) {
-        Some(LightKind::Sun { .. }) => Ok(Transformation::Rotation),
-        Some(LightKind::Bulb { .. }) => Ok(Transformation::Translation),
-        Some(LightKind::Spot { owner: SpotOwner::Fixed(_), .. }) => Ok(view.transformation),
-        Some(LightKind::Spot { .. }) => Err("follows its owner"),
-        Some(LightKind::Ambient) | None => Err("from everywhere"),
-    }
+    let Some(light) = scene.lights.get(id) else { return Err("from everywhere") };
+    transform::transformation_of(light, view.transformation).map_err(|_refusal| {
+        if light.kind.owner().is_some() { "follows its owner" } else { "from everywhere" }
+    })
 }
 
 const fn verb(transformation: Transformation) -> &'static str {

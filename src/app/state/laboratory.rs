@@ -122,7 +122,6 @@ impl Laboratory {
                 transformation: view.transformation,
                 frame: view.frame,
                 steps: view.steps,
-                panels: view.panels,
                 ..state.view.clone()
             } == *view;
             let same_size = state.statistics.size == *size;

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use egui::{Rect, pos2, vec2};
 
-use crate::scene::Panels;
+use crate::io::Panels;
 
 /// Windows narrower than this show one panel at a time, beside a strip of buttons.
 pub const NARROW: f32 = 900.0;

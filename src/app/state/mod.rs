@@ -16,11 +16,11 @@ use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
 use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
+use crate::io::{Panels, WindowState};
 use crate::lab::cost::{Costs, Explained};
 use crate::render::{Damage, PixelColor};
 use crate::scene::{
-    Command, ItemId, Light, LightKind, MaterialChoice, Object, ObjectId, Panels, Scene, Sides,
-    Surface, View,
+    Command, ItemId, Light, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View,
 };
 use laboratory::Laboratory;
 use layout::Layout;
@@ -50,6 +50,9 @@ pub struct State {
     pub plan: Plan,
     /// Which panels are shown.
     pub panels: Panels,
+    /// Whether pictures may be coarser while something moves, if they would come too late
+    /// otherwise.
+    pub coarse_while_moving: bool,
     /// How the window is divided among them.
     pub layout: Layout,
     /// Whether the palette is open.
@@ -334,7 +337,8 @@ impl State {
             notices: Vec::new(),
             statistics: Statistics::default(),
             plan: Plan::default(),
-            panels: Panels::DEFAULT,
+            panels: WindowState::DEFAULT.panels,
+            coarse_while_moving: WindowState::DEFAULT.coarse_while_moving,
             layout: Layout::default(),
             palette: false,
             overlays: true,
@@ -441,11 +445,22 @@ impl State {
         self.message = text.map(|text| Message { text, tone: Tone::Done });
     }
 
+    /// What a scene file keeps of the window.
+    #[must_use]
+    pub const fn window(&self) -> WindowState {
+        WindowState { coarse_while_moving: self.coarse_while_moving, panels: self.panels }
+    }
+
+    /// Takes what a scene file has kept of the window.
+    pub(crate) const fn set_window(&mut self, window: WindowState) {
+        let WindowState { coarse_while_moving, panels } = window;
+        (self.coarse_while_moving, self.panels) = (coarse_while_moving, panels);
+    }
+
     /// Whether anything in the scene moves by itself.
     #[must_use]
     pub fn is_animated(&self) -> bool {
-        let circles =
-            |light: &Light| matches!(&light.kind, LightKind::Bulb { orbit, .. } if orbit.on);
+        let circles = |light: &Light| light.kind.orbit().is_some_and(|orbit| orbit.on);
         self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
             || self.scene.lights.iter().any(|(_, light)| circles(light))
     }

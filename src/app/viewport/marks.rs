@@ -12,7 +12,7 @@ use crate::app::widgets::icons::Icon;
 use crate::base::image::Size;
 use crate::base::math;
 use crate::edit::aiming;
-use crate::scene::{Aim, ItemId, LightId, LightKind, SpotOwner};
+use crate::scene::{Aim, HALF_APERTURE, ItemId, LightId};
 
 /// The radius of a mark in points.
 const RADIUS: f32 = 9.0;
@@ -102,10 +102,7 @@ pub(super) fn marks(state: &State, projection: &Projection) -> Vec<Mark> {
     let eye = scene.observer_frame(view).w_axis.truncate();
     let mark = |id: LightId| {
         let light = scene.lights.get(id)?;
-        let follows = match &light.kind {
-            LightKind::Spot { owner, .. } => !matches!(owner, SpotOwner::Fixed(_)),
-            LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => false,
-        };
+        let follows = light.kind.owner().is_some_and(|owner| owner.fixed().is_none());
         let position = aiming::stands(scene, view, id)?.position;
         let (at, distance) = (projection.place(position)?, position.distance(eye));
         projection.rect.shrink(2.0).contains(at).then_some(Mark { id, at, distance, follows })
@@ -146,8 +143,7 @@ pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mar
         let color = Color32::from_rgb(r, g, b);
         let ink = if light.on { color } else { Color32::GRAY };
         let ring = if selected { Stroke::new(2.5, accent) } else { Stroke::new(1.0, ink) };
-        let is_bulb = matches!(light.kind, LightKind::Bulb { .. });
-        if is_bulb && light.on && state.view.marks {
+        if light.kind.has_diamond() && light.on && state.view.marks {
             // Its diamond is part of the picture, and stays in sight.
             painter.circle_stroke(mark.at, RADIUS + 1.0, Stroke::new(ring.width + 2.0, SHADE));
             painter.circle_stroke(mark.at, RADIUS + 1.0, ring);
@@ -173,27 +169,24 @@ fn cone_ui(painter: &Painter, state: &State, to: &Projection, id: LightId, strok
     // As long as a quarter of the way to the eye, so that it is seen from near and far.
     let length = (position.distance(eye) * 0.25).max(1e-6);
     let end = position + direction * length;
-    match &light.kind {
-        LightKind::Ambient | LightKind::Bulb { .. } => {}
-        LightKind::Sun { .. } => arrow_ui(painter, to, position, end, eye, stroke),
-        LightKind::Spot { half_aperture, .. } => {
-            arrow_ui(painter, to, position, end, eye, stroke);
-            // Almost flat cones would reach to infinity.
-            let angle = half_aperture.min(80.0).to_radians();
-            let side = direction.any_orthonormal_vector();
-            let other = direction.cross(side);
-            let (across, along) = (libm::sin(angle) * length, libm::cos(angle) * length);
-            let point = |i: u32| {
-                let turn = std::f64::consts::TAU * f64::from(i) / f64::from(SIDES);
-                let aside = side * libm::cos(turn) + other * libm::sin(turn);
-                position + direction * along + aside * across
-            };
-            for i in 0..SIDES {
-                to.line(painter, [point(i), point(i + 1)], stroke);
-                if i % (SIDES / 4) == 0 {
-                    to.line(painter, [position, point(i)], stroke);
-                }
-            }
+    if light.kind.has_direction() {
+        arrow_ui(painter, to, position, end, eye, stroke);
+    }
+    let Some(half_aperture) = (HALF_APERTURE.get)(&light.kind) else { return };
+    // Almost flat cones would reach to infinity.
+    let angle = half_aperture.min(80.0).to_radians();
+    let side = direction.any_orthonormal_vector();
+    let other = direction.cross(side);
+    let (across, along) = (libm::sin(angle) * length, libm::cos(angle) * length);
+    let point = |i: u32| {
+        let turn = std::f64::consts::TAU * f64::from(i) / f64::from(SIDES);
+        let aside = side * libm::cos(turn) + other * libm::sin(turn);
+        position + direction * along + aside * across
+    };
+    for i in 0..SIDES {
+        to.line(painter, [point(i), point(i + 1)], stroke);
+        if i % (SIDES / 4) == 0 {
+            to.line(painter, [position, point(i)], stroke);
         }
     }
 }

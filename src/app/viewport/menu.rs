@@ -3,7 +3,7 @@
 use egui::{Id, Ui};
 
 use super::Viewport;
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{ADD_LIGHTS, Action, Request};
 use crate::app::state::State;
 use crate::scene::ItemId;
 
@@ -18,30 +18,24 @@ impl Viewport {
             .accessible_name("Viewport menu")
             .open_memory(None);
         popup.show(|ui| {
-            let actions = match menu.item.filter(|item| state.scene.contains(*item)) {
-                Some(item) => {
-                    ui.weak(state.name(item).unwrap_or_default());
-                    ui.separator();
-                    actions_on(item)
-                }
-                None => ON_NOTHING,
-            };
-            for action in actions {
+            let (actions, lights): (_, &[Action]) =
+                match menu.item.filter(|item| state.scene.contains(*item)) {
+                    Some(item) => {
+                        ui.weak(state.name(item).unwrap_or_default());
+                        ui.separator();
+                        (actions_on(item), &[])
+                    }
+                    None => (ON_NOTHING, &ADD_LIGHTS),
+                };
+            for action in actions.iter().chain(lights) {
                 requests.extend(action.menu_item(ui, state).map(Request::Do));
             }
         });
     }
 }
 
-/// The menu of the background.
-const ON_NOTHING: &[Action] = &[
-    Action::FrameAll,
-    Action::Load,
-    Action::AddCamera,
-    Action::AddSun,
-    Action::AddBulb,
-    Action::AddSpot,
-];
+/// The menu of the background; below it stand the lights to add.
+const ON_NOTHING: &[Action] = &[Action::FrameAll, Action::Load, Action::AddCamera];
 
 /// The menu of an item.
 const fn actions_on(item: ItemId) -> &'static [Action] {

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Painter, Rect};
 use egui_material_icons::{MaterialIcon, icons};
 
-use crate::scene::{ItemId, Light, LightKind, Scene};
+use crate::scene::{ItemId, Light, Scene};
 
 /// An icon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,14 +14,8 @@ pub(crate) enum Icon {
     Part,
     /// A camera.
     Camera,
-    /// Ambient light.
-    Ambient,
-    /// A sun.
-    Sun,
-    /// A bulb.
-    Bulb,
-    /// A spot.
-    Spot,
+    /// A light, by the code point of its kind.
+    Light(&'static str),
     /// Visible.
     Eye,
     /// Hidden.
@@ -62,18 +56,13 @@ impl Icon {
         match id {
             ItemId::Object(_) => Self::Object,
             ItemId::Camera(_) => Self::Camera,
-            ItemId::Light(id) => scene.lights.get(id).map_or(Self::Bulb, Self::of_light),
+            ItemId::Light(id) => scene.lights.get(id).map_or(Self::Off, Self::of_light),
         }
     }
 
     /// The icon of a light.
     pub(crate) const fn of_light(light: &Light) -> Self {
-        match light.kind {
-            LightKind::Ambient => Self::Ambient,
-            LightKind::Sun { .. } => Self::Sun,
-            LightKind::Bulb { .. } => Self::Bulb,
-            LightKind::Spot { .. } => Self::Spot,
-        }
+        Self::Light(light.kind.info().icon)
     }
 
     /// Draws the icon in the middle of `rect`, `side` points wide.
@@ -89,10 +78,7 @@ impl Icon {
             Self::Object => icons::ICON_DEPLOYED_CODE,
             Self::Part => icons::ICON_CHANGE_HISTORY,
             Self::Camera => icons::ICON_VIDEOCAM,
-            Self::Ambient => icons::ICON_FLARE,
-            Self::Sun => icons::ICON_LIGHT_MODE,
-            Self::Bulb => icons::ICON_LIGHTBULB,
-            Self::Spot => icons::ICON_HIGHLIGHT,
+            Self::Light(code_point) => MaterialIcon::new(code_point),
             Self::Eye => icons::ICON_VISIBILITY,
             Self::EyeClosed => icons::ICON_VISIBILITY_OFF,
             Self::On => icons::ICON_RADIO_BUTTON_CHECKED,

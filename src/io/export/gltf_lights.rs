@@ -10,7 +10,9 @@ use super::gltf::Writer;
 use super::gltf_buffer::{columns, single};
 use super::gltf_surface::linear;
 use crate::base::math;
-use crate::scene::{Attenuation, Camera, Light, LightKind, ObjectId, Projection, SpotOwner};
+use crate::scene::{
+    Anchor, Attenuation, Camera, HALF_APERTURE, Light, ObjectId, Projection, SpotOwner,
+};
 
 impl Writer<'_> {
     pub(super) fn camera(&mut self, camera: &Camera) {
@@ -82,17 +84,17 @@ impl Writer<'_> {
         let along = |direction: DVec3| {
             math::frame(-direction, DVec3::Y, DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y))
         };
-        let (kind, world, spot) = match &light.kind {
-            LightKind::Ambient => return None,
-            LightKind::Sun { direction } => {
+        let (kind, world) = match light.kind.anchor() {
+            Anchor::Everywhere => return None,
+            Anchor::Direction(direction) => {
                 let world = math::placed(along(*direction.now()), DVec3::ZERO);
-                (punctual::Type::Directional, world, None)
+                (punctual::Type::Directional, world)
             }
-            LightKind::Bulb { position, orbit } => {
-                let at = orbit.at(*position.now(), self.view.time);
-                (punctual::Type::Point, DMat4::from_translation(at), None)
+            Anchor::Position(_) => {
+                let at = self.scene.light_origin(self.view, &light.kind)?.position?;
+                (punctual::Type::Point, DMat4::from_translation(at))
             }
-            LightKind::Spot { owner, half_aperture, .. } => {
+            Anchor::Owner(owner) => {
                 let world = match owner {
                     SpotOwner::SelectedObject => self.object_frame(self.view.object?)?,
                     SpotOwner::Object(id) => self.object_frame(*id)?,
@@ -106,11 +108,14 @@ impl Writer<'_> {
                         math::placed(along(aim.now().direction), aim.now().position)
                     }
                 };
-                let outer_cone_angle = single(half_aperture.to_radians());
-                let spot = punctual::Spot { inner_cone_angle: 0.0, outer_cone_angle };
-                (punctual::Type::Spot, world, Some(spot))
+                (punctual::Type::Spot, world)
             }
         };
+        let spot = (kind == punctual::Type::Spot).then(|| {
+            let half_aperture = (HALF_APERTURE.get)(&light.kind).unwrap_or(HALF_APERTURE.largest);
+            let outer_cone_angle = single(half_aperture.to_radians());
+            punctual::Spot { inner_cone_angle: 0.0, outer_cone_angle }
+        });
         let intensity = match kind {
             punctual::Type::Directional => 1.0,
             punctual::Type::Point | punctual::Type::Spot => {

@@ -15,7 +15,8 @@ use super::{Lock, OwnFolders, Slot, list_lock, made};
 use crate::accuracy::Settings;
 use crate::io::error::reason;
 use crate::io::replace::{Worth, replace};
-use crate::io::scene_file::to_text;
+use crate::io::scene_file::text_with_window;
+use crate::io::window_state::WindowState;
 use crate::scene::{Scene, View};
 
 /// The time between two states that are written.
@@ -30,6 +31,8 @@ pub struct Unsaved {
     pub view: View,
     /// Its settings.
     pub settings: Settings,
+    /// The state of the window.
+    pub window: WindowState,
     /// The file in which it was saved before, if it was.
     pub file: Option<PathBuf>,
 }
@@ -213,8 +216,9 @@ fn keep(shared: &Shared) {
 }
 
 fn write(path: &Path, state: &Unsaved) -> Result<(), String> {
-    let Unsaved { scene, view, settings, file } = state;
-    let text = to_text(path, scene, view, settings).map_err(|error| error.to_string())?;
+    let Unsaved { scene, view, settings, window, file } = state;
+    let text = text_with_window(path, scene, view, settings, window);
+    let text = text.map_err(|error| error.to_string())?;
     let text = head(file.as_deref()) + &text;
     replace(path, text.as_bytes(), Worth::Journal).map_err(|error| error.to_string())
 }

@@ -14,7 +14,7 @@ use super::{Lock, OwnFolders, made};
 use crate::accuracy::Samples;
 use crate::io::error::reason;
 use crate::io::replace::{Worth, replace};
-use crate::scene::Panels;
+use crate::io::window_state::Panels;
 
 /// The most recent files that are remembered.
 pub const MOST_RECENT: usize = 10;

@@ -14,10 +14,12 @@
 //! vertices that MeshLab and others write.
 
 mod chunks;
+mod corners;
 mod faces;
 mod join;
 pub(super) mod lines;
 mod parts;
+mod piece;
 mod quick;
 mod rows;
 mod scan;

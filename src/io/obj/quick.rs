@@ -5,7 +5,7 @@
 //! way, which knows comments, continued lines, odd numbers and every fault.
 
 use super::lines::Lines;
-use super::scan::{Counts, Piece, Trust};
+use super::piece::{Counts, Piece, Trust};
 use crate::scene::{NONE, SourceCorner};
 
 impl Piece {

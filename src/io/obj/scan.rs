@@ -8,88 +8,14 @@
 //! Most lines are read by the quick way (`quick`), and their numbers by tobj (`rows`). The other
 //! lines are read here, the tolerant way; their numbers reach tobj rewritten.
 
-use super::faces::{Faces, INHERITED};
+use super::faces::INHERITED;
 use super::lines::{Line, Lines, excerpt, number, words};
-use super::parts::Parts;
-use super::rows::{RowKind, Rows};
+use super::piece::{Counts, Piece, Stop, Trust};
 use crate::base::color::{Color, byte};
-use crate::io::findings::{FindingKind, Findings};
+use crate::io::findings::FindingKind;
 use crate::io::progress::Cancelled;
 
-/// How many vertices, texture coordinates and normals there are.
-pub(super) type Counts = [u32; 3];
-
-/// Everything that the statements of a chunk say.
-#[derive(Debug)]
-pub(super) struct Piece {
-    /// How many statements of each kind are before the chunk, if that is known.
-    pub(super) before: Option<Counts>,
-    /// Which lines of numbers go to tobj as they are.
-    pub(super) trust: Trust,
-    /// How many lines the chunk has, as far as it was read.
-    pub(super) lines: u32,
-    pub(super) vertices: Rows<3>,
-    pub(super) uvs: Rows<2>,
-    pub(super) normals: Rows<3>,
-    pub(super) faces: Faces,
-    pub(super) parts: Parts,
-    /// The smoothing group of the next face: 0 for none, or [`INHERITED`].
-    pub(super) smoothing: u32,
-    /// What follows `mtllib`, with its lines.
-    pub(super) libraries: Vec<(u32, String)>,
-    pub(super) edge_color: Option<Color>,
-    pub(super) findings: Findings,
-    /// Why the chunk was not read to its end.
-    pub(super) stop: Option<Stop>,
-    /// The chunk, if it has to be read again.
-    pub(super) text: Vec<u8>,
-}
-
-/// Which lines of numbers go to tobj as they are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Trust {
-    /// Those that look like nothing but numbers.
-    Plain,
-    /// None: tobj refused such a line, or its rounding is in doubt.
-    Nothing,
-}
-
-/// Why a chunk was not read to its end.
-#[derive(Debug)]
-pub(super) enum Stop {
-    /// A line cannot be taken for what it says it is.
-    Wrong(u32, String),
-    /// A face counts back, and it is not known from where.
-    CountsBack,
-}
-
-impl From<String> for Stop {
-    fn from(reason: String) -> Self {
-        // The line is filled in by the caller, who knows it.
-        Self::Wrong(0, reason)
-    }
-}
-
 impl Piece {
-    fn new(before: Option<Counts>, trust: Trust) -> Self {
-        Self {
-            before,
-            trust,
-            lines: 0,
-            vertices: Rows::new(RowKind::Vertex),
-            uvs: Rows::new(RowKind::Uv),
-            normals: Rows::new(RowKind::Normal),
-            faces: Faces::default(),
-            parts: Parts::default(),
-            smoothing: INHERITED,
-            libraries: Vec::new(),
-            edge_color: None,
-            findings: Findings::default(),
-            stop: None,
-            text: Vec::new(),
-        }
-    }
-
     /// Reads all statements of a chunk, or those up to the first that cannot be read. `before` is
     /// how many statements of each kind are before the chunk, if that is known; `reached` is told
     /// now and then how many bytes are behind.
@@ -144,12 +70,6 @@ impl Piece {
         // A chunk that counts back is read again from its beginning.
         matches!(self.stop, Some(Stop::CountsBack))
             || self.vertices.read(chunk) && self.uvs.read(chunk) && self.normals.read(chunk)
-    }
-
-    /// How many statements of each kind are before the next one.
-    pub(super) fn counts(&self) -> Option<Counts> {
-        let own = [self.vertices.count, self.uvs.count, self.normals.count];
-        self.before.map(|before| std::array::from_fn(|i| before[i].saturating_add(own[i])))
     }
 
     fn statement(&mut self, line: &Line<'_>) -> Result<(), Stop> {

@@ -4,10 +4,13 @@
 //! Models are not in it but named, by their path relative to the file's folder, so that a folder
 //! with both can be moved. The view and the settings are saved with the scene; the history is not.
 
+mod fields;
 mod format;
+mod light;
 mod open;
 mod paths;
 mod save;
+mod view;
 mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,6 +25,7 @@ use super::progress::Progress;
 use super::read::{MOST_WORDS, read, utf_8};
 use super::replace::{SaveError, Worth, replace};
 use super::texture::Pictures;
+use super::window_state::WindowState;
 use crate::accuracy::Settings;
 use crate::base::Shared;
 use crate::base::image::{Picture, Size};
@@ -37,6 +41,8 @@ pub struct Opened {
     pub scene: Scene,
     /// Its view when it was saved.
     pub view: View,
+    /// The state of the window when it was saved.
+    pub window: WindowState,
     /// The settings of accuracy when it was saved.
     pub settings: Settings,
     /// The findings in its models.
@@ -89,7 +95,21 @@ fn listed(paths: &[PathBuf]) -> String {
 /// # Errors
 /// If the file, or something in the scene, cannot be written. An existing file stays as it was.
 pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
-    let text = to_text(path, scene, view, settings)?;
+    save_with_window(path, scene, view, settings, &WindowState::DEFAULT)
+}
+
+/// Saves a scene as [`save()`] does, with the state of the window.
+///
+/// # Errors
+/// As [`save()`].
+pub fn save_with_window(
+    path: &Path,
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    window: &WindowState,
+) -> Result<(), SaveError> {
+    let text = text_with_window(path, scene, view, settings, window)?;
     replace(path, text.as_bytes(), Worth::Work)
 }
 
@@ -103,8 +123,19 @@ pub fn to_text(
     view: &View,
     settings: &Settings,
 ) -> Result<String, SaveError> {
+    text_with_window(path, scene, view, settings, &WindowState::DEFAULT)
+}
+
+pub(in crate::io) fn text_with_window(
+    path: &Path,
+    scene: &Scene,
+    view: &View,
+    settings: &Settings,
+    window: &WindowState,
+) -> Result<String, SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
-    let file = save::file_scene(scene, view, settings, &complete_folder(path)).map_err(fail)?;
+    let file = save::file_scene(scene, view, window, settings, &complete_folder(path));
+    let file = file.map_err(fail)?;
     let config = ron::ser::PrettyConfig::new().new_line("\n");
     let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
     // A number that is not finite could be written, but not read again.
@@ -163,7 +194,7 @@ pub(in crate::io) fn open_text(
     let mut own = Findings::new(name);
     let (scene, view) = open::scene(&file, &files, &mut own).map_err(fail)?;
     let findings = joined(own.into_list().into_iter().chain(files.findings).collect());
-    Ok(Opened { scene, view, settings: file.settings, findings })
+    Ok(Opened { scene, view, window: file.view.window(), settings: file.settings, findings })
 }
 
 /// The folder of a file, from the root on.

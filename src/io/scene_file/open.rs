@@ -7,16 +7,15 @@ use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::format::{
-    FileCamera, FileLight, FileLightKind, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
-    FileScene, FileSpin, FileTexture, FileView, UNSAID,
-};
+use super::fields::finite;
+use super::format::{FileCamera, FileMode, FileModel, FileObject, FileScene, FileTexture};
+use super::light::read_light;
+use super::view::read_view;
 use crate::base::{Shared, color::Color};
 use crate::io::findings::{FindingKind, Findings};
 use crate::scene::{
-    Aim, Camera, CameraId, CameraMode, Command, CommandError, Item, Light, LightId, LightKind,
-    List, MaterialChoice, Model, Object, ObjectId, Orbit, PolygonMode, Pose, Scene, Sides, Spin,
-    SpotOwner, Steps, Texture, Tracked, View,
+    Camera, CameraId, CameraMode, Command, CommandError, Item, LightId, List, MaterialChoice,
+    Model, Object, ObjectId, Pose, Scene, Sides, SpotOwner, Texture, Tracked, View,
 };
 
 /// The most items of a kind in a scene: each is looked up among all others.
@@ -106,7 +105,7 @@ pub(super) fn scene(
 fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
     let mut note = |what: String| findings.add(FindingKind::OwnerMissing, &what, None);
     for (_, light) in scene.lights.iter() {
-        let LightKind::Spot { owner, .. } = &light.kind else { continue };
+        let Some(owner) = light.kind.owner() else { continue };
         let owner = match *owner {
             SpotOwner::Object(id) if scene.objects.get(id).is_none() => format!("object {}", id.0),
             SpotOwner::Camera(id) if scene.cameras.get(id).is_none() => format!("camera {}", id.0),
@@ -120,14 +119,6 @@ fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
         {
             note(format!("the camera \"{}\" is aimed at object {}", camera.name, target.0));
         }
-    }
-}
-
-fn finite(what: &str, numbers: &[f64]) -> Result<(), String> {
-    if numbers.iter().all(|x| x.is_finite()) {
-        Ok(())
-    } else {
-        Err(format!("{what} has a number that is infinite or NaN"))
     }
 }
 
@@ -146,8 +137,7 @@ fn read_material(material: &MaterialChoice) -> Result<MaterialChoice, String> {
 
 fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String> {
     finite("its placement", object.placement.as_flattened())?;
-    let FileSpin { axes, speed, since } = object.spin;
-    finite("its spin", &[speed, since])?;
+    finite("its spin", &[object.spin.speed, object.spin.since])?;
     finite("its opacity", &[object.opacity])?;
     if let Some(texture) = &object.texture {
         finite("its texture", &[texture.offset, texture.scale].concat())?;
@@ -161,7 +151,7 @@ fn read_object(object: &FileObject, needs: &dyn Needs) -> Result<Object, String>
         model,
         hidden_parts,
         placement: Tracked::new(DMat4::from_cols_array_2d(&object.placement)),
-        spin: Spin { axes, speed, since },
+        spin: object.spin,
         material: read_material(&object.material)?,
         surface: object.surface,
         texture: object.texture.as_ref().map(|texture| needs.texture(texture)),
@@ -203,120 +193,5 @@ fn read_camera(camera: &FileCamera, needs: &dyn Needs) -> Result<Camera, String>
         material: read_material(&camera.material)?,
         pose: Tracked::new(Pose { eye, axes, mode }),
         lens: camera.lens,
-    })
-}
-
-fn read_light(light: &FileLight) -> Result<Light, String> {
-    let kind = match light.kind {
-        FileLightKind::Ambient => LightKind::Ambient,
-        FileLightKind::Sun { direction } => {
-            LightKind::Sun { direction: Tracked::new(read_direction(direction)?) }
-        }
-        FileLightKind::Bulb { position, orbit: FileOrbit { on, speed, since } } => {
-            finite("its place", &position)?;
-            finite("its orbit", &[speed, since])?;
-            let position = Tracked::new(DVec3::from_array(position));
-            LightKind::Bulb { position, orbit: Orbit { on, speed, since } }
-        }
-        FileLightKind::Spot { ref owner, half_aperture, exponent } => {
-            let right =
-                (0.0..=90.0).contains(&half_aperture) && (0.0..f64::INFINITY).contains(&exponent);
-            if !right {
-                return Err("it needs a half-aperture of 0 to 90 and an exponent above 0".into());
-            }
-            LightKind::Spot { owner: read_owner(owner)?, half_aperture, exponent }
-        }
-    };
-    Ok(Light {
-        name: light.name.clone(),
-        slot: light.slot,
-        on: light.on,
-        color: Color(light.color),
-        attenuation: light.attenuation,
-        shadows: light.shadows,
-        kind,
-    })
-}
-
-fn read_owner(owner: &FileOwner) -> Result<SpotOwner, String> {
-    Ok(match *owner {
-        FileOwner::SelectedObject => SpotOwner::SelectedObject,
-        FileOwner::SelectedCamera => SpotOwner::SelectedCamera,
-        FileOwner::Object(id) => SpotOwner::Object(ObjectId(id)),
-        FileOwner::Camera(id) => SpotOwner::Camera(CameraId(id)),
-        FileOwner::Fixed { position, direction } => {
-            finite("its place", &position)?;
-            let position = DVec3::from_array(position);
-            SpotOwner::Fixed(Tracked::new(Aim { position, direction: read_direction(direction)? }))
-        }
-    })
-}
-
-/// A direction of length 1, kept bit for bit if it has that length already.
-fn read_direction(direction: [f64; 3]) -> Result<DVec3, String> {
-    finite("its direction", &direction)?;
-    let direction = DVec3::from_array(direction);
-    if (direction.length() - 1.0).abs() < 1e-9 {
-        return Ok(direction);
-    }
-    crate::base::math::unit(direction).ok_or_else(|| "its direction has no length".to_owned())
-}
-
-fn read_view(file: &FileView, scene: &Scene, findings: &mut Findings) -> Result<View, String> {
-    let Steps { translation, rotation, scaling, .. } = file.steps;
-    finite("the view", &[translation, rotation, scaling, file.time])?;
-    if translation <= 0.0 || rotation <= 0.0 || scaling <= 1.0 {
-        return Err("the steps of the view have to be above 0, and of scaling above 1".to_owned());
-    }
-    // If the selected item is missing, the selection of a new scene is used.
-    let first = scene.first_view();
-    let mut check = |what: &str, id: u32, is_there: bool| {
-        if !is_there {
-            findings.add(FindingKind::SelectionMissing, &format!("{what} {id}"), None);
-        }
-        is_there
-    };
-    let is_there = |id: &ObjectId| check("object", id.0, scene.objects.get(*id).is_some());
-    let object = file.object.map(ObjectId).filter(is_there);
-    let is_there = |id: &CameraId| check("camera", id.0, scene.cameras.get(*id).is_some());
-    let camera = Some(file.camera).filter(|id| *id != UNSAID).map(CameraId).filter(is_there);
-    let is_there = |id: &LightId| check("light", id.0, scene.lights.get(*id).is_some());
-    let light = file.light.map(LightId).filter(is_there);
-    let object = object.or(first.object);
-    let polygons = object.and_then(|id| scene.objects.get(id)).and_then(|object| {
-        let file = file.polygons.as_ref()?;
-        let count = object.model.mesh.polygon_count();
-        let there = |polygon: u32| (polygon as usize) < count;
-        // The model may have changed since, and have fewer polygons now.
-        let shown = file.shown.below(count);
-        let mut mode = PolygonMode { current: 0, shown };
-        mode.go_to(if there(file.current) { file.current } else { 0 });
-        Some(mode)
-    });
-    Ok(View {
-        subject: file.subject,
-        object,
-        camera: camera.unwrap_or(first.camera),
-        light: light.or(first.light),
-        transformation: file.transformation,
-        frame: file.frame,
-        steps: file.steps,
-        observer: file.observer,
-        projection: file.projection,
-        fill: file.fill,
-        edges_over_fill: file.edges_over_fill,
-        polygons,
-        polygons_stay: file.polygons_stay,
-        only_selected: file.only_selected,
-        normals: file.normals,
-        back_faces: file.back_faces,
-        face_normals: file.face_normals,
-        vertex_normals: file.vertex_normals,
-        normal_length: file.normal_length,
-        wide_lines: file.wide_lines,
-        marks: file.marks,
-        coarse_while_moving: file.coarse_while_moving,
-        time: file.time,
-        panels: file.panels,
     })
 }

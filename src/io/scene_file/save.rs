@@ -4,17 +4,15 @@
 
 use std::path::Path;
 
-use super::format::{
-    FileCamera, FileLight, FileLightKind, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
-    FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, UNSAID, VERSION,
-};
+use super::fields::Numbers;
+use super::format::{FileCamera, FileMode, FileModel, FileObject, FileScene, FileTexture, VERSION};
+use super::light::file_light;
 use super::paths::relative;
+use super::view::FileView;
 use crate::accuracy::Settings;
+use crate::io::window_state::WindowState;
 use crate::io::{is_example, own_texture};
-use crate::scene::{
-    Aim, Camera, CameraId, CameraMode, Light, LightKind, LoadOptions, Model, Object, Orbit, Pose,
-    Scene, Spin, SpotOwner, Texture, View,
-};
+use crate::scene::{Camera, CameraMode, LoadOptions, Model, Object, Pose, Scene, Texture, View};
 
 /// A scene with its view and settings, in the types of the file. `folder` is the file's, absolute.
 ///
@@ -23,6 +21,7 @@ use crate::scene::{
 pub(super) fn file_scene(
     scene: &Scene,
     view: &View,
+    window: &WindowState,
     settings: &Settings,
     folder: &Path,
 ) -> Result<FileScene, String> {
@@ -38,7 +37,7 @@ pub(super) fn file_scene(
         objects: objects?,
         cameras: cameras?,
         lights: lights.iter().map(|(id, item)| file_light(id.0, item)).collect(),
-        view: FileView::of(view),
+        view: FileView::of(view, window),
         settings: *settings,
     })
 }
@@ -83,7 +82,6 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         file_normals,
         edge_color,
     } = object;
-    let Spin { axes, speed, since } = *spin;
     let texture = texture.as_ref().map(|texture| file_texture(texture, folder)).transpose()?;
     Ok(FileObject {
         id,
@@ -92,7 +90,7 @@ fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, St
         model: file_model(model, folder)?,
         hidden_parts: Numbers::of(hidden_parts),
         placement: placement.now().to_cols_array_2d(),
-        spin: FileSpin { axes, speed, since },
+        spin: *spin,
         material: material.clone(),
         surface: *surface,
         texture,
@@ -129,107 +127,4 @@ fn file_camera(id: u32, camera: &Camera, folder: &Path) -> Result<FileCamera, St
         },
         lens: *lens,
     })
-}
-
-fn file_light(id: u32, light: &Light) -> FileLight {
-    let Light { name, slot, on, color, attenuation, shadows, kind } = light;
-    let kind = match kind {
-        LightKind::Ambient => FileLightKind::Ambient,
-        LightKind::Sun { direction } => {
-            FileLightKind::Sun { direction: direction.now().to_array() }
-        }
-        LightKind::Bulb { position, orbit } => {
-            let Orbit { on, speed, since } = *orbit;
-            let orbit = FileOrbit { on, speed, since };
-            FileLightKind::Bulb { position: position.now().to_array(), orbit }
-        }
-        LightKind::Spot { owner, half_aperture, exponent } => FileLightKind::Spot {
-            owner: file_owner(owner),
-            half_aperture: *half_aperture,
-            exponent: *exponent,
-        },
-    };
-    let (slot, on, color, attenuation) = (*slot, *on, color.0, *attenuation);
-    let shadows = *shadows;
-    FileLight { id, name: name.clone(), slot, on, color, attenuation, shadows, kind }
-}
-
-fn file_owner(owner: &SpotOwner) -> FileOwner {
-    match owner {
-        SpotOwner::SelectedObject => FileOwner::SelectedObject,
-        SpotOwner::SelectedCamera => FileOwner::SelectedCamera,
-        SpotOwner::Object(id) => FileOwner::Object(id.0),
-        SpotOwner::Camera(id) => FileOwner::Camera(id.0),
-        SpotOwner::Fixed(aim) => {
-            let Aim { position, direction } = *aim.now();
-            let [position, direction] = [position, direction].map(|v| v.to_array());
-            FileOwner::Fixed { position, direction }
-        }
-    }
-}
-
-impl FileView {
-    fn of(view: &View) -> Self {
-        let View {
-            subject,
-            object,
-            camera,
-            light,
-            transformation,
-            frame,
-            steps,
-            observer,
-            projection,
-            fill,
-            edges_over_fill,
-            polygons,
-            polygons_stay,
-            only_selected,
-            normals,
-            back_faces,
-            face_normals,
-            vertex_normals,
-            normal_length,
-            wide_lines,
-            marks,
-            coarse_while_moving,
-            time,
-            panels,
-        } = view;
-        let polygons = polygons
-            .as_ref()
-            .map(|mode| FilePolygons { current: mode.current, shown: Numbers::of(&mode.shown) });
-        Self {
-            subject: *subject,
-            object: object.map(|id| id.0),
-            camera: camera.0,
-            light: light.map(|id| id.0),
-            transformation: *transformation,
-            frame: *frame,
-            steps: *steps,
-            observer: *observer,
-            projection: *projection,
-            fill: *fill,
-            edges_over_fill: *edges_over_fill,
-            polygons,
-            polygons_stay: *polygons_stay,
-            only_selected: *only_selected,
-            normals: *normals,
-            back_faces: *back_faces,
-            face_normals: *face_normals,
-            vertex_normals: *vertex_normals,
-            normal_length: *normal_length,
-            wide_lines: *wide_lines,
-            marks: *marks,
-            coarse_while_moving: *coarse_while_moving,
-            time: *time,
-            panels: *panels,
-        }
-    }
-}
-
-impl Default for FileView {
-    fn default() -> Self {
-        Self { camera: UNSAID, ..Self::of(&View::new(None, CameraId(0), None)) }
-    }
 }

@@ -4,9 +4,10 @@
 //! in its stage, and is selected once per batch, draw or tile: an unused variant costs a comparison
 //! there, and nothing at a pixel.
 
+use std::ops::Deref;
+
 use crate::accuracy::{
-    BumpFilter, Coverage, DepthFormat, Filter, Interpolation, LightValues, Normalising, Rounding,
-    Settings, SpecularPower, Subpixels, Tangents, VertexArithmetic,
+    BumpFilter, Coverage, Filter, LightValues, Normalising, Settings, Subpixels, VertexArithmetic,
 };
 use crate::render::simd::Number;
 
@@ -47,54 +48,38 @@ impl Grid {
     }
 }
 
-/// The variants of a frame's stages.
+/// The variants of a frame's stages: a choice of each axis that a stage has variants for.
+///
+/// A new axis is among them by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Variants {
-    /// How vectors are brought to length 1.
-    pub(crate) roots: Normalising,
-    /// How the power of a highlight is computed.
-    pub(crate) powers: SpecularPower,
-    /// How colours become bytes.
-    pub(crate) rounding: Rounding,
-    /// The arithmetic that transforms vertices.
-    pub(crate) vertices: VertexArithmetic,
-    /// The subpixel grid that corners are snapped to.
-    pub(crate) subpixels: Subpixels,
-    /// Which pixels are covered.
-    pub(crate) coverage: Coverage,
-    /// The format of depths.
-    pub(crate) depth: DepthFormat,
-    /// How attributes are interpolated.
-    pub(crate) interpolation: Interpolation,
-    /// How the tangents of bumps are found.
-    pub(crate) tangents: Tangents,
-    /// How the maps of bumps are filtered.
-    pub(crate) bump_filter: BumpFilter,
-    /// In which values light is computed.
-    pub(crate) light_values: LightValues,
+pub(crate) struct Variants(Settings);
+
+impl Deref for Variants {
+    type Target = Settings;
+
+    fn deref(&self) -> &Settings {
+        &self.0
+    }
 }
 
 impl Variants {
     /// The variants that the settings choose.
-    pub(crate) const fn of(settings: &Settings) -> Self {
-        Self {
-            roots: settings.normalising,
-            powers: settings.power,
-            rounding: settings.rounding,
-            vertices: settings.vertices,
-            subpixels: settings.subpixels,
-            coverage: settings.coverage,
-            depth: settings.depth,
-            interpolation: settings.interpolation,
-            tangents: settings.tangents,
-            bump_filter: settings.bump_filter,
-            light_values: settings.light_values,
-        }
+    pub(crate) fn of(settings: &Settings) -> Self {
+        // What is decided for each draw, or stands elsewhere in the plan, is left at its default.
+        let Settings { arithmetic, light, samples, filter, .. } = Settings::default();
+        let Settings { specular, leave_out, stretched, transparency, .. } = Settings::default();
+        let settings = Settings { arithmetic, light, samples, filter, ..*settings };
+        Self(Settings { specular, leave_out, stretched, transparency, ..settings })
+    }
+
+    /// The same with light computed in the values that colours are stored in.
+    pub(crate) fn in_stored_values(self) -> Self {
+        Self(Settings { light_values: LightValues::Stored, ..self.0 })
     }
 
     /// How colours are decoded before light is computed.
     pub(crate) const fn decoding(&self) -> Decoding {
-        match self.light_values {
+        match self.0.light_values {
             LightValues::Stored => Decoding::Stored,
             LightValues::Linear => Decoding::Linear,
         }
@@ -107,7 +92,7 @@ impl Variants {
 
     /// The filter of the maps of bumps.
     pub(crate) const fn bump_filter(&self) -> Filter {
-        match self.bump_filter {
+        match self.0.bump_filter {
             BumpFilter::Nearest => Filter::Nearest,
             BumpFilter::Trilinear => Filter::Trilinear,
         }
@@ -115,19 +100,19 @@ impl Variants {
 
     /// The variant of reciprocal roots, if it is not the default.
     pub(crate) fn root_variant(&self) -> Option<Normalising> {
-        (self.roots != Normalising::Root).then_some(self.roots)
+        (self.normalising != Normalising::Root).then_some(self.normalising)
     }
 
     /// The variant of roots for lighting. It is set too if only powers differ from the arithmetic's
     /// own.
     pub(crate) fn light_variant<T: Number>(&self) -> Option<Normalising> {
-        let plain = self.roots == Normalising::Root && self.powers == T::POWER;
-        (!plain).then_some(self.roots)
+        let plain = self.normalising == Normalising::Root && self.power == T::POWER;
+        (!plain).then_some(self.normalising)
     }
 
     /// The grid that corners of triangles are snapped to.
     pub(crate) const fn grid(&self) -> Grid {
-        match (self.subpixels, self.coverage) {
+        match (self.0.subpixels, self.0.coverage) {
             (Subpixels::Bits12, Coverage::Exact) => Grid::Fine,
             _ => Grid::Usual,
         }

@@ -12,6 +12,7 @@ pub(crate) struct Ambient;
 impl LightShader for Ambient {
     const NAME: &'static str = "Ambient light";
     const READS_POSITIONS: bool = false;
+    const HAS_POSITION: bool = false;
 
     fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
         if light.color == [0.0; 3] {

@@ -24,6 +24,8 @@ pub use region::Region;
 pub use shader::{Light, LightRow, LightShader, Variant};
 pub use turning::Turning;
 
+use crate::scene::LightKind;
+
 /// The row of ambient light.
 pub static AMBIENT: LightRow = LightRow::of::<ambient::Ambient>();
 /// The row of the sun.
@@ -35,6 +37,17 @@ pub static SPOT: LightRow = LightRow::of::<spot::Spot>();
 
 /// Every kind of light.
 pub static LIGHT_SHADERS: &[&LightRow] = &[&AMBIENT, &SUN, &BULB, &SPOT];
+
+/// The row of a light.
+#[must_use]
+pub const fn row_of(kind: &LightKind) -> &'static LightRow {
+    match kind {
+        LightKind::Ambient => &AMBIENT,
+        LightKind::Sun { .. } => &SUN,
+        LightKind::Bulb { .. } => &BULB,
+        LightKind::Spot { .. } => &SPOT,
+    }
+}
 
 #[cfg(test)]
 mod tests;

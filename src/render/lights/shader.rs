@@ -19,6 +19,8 @@ pub trait LightShader {
     const NAME: &'static str;
     /// Whether it reads positions, normals or directions to the observer.
     const READS_POSITIONS: bool = true;
+    /// Whether it has a position, and fades with the distance from it.
+    const HAS_POSITION: bool = true;
     /// Whether its reach is limited, so that `is_culled` may cull it.
     const HAS_REACH: bool = false;
     /// Why it adds nothing to a material, if so: leaving it out then changes no bit.
@@ -34,6 +36,11 @@ pub trait LightShader {
     }
     /// The largest fraction of its light that arrives in a region, or anywhere without one.
     fn max_falloff(_: &ViewLight, _: Option<&Region>) -> f64 {
+        1.0
+    }
+    /// The fraction of its light that goes in a direction, by the cosine between that and its axis;
+    /// for explanations.
+    fn fraction_at(_: &ViewLight, _cosine: f64) -> f64 {
         1.0
     }
     /// The most that it adds to a channel at any position of a region, with its highlight or
@@ -75,6 +82,8 @@ pub struct LightRow {
     pub name: &'static str,
     /// See [`LightShader::READS_POSITIONS`].
     pub reads_positions: bool,
+    /// See [`LightShader::HAS_POSITION`].
+    pub has_position: bool,
     /// See [`LightShader::HAS_REACH`].
     pub has_reach: bool,
     /// See [`LightShader::is_noop`].
@@ -85,6 +94,8 @@ pub struct LightRow {
     pub is_behind: fn(&ViewLight, &Region, &Turning) -> bool,
     /// See [`LightShader::max_falloff`].
     pub max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
+    /// See [`LightShader::fraction_at`].
+    pub fraction_at: fn(&ViewLight, f64) -> f64,
     /// See [`LightShader::max_contribution`].
     pub max_contribution: fn(&ViewLight, &PhongMaterial, bool, Option<&Region>) -> f64,
     /// Without a highlight.
@@ -105,11 +116,13 @@ impl LightRow {
         Self {
             name: E::NAME,
             reads_positions: E::READS_POSITIONS,
+            has_position: E::HAS_POSITION,
             has_reach: E::HAS_REACH,
             is_noop: E::is_noop,
             is_culled: E::is_culled,
             is_behind: E::is_behind,
             max_falloff: E::max_falloff,
+            fraction_at: E::fraction_at,
             max_contribution: E::max_contribution,
             plain: variant::<E, Nothing>(),
             reflection: variant::<E, Reflection>(),

@@ -43,6 +43,11 @@ impl LightShader for Spot {
         max_attenuation(light, region) * libm::pow(cosine.max(0.0), light.exponent)
     }
 
+    fn fraction_at(light: &ViewLight, cosine: f64) -> f64 {
+        let inside = cosine > light.cos_half_aperture;
+        if inside { libm::pow(cosine, light.exponent) } else { 0.0 }
+    }
+
     /// With c = min(1, F.(-L)), F the axis: c^n of the light arrives if c is more than the cosine
     /// of the half-aperture, and none otherwise. Warn, "Lighting Controls for Synthetic Images",
     /// SIGGRAPH 1983.

@@ -14,6 +14,7 @@ pub(crate) struct Sun;
 
 impl LightShader for Sun {
     const NAME: &'static str = "Sun";
+    const HAS_POSITION: bool = false;
 
     fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
         light_is_noop(light, material)

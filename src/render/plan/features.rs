@@ -1,14 +1,16 @@
-//! Explains the effects of an object's surface and lines: one row for each effect that is not a
-//! light.
+//! Explains the effects of an object's surface and lines, finds the pixels that they take part in,
+//! and removes them: one row for each effect that is not a light.
 //!
 //! The rows read the finished draw, so the explanation agrees with what is drawn.
 
 use std::borrow::Cow;
 
 use super::planning::{Planner, Planning};
+use super::rules::Reading;
 use super::uses::{Effect, EffectState, EffectUse, Thing};
 use crate::accuracy::{Filter, LightAt, Settings, Tangents, Transparency};
-use crate::render::frame::draw::{Back, Draw, Pipeline, Shaded};
+use crate::render::frame::FramePlan;
+use crate::render::frame::draw::{Back, Draw, Form, Pipeline, Shaded, Stage};
 use crate::scene::{ItemId, MapKind, Normals, Object, Sides, Surface};
 
 /// What a row reads.
@@ -20,24 +22,24 @@ struct Facts<'a> {
     shaded: Vec<&'a Shaded>,
 }
 
-/// A row of the table.
-struct Feature(Effect, fn(&Facts<'_>) -> EffectState);
+/// A row of the table: an effect, its explanation, and whether a surface has it, if surfaces do.
+struct Feature(Effect, fn(&Facts<'_>) -> EffectState, Option<fn(&Shaded) -> bool>);
 
 /// The table: one row for each effect of surfaces or lines.
 const FEATURES: &[Feature] = &[
-    Feature(Effect::Surfaces, surfaces),
-    Feature(Effect::Normals, normals),
-    Feature(Effect::Texture, texture),
-    Feature(Effect::AlphaTest, holes),
-    Feature(Effect::Transparency, transparency),
-    Feature(Effect::VertexColors, vertex_colors),
-    Feature(Effect::Emission, emission),
-    Feature(Effect::Maps, maps),
-    Feature(Effect::Bumps, bumps),
-    Feature(Effect::BackFaces, back_faces),
-    Feature(Effect::Edges, |it| switched(it.draw.lines.edges)),
-    Feature(Effect::FaceNormals, |it| switched(it.draw.lines.face_normals.is_some())),
-    Feature(Effect::VertexNormals, |it| switched(it.draw.lines.vertex_normals.is_some())),
+    Feature(Effect::Surfaces, surfaces, None),
+    Feature(Effect::Normals, normals, None),
+    Feature(Effect::Texture, texture, Some(|shaded| shaded.texture.is_some())),
+    Feature(Effect::AlphaTest, holes, Some(|shaded| shaded.cutout.is_some())),
+    Feature(Effect::Transparency, transparency, Some(|shaded| shaded.opacity.is_some())),
+    Feature(Effect::VertexColors, vertex_colors, Some(|shaded| shaded.vertex_colors)),
+    Feature(Effect::Emission, emission, Some(|shaded| shaded.extras.emission.is_some())),
+    Feature(Effect::Maps, maps, Some(|shaded| shaded.extras.has_maps())),
+    Feature(Effect::Bumps, bumps, Some(|shaded| shaded.extras.bump.is_some())),
+    Feature(Effect::BackFaces, back_faces, None),
+    Feature(Effect::Edges, |it| switched(it.draw.lines.edges), None),
+    Feature(Effect::FaceNormals, |it| switched(it.draw.lines.face_normals.is_some()), None),
+    Feature(Effect::VertexNormals, |it| switched(it.draw.lines.vertex_normals.is_some()), None),
 ];
 
 /// The effect that stands for an item being drawn at all.
@@ -46,6 +48,12 @@ pub(crate) const fn presence(item: ItemId) -> Effect {
         ItemId::Object(_) => Effect::Surfaces,
         ItemId::Camera(_) | ItemId::Light(_) => Effect::Marks,
     }
+}
+
+/// The effects of a surface that are not lights.
+pub(crate) fn of_surface(shaded: &Shaded) -> impl Iterator<Item = Effect> {
+    let there = |row: &&Feature| row.2.is_some_and(|is_in| is_in(shaded));
+    FEATURES.iter().filter(there).map(|row| row.0)
 }
 
 impl Planner<'_> {
@@ -72,9 +80,84 @@ impl Planner<'_> {
         if presence == Effect::Marks {
             return notes.add(|| note(presence, EffectState::ON));
         }
-        for Feature(effect, state) in FEATURES {
+        for Feature(effect, state, _) in FEATURES {
             notes.add(|| note(*effect, state(&facts())));
         }
+    }
+}
+
+impl FramePlan {
+    /// The plan without an effect: another picture, and less work. `None` if it does not use the
+    /// effect, or cannot do without it.
+    #[must_use]
+    pub fn without(&self, effect: Effect) -> Option<Self> {
+        let mut plan = self.clone();
+        match effect {
+            Effect::Light(id) => {
+                let index = self.light_ids.iter().position(|light| *light == id)?;
+                plan.for_each_light(|stages| stages.retain(|stage| stage.light as usize != index));
+            }
+            Effect::Shadows(id) => {
+                let index = self.light_ids.iter().position(|light| *light == id)?;
+                *plan.shadows.sources.get_mut(index)? = None;
+            }
+            Effect::Highlights => plan.for_each_light(|stages| {
+                stages.iter_mut().for_each(|stage| stage.highlight = Form::Plain);
+            }),
+            Effect::Texture => plan.for_each_shaded(|shaded| {
+                shaded.texture = None;
+                if shaded.opacity_map.is_none() {
+                    shaded.cutout = None;
+                }
+            }),
+            Effect::AlphaTest => plan.for_each_shaded(|shaded| {
+                if shaded.cutout.is_some() {
+                    (shaded.cutout, shaded.opacity_map) = (None, None);
+                }
+            }),
+            Effect::Transparency => plan.for_each_shaded(|shaded| shaded.opacity = None),
+            Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
+            Effect::Emission => plan.for_each_shaded(|shaded| shaded.extras.emission = None),
+            Effect::Maps => plan.for_each_shaded(|shaded| {
+                shaded.extras.ambient.iter_mut().for_each(|ambient| ambient.map = None);
+                (shaded.extras.specular, shaded.extras.exponent) = (None, None);
+                for stage in shaded.light.iter_mut().flatten() {
+                    stage.is_mapped = false;
+                }
+            }),
+            Effect::Bumps => plan.for_each_shaded(|shaded| shaded.extras.bump = None),
+            Effect::LinearLight => plan.variants = plan.variants.in_stored_values(),
+            Effect::BackFaces => plan.draws.iter_mut().for_each(|draw| draw.back = Back::Culled),
+            Effect::Edges => plan.draws.iter_mut().for_each(|draw| draw.lines.edges = false),
+            Effect::FaceNormals => {
+                plan.draws.iter_mut().for_each(|draw| draw.lines.face_normals = None);
+            }
+            Effect::VertexNormals => {
+                plan.draws.iter_mut().for_each(|draw| draw.lines.vertex_normals = None);
+            }
+            Effect::Marks => plan.draws.retain(|draw| matches!(draw.item, ItemId::Object(_))),
+            Effect::Surfaces => plan.draws.iter_mut().for_each(|draw| draw.filled = false),
+            Effect::Normals => return None,
+        }
+        (plan != *self).then_some(plan)
+    }
+
+    fn for_each_shaded(&mut self, change: impl Fn(&mut Shaded)) {
+        for pipeline in &mut self.pipelines {
+            if let Pipeline::Shaded(shaded) = pipeline {
+                change(shaded);
+            }
+        }
+    }
+
+    fn for_each_light(&mut self, change: impl Fn(&mut Vec<Stage>)) {
+        let rules = self.rules;
+        self.for_each_shaded(|shaded| {
+            if let Some(stages) = &mut shaded.light {
+                change(stages);
+                shaded.needs_positions = rules.positions(&Reading::of(stages.iter())).is_none();
+            }
+        });
     }
 }
 

@@ -21,7 +21,6 @@ pub(crate) mod tile;
 mod turning;
 pub(crate) mod uses;
 mod view_lights;
-mod without;
 
 use self::observer::ObserverSpace;
 use self::planning::{Planner, Planning};

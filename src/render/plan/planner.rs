@@ -20,7 +20,7 @@ use crate::render::frame::draw::{Back, Draw, Lines, Pipeline};
 use crate::render::frame::variants::Variants;
 use crate::render::lights::region::Region;
 use crate::scene::{
-    Fill, ItemId, LightId, LightKind, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
+    Fill, ItemId, LightId, Model, NormalLength, NormalSource, Object, ObjectId, Observer,
 };
 
 /// The transforms of an object for the observer.
@@ -278,12 +278,9 @@ impl Planner<'_> {
     }
 
     fn bulb_place(&self, id: LightId) -> Option<(LightId, DVec3)> {
-        match &self.shot.scene.lights.get(id)?.kind {
-            LightKind::Bulb { position, orbit } => {
-                Some((id, orbit.at(*position.now(), self.shot.view.time)))
-            }
-            _ => None,
-        }
+        let kind = &self.shot.scene.lights.get(id)?.kind;
+        let origin = self.shot.scene.light_origin(&self.shot.view, kind)?;
+        kind.has_diamond().then_some((id, origin.position?))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::render::frame::draw::{Draw, Stage};
 use crate::render::lights::region::Region;
 use crate::render::lights::turning::Turning;
 use crate::render::lights::{LightRow, PhongMaterial, ViewLight};
-use crate::scene::{Bounds, Light, LightKind, SpotOwner, Texture};
+use crate::scene::{Bounds, Light, SpotOwner, Texture};
 
 /// Why something is left out; `None` if it is not.
 type Verdict = Option<&'static str>;
@@ -213,12 +213,10 @@ fn behind(it: &LitSurface<'_>) -> Verdict {
 }
 
 fn without_owner(it: &LightFacts<'_>) -> Verdict {
-    let reason = match &it.light.kind {
-        LightKind::Spot { owner: SpotOwner::SelectedObject, .. } => "no object",
-        LightKind::Spot { owner: SpotOwner::Object(_) | SpotOwner::Camera(_), .. } => {
-            "what it is fixed to is not there"
-        }
-        _ => "its place is no number",
+    let reason = match it.light.kind.owner() {
+        Some(SpotOwner::SelectedObject) => "no object",
+        Some(SpotOwner::Object(_) | SpotOwner::Camera(_)) => "what it is fixed to is not there",
+        Some(SpotOwner::SelectedCamera | SpotOwner::Fixed(_)) | None => "its place is no number",
     };
     (!it.is_placed).then_some(reason)
 }

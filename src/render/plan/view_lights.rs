@@ -9,7 +9,9 @@ use super::uses::{Effect, EffectState, EffectUse};
 use crate::base::{color, math};
 use crate::render::frame::shadows::ShadowSource;
 use crate::render::lights::{self, LightRow, ViewLight};
-use crate::scene::{Aim, Attenuation, Light, LightKind, Scene, View};
+use crate::scene::{
+    Attenuation, CONCENTRATION, HALF_APERTURE, Light, LightKind, LightOrigin, Scene, View,
+};
 
 /// Transforms the lights that a frame evaluates to view space.
 pub(super) fn view_lights(
@@ -72,13 +74,14 @@ pub(super) fn view_lights(
 
 /// The end of the rays of shadows, if the light casts any.
 fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
-    let point = ShadowSource::Point(source.position);
-    let kind = match light.kind {
-        LightKind::Ambient => return None,
-        LightKind::Sun { .. } => ShadowSource::Direction(-math::unit(source.direction)?),
-        LightKind::Bulb { .. } | LightKind::Spot { .. } => point,
+    let end = if light.kind.has_position() {
+        ShadowSource::Point(source.position)
+    } else if light.kind.has_direction() {
+        ShadowSource::Direction(-math::unit(source.direction)?)
+    } else {
+        return None;
     };
-    light.shadows.then_some(kind)
+    light.shadows.then_some(end)
 }
 
 /// The largest distance of a light, in units of view space, whose square fits f32.
@@ -126,23 +129,14 @@ impl Source {
 
 /// The source of a light at the view's time; `None` for a spot whose owner does not exist.
 fn source(scene: &Scene, view: &View, kind: &LightKind) -> Option<Source> {
-    Some(match kind {
-        LightKind::Ambient => Source::new(&lights::AMBIENT),
-        LightKind::Sun { direction } => {
-            Source { direction: *direction.now(), ..Source::new(&lights::SUN) }
-        }
-        LightKind::Bulb { position, orbit } => {
-            Source { position: orbit.at(*position.now(), view.time), ..Source::new(&lights::BULB) }
-        }
-        LightKind::Spot { owner, half_aperture, exponent } => {
-            let Aim { position, direction } = scene.aim(view, owner)?;
-            Source {
-                position,
-                direction,
-                cos_half_aperture: libm::cos(half_aperture.to_radians()),
-                exponent: *exponent,
-                ..Source::new(&lights::SPOT)
-            }
-        }
+    let LightOrigin { position, direction } = scene.light_origin(view, kind)?;
+    let everywhere = Source::new(lights::row_of(kind));
+    Some(Source {
+        position: position.unwrap_or(everywhere.position),
+        direction: direction.unwrap_or(everywhere.direction),
+        cos_half_aperture: (HALF_APERTURE.get)(kind)
+            .map_or(everywhere.cos_half_aperture, |degrees| libm::cos(degrees.to_radians())),
+        exponent: (CONCENTRATION.get)(kind).unwrap_or(everywhere.exponent),
+        ..everywhere
     })
 }

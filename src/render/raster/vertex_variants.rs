@@ -155,6 +155,7 @@ mod tests {
     use glam::{DMat4, DVec3};
 
     use super::*;
+    use crate::accuracy::Settings;
     use crate::base::image::Size;
     use crate::base::math;
 
@@ -163,7 +164,8 @@ mod tests {
     fn worst(vertices: VertexArithmetic, offset: f64) -> f64 {
         let size = Size::new(800, 800);
         let clip_from_view = math::perspective(22.5_f64.to_radians(), 1.0, 2000.0, size);
-        let (mut worst, ways) = (0.0_f64, Variants { vertices, ..Variants::default() });
+        let settings = Settings { vertices, ..Settings::default() };
+        let (mut worst, ways) = (0.0_f64, Variants::of(&settings));
         for i in 0..100 {
             let eye = DVec3::new(offset + 0.37 * f64::from(i), 0.61 * offset, -offset);
             let turn = DMat4::from_rotation_y(0.1 * f64::from(i));
@@ -204,7 +206,7 @@ mod tests {
     #[test]
     fn coarse_corners_are_the_nearest_of_their_parts() {
         for (subpixels, parts) in [(Subpixels::Bits0, 256), (Subpixels::Bits4, 16)] {
-            let ways = Variants { subpixels, ..Variants::default() };
+            let ways = Variants::of(&Settings { subpixels, ..Settings::default() });
             for x in -600..600 {
                 let vertex = ScreenVertex::placed(Snapped { x, y: -x }, 0.5, 0.25);
                 let mut all = [vertex];

@@ -233,24 +233,6 @@ impl Triangle {
         [-p.bias(), -q.bias(), -r.bias()]
     }
 
-    /// Whether the triangle covers all of a block of 8 x 8 pixels, at whose first pixel the edge
-    /// functions have these values; `None` if the block lies outside one of the edges.
-    #[inline(always)]
-    #[must_use]
-    pub fn touches_block(&self, edges: [i64; 3]) -> Option<bool> {
-        let [right, down] = self.steps();
-        let least = self.least();
-        let mut whole = true;
-        for i in 0..3 {
-            let (x, y) = (7 * right[i], 7 * down[i]);
-            if edges[i] + x.max(0) + y.max(0) < least[i] {
-                return None;
-            }
-            whole &= edges[i] + x.min(0) + y.min(0) >= least[i];
-        }
-        Some(whole)
-    }
-
     /// The centre of column or row `i`.
     #[inline(always)]
     fn centre(&self, i: i32) -> i64 {

@@ -503,12 +503,12 @@ fn ray<T: ShadingNumber>(
     let (position, normal) = (vec3(&batch.position), vec3(&batch.normal));
     let to_eye = vec3(&batch.to_eye);
     let travels = DVec3::from_array(light.direction);
-    let is_sun = stage.effect.name == "Sun";
+    let has_position = stage.effect.has_position;
     let way = DVec3::from_array(light.position) - position;
-    let (to_light, distance) = if is_sun {
-        (-travels, None)
-    } else {
+    let (to_light, distance) = if has_position {
         (way.normalize_or_zero(), Some(way.length() / world.unit))
+    } else {
+        (-travels, None)
     };
     let n_l = normal.dot(to_light);
     let reflected = normal * (2.0 * n_l) - to_light;
@@ -520,7 +520,6 @@ fn ray<T: ShadingNumber>(
     let [a0, a1, a2] = light.attenuation;
     let d = way.length();
     let cosine = travels.dot(-to_light).min(1.0);
-    let inside = cosine > light.cos_half_aperture;
     LightRay {
         to_light: world.direction(to_light),
         reflected: world.direction(reflected),
@@ -528,12 +527,8 @@ fn ray<T: ShadingNumber>(
         highlight,
         half_vector,
         distance,
-        attenuation: if is_sun { 1.0 } else { 1.0 / (a0 + (a1 + a2 * d) * d) },
-        cone: match stage.effect.name {
-            "Spot" if inside => libm::pow(cosine, light.exponent),
-            "Spot" => 0.0,
-            _ => 1.0,
-        },
+        attenuation: if has_position { 1.0 / (a0 + (a1 + a2 * d) * d) } else { 1.0 },
+        cone: (stage.effect.fraction_at)(light, cosine),
         shadow: 1.0,
     }
 }

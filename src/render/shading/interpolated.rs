@@ -9,10 +9,10 @@ use super::full_blocks::{self, BlockLight, Blocks, Canvas, Corners, Linear as _,
 use super::spans::interpolate_spans;
 use super::texels::TextureSamples;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
-use crate::accuracy::{Coverage, Interpolation};
+use crate::accuracy::{Coverage, Interpolation, Settings};
 use crate::render::frame::FramePlan;
 use crate::render::frame::draw::Draw;
-use crate::render::frame::variants::{Decoding, Variants};
+use crate::render::frame::variants::Decoding;
 use crate::render::lights::{Batch, Light, Rows, set};
 use crate::render::screen::coverage::Triangle;
 use crate::render::screen::weights::{HomogeneousWeights, barycentric, cut_place};
@@ -82,7 +82,7 @@ impl<T: Interpolated> Barycentrics<T> {
         attributes: &TriangleAttributes<T>,
         (plan, draw): (&FramePlan, &Draw),
     ) {
-        let Variants { coverage, interpolation, .. } = plan.variants;
+        let Settings { coverage, interpolation, .. } = *plan.variants;
         let outside = fragments.shared || coverage != Coverage::Exact;
         if outside || !T::find(interpolation, level, fragments, attributes, self) {
             self.find_step_by_step(level, fragments, attributes, (plan, draw));

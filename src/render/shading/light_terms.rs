@@ -53,7 +53,7 @@ impl<T: Number> LightTerms<T> {
             terms.clear();
             if let Pipeline::Shaded(Shaded { light: Some(stages), material, .. }) = pipeline {
                 let PhongMaterial { exponent, floor, .. } = *material;
-                let highlight = Power::by(plan.variants.powers, exponent, floor, &mut self.tables);
+                let highlight = Power::by(plan.variants.power, exponent, floor, &mut self.tables);
                 let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
                 let variant = plan.variants.light_variant::<T>();
                 terms.extend(

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::scene::mesh::build::Outlines;
 use crate::scene::mesh::index;
+use crate::scene::mesh::outlines::Outlines;
 
 /// The corners around each vertex, vertex after vertex.
 #[derive(Debug)]

@@ -11,9 +11,9 @@ use super::closed::is_closed;
 use super::tangents::CornerTangents;
 use crate::base::math::each;
 use crate::base::once::get_or_compute;
-use crate::scene::mesh::build::{Outlines, triangles};
 use crate::scene::mesh::edges::{Edge, Edges};
-use crate::scene::mesh::points::shown_normal;
+use crate::scene::mesh::normals::shown_normal;
+use crate::scene::mesh::outlines::{Outlines, triangles};
 use crate::scene::mesh::{Shape, index};
 use crate::scene::{Corner, DrawOrder, EdgeOrder, Mesh, NONE, NormalSource, RayTree, Triangle};
 

@@ -13,7 +13,7 @@
 
 use rayon::prelude::*;
 
-use crate::scene::mesh::build::Outlines;
+use crate::scene::mesh::outlines::Outlines;
 
 /// Polygons that a thread takes at a time.
 const SHARE: usize = 4096;

@@ -8,7 +8,24 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::scene::mesh::draw_order::DrawTriangle;
+/// A triangle as it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawTriangle {
+    /// Its vertices, as indices into [`DrawOrder::x`](crate::scene::DrawOrder::x).
+    pub vertices: [u32; 3],
+    /// Its index in [`Mesh::triangles`](crate::scene::Mesh::triangles).
+    pub number: u32,
+}
+
+impl DrawTriangle {
+    /// Its numbers side by side.
+    #[inline(always)]
+    #[must_use]
+    pub const fn row(&self) -> [i32; 4] {
+        let [a, b, c] = self.vertices;
+        [a.cast_signed(), b.cast_signed(), c.cast_signed(), self.number.cast_signed()]
+    }
+}
 
 /// The triangles of a cluster; the last cluster may have fewer.
 pub const CLUSTER: usize = 64;

@@ -8,28 +8,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::clusters::{Cluster, clusters};
+use super::clusters::{Cluster, DrawTriangle, clusters};
 use crate::base::lists::sorted_by_keys;
 use crate::scene::{Bounds, Mesh, NONE, dvec3};
-
-/// A triangle as it is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DrawTriangle {
-    /// Its vertices, as indices into [`DrawOrder::x`].
-    pub vertices: [u32; 3],
-    /// Its index in [`Mesh::triangles`].
-    pub number: u32,
-}
-
-impl DrawTriangle {
-    /// Its numbers side by side.
-    #[inline(always)]
-    #[must_use]
-    pub const fn row(&self) -> [i32; 4] {
-        let [a, b, c] = self.vertices;
-        [a.cast_signed(), b.cast_signed(), c.cast_signed(), self.number.cast_signed()]
-    }
-}
 
 /// The triangles and vertices of a mesh in the order in which they are drawn fastest.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -19,9 +19,9 @@ use rayon::prelude::*;
 
 use crate::base::math;
 use crate::scene::mesh::around::Around;
-use crate::scene::mesh::build::Outlines;
 use crate::scene::mesh::index;
-use crate::scene::mesh::points::{cancels, narrow, shown_normal};
+use crate::scene::mesh::normals::{cancels, narrow, shown_normal};
+use crate::scene::mesh::outlines::Outlines;
 use crate::scene::{Crease, NONE, Point, dvec3};
 
 /// How much sharper than the crease angle a smooth edge may be, in degrees. Numbers in files have

@@ -10,7 +10,7 @@
 //! The fields are private and the constructor checks them, so no index is ever out of range.
 
 mod around;
-pub(super) mod build;
+mod build;
 pub(super) mod cache;
 mod closed;
 pub(super) mod clusters;
@@ -18,6 +18,8 @@ pub(super) mod draw_order;
 pub(super) mod edge_order;
 pub(super) mod edges;
 mod fans;
+mod normals;
+pub(super) mod outlines;
 mod points;
 pub(super) mod ray_tree;
 mod splits;

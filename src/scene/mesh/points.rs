@@ -4,13 +4,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::base::math;
-use crate::scene::mesh::build::Outlines;
 use crate::scene::mesh::fans::{Limit, Rule, fan_points};
 use crate::scene::mesh::index;
+use crate::scene::mesh::normals::{cancels, narrow, shown_normal};
+use crate::scene::mesh::outlines::Outlines;
 use crate::scene::{CornerLists, Crease, MeshSource, NONE, Point, Smoothing, dvec3};
-
-/// The sum of unit normals that cancel out is shorter than this: only rounding errors.
-const CANCELLED: f64 = 1e-9;
 
 /// How many normals of a vertex are compared; a vertex with more may have a point twice.
 const LONGEST: usize = 64;
@@ -191,11 +189,6 @@ pub(crate) fn points_and_corners(
     (computed, corners)
 }
 
-/// Whether the unit normals with this sum cancel out.
-pub(crate) fn cancels(sum: DVec3) -> bool {
-    sum.length() <= CANCELLED
-}
-
 /// Gives each corner its polygon's normal if those around its vertex cancel out; empty if that is
 /// so at no vertex of a polygon that has a normal.
 fn alone(outlines: &Outlines<'_>, normals: &Normals, points: &mut Vec<Point>) -> Vec<u32> {
@@ -265,13 +258,4 @@ fn filed_points(
         }
     }
     if chained.is_empty() { Vec::new() } else { filed }
-}
-
-/// A normal as it is shown: (0, 0, 1) if it has no length.
-pub(crate) fn shown_normal(normal: Option<DVec3>) -> [f32; 3] {
-    narrow(normal.unwrap_or(DVec3::Z))
-}
-
-pub(crate) fn narrow(v: DVec3) -> [f32; 3] {
-    v.as_vec3().to_array()
 }

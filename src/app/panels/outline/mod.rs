@@ -12,7 +12,7 @@ use egui::{
     Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{ADD_LIGHTS, Action, Request};
 use crate::app::input::buttons::action_icon;
 use crate::app::state::State;
 use crate::app::theme;
@@ -229,13 +229,8 @@ fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subj
             let response = icon_button(ui, Icon::Plus, "Add a light", true);
             Popup::menu(&response).show(|ui| {
                 ui.set_min_width(160.0);
-                for action in [
-                    Action::AddSun,
-                    Action::AddBulb,
-                    Action::AddSpot,
-                    Action::AddObjectSpot,
-                    Action::AddCameraSpot,
-                ] {
+                let attached = [Action::AddObjectSpot, Action::AddCameraSpot];
+                for action in ADD_LIGHTS.into_iter().chain(attached) {
                     requests.extend(action.menu_item(ui, state).map(Request::from));
                 }
             });

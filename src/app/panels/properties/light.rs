@@ -14,7 +14,7 @@ use crate::app::widgets::number::{Number, vector};
 use crate::base::color;
 use crate::edit::{Gesture, items, lights, motion, placement};
 use crate::scene::{
-    Aim, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Scene, SpotOwner, Tracked,
+    Aim, Anchor, Attenuation, ItemId, Light, LightId, Orbit, Scene, SpotOwner, Tracked,
 };
 
 /// A light that is being shown.
@@ -28,25 +28,29 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
     let Some(light) = state.scene.lights.get(id) else { return };
     let shown = Shown { state, id, light };
     section(ui, "Colour", true, |ui| shown.color_ui(ui, requests));
-    match &light.kind {
-        LightKind::Ambient => {}
-        LightKind::Sun { direction } => {
+    if light.kind.numbers().next().is_some() {
+        section(ui, "Cone", true, |ui| shown.numbers_ui(ui, requests));
+    }
+    match light.kind.anchor() {
+        Anchor::Everywhere => {}
+        Anchor::Direction(direction) => {
             section(ui, "Direction", true, |ui| {
                 shown.direction_ui(ui, requests, *direction.now());
                 aim_ui(ui, state, requests);
             });
         }
-        LightKind::Bulb { position, orbit } => {
+        Anchor::Position(position) => {
             section(ui, "Place", true, |ui| {
                 shown.position_ui(ui, requests, *position.now());
-                shown.orbit_ui(ui, requests, *orbit);
+                if let Some(orbit) = light.kind.orbit() {
+                    shown.orbit_ui(ui, requests, *orbit);
+                }
             });
         }
-        LightKind::Spot { owner, half_aperture, exponent } => {
-            section(ui, "Cone", true, |ui| shown.cone_ui(ui, requests, *half_aperture, *exponent));
+        Anchor::Owner(owner) => {
             section(ui, "Place", true, |ui| {
                 shown.owner_ui(ui, requests, owner);
-                if let SpotOwner::Fixed(aim) = owner {
+                if let Some(aim) = owner.fixed() {
                     shown.position_ui(ui, requests, aim.now().position);
                     shown.direction_ui(ui, requests, aim.now().direction);
                 }
@@ -54,10 +58,10 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
             });
         }
     }
-    if matches!(light.kind, LightKind::Bulb { .. } | LightKind::Spot { .. }) {
+    if light.kind.has_position() {
         section(ui, "Fading", false, |ui| shown.fading_ui(ui, requests));
     }
-    if !matches!(light.kind, LightKind::Ambient) {
+    if light.kind.has_position() || light.kind.has_direction() {
         steps_ui(ui, state, requests, false);
     }
 }
@@ -161,20 +165,15 @@ impl Shown<'_> {
         }
     }
 
-    fn cone_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, half_aperture: f64, exponent: f64) {
-        let scene = &self.state.scene;
-        let hint = "Degrees from the axis to the border of the cone; keys + and -";
-        let number = Number::new("Half-aperture", hint).speed(0.2).range(0.0..=90.0);
-        let number = number.suffix(" deg");
-        if let Some((to, gesture)) = number_row(ui, "Aperture", number, half_aperture) {
-            let command = lights::set_aperture(scene, self.id, to);
-            change(requests, self.label("Aperture of"), gesture, command);
-        }
-        let hint = "Concentration of the light along the axis";
-        let number = Number::new("Concentration", hint).speed(0.1).range(0.0..=1000.0);
-        if let Some((to, gesture)) = number_row(ui, "Exponent", number, exponent) {
-            let command = lights::set_exponent(scene, self.id, to);
-            change(requests, self.label("Concentration of"), gesture, command);
+    /// The numbers of its kind.
+    fn numbers_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+        for (row, now) in self.light.kind.numbers() {
+            let number = Number::new(row.name, row.hint).speed(row.speed);
+            let number = number.range(0.0..=row.most_typed).suffix(row.suffix);
+            if let Some((to, gesture)) = number_row(ui, row.label, number, now) {
+                let command = lights::set_number(&self.state.scene, self.id, row, to);
+                change(requests, self.label(row.step), gesture, command);
+            }
         }
     }
 

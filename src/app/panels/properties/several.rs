@@ -7,7 +7,7 @@ use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::number::set_mixed;
 use crate::edit::{placement, several as together};
-use crate::scene::{ItemId, LightKind, Scene};
+use crate::scene::{ItemId, Light, Scene};
 
 /// Says how many items a change sets, and in which properties they differ. Gives those of the
 /// selected one's kind.
@@ -142,17 +142,14 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
             let (Some(a), Some(b)) = (scene.lights.get(a), scene.lights.get(b)) else {
                 return Vec::new();
             };
-            let cone = |kind: &LightKind| match kind {
-                LightKind::Spot { half_aperture, exponent, .. } => {
-                    Some((*half_aperture, *exponent))
-                }
-                LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+            let cone = |light: &Light| -> Vec<f64> {
+                light.kind.numbers().map(|(_, number)| number).collect()
             };
             vec![
                 (a.on != b.on, "on"),
                 (a.color != b.color, "colour"),
                 (a.attenuation != b.attenuation, "fading"),
-                (cone(&a.kind) != cone(&b.kind), "cone"),
+                (cone(a) != cone(b), "cone"),
                 (a.kind != b.kind, "place"),
             ]
         }

@@ -1,0 +1,96 @@
+//! The commands of the program, and its arguments without one.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+use super::arguments::{Info, Render, choice};
+use super::explain::Explain;
+use super::export::Export;
+use super::keys::Keys;
+use super::lab::Lab;
+use super::plan::Plan;
+use super::turntable::Turntable;
+use super::verify::Verify;
+use marraztu::accuracy::{ACCURACY_PRESETS, AccuracyPreset};
+use marraztu::app::Shell;
+
+/// Edits and draws 3D scenes of .obj models, on the CPU alone.
+///
+/// Without a command, opens the editor with the models and the scene that are named, or with the
+/// first scene.
+#[derive(Debug, Parser)]
+#[command(
+    name = "marraztu",
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "\
+Examples:
+  marraztu                                  open the editor with the first scene
+  marraztu teapot.obj                       open the editor with a model
+  marraztu render teapot.obj                draw a model into teapot.png
+  marraztu render --out first.png           draw the first scene
+  marraztu turntable teapot.obj             draw a model from all around into teapot.gif
+  marraztu export --out first.glb           write the first scene as glTF
+  marraztu info teapot.obj                  describe a file, and what is wrong with it
+
+Exit status: 0 on success, 1 if something failed, 2 for invalid arguments."
+)]
+pub(crate) struct Arguments {
+    /// The command to run without a window
+    #[command(subcommand)]
+    pub(crate) command: Option<Headless>,
+    /// Models (.obj) and a scene (.marraztu) to open in the editor
+    pub(crate) files: Vec<PathBuf>,
+    /// What paints the window: automatic*, gl (OpenGL), software (the processor, without OpenGL)
+    #[arg(long, hide_possible_values = true, value_name = "WHAT", value_parser = choice(&[
+        ("automatic", Shell::Automatic),
+        ("gl", Shell::Gl),
+        ("software", Shell::Software),
+    ]))]
+    pub(crate) shell: Option<Shell>,
+    /// The accuracy to begin with: draft, default, exact, ancestor-a, ancestor-b
+    #[arg(long, hide_possible_values = true, value_name = "CHOICE", value_parser = preset)]
+    pub(crate) preset: Option<&'static AccuracyPreset>,
+}
+
+/// The commands that run without a window.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Headless {
+    /// Draw a picture into a file: the same pixels that the editor shows
+    Render(Box<Render>),
+    /// Draw the scene from all around: a GIF, an animated PNG, or numbered pictures
+    Turntable(Box<Turntable>),
+    /// Write the scene for other programs, as OBJ with MTL or as glTF
+    Export(Box<Export>),
+    /// Explain which effects a frame uses, which are left out and why, and what they cost
+    Plan(Box<Plan>),
+    /// Explain a pixel: what it shows, and the light that its colour is made of
+    Explain(Box<Explain>),
+    /// Describe files: shape, parts, materials, and what is wrong with them
+    Info(Info),
+    /// List every key of the editor
+    Keys(Keys),
+    /// Measure what accuracy costs: time and error of each choice of each axis
+    Lab(Box<Lab>),
+    /// Check that this processor draws the same pictures as every other
+    Verify(Verify),
+}
+
+fn preset(text: &str) -> Result<&'static AccuracyPreset, String> {
+    AccuracyPreset::named(text).ok_or_else(|| {
+        let words: Vec<&str> = ACCURACY_PRESETS.iter().map(|preset| preset.word).collect();
+        format!("there are {}", words.join(", "))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_fit_together() {
+        Arguments::command().debug_assert();
+    }
+}

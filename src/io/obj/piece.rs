@@ -1,0 +1,97 @@
+//! What the statements of a chunk of an OBJ file say.
+
+use super::faces::{Faces, INHERITED, Run};
+use super::parts::Parts;
+use super::rows::{RowKind, Rows};
+use crate::base::color::Color;
+use crate::io::findings::Findings;
+use crate::scene::NONE;
+
+/// How many vertices, texture coordinates and normals there are.
+pub(super) type Counts = [u32; 3];
+
+/// Everything that the statements of a chunk say.
+#[derive(Debug)]
+pub(super) struct Piece {
+    /// How many statements of each kind are before the chunk, if that is known.
+    pub(super) before: Option<Counts>,
+    /// Which lines of numbers go to tobj as they are.
+    pub(super) trust: Trust,
+    /// How many lines the chunk has, as far as it was read.
+    pub(super) lines: u32,
+    pub(super) vertices: Rows<3>,
+    pub(super) uvs: Rows<2>,
+    pub(super) normals: Rows<3>,
+    pub(super) faces: Faces,
+    pub(super) parts: Parts,
+    /// The smoothing group of the next face: 0 for none, or [`INHERITED`].
+    pub(super) smoothing: u32,
+    /// What follows `mtllib`, with its lines.
+    pub(super) libraries: Vec<(u32, String)>,
+    pub(super) edge_color: Option<Color>,
+    pub(super) findings: Findings,
+    /// Why the chunk was not read to its end.
+    pub(super) stop: Option<Stop>,
+    /// The chunk, if it has to be read again.
+    pub(super) text: Vec<u8>,
+}
+
+/// Which lines of numbers go to tobj as they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Trust {
+    /// Those that look like nothing but numbers.
+    Plain,
+    /// None: tobj refused such a line, or its rounding is in doubt.
+    Nothing,
+}
+
+/// Why a chunk was not read to its end.
+#[derive(Debug)]
+pub(super) enum Stop {
+    /// A line cannot be taken for what it says it is.
+    Wrong(u32, String),
+    /// A face counts back, and it is not known from where.
+    CountsBack,
+}
+
+impl From<String> for Stop {
+    fn from(reason: String) -> Self {
+        // The line is filled in by the caller, who knows it.
+        Self::Wrong(0, reason)
+    }
+}
+
+impl Piece {
+    pub(super) fn new(before: Option<Counts>, trust: Trust) -> Self {
+        Self {
+            before,
+            trust,
+            lines: 0,
+            vertices: Rows::new(RowKind::Vertex),
+            uvs: Rows::new(RowKind::Uv),
+            normals: Rows::new(RowKind::Normal),
+            faces: Faces::default(),
+            parts: Parts::default(),
+            smoothing: INHERITED,
+            libraries: Vec::new(),
+            edge_color: None,
+            findings: Findings::default(),
+            stop: None,
+            text: Vec::new(),
+        }
+    }
+
+    /// How many statements of each kind are before the next one.
+    pub(super) fn counts(&self) -> Option<Counts> {
+        let own = [self.vertices.count, self.uvs.count, self.normals.count];
+        self.before.map(|before| std::array::from_fn(|i| before[i].saturating_add(own[i])))
+    }
+
+    /// Takes up a face of `corners` corners, which were pushed last.
+    #[inline]
+    pub(super) fn end_face(&mut self, corners: usize, line: u32) {
+        let corners = u32::try_from(corners).unwrap_or(NONE);
+        let (part, smoothing) = (self.parts.place(), self.smoothing);
+        self.faces.end_face(Run { faces: 1, corners, line, part, smoothing });
+    }
+}

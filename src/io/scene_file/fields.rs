@@ -1,0 +1,110 @@
+//! What the parts of a scene file share: usual values, checks, and runs of numbers.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+pub(super) fn yes() -> bool {
+    true
+}
+
+pub(super) fn white() -> [u8; 3] {
+    [255; 3]
+}
+
+/// Checks that all numbers of something are finite.
+///
+/// # Errors
+/// The reason, if one is not.
+pub(super) fn finite(what: &str, numbers: &[f64]) -> Result<(), String> {
+    if numbers.iter().all(|x| x.is_finite()) {
+        Ok(())
+    } else {
+        Err(format!("{what} has a number that is infinite or NaN"))
+    }
+}
+
+/// Numbers as ranges, `0-7 9 12-20`, so that a hundred thousand shown polygons do not take as many
+/// lines.
+///
+/// They stay ranges until it is known how many there can be.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub(super) struct Numbers(Vec<(u32, u32)>);
+
+impl Numbers {
+    pub(super) fn of(numbers: &BTreeSet<u32>) -> Self {
+        let mut runs: Vec<(u32, u32)> = Vec::new();
+        for &number in numbers {
+            match runs.last_mut() {
+                Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
+                _ => runs.push((number, number)),
+            }
+        }
+        Self(runs)
+    }
+
+    /// Those of the numbers that are below `count`.
+    pub(super) fn below(&self, count: usize) -> BTreeSet<u32> {
+        let mut runs = self.0.clone();
+        runs.sort_unstable();
+        let end = u32::try_from(count).unwrap_or(u32::MAX);
+        let mut numbers = BTreeSet::new();
+        let mut next = 0;
+        for (first, last) in runs {
+            // A number that is named repeatedly counts once.
+            numbers.extend(next.max(first)..end.min(last.saturating_add(1)));
+            next = next.max(last.saturating_add(1));
+        }
+        numbers
+    }
+}
+
+impl From<Numbers> for String {
+    fn from(numbers: Numbers) -> Self {
+        let text = |(first, last): &(u32, u32)| {
+            if first == last { first.to_string() } else { format!("{first}-{last}") }
+        };
+        numbers.0.iter().map(text).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl TryFrom<String> for Numbers {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let run = |word: &str| {
+            let (first, last) = word.split_once('-').unwrap_or((word, word));
+            let number = |text: &str| {
+                text.parse::<u32>().map_err(|error| format!("\"{word}\" is not a number: {error}"))
+            };
+            Ok((number(first)?, number(last)?))
+        };
+        text.split_whitespace().map(run).collect::<Result<_, String>>().map(Self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_written_in_runs_and_come_back() {
+        let all: BTreeSet<u32> = [0, 1, 2, 5, 7, 8, 4000].into();
+        let numbers = Numbers::of(&all);
+        let text = String::from(numbers.clone());
+        assert_eq!(text, "0-2 5 7-8 4000");
+        assert_eq!(Numbers::try_from(text), Ok(numbers.clone()));
+        assert_eq!(numbers.below(4001), all);
+        assert_eq!(numbers.below(8), [0, 1, 2, 5, 7].into());
+        assert!(Numbers::try_from("three".to_owned()).is_err());
+    }
+
+    #[test]
+    fn numbers_that_no_model_has_cost_nothing() {
+        let text = "0-4294967295 ".repeat(10_000) + "5-2 4294967295";
+        let numbers = Numbers::try_from(text).unwrap();
+        assert_eq!(numbers.below(3), [0, 1, 2].into());
+        assert_eq!(numbers.below(0), BTreeSet::new());
+    }
+}

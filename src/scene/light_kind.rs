@@ -1,0 +1,276 @@
+//! The kinds of light, and what holds of each.
+//!
+//! Keys, panels, marks, files and the renderer ask for a fact that stands here (what the light is
+//! anchored to, its numbers, its name), and not for the kind. So a new kind is a variant with its
+//! facts, beside its form in scene files, its shader, and the action that adds it.
+
+use glam::DVec3;
+
+use super::anchor::{Anchor, AnchorMut, Orbit, SpotOwner};
+use super::tracked::Tracked;
+
+/// The kind of a light.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightKind {
+    /// Ambient: from everywhere.
+    Ambient,
+    /// Directional: from infinitely far away.
+    Sun {
+        /// The direction in which its light travels, of length 1.
+        direction: Tracked<DVec3>,
+    },
+    /// A point light, in all directions.
+    Bulb {
+        /// Its position.
+        position: Tracked<DVec3>,
+        /// Circling the world's Y axis.
+        orbit: Orbit,
+    },
+    /// A point light with a cone.
+    Spot {
+        /// What it is attached to.
+        owner: SpotOwner,
+        /// Degrees from the axis to the edge of the cone: 0 to 90.
+        half_aperture: f64,
+        /// How strongly its light is concentrated along the axis: at least 0.
+        exponent: f64,
+    },
+}
+
+/// What holds of every light of a kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightKindInfo {
+    /// The name of new ones.
+    pub name: &'static str,
+    /// The code point of its icon in the font Material Symbols.
+    pub icon: &'static str,
+}
+
+/// A number that kinds of light have beside their position and direction.
+#[derive(Debug)]
+pub struct LightNumber {
+    /// Beside its field.
+    pub label: &'static str,
+    /// The name of the field.
+    pub name: &'static str,
+    /// Over the field: one sentence.
+    pub hint: &'static str,
+    /// What a step of the history that changes it is called, before the light's name.
+    pub step: &'static str,
+    /// Its unit, behind the number.
+    pub suffix: &'static str,
+    /// How much a point of dragging changes it.
+    pub speed: f64,
+    /// The most that the field takes.
+    pub most_typed: f64,
+    /// The largest valid number; the smallest is 0.
+    pub largest: f64,
+    /// The number of a light; `None` if its kind does not have it.
+    pub get: fn(&LightKind) -> Option<f64>,
+    /// The number of a light, to change.
+    pub get_mut: fn(&mut LightKind) -> Option<&mut f64>,
+}
+
+/// Degrees from the axis to the edge of the cone.
+pub static HALF_APERTURE: LightNumber = LightNumber {
+    label: "Aperture",
+    name: "Half-aperture",
+    hint: "Degrees from the axis to the border of the cone; keys + and -",
+    step: "Aperture of",
+    suffix: " deg",
+    speed: 0.2,
+    most_typed: 90.0,
+    largest: 90.0,
+    get: |kind| match kind {
+        LightKind::Spot { half_aperture, .. } => Some(*half_aperture),
+        LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+    },
+    get_mut: |kind| match kind {
+        LightKind::Spot { half_aperture, .. } => Some(half_aperture),
+        LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+    },
+};
+
+/// How strongly the light is concentrated along the axis.
+pub static CONCENTRATION: LightNumber = LightNumber {
+    label: "Exponent",
+    name: "Concentration",
+    hint: "Concentration of the light along the axis",
+    step: "Concentration of",
+    suffix: "",
+    speed: 0.1,
+    most_typed: 1000.0,
+    largest: f64::MAX,
+    get: |kind| match kind {
+        LightKind::Spot { exponent, .. } => Some(*exponent),
+        LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+    },
+    get_mut: |kind| match kind {
+        LightKind::Spot { exponent, .. } => Some(exponent),
+        LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+    },
+};
+
+/// All numbers of lights, in the order of the properties.
+pub static LIGHT_NUMBERS: [&LightNumber; 2] = [&HALF_APERTURE, &CONCENTRATION];
+
+impl LightNumber {
+    /// Whether a light may have this number.
+    #[must_use]
+    pub fn is_valid(&self, number: f64) -> bool {
+        (0.0..=self.largest).contains(&number)
+    }
+}
+
+impl LightKind {
+    /// What holds of every light of this kind.
+    #[must_use]
+    pub const fn info(&self) -> LightKindInfo {
+        match self {
+            Self::Ambient => LightKindInfo { name: "ambient", icon: "\u{e3e4}" },
+            Self::Sun { .. } => LightKindInfo { name: "sun", icon: "\u{e518}" },
+            Self::Bulb { .. } => LightKindInfo { name: "bulb", icon: "\u{e90f}" },
+            Self::Spot { .. } => LightKindInfo { name: "spot", icon: "\u{e25f}" },
+        }
+    }
+
+    /// What gives it its position and direction.
+    #[must_use]
+    pub const fn anchor(&self) -> Anchor<'_> {
+        match self {
+            Self::Ambient => Anchor::Everywhere,
+            Self::Sun { direction } => Anchor::Direction(direction),
+            Self::Bulb { position, .. } => Anchor::Position(position),
+            Self::Spot { owner, .. } => Anchor::Owner(owner),
+        }
+    }
+
+    /// What gives it its position and direction, to change.
+    pub const fn anchor_mut(&mut self) -> AnchorMut<'_> {
+        match self {
+            Self::Ambient => AnchorMut::Everywhere,
+            Self::Sun { direction } => AnchorMut::Direction(direction),
+            Self::Bulb { position, .. } => AnchorMut::Position(position),
+            Self::Spot { owner, .. } => AnchorMut::Owner(owner),
+        }
+    }
+
+    /// How it circles, if lights of its kind can.
+    #[must_use]
+    pub const fn orbit(&self) -> Option<&Orbit> {
+        match self {
+            Self::Bulb { orbit, .. } => Some(orbit),
+            Self::Ambient | Self::Sun { .. } | Self::Spot { .. } => None,
+        }
+    }
+
+    /// How it circles, to change.
+    pub const fn orbit_mut(&mut self) -> Option<&mut Orbit> {
+        match self {
+            Self::Bulb { orbit, .. } => Some(orbit),
+            Self::Ambient | Self::Sun { .. } | Self::Spot { .. } => None,
+        }
+    }
+
+    /// Its numbers.
+    pub fn numbers(&self) -> impl Iterator<Item = (&'static LightNumber, f64)> {
+        LIGHT_NUMBERS.iter().filter_map(|row| Some((*row, (row.get)(self)?)))
+    }
+
+    /// What it is attached to, if lights of its kind can be.
+    #[must_use]
+    pub const fn owner(&self) -> Option<&SpotOwner> {
+        match self.anchor() {
+            Anchor::Owner(owner) => Some(owner),
+            Anchor::Everywhere | Anchor::Direction(_) | Anchor::Position(_) => None,
+        }
+    }
+
+    /// Whether it has a position, so that it fades with distance.
+    #[must_use]
+    pub const fn has_position(&self) -> bool {
+        match self.anchor() {
+            Anchor::Position(_) | Anchor::Owner(_) => true,
+            Anchor::Everywhere | Anchor::Direction(_) => false,
+        }
+    }
+
+    /// Whether it has a direction, so that it can be aimed.
+    #[must_use]
+    pub const fn has_direction(&self) -> bool {
+        match self.anchor() {
+            Anchor::Direction(_) | Anchor::Owner(_) => true,
+            Anchor::Everywhere | Anchor::Position(_) => false,
+        }
+    }
+
+    /// Whether a diamond in the picture marks its position.
+    #[must_use]
+    pub const fn has_diamond(&self) -> bool {
+        matches!(self.anchor(), Anchor::Position(_))
+    }
+
+    /// Whether its numbers are valid and its position and direction finite.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        let anchored = match self.anchor() {
+            Anchor::Everywhere => true,
+            Anchor::Direction(v) | Anchor::Position(v) => v.now().is_finite(),
+            Anchor::Owner(owner) => owner.fixed().is_none_or(|aim| {
+                aim.now().position.is_finite() && aim.now().direction.is_finite()
+            }),
+        };
+        anchored && self.numbers().all(|(row, number)| row.is_valid(number))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Light;
+
+    #[test]
+    fn a_number_of_a_light_is_read_where_it_is_written() {
+        for mut light in Light::five() {
+            for number in LIGHT_NUMBERS {
+                let is_there = (number.get)(&light.kind).is_some();
+                match (number.get_mut)(&mut light.kind) {
+                    Some(own) => *own = 12.5,
+                    None => assert!(!is_there, "{}", number.name),
+                }
+                assert_eq!((number.get)(&light.kind), is_there.then_some(12.5), "{}", number.name);
+            }
+            assert!(light.kind.is_valid());
+            for number in LIGHT_NUMBERS {
+                for wrong in [-1.0, number.largest * 2.0, f64::NAN] {
+                    let mut kind = light.kind.clone();
+                    if let Some(own) = (number.get_mut)(&mut kind) {
+                        *own = wrong;
+                        assert!(!kind.is_valid(), "{} {wrong}", number.name);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_light_is_changed_where_it_is_anchored() {
+        let moved = DVec3::new(1.0, 2.0, 3.0);
+        for mut light in Light::five() {
+            match light.kind.anchor_mut() {
+                AnchorMut::Everywhere => {}
+                AnchorMut::Direction(own) | AnchorMut::Position(own) => *own = Tracked::new(moved),
+                AnchorMut::Owner(own) => *own = SpotOwner::SelectedCamera,
+            }
+            let (position, direction) = (light.kind.has_position(), light.kind.has_direction());
+            match light.kind.anchor() {
+                Anchor::Everywhere => assert!(!position && !direction),
+                Anchor::Direction(own) => assert!(*own.now() == moved && !position && direction),
+                Anchor::Position(own) => assert!(*own.now() == moved && position && !direction),
+                Anchor::Owner(own) => {
+                    assert!(*own == SpotOwner::SelectedCamera && position && direction);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Which edges of a mesh are smooth.
+
+use serde::{Deserialize, Serialize};
+
+/// The angle between the normals of two faces up to which the edge between them is smooth: 0 to 180
+/// degrees.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(into = "f64", try_from = "f64")]
+pub struct Crease(f64);
+
+impl Crease {
+    /// All faces around a vertex are smooth with each other, whether they share edges or not.
+    pub const SMOOTH: Self = Self(180.0);
+
+    /// `degrees`, if they are from 0 to 180.
+    #[must_use]
+    pub fn new(degrees: f64) -> Option<Self> {
+        (0.0..=180.0).contains(&degrees).then_some(Self(degrees))
+    }
+
+    /// The angle in degrees.
+    #[must_use]
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+}
+
+impl Default for Crease {
+    fn default() -> Self {
+        Self(60.0)
+    }
+}
+
+impl From<Crease> for f64 {
+    fn from(crease: Crease) -> Self {
+        crease.0
+    }
+}
+
+impl TryFrom<f64> for Crease {
+    type Error = &'static str;
+
+    fn try_from(degrees: f64) -> Result<Self, Self::Error> {
+        Self::new(degrees).ok_or("a crease angle must be from 0 to 180 degrees")
+    }
+}
+
+/// Which polygons share the normals that are computed for their corners.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Smoothing {
+    /// Those that are connected by edges no sharper than this.
+    Crease(Crease),
+    /// Those in the same smoothing group: the group of each polygon, 0 for none.
+    Groups(Vec<u32>),
+}
+
+impl Default for Smoothing {
+    fn default() -> Self {
+        Self::Crease(Crease::SMOOTH)
+    }
+}
