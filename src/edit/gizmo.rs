@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{GesturePhase, Refusal, aiming, set_transform, steps, transform};
+use super::{GesturePhase, Refusal, aiming, selection, set_transform, steps, transform};
 use crate::base::math::{self, Axis};
 use crate::scene::{
     Command, Frame, LightKind, Observer, Scene, SpotOwner, Subject, Transformation, View,
@@ -69,6 +69,9 @@ impl Pivot {
 /// If it cannot be transformed, or is the camera that the picture is seen through.
 pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
     let kind = view.transformation;
+    if let Some(id) = selection::selected(view) {
+        set_transform::unlocked(scene, id)?;
+    }
     match view.subject {
         Subject::Object => {
             let (_, object) = set_transform::selected_object(scene, view)?;

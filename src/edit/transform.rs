@@ -13,7 +13,7 @@ use super::set_transform::{self, LightPlace};
 use super::{GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Aim, CameraMode, Command, Frame, Item, LightKind, Orbit, Pose, Scene, SpotOwner, Subject,
+    Aim, CameraMode, Command, Frame, Item, ItemId, LightKind, Orbit, Pose, Scene, SpotOwner, Subject,
     Transformation, View,
 };
 
@@ -220,6 +220,7 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
             set_transform::object_placed(scene, view, id, object.placement.undone().ok_or(nothing)?)
         }
         Subject::Camera => {
+            set_transform::unlocked(scene, ItemId::Camera(view.camera))?;
             let mut camera = scene.selected_camera(view).clone();
             camera.pose = camera.pose.undone().ok_or(nothing)?;
             Ok(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
@@ -227,6 +228,7 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
             set_transform::place_of(light)?;
+            set_transform::unlocked(scene, ItemId::Light(id))?;
             let mut light = light.clone();
             match &mut light.kind {
                 LightKind::Sun { direction } => *direction = direction.undone().ok_or(nothing)?,

@@ -16,7 +16,7 @@ use crate::editor::Editor;
 use crate::panels::{control, type_text};
 
 /// What the palette lists, from the top.
-fn listed(editor: &Editor) -> Vec<String> {
+pub(crate) fn listed(editor: &Editor) -> Vec<String> {
     let dialog = editor.harness.get_by_label("Search everything").rect();
     let rows = editor.harness.query_all(By::new().role(Role::ListBoxOption));
     rows.filter(|row| row.rect().top() > dialog.bottom() && row.rect().width() > 400.0)

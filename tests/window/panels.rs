@@ -39,7 +39,7 @@ pub(crate) fn type_text(editor: &mut Editor, text: &str) {
     editor.settle();
 }
 
-fn middle(editor: &Editor, role: Role, label: &str) -> Pos2 {
+pub(crate) fn middle(editor: &Editor, role: Role, label: &str) -> Pos2 {
     control(editor, role, label).rect().center()
 }
 
@@ -124,45 +124,6 @@ fn every_axis_of_accuracy_is_chosen_by_its_name() {
         assert_eq!(editor.state().settings, expected, "{label}");
     }
     assert_eq!(editor.steps(), 0, "accuracy is no step");
-}
-
-#[test]
-fn every_action_is_in_a_menu() {
-    let mut editor = Editor::tall();
-    let mut found: Vec<Action> = Vec::new();
-    let paths: [&[&str]; 11] = [
-        &["File"],
-        &["Edit"],
-        &["Edit", "Select"],
-        &["Edit", "Transform"],
-        &["Add"],
-        &["View"],
-        &["View", "Camera"],
-        &["View", "Light"],
-        &["View", "Theme"],
-        &["Help"],
-        &["Edit", "History"],
-    ];
-    for path in paths {
-        for (depth, name) in path.iter().enumerate() {
-            click(&mut editor, if depth == 0 { Role::Button } else { Role::MenuItem }, name);
-            // Menus inside of menus open a little later.
-            editor.harness.run_steps(30);
-        }
-        let is_open = |action: &&Action| {
-            let entries = editor.harness.query_all_by_label(action.info().label);
-            entries.into_iter().any(|entry| {
-                let role = entry.accesskit_node().role();
-                matches!(role, Role::MenuItem | Role::MenuItemCheckBox)
-            })
-        };
-        found.extend(Action::ALL.iter().filter(is_open));
-        editor.press(Named(Key::Escape));
-        editor.harness.run_steps(10);
-    }
-    for action in Action::ALL {
-        assert!(found.contains(action), "{action:?} is in no menu");
-    }
 }
 
 #[test]

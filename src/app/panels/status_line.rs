@@ -169,6 +169,9 @@ fn selected(state: &State) -> String {
 /// What x, y and z do to the selection, or why nothing.
 fn transformation(state: &State) -> Result<Transformation, &'static str> {
     let (scene, view) = (&state.scene, &state.view);
+    if state.selected().is_some_and(|id| scene.locked.contains(&id)) {
+        return Err("locked");
+    }
     let Some(ItemId::Light(id)) = state.selected() else { return Ok(view.transformation) };
     match scene.lights.get(id).map(|light| &light.kind) {
         Some(LightKind::Sun { .. }) => Ok(Transformation::Rotation),

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::format::{
-    FileCamera, FileLight, FileLightKind, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
+    FileCamera, FileLight, FileLightKind, FileLocked, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
     FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, UNSAID, VERSION,
 };
 use super::paths::relative;
@@ -26,7 +26,7 @@ pub(super) fn file_scene(
     settings: &Settings,
     folder: &Path,
 ) -> Result<FileScene, String> {
-    let Scene { objects, cameras, lights, background, next_id } = scene;
+    let Scene { objects, cameras, lights, background, next_id, locked: _ } = scene;
     let objects: Result<_, String> =
         objects.iter().map(|(id, item)| file_object(id.0, item, folder)).collect();
     let cameras: Result<_, String> =
@@ -38,6 +38,7 @@ pub(super) fn file_scene(
         objects: objects?,
         cameras: cameras?,
         lights: lights.iter().map(|(id, item)| file_light(id.0, item)).collect(),
+        locked: FileLocked::of(scene),
         view: FileView::of(view),
         settings: *settings,
     })
