@@ -27,4 +27,5 @@ mod refining;
 mod regions;
 mod several;
 mod shapes;
+mod tasks;
 mod ways;

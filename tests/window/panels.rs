@@ -175,6 +175,27 @@ fn a_click_in_the_outline_selects_and_makes_the_subject() {
 }
 
 #[test]
+fn a_line_of_the_outline_is_dragged_to_another_place_of_its_own_list() {
+    let mut editor = Editor::tall();
+    let names = |editor: &Editor| -> Vec<String> {
+        editor.scene().objects.iter().map(|(_, object)| object.name.clone()).collect()
+    };
+    let before = names(&editor);
+    assert_eq!(before, ["r_falke", "x_wing", "cam"]);
+    let from = middle(&editor, Role::ListBoxOption, "cam");
+    let to = middle(&editor, Role::ListBoxOption, "r_falke") - egui::vec2(0.0, 6.0);
+    editor.drag(PointerButton::Primary, &[from, from.lerp(to, 0.5), to, to]);
+    assert_eq!(names(&editor), ["cam", "r_falke", "x_wing"]);
+    assert_eq!(editor.steps(), 1);
+    let light = middle(&editor, Role::ListBoxOption, "sun");
+    let from = middle(&editor, Role::ListBoxOption, "cam");
+    editor.drag(PointerButton::Primary, &[from, from.lerp(light, 0.5), light, light]);
+    assert_eq!(editor.steps(), 1, "objects stay among objects");
+    editor.press(Command(Key::Z));
+    assert_eq!(names(&editor), before);
+}
+
+#[test]
 fn the_eye_and_the_switch_of_a_light_do_and_undo() {
     let mut editor = Editor::tall();
     let before = editor.scene();

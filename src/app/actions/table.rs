@@ -157,7 +157,7 @@ actions! {
         "Save picture with options..."
         "Asks for size, samples, a transparent ground and overlays, and saves a picture."
         "screenshot render resolution size transparent alpha large print wallpaper";
-    SaveTurntable File ONCE []
+    SaveTurntable File ONCE [Command(Key::F12)]
         "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
         "animation gif apng video movie spin rotate frames orbit";
     ExportScene File ONCE []

@@ -51,7 +51,11 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             ui.separator();
             submenu(ui, "Over the picture", |ui| items(ui, state, requests, OVER));
             submenu(ui, "Camera", |ui| group_ui(ui, state, requests, Group::Camera));
-            submenu(ui, "Light", |ui| group_ui(ui, state, requests, Group::Light));
+            let has_slot = |action: &Action| action.slot().is_some();
+            let (slots, rest): (Vec<Action>, Vec<Action>) =
+                Group::Light.actions().partition(has_slot);
+            submenu(ui, "Light", |ui| items(ui, state, requests, rest));
+            submenu(ui, "Lights on and off", |ui| items(ui, state, requests, slots));
         });
         menu(ui, "Window", |ui| {
             let elsewhere = [&THEMES[..], &HELP, &SIZES].concat();
@@ -77,7 +81,8 @@ fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
 fn within_window(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.set_min_width(200.0);
     let most = (ui.ctx().content_rect().height() - 2.0 * theme::ROW - 16.0).max(80.0);
-    ScrollArea::vertical().max_height(most).show(ui, |ui| {
+    // A menu that is too low where it stands is moved up before it is scrolled.
+    ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
         ui.set_min_width(200.0);
         add(ui);
     });

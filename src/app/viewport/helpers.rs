@@ -169,7 +169,9 @@ const LETTERS: [&str; 3] = ["x", "y", "z"];
 fn label_ui(ui: &Ui, painter: &Painter, at: Pos2, text: String, color: Color32) {
     let font = TextStyle::Small.resolve(ui.style());
     let galley = painter.layout_no_wrap(text, font, color);
-    let plate = Rect::from_center_size(at, galley.size() + vec2(8.0, 4.0));
+    let size = galley.size() + vec2(8.0, 4.0);
+    let room = painter.clip_rect().shrink2(size / 2.0 + vec2(2.0, 2.0));
+    let plate = Rect::from_center_size(room.clamp(at), size);
     painter.rect_filled(plate, 3.0, Color32::from_black_alpha(190));
     painter.galley(plate.center() - galley.size() / 2.0, galley, color);
 }

@@ -20,7 +20,7 @@ use crate::app::{actions::LabRequest, state::laboratory::Side, theme};
 const ASKED: f32 = 264.0;
 
 /// In less width than this, one part is shown at a time.
-const WIDE: f32 = 840.0;
+const WIDE: f32 = 1100.0;
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
