@@ -5,10 +5,10 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{GesturePhase, Refusal, aiming, selection, set_transform, steps, transform};
+use super::{GesturePhase, Refusal, aiming, set_transform, steps, transform};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Command, Frame, LightKind, Observer, Scene, SpotOwner, Subject, Transformation, View,
+    Command, Frame, ItemId, LightKind, Observer, Scene, SpotOwner, Subject, Transformation, View,
 };
 
 /// Where the handles of the selected item stand.
@@ -69,12 +69,10 @@ impl Pivot {
 /// If it cannot be transformed, or is the camera that the picture is seen through.
 pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
     let kind = view.transformation;
-    if let Some(id) = selection::selected(view) {
-        set_transform::unlocked(scene, id)?;
-    }
     match view.subject {
         Subject::Object => {
-            let (_, object) = set_transform::selected_object(scene, view)?;
+            let (id, object) = set_transform::selected_object(scene, view)?;
+            set_transform::unlocked(scene, ItemId::Object(id))?;
             let m = *object.placement.now();
             let origin = m.w_axis.truncate();
             Ok(match (view.frame, kind) {
@@ -90,6 +88,7 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
         Subject::Camera if kind == Transformation::Scaling => Err(Refusal::CameraScaled),
         Subject::Camera if view.observer == Observer::Camera => Err(Refusal::SeenThrough),
         Subject::Camera => {
+            set_transform::unlocked(scene, ItemId::Camera(view.camera))?;
             let pose = transform::effective_pose(scene, view);
             let centre = set_transform::analysis_centre(scene, view);
             let origin = match kind {
@@ -101,6 +100,7 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
             set_transform::place_of(light)?;
+            set_transform::unlocked(scene, ItemId::Light(id))?;
             let kind = match (&light.kind, kind) {
                 (LightKind::Sun { .. }, _) => Transformation::Rotation,
                 (LightKind::Bulb { .. }, _) => Transformation::Translation,

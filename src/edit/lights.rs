@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::items::{change_light, check_owner};
 use super::{Refusal, set_transform};
 use crate::scene::{
-    Aim, Attenuation, Command, CommandError, ItemId, LightId, LightKind, Orbit, Scene, SpotOwner, Subject,
-    Tracked, View,
+    Aim, Attenuation, Command, CommandError, ItemId, LightId, LightKind, Orbit, Scene, SpotOwner,
+    Subject, Tracked, View,
 };
 
 /// The degrees by which a press of `+` or `-` opens or closes a spot.
@@ -69,8 +69,8 @@ pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
     change_light(scene, id, |light| light.on = !light.on)
 }
 
-/// Leaves the selected light alone on. Where it is alone already, those of `before` are on again,
-/// or all lights if none of them is left.
+/// Leaves the selected light alone on. If it is alone already, those of `before` are on again, or
+/// all lights if none of them is left.
 ///
 /// # Errors
 /// If no light is selected, or there is no other.

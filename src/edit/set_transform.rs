@@ -8,8 +8,8 @@ use glam::{DMat3, DMat4, DVec3};
 use super::{GesturePhase, Refusal};
 use crate::base::math;
 use crate::scene::{
-    Aim, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Light, LightId, LightKind,
-    Object, ObjectId, Pose, Scene, SpotOwner, Tracked, View,
+    Aim, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Light, LightId,
+    LightKind, Object, ObjectId, Pose, Scene, SpotOwner, Tracked, View,
 };
 
 /// The selected object.

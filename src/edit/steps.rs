@@ -39,8 +39,7 @@ pub fn extent(scene: &Scene) -> f64 {
     around(false).or_else(|| around(true)).map_or(0.0, |(min, max)| (max - min).max_element())
 }
 
-/// The distance between the lines of the ground's grid, of which ten reach from its middle to each
-/// side.
+/// The distance between the lines of the ground's grid. Ten of them are about as long as the scene.
 #[must_use]
 pub fn of_grid(scene: &Scene) -> f64 {
     rounded(extent(scene) / 10.0).unwrap_or(Steps::DEFAULT.translation)

@@ -13,8 +13,8 @@ use super::set_transform::{self, LightPlace};
 use super::{GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Aim, CameraMode, Command, Frame, Item, ItemId, LightKind, Orbit, Pose, Scene, SpotOwner, Subject,
-    Transformation, View,
+    Aim, CameraMode, Command, Frame, Item, ItemId, LightKind, Orbit, Pose, Scene, SpotOwner,
+    Subject, Transformation, View,
 };
 
 /// The direction along or about an axis.

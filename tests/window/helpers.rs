@@ -10,9 +10,7 @@ use marraztu::app::actions::{Action, Also, Request};
 use marraztu::base::Shared;
 use marraztu::edit::{Gesture, arrange, items};
 use marraztu::io;
-use marraztu::scene::{
-    ItemId, LightKind, LoadOptions, MaterialChoice, Object, PresetId, Scene,
-};
+use marraztu::scene::{ItemId, LightKind, LoadOptions, MaterialChoice, Object, PresetId, Scene};
 
 use crate::editor::Editor;
 

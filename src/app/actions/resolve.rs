@@ -18,7 +18,8 @@ use crate::edit::selection::Selection;
 use crate::edit::several::{self, Others};
 use crate::edit::transform::Sign;
 use crate::edit::{
-    GesturePhase, Refusal, aiming, arrange, framing, gizmo, items, lights, selection, shapes, transform,
+    GesturePhase, Refusal, aiming, arrange, framing, gizmo, items, lights, selection, shapes,
+    transform,
 };
 use crate::io::Helpers;
 use crate::scene::{

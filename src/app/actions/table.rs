@@ -63,6 +63,16 @@ impl Group {
         Self::Window,
     ];
 
+    /// Those of [`Self::Show`] that are drawn over the picture, not in it.
+    pub const OVER_PICTURE: [Action; 6] = [
+        Action::ToggleOverlays,
+        Action::ToggleMarks,
+        Action::ToggleGizmo,
+        Action::ToggleGrid,
+        Action::ToggleDimensions,
+        Action::ToggleDirections,
+    ];
+
     /// Its heading.
     #[must_use]
     pub const fn label(self) -> &'static str {

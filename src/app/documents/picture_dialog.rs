@@ -161,7 +161,11 @@ impl PictureDialog {
         ui.end_row();
         ui.label("What turns");
         let turns = [
-            ("Objects", Turn::Objects, "The objects turn before the camera, under the same lights."),
+            (
+                "Objects",
+                Turn::Objects,
+                "The objects turn before the camera, under the same lights.",
+            ),
             ("Camera", Turn::Camera, "The camera goes around the objects."),
         ];
         let all = turns.map(|(label, turn, hint)| {

@@ -18,16 +18,6 @@ const HELP: [Action; 3] = [Action::Palette, Action::CheatSheet, Action::ToPanels
 /// How large the interface is.
 const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
 
-/// Those of [`Group::Show`] that are drawn over the picture, not in it.
-const OVER: [Action; 6] = [
-    Action::ToggleOverlays,
-    Action::ToggleMarks,
-    Action::ToggleGizmo,
-    Action::ToggleGrid,
-    Action::ToggleDimensions,
-    Action::ToggleDirections,
-];
-
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     MenuBar::new().ui(ui, |ui| {
@@ -47,9 +37,14 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         menu(ui, "Add", |ui| group_ui(ui, state, requests, Group::Add));
         menu(ui, "View", |ui| {
-            items(ui, state, requests, Group::Show.actions().filter(|it| !OVER.contains(it)));
+            items(
+                ui,
+                state,
+                requests,
+                Group::Show.actions().filter(|it| !Group::OVER_PICTURE.contains(it)),
+            );
             ui.separator();
-            submenu(ui, "Over the picture", |ui| items(ui, state, requests, OVER));
+            submenu(ui, "Over the picture", |ui| items(ui, state, requests, Group::OVER_PICTURE));
             submenu(ui, "Camera", |ui| group_ui(ui, state, requests, Group::Camera));
             let has_slot = |action: &Action| action.slot().is_some();
             let (slots, rest): (Vec<Action>, Vec<Action>) =

@@ -211,12 +211,7 @@ fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
 }
 
 /// A change of the selected objects.
-fn of_objects(
-    state: &State,
-    id: ObjectId,
-    label: String,
-    change: impl Fn(&mut Object),
-) -> Request {
+fn of_objects(state: &State, id: ObjectId, label: String, change: impl Fn(&mut Object)) -> Request {
     let (scene, others) = (&state.scene, state.others());
     match items::change_object(scene, id, change) {
         Ok(command) => Request::Change {

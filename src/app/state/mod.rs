@@ -21,8 +21,8 @@ use crate::io::Helpers;
 use crate::lab::cost::{Costs, Explained};
 use crate::render::{Damage, PixelColor};
 use crate::scene::{
-    Command, ItemId, Light, LightId, LightKind, MaterialChoice, Object, ObjectId, Panels, Scene, Sides,
-    Surface, View,
+    Command, ItemId, Light, LightId, LightKind, MaterialChoice, Object, ObjectId, Panels, Scene,
+    Sides, Surface, View,
 };
 use laboratory::Laboratory;
 use layout::Layout;

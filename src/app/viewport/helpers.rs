@@ -32,7 +32,8 @@ pub(super) fn grid_ui(ui: &Ui, state: &State, onto: &Projection, image: Option<&
     let spacing = steps::of_grid(&state.scene);
     let at = |x: i32, z: i32| DVec3::new(f64::from(x), 0.0, f64::from(z)) * spacing;
     let is_bright = u32::from(r) + u32::from(g) + u32::from(b) > 3 * 128;
-    let plain = if is_bright { Color32::from_black_alpha(70) } else { Color32::from_white_alpha(60) };
+    let plain =
+        if is_bright { Color32::from_black_alpha(70) } else { Color32::from_white_alpha(60) };
     for i in -LINES..=LINES {
         let (along_x, along_z) = match i {
             0 => (theme::axis_on_dark(Axis::X), theme::axis_on_dark(Axis::Z)),

@@ -119,7 +119,13 @@ pub(super) fn marks(state: &State, projection: &Projection) -> Vec<Mark> {
         let locked = scene.locked.contains(&ItemId::Light(id));
         let position = aiming::stands(scene, view, id)?.position;
         let (at, distance) = (projection.place(position)?, position.distance(eye));
-        projection.rect.shrink(2.0).contains(at).then_some(Mark { id, at, distance, follows, locked })
+        projection.rect.shrink(2.0).contains(at).then_some(Mark {
+            id,
+            at,
+            distance,
+            follows,
+            locked,
+        })
     };
     if !state.shows_overlays() {
         return Vec::new();
@@ -134,7 +140,12 @@ pub(super) fn marks(state: &State, projection: &Projection) -> Vec<Mark> {
 pub(super) fn lights_at(marks: &[Mark], at: Pos2) -> [Vec<ItemId>; 2] {
     [false, true].map(|follows| {
         let here = |mark: &&Mark| mark.follows == follows && mark.at.distance(at) <= RADIUS + 1.0;
-        marks.iter().filter(|mark| !mark.locked).filter(here).map(|mark| ItemId::Light(mark.id)).collect()
+        marks
+            .iter()
+            .filter(|mark| !mark.locked)
+            .filter(here)
+            .map(|mark| ItemId::Light(mark.id))
+            .collect()
     })
 }
 

@@ -37,7 +37,7 @@ pub(crate) fn begin(ui: &Ui, name: impl Hash + std::fmt::Debug) {
     begin_in(ui, name, ui.clip_rect());
 }
 
-/// Begins a region of which no more than `column` is seen.
+/// Begins a region that is seen within `column` alone.
 pub(crate) fn begin_in(ui: &Ui, name: impl Hash + std::fmt::Debug, column: Rect) {
     let id = Id::unique("region").with(name);
     let region = Region { id, column, top: ui.cursor().top() };

@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::accuracy::Settings;
 use crate::scene::{
-    Attenuation, Fill, Frame, ItemId, Lens, MaterialChoice, NormalLength, Normals, Observer, Panels,
-    Projection, Scene, Sides, Steps, Subject, Surface, Transformation, UpAxis, Winding, Wrap,
+    Attenuation, Fill, Frame, ItemId, Lens, MaterialChoice, NormalLength, Normals, Observer,
+    Panels, Projection, Scene, Sides, Steps, Subject, Surface, Transformation, UpAxis, Winding,
+    Wrap,
 };
 
 /// The version that is written, and the latest that is read.

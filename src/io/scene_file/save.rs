@@ -5,8 +5,8 @@
 use std::path::Path;
 
 use super::format::{
-    FileCamera, FileLight, FileLightKind, FileLocked, FileMode, FileModel, FileObject, FileOrbit, FileOwner,
-    FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, UNSAID, VERSION,
+    FileCamera, FileLight, FileLightKind, FileLocked, FileMode, FileModel, FileObject, FileOrbit,
+    FileOwner, FilePolygons, FileScene, FileSpin, FileTexture, FileView, Numbers, UNSAID, VERSION,
 };
 use super::paths::relative;
 use crate::accuracy::Settings;
