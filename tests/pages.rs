@@ -26,6 +26,7 @@ const PAGES: &[&str] = &[
     "docs/keys.md",
     "docs/speed.md",
     "docs/stability.md",
+    "docs/tasks.md",
     "fuzz/README.md",
 ];
 

@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use super::{GesturePhase, Refusal, framing, lights, placement, set_transform};
 use crate::base::math;
-use crate::scene::{Aim, Anchor, Command, LightId, LightOrigin, Scene, SpotOwner, Tracked, View};
+use crate::scene::{
+    Aim, Anchor, Command, ItemId, LightId, LightOrigin, Scene, SpotOwner, Tracked, View,
+};
 
 /// How far from the middle of the scene the mark of a sun stands, in its radii.
 const SUN: f64 = 0.6;
@@ -18,6 +20,7 @@ const NEAR: f64 = 0.1;
 /// If it is neither a spot nor a sun.
 pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
     let (id, light) = set_transform::selected_light(scene, view)?;
+    set_transform::unlocked(scene, ItemId::Light(id))?;
     if light.kind.has_direction() { Ok(id) } else { Err(Refusal::NotAimed) }
 }
 

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 
 use super::{GesturePhase, Refusal, aiming, set_transform, steps, transform};
 use crate::base::math::{self, Axis};
-use crate::scene::{Command, Frame, Observer, Scene, Subject, Transformation, View};
+use crate::scene::{Command, Frame, ItemId, Observer, Scene, Subject, Transformation, View};
 
 /// Where the handles of the selected item stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,8 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
     let kind = view.transformation;
     match view.subject {
         Subject::Object => {
-            let (_, object) = set_transform::selected_object(scene, view)?;
+            let (id, object) = set_transform::selected_object(scene, view)?;
+            set_transform::unlocked(scene, ItemId::Object(id))?;
             let m = *object.placement.now();
             let origin = m.w_axis.truncate();
             Ok(match (view.frame, kind) {
@@ -85,6 +86,7 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
         Subject::Camera if kind == Transformation::Scaling => Err(Refusal::CameraScaled),
         Subject::Camera if view.observer == Observer::Camera => Err(Refusal::SeenThrough),
         Subject::Camera => {
+            set_transform::unlocked(scene, ItemId::Camera(view.camera))?;
             let pose = transform::effective_pose(scene, view);
             let centre = set_transform::analysis_centre(scene, view);
             let origin = match kind {
@@ -95,6 +97,7 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
         }
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
+            set_transform::unlocked(scene, ItemId::Light(id))?;
             let kind = set_transform::transformation_of(light, kind)?;
             if kind == Transformation::Scaling {
                 return Err(Refusal::LightScaled);

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::Refusal;
 use super::names::Names;
+use super::{Refusal, set_transform};
 use crate::base::Shared;
 use crate::scene::{
     AnchorMut, Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId,
@@ -92,11 +92,12 @@ pub fn duplicate(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 /// Removes an item and the spots attached to it.
 ///
 /// # Errors
-/// If the item is gone, or is the last camera.
+/// If the item is gone or locked, or is the last camera.
 pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
     if !scene.contains(id) {
         return Err(Refusal::Gone);
     }
+    set_transform::unlocked(scene, id)?;
     if matches!(id, ItemId::Camera(_)) && scene.cameras.len() == 1 {
         return Err(CommandError::LastCamera.into());
     }
@@ -149,6 +150,15 @@ pub fn toggle_shown(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
         ItemId::Camera(id) => change_camera(scene, id, |camera| camera.visible = !camera.visible),
         ItemId::Light(id) => change_light(scene, id, |light| light.on = !light.on),
     }
+}
+
+/// Locks an item, or unlocks it.
+///
+/// # Errors
+/// If the item is gone.
+pub fn toggle_locked(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+    let locked = !scene.locked.contains(&id);
+    if scene.contains(id) { Ok(Command::Lock { id, locked }) } else { Err(Refusal::Gone) }
 }
 
 /// Shows or hides one part of an object.

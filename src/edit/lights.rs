@@ -1,11 +1,13 @@
 //! Changes of lights: on, colour, aperture, slot, owner.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use super::items::{change_light, check_owner, try_change_light};
 use super::{Refusal, set_transform};
 use crate::scene::{
-    Aim, AnchorMut, Attenuation, Command, CommandError, HALF_APERTURE, LightId, LightKind,
+    Aim, AnchorMut, Attenuation, Command, CommandError, HALF_APERTURE, ItemId, LightId, LightKind,
     LightNumber, Orbit, Scene, SpotOwner, Subject, Tracked, View,
 };
 
@@ -65,6 +67,39 @@ pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
     let in_slot = scene.lights.iter().find(|(_, light)| light.slot == slot);
     let (id, _) = in_slot.ok_or(Refusal::EmptySlot(slot))?;
     change_light(scene, id, |light| light.on = !light.on)
+}
+
+/// Leaves the selected light alone on. If it is alone already, those of `before` are on again, or
+/// all lights if none of them is left.
+///
+/// # Errors
+/// If no light is selected, or there is no other.
+pub fn solo(scene: &Scene, view: &View, before: &BTreeSet<LightId>) -> Result<Command, Refusal> {
+    let (own, _) = set_transform::selected_light(scene, view)?;
+    if scene.lights.len() < 2 {
+        return Err(Refusal::OnlyOne);
+    }
+    let restores = is_solo(scene, own);
+    let some = before.iter().any(|id| *id != own && scene.lights.contains(*id));
+    let to = |id: LightId| match restores {
+        true => !some || before.contains(&id),
+        false => id == own,
+    };
+    let changed = scene.lights.iter().filter(|(id, light)| light.on != to(*id));
+    let commands = changed.map(|(id, _)| change_light(scene, id, |light| light.on = !light.on));
+    commands.collect::<Result<_, _>>().map(Command::Batch)
+}
+
+/// Whether a light is on and all others are off.
+#[must_use]
+pub fn is_solo(scene: &Scene, id: LightId) -> bool {
+    scene.lights.len() > 1 && scene.lights.iter().all(|(other, light)| light.on == (other == id))
+}
+
+/// The lights that are on.
+#[must_use]
+pub fn lit(scene: &Scene) -> BTreeSet<LightId> {
+    scene.lights.iter().filter(|(_, light)| light.on).map(|(id, _)| id).collect()
 }
 
 /// Changes one channel of the selected light, within 0 to 255 (keys q Q, v V, a A).
@@ -129,6 +164,7 @@ pub fn set_number(
 /// If the light is not a spot, or the owner is not there.
 pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, Refusal> {
     check_owner(scene, &to)?;
+    set_transform::unlocked(scene, ItemId::Light(id))?;
     try_change_light(scene, id, |light| match light.kind.anchor_mut() {
         AnchorMut::Owner(owner) => {
             *owner = to;

@@ -5,6 +5,7 @@
 //! [`History`] writes a scene.
 
 pub mod aiming;
+pub mod arrange;
 pub mod framing;
 mod gesture;
 pub mod gizmo;

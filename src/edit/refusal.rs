@@ -17,6 +17,9 @@ pub enum Refusal {
     /// The item is not in the scene.
     #[error("it is no longer in the scene")]
     Gone,
+    /// It is locked.
+    #[error("{0} is locked: unlock it first (Ctrl+L, or the lock in the outline)")]
+    Locked(String),
     /// Nothing is selected beside it.
     #[error("only one item is selected")]
     OneSelected,
@@ -32,6 +35,9 @@ pub enum Refusal {
     /// Scaling was chosen while the subject is not objects.
     #[error("only objects can be scaled: press c until the subject is an object")]
     OnlyObjectsScale,
+    /// The subject is not objects.
+    #[error("this acts on objects: press c until the subject is an object")]
+    OnlyObjects,
     /// Ambient light comes from everywhere.
     #[error("ambient light has no position and no direction")]
     Ambient,
@@ -44,6 +50,9 @@ pub enum Refusal {
     /// The spot shines from an object or a camera.
     #[error("this spot follows its {0}: move that instead")]
     SpotFollows(&'static str),
+    /// No program has left unsaved work behind.
+    #[error("there is no unsaved work to recover")]
+    NothingToRecover,
     /// The history is at its beginning.
     #[error("there is nothing to undo")]
     NothingDone,
@@ -53,6 +62,15 @@ pub enum Refusal {
     /// The item was never transformed.
     #[error("there is no transformation to undo")]
     NothingToTakeBack,
+    /// The object is where its file has it.
+    #[error("it is where its file puts it already")]
+    NotTransformed,
+    /// The object stands on the ground.
+    #[error("it stands on the ground already")]
+    OnGround,
+    /// Nothing is to be brought in line.
+    #[error("select further objects that are not in line yet: Shift + click")]
+    NothingToAlign,
     /// The object would become flat.
     #[error("a scale of 0 would flatten the object irreversibly")]
     Flat,

@@ -49,7 +49,10 @@ fn select_in(
             next.polygons = view.polygons.as_ref().map(|_| PolygonMode::begin());
             let camera = scene.selected_camera(view);
             let mode = camera.pose.now().mode_with(view.object);
-            if let (CameraMode::Analysis { .. }, Some(object)) = (mode, scene.objects.get(id)) {
+            let locked = scene.locked.contains(&ItemId::Camera(view.camera));
+            if let (CameraMode::Analysis { .. }, Some(object), false) =
+                (mode, scene.objects.get(id), locked)
+            {
                 let aimed = set_transform::aimed(camera.pose.now(), id, object.centre(view.time));
                 let mut camera = camera.clone();
                 camera.pose = phase.apply(&camera.pose, aimed);

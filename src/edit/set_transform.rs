@@ -8,7 +8,7 @@ use glam::{DMat3, DMat4, DVec3};
 use super::{GesturePhase, Refusal};
 use crate::base::math;
 use crate::scene::{
-    Aim, Anchor, AnchorMut, CameraId, CameraMode, Command, CommandError, Item, Lens, Light,
+    Aim, Anchor, AnchorMut, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Light,
     LightId, Object, ObjectId, Pose, Scene, SpotOwner, Tracked, Transformation, View,
 };
 
@@ -28,6 +28,14 @@ pub(super) fn selected_light<'a>(
 ) -> Result<(LightId, &'a Light), Refusal> {
     let id = view.light.ok_or(Refusal::NoLight)?;
     Ok((id, scene.lights.get(id).ok_or(Refusal::NoLight)?))
+}
+
+/// Refuses to move or delete an item that is locked.
+pub(super) fn unlocked(scene: &Scene, id: ItemId) -> Result<(), Refusal> {
+    if !scene.locked.contains(&id) {
+        return Ok(());
+    }
+    Err(Refusal::Locked(scene.name(id).unwrap_or_default().to_owned()))
 }
 
 /// The object under `id` with another placement.
@@ -52,12 +60,16 @@ pub(super) fn object_placed(
     if !placement.now().is_finite() {
         return Err(Refusal::TooLarge);
     }
+    unlocked(scene, ItemId::Object(id))?;
     let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
     object.placement = placement;
     let centre = object.centre(view.time);
     let mut commands = vec![Command::Replace(Item::Object(id, Box::new(object)))];
     for (camera_id, camera) in scene.cameras.iter() {
         let pose = camera.pose.now();
+        if scene.locked.contains(&ItemId::Camera(camera_id)) {
+            continue;
+        }
         if pose.mode_with(view.object) == (CameraMode::Analysis { target: id }) {
             // Its own Y stays up: a camera that has orbited over the pole does not turn over.
             let axes = math::look_at(pose.eye, centre, pose.axes.y_axis, pose.axes);
@@ -89,6 +101,7 @@ pub(super) fn pose_and_lens(
     phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
+    unlocked(scene, ItemId::Camera(id))?;
     if !(pose.eye.is_finite() && pose.axes.is_finite()) {
         return Err(Refusal::TooLarge);
     }
@@ -170,6 +183,7 @@ pub(super) fn light(
     phase: GesturePhase,
 ) -> Result<Command, Refusal> {
     let mut light = scene.lights.get(id).ok_or(Refusal::NoLight)?.clone();
+    unlocked(scene, ItemId::Light(id))?;
     // Checked before anything is placed: directions have length 1, places are finite.
     let direction = |v: DVec3| math::unit(v).ok_or(Refusal::TooLarge);
     let position = |v: DVec3| if v.is_finite() { Ok(v) } else { Err(Refusal::TooLarge) };

@@ -104,6 +104,20 @@ pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Com
     })
 }
 
+/// Locks all of these items, or unlocks all, as is done with the selected one.
+///
+/// # Errors
+/// If it is gone.
+pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
+    let first = selection::selected(view).ok_or(Refusal::Gone)?;
+    let before = scene.locked.contains(&first);
+    let alike = |id: &ItemId| scene.locked.contains(id) == before;
+    let others: Vec<ItemId> = others.iter().copied().filter(alike).collect();
+    each(scene, view, &others, |scene, view| {
+        items::toggle_locked(scene, selection::selected(view).ok_or(Refusal::Gone)?)
+    })
+}
+
 /// The command that makes the same change in all items of a kind: what it changes of the selected
 /// one, it changes of the others to the same value.
 #[must_use]
@@ -128,6 +142,7 @@ fn replaced(command: &Command) -> Option<&Item> {
         Command::Insert { .. }
         | Command::Remove(_)
         | Command::Reorder { .. }
+        | Command::Lock { .. }
         | Command::Background(_)
         | Command::NextId(_) => None,
     }
@@ -138,17 +153,29 @@ fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Item> {
     match (changed, other) {
         (Item::Object(id, to), ItemId::Object(other)) if *id != other => {
             let mut object = scene.objects.get(other)?.clone();
+            let placement = object.placement.clone();
             object_alike(scene.objects.get(*id)?, to, &mut object)?;
+            if scene.locked.contains(&ItemId::Object(other)) {
+                object.placement = placement;
+            }
             Some(Item::Object(other, Box::new(object)))
         }
         (Item::Camera(id, to), ItemId::Camera(other)) if *id != other => {
             let mut camera = scene.cameras.get(other)?.clone();
+            let pose = camera.pose.clone();
             camera_alike(scene.cameras.get(*id)?, to, &mut camera);
+            if scene.locked.contains(&ItemId::Camera(other)) {
+                camera.pose = pose;
+            }
             Some(Item::Camera(other, Box::new(camera)))
         }
         (Item::Light(id, to), ItemId::Light(other)) if *id != other => {
             let mut light = scene.lights.get(other)?.clone();
+            let kind = light.kind.clone();
             light_alike(scene.lights.get(*id)?, to, &mut light);
+            if scene.locked.contains(&ItemId::Light(other)) {
+                light.kind = kind;
+            }
             Some(Item::Light(other, Box::new(light)))
         }
         _ => None,
@@ -174,6 +201,7 @@ fn object_alike(before: &Object, after: &Object, own: &mut Object) -> Option<()>
     set(&before.surface, &after.surface, &mut own.surface);
     set(&before.texture, &after.texture, &mut own.texture);
     set(&before.tint, &after.tint, &mut own.tint);
+    set(&before.opacity, &after.opacity, &mut own.opacity);
     set(&before.edge_color, &after.edge_color, &mut own.edge_color);
     set(&before.sides, &after.sides, &mut own.sides);
     set(&before.file_normals, &after.file_normals, &mut own.file_normals);
@@ -224,6 +252,9 @@ fn camera_alike(before: &Camera, after: &Camera, own: &mut Camera) {
 fn light_alike(before: &Light, after: &Light, own: &mut Light) {
     let attenuation = &after.attenuation;
     set(&before.on, &after.on, &mut own.on);
+    if own.can_cast_shadows() {
+        set(&before.shadows, &after.shadows, &mut own.shadows);
+    }
     for channel in 0..3 {
         set(&before.color.0[channel], &after.color.0[channel], &mut own.color.0[channel]);
     }

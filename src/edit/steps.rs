@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{Object, Scene, Shape, View};
+use crate::scene::{Object, Scene, Shape, Steps, View};
 
 /// The extent of the scene is this number of steps, before rounding.
 const STEPS_ACROSS: f64 = 100.0;
@@ -31,15 +31,23 @@ pub fn extent(scene: &Scene) -> f64 {
         let centre = object.placement.now().transform_point3(middle);
         Some((centre - half, centre + half))
     };
-    let is_ground = |object: &Object| {
-        object.model.source.is_none() && Shape::named(&object.model.name) == Some(Shape::Plane)
-    };
     let around = |with_ground: bool| {
         let objects = scene.objects.iter().map(|(_, object)| object);
         let cubes = objects.filter(|object| with_ground || !is_ground(object)).filter_map(cube);
         cubes.reduce(|(min, max), (low, high)| (min.min(low), max.max(high)))
     };
     around(false).or_else(|| around(true)).map_or(0.0, |(min, max)| (max - min).max_element())
+}
+
+/// The distance between the lines of the ground's grid. Ten of them are about as long as the scene.
+#[must_use]
+pub fn of_grid(scene: &Scene) -> f64 {
+    rounded(extent(scene) / 10.0).unwrap_or(Steps::DEFAULT.translation)
+}
+
+/// Whether an object is the plane of the menu of shapes.
+pub(super) fn is_ground(object: &Object) -> bool {
+    object.model.source.is_none() && Shape::named(&object.model.name) == Some(Shape::Plane)
 }
 
 /// The nearest of 1, 2 and 5 times the powers of 10, by ratio; `None` if `length` is not a positive

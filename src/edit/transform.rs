@@ -14,8 +14,8 @@ use super::set_transform::{self, LightPlace};
 use super::{GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Aim, AnchorMut, CameraMode, Command, Frame, Item, Orbit, Pose, Scene, SpotOwner, Subject,
-    Transformation, View,
+    Aim, AnchorMut, CameraMode, Command, Frame, Item, ItemId, Orbit, Pose, Scene, SpotOwner,
+    Subject, Transformation, View,
 };
 
 /// The direction along or about an axis.
@@ -219,6 +219,7 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
             set_transform::object_placed(scene, view, id, object.placement.undone().ok_or(nothing)?)
         }
         Subject::Camera => {
+            set_transform::unlocked(scene, ItemId::Camera(view.camera))?;
             let mut camera = scene.selected_camera(view).clone();
             camera.pose = camera.pose.undone().ok_or(nothing)?;
             Ok(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
@@ -226,6 +227,7 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
             set_transform::place_of(light)?;
+            set_transform::unlocked(scene, ItemId::Light(id))?;
             let mut light = light.clone();
             match light.kind.anchor_mut() {
                 AnchorMut::Direction(v) | AnchorMut::Position(v) => {

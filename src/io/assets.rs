@@ -1,5 +1,6 @@
 //! The three built-in models, and the first scene.
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use glam::{DMat4, DVec3};
@@ -123,6 +124,7 @@ pub fn empty_scene() -> (Scene, View) {
         lights: lights.collect(),
         background: Scene::BACKGROUND,
         next_id: 9,
+        locked: BTreeSet::new(),
     };
     let view = scene.first_view();
     (scene, view)

@@ -35,7 +35,9 @@ pub use examples::{EXAMPLES, Example, is_example};
 pub use export::{EXPORT_ENDINGS, Exported, check_export_target, export};
 pub use findings::{Finding, FindingKind, joined};
 pub use input::Input;
-pub use keeping::{Abandoned, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved};
+pub use keeping::{
+    Abandoned, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
+};
 pub use lessons::lesson_scene;
 pub use obj::{Loaded, load, parse};
 pub use picture::{PICTURE_FORMATS, PictureFormat, check_picture_target, save_picture};

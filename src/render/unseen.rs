@@ -180,6 +180,7 @@ impl Alone<'_> {
             lights: List::default(),
             background: self.scene.background,
             next_id: self.scene.next_id,
+            locked: self.scene.locked.clone(),
         };
         let view = View { marks: false, fill: Fill::Filled, ..self.view.clone() };
         // Visibility does not depend on light; this is the fastest.

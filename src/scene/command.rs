@@ -28,6 +28,13 @@ pub enum Command {
         /// Its place afterwards.
         to: usize,
     },
+    /// Locks an item, or unlocks it.
+    Lock {
+        /// The item.
+        id: ItemId,
+        /// Whether it is locked afterwards.
+        locked: bool,
+    },
     /// Sets the background.
     Background(Color),
     /// Sets the id that the next new item gets.
@@ -124,6 +131,7 @@ impl Command {
                 insert(scene, to, item)?;
                 Ok(Self::Reorder { id, to: at })
             }
+            Self::Lock { id, locked } => lock(scene, id, locked),
             Self::Background(to) => {
                 Ok(Self::Background(std::mem::replace(&mut scene.background, to)))
             }
@@ -137,6 +145,7 @@ impl Command {
     pub fn overwrites(&self, earlier: &Self) -> bool {
         match (self, earlier) {
             (Self::Replace(a), Self::Replace(b)) => a.id() == b.id(),
+            (Self::Lock { id: a, .. }, Self::Lock { id: b, .. }) => a == b,
             (Self::Background(_), Self::Background(_)) => true,
             (Self::Batch(a), Self::Batch(b)) => {
                 a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.overwrites(b))
@@ -144,6 +153,14 @@ impl Command {
             _ => false,
         }
     }
+}
+
+fn lock(scene: &mut Scene, id: ItemId, locked: bool) -> Result<Command, CommandError> {
+    if !scene.contains(id) {
+        return Err(CommandError::Missing(id));
+    }
+    let was = if locked { !scene.locked.insert(id) } else { scene.locked.remove(&id) };
+    Ok(Command::Lock { id, locked: was })
 }
 
 fn insert(scene: &mut Scene, at: usize, item: Item) -> Result<Command, CommandError> {

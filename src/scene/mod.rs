@@ -107,6 +107,8 @@ pub struct Scene {
     pub background: Color,
     /// The id that the next new item gets.
     pub next_id: u32,
+    /// The items that the picture does not select, that are not moved and not deleted.
+    pub locked: BTreeSet<ItemId>,
 }
 
 impl Scene {
@@ -122,6 +124,7 @@ impl Scene {
             lights: List::default(),
             background: Self::BACKGROUND,
             next_id: 1,
+            locked: BTreeSet::new(),
         }
     }
 
@@ -133,6 +136,16 @@ impl Scene {
             ItemId::Camera(id) => self.cameras.contains(id),
             ItemId::Light(id) => self.lights.contains(id),
         }
+    }
+
+    /// The name of an item.
+    #[must_use]
+    pub fn name(&self, id: ItemId) -> Option<&str> {
+        Some(match id {
+            ItemId::Object(id) => &self.objects.get(id)?.name,
+            ItemId::Camera(id) => &self.cameras.get(id)?.name,
+            ItemId::Light(id) => &self.lights.get(id)?.name,
+        })
     }
 
     /// The lowest slot that no light has.

@@ -6,6 +6,7 @@
 mod common;
 
 mod aiming;
+mod arranging;
 mod desk;
 mod framing;
 mod items;

@@ -97,6 +97,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "turntable",
             "lighting",
             "steps",
+            "arrange",
             "shapes",
             "transform",
             "navigation",

@@ -42,7 +42,7 @@ impl Editor {
         self.harness.state_mut().load_at_start(&ctx, paths);
     }
 
-    fn drop_files(&mut self, paths: &[&Path]) {
+    pub(crate) fn drop_files(&mut self, paths: &[&Path]) {
         for path in paths {
             let file = Arc::new(Dropped(path.to_path_buf()));
             self.harness.input_mut().dropped_files.push(file);

@@ -37,7 +37,7 @@ const LOST_AT_MOST: Duration = Duration::from_secs(2);
 
 impl Editor {
     /// An editor that keeps its own files in this folder.
-    fn keeping(folder: &Path) -> Self {
+    pub(crate) fn keeping(folder: &Path) -> Self {
         Self::small().kept_in(folder)
     }
 
@@ -54,7 +54,7 @@ impl Editor {
         self
     }
 
-    fn is_offered(&self) -> usize {
+    pub(crate) fn is_offered(&self) -> usize {
         self.state().recoverable.len()
     }
 

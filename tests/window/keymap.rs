@@ -9,10 +9,11 @@ use marraztu::app::actions::Chord::{Lower, Named};
 use marraztu::io::{OwnFolders, Preferences};
 
 use crate::editor::Editor;
-use crate::panels::click;
+use crate::panels::{click, type_text};
 
 fn choose(editor: &mut Editor, action: &str, key: Key) {
     editor.press(Named(Key::F1));
+    type_text(editor, action);
     if !editor.shows("Reset all keys") {
         click(editor, Role::CheckBox, "Change keys");
     }
@@ -59,4 +60,17 @@ fn chosen_keys_are_kept() {
     assert_eq!(editor.steps(), 1);
     editor.harness.state_mut().end_keeping();
     assert_eq!(Preferences::load(&folders).0.keys, preferences.keys);
+}
+
+#[test]
+fn after_switching_to_changing_keys_letters_are_still_searched_for() {
+    let mut editor = Editor::tall();
+    editor.press(Named(Key::F1));
+    click(&mut editor, Role::CheckBox, "Change keys");
+    let before = editor.view();
+    for key in [Key::U, Key::N, Key::D, Key::O] {
+        editor.press(Lower(key));
+    }
+    assert_eq!(editor.view(), before, "no letter acts on the scene");
+    assert!(editor.shows("Key of Undo") && !editor.shows("Key of Save scene"));
 }

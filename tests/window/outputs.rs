@@ -25,7 +25,7 @@ fn a_picture_has_the_size_the_samples_and_the_ground_that_were_chosen() {
     let path = folder.path().join("large.png");
     let mut editor = Editor::of_size(900.0, 500.0);
     editor.press(Shifted(Key::F12));
-    click(&mut editor, Role::RadioButton, "4");
+    click(&mut editor, Role::RadioButton, "Samples per pixel: 4");
     click(&mut editor, Role::CheckBox, "Transparent ground");
     editor.click_label("Save...");
     editor.type_path(&path);

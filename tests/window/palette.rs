@@ -16,7 +16,7 @@ use crate::editor::Editor;
 use crate::panels::{control, type_text};
 
 /// What the palette lists, from the top.
-fn listed(editor: &Editor) -> Vec<String> {
+pub(crate) fn listed(editor: &Editor) -> Vec<String> {
     let dialog = editor.harness.get_by_label("Search everything").rect();
     let rows = editor.harness.query_all(By::new().role(Role::ListBoxOption));
     rows.filter(|row| row.rect().top() > dialog.bottom() && row.rect().width() > 400.0)
@@ -293,4 +293,25 @@ fn the_status_line_says_what_is_drawn_otherwise() {
         let status = editor.harness.get_by_role(Role::Status).accesskit_node().label();
         assert!(status.clone().unwrap_or_default().contains(said), "{status:?}");
     }
+}
+
+#[test]
+fn a_colour_that_is_typed_is_offered_for_the_selection_and_the_background() {
+    let mut editor = Editor::new();
+    editor.perform(Action::SubjectLight);
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "#0af");
+    assert_eq!(listed(&editor), ["Colour of sun: #00aaff", "Background: #00aaff"]);
+    editor.press(Named(Key::Enter));
+    let light = editor.view().light.unwrap();
+    assert_eq!(editor.scene().lights.get(light).unwrap().color.0, [0x00, 0xaa, 0xff]);
+    editor.perform(Action::SubjectObject);
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "jade");
+    assert_eq!(listed(&editor)[0], "Material: jade");
+    editor.press(Named(Key::Enter));
+    assert_eq!(editor.state().history.steps().last(), Some("Material of r_falke"));
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "#0a");
+    assert!(editor.shows("Nothing has this name"));
 }

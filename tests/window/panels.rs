@@ -39,7 +39,7 @@ pub(crate) fn type_text(editor: &mut Editor, text: &str) {
     editor.settle();
 }
 
-fn middle(editor: &Editor, role: Role, label: &str) -> Pos2 {
+pub(crate) fn middle(editor: &Editor, role: Role, label: &str) -> Pos2 {
     control(editor, role, label).rect().center()
 }
 
@@ -127,45 +127,6 @@ fn every_axis_of_accuracy_is_chosen_by_its_name() {
 }
 
 #[test]
-fn every_action_is_in_a_menu() {
-    let mut editor = Editor::tall();
-    let mut found: Vec<Action> = Vec::new();
-    let paths: [&[&str]; 11] = [
-        &["File"],
-        &["Edit"],
-        &["Edit", "Select"],
-        &["Edit", "Transform"],
-        &["Add"],
-        &["View"],
-        &["View", "Camera"],
-        &["View", "Light"],
-        &["View", "Theme"],
-        &["Help"],
-        &["Edit", "History"],
-    ];
-    for path in paths {
-        for (depth, name) in path.iter().enumerate() {
-            click(&mut editor, if depth == 0 { Role::Button } else { Role::MenuItem }, name);
-            // Menus inside of menus open a little later.
-            editor.harness.run_steps(30);
-        }
-        let is_open = |action: &&Action| {
-            let entries = editor.harness.query_all_by_label(action.info().label);
-            entries.into_iter().any(|entry| {
-                let role = entry.accesskit_node().role();
-                matches!(role, Role::MenuItem | Role::MenuItemCheckBox)
-            })
-        };
-        found.extend(Action::ALL.iter().filter(is_open));
-        editor.press(Named(Key::Escape));
-        editor.harness.run_steps(10);
-    }
-    for action in Action::ALL {
-        assert!(found.contains(action), "{action:?} is in no menu");
-    }
-}
-
-#[test]
 fn the_history_is_a_list_and_a_click_goes_there() {
     let mut editor = Editor::tall();
     let before = editor.scene();
@@ -211,6 +172,27 @@ fn a_click_in_the_outline_selects_and_makes_the_subject() {
     click(&mut editor, Role::Button, "Cameras");
     assert_eq!(editor.view().subject, Subject::Camera);
     assert_eq!(editor.steps(), 0);
+}
+
+#[test]
+fn a_line_of_the_outline_is_dragged_to_another_place_of_its_own_list() {
+    let mut editor = Editor::tall();
+    let names = |editor: &Editor| -> Vec<String> {
+        editor.scene().objects.iter().map(|(_, object)| object.name.clone()).collect()
+    };
+    let before = names(&editor);
+    assert_eq!(before, ["r_falke", "x_wing", "cam"]);
+    let from = middle(&editor, Role::ListBoxOption, "cam");
+    let to = middle(&editor, Role::ListBoxOption, "r_falke") - egui::vec2(0.0, 6.0);
+    editor.drag(PointerButton::Primary, &[from, from.lerp(to, 0.5), to, to]);
+    assert_eq!(names(&editor), ["cam", "r_falke", "x_wing"]);
+    assert_eq!(editor.steps(), 1);
+    let light = middle(&editor, Role::ListBoxOption, "sun");
+    let from = middle(&editor, Role::ListBoxOption, "cam");
+    editor.drag(PointerButton::Primary, &[from, from.lerp(light, 0.5), light, light]);
+    assert_eq!(editor.steps(), 1, "objects stay among objects");
+    editor.press(Command(Key::Z));
+    assert_eq!(names(&editor), before);
 }
 
 #[test]

@@ -51,7 +51,10 @@ pub(super) const SUBPIXELS: Axis = Axis {
     choices: &[
         choice!("bits-0" "0" subpixels = Subpixels::Bits0,
             "Snaps vertices to whole pixels.",
-            "12% of the pixels of small triangles show another triangle"),
+            "12% of the pixels of small triangles show another triangle")
+        .slower_because(
+            "every triangle that has an area there has a sample in its box, and has to be tested",
+        ),
         choice!("bits-4" "4" subpixels = Subpixels::Bits4,
             "Snaps vertices to 1/16 pixel.",
             "0.85% of the pixels"),
@@ -85,11 +88,13 @@ pub(super) const COVERAGE: Axis = Axis {
         choice!("points" "Points" coverage = Coverage::Points,
             "As ancestor A's author wrote it: points every 0.1 unit of the observer's space, each \
                 drawn separately.",
-            "holes nearer than 97 units; 17 writes per pixel at a distance of 400, 100 at 966"),
+            "holes nearer than 97 units; 17 writes per pixel at a distance of 400, 100 at 966")
+        .slower_because("it fills each polygon with points one after the other, and most fall on pixels that others have filled"),
         choice!("scan-lines" "Scan lines" coverage = Coverage::ScanLines,
             "As ancestor B's author wrote it: row by row, between edges that are rounded to whole \
                 pixels.",
-            "outlines a pixel too wide; every seam is drawn twice"),
+            "outlines a pixel too wide; every seam is drawn twice")
+        .slower_because("it goes through each triangle row by row, as its author wrote it"),
         choice!("f32-edges" "32-bit edges" coverage = Coverage::F32Edges,
             "Edge functions in 32-bit floating point, of vertices that are not snapped.",
             "pixels whose centres lie on an edge are covered twice or, by rounding, not at all"),
@@ -123,7 +128,8 @@ pub(super) const INTERPOLATION: Axis = Axis {
         choice!("every-sixteen" "Every 16 pixels" interpolation = Interpolation::EverySixteen,
             "With perspective at every sixteenth pixel of a row, linearly between them, as in \
                 games of 1996.",
-            "33 texels on the same wall"),
+            "33 texels on the same wall")
+        .slower_because("the ends of spans have to be found where a division would have done"),
         choice!("perspective" "Perspective" interpolation = Interpolation::Perspective,
             "With perspective at every pixel.",
             "none"),

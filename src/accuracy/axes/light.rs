@@ -18,7 +18,8 @@ pub(super) const SHADING: Axis = Axis {
             "whole polygons, by as much as light changes across one"),
         choice!("vertex" "Gouraud" light = LightAt::Vertex,
             "Light is evaluated at vertices (Gouraud).",
-            "highlights smaller than a polygon dim or vanish"),
+            "highlights smaller than a polygon dim or vanish")
+        .slower_because("every vertex of what is seen is lit, and here fewer pixels are"),
         choice!("pixel" "Phong" light = LightAt::Pixel,
             "Light is evaluated at each pixel (Phong).",
             "none with one sample; with several, highlights narrower than a pixel"),
@@ -78,13 +79,20 @@ pub(super) const POWER: Axis = Axis {
     choices: &[
         choice!("schlick" "Schlick" power = SpecularPower::Schlick,
             "Schlick's approximation x / (n - n x + x), which needs no power.",
-            "51 byte steps at Ns 76.8: the curve has another shape"),
+            "51 byte steps at Ns 76.8: the curve has another shape")
+        .slower_because("its curve falls so slowly that more pixels have a highlight"),
         choice!("table-256" "Table 256" power = SpecularPower::Table256,
             "The nearest of 256 powers in a table.",
-            "35 byte steps at Ns 76.8"),
+            "35 byte steps at Ns 76.8")
+        .slower_because(
+            "its entries are loaded one by one, and a polynomial gives sixteen powers at once",
+        ),
         choice!("table-1024" "Table 1024" power = SpecularPower::Table1024,
             "Linear interpolation in a table of 1024 powers.",
-            "0.17 of a byte step at Ns 76.8"),
+            "0.17 of a byte step at Ns 76.8")
+        .slower_because(
+            "its entries are loaded one by one, and a polynomial gives sixteen powers at once",
+        ),
         choice!("polynomial" "Polynomial" power = SpecularPower::Polynomial,
             "Squares for whole exponents up to 64, and uses a polynomial for others: sixteen at \
                 once.",
@@ -152,7 +160,10 @@ pub(super) const FAINT: Axis = Axis {
     choices: &[
         choice!("left-out" "Left out" leave_out = LeaveOut::HalfStep,
             "Skips lights that together add less than half a step of a byte.",
-            "at most one byte step"),
+            "at most one byte step")
+        .slower_because(
+            "light that can be left out has to be looked for, and here there is little",
+        ),
         choice!("kept" "Kept" leave_out = LeaveOut::Unseen,
             "Skips only what changes no bit of the picture.",
             "none"),

@@ -16,7 +16,8 @@ pub(super) const DEPTH: Axis = Axis {
             "15.3 units at z 1000, between near 1 and far 2000"),
         choice!("bits-24" "24 bits" depth = DepthFormat::Bits24,
             "24-bit integers.",
-            "0.060 units at z 1000"),
+            "0.060 units at z 1000")
+        .slower_because("depths are rounded to integers"),
         choice!("f32" "32 bits" depth = DepthFormat::F32,
             "32-bit floating point with 0 at the near plane.",
             "0.060 units at z 1000: the fine steps are all near the camera"),

@@ -42,7 +42,10 @@ impl Chord {
             Self::Named(wanted) => wanted == key && plain && !shift,
             Self::Shifted(wanted) => wanted == key && plain && shift,
             Self::Text(_) => false,
-            Self::Command(wanted) => wanted == key && command && !alt && !shift,
+            Self::Command(wanted) => {
+                // Most layouts have the plus only with Shift.
+                wanted == key && command && !alt && (!shift || wanted == Key::Plus)
+            }
             Self::CommandShift(wanted) => wanted == key && command && !alt && shift,
         }
     }
@@ -123,6 +126,15 @@ mod tests {
         for modifiers in [Modifiers::ALT, Modifiers::CTRL, Modifiers::COMMAND] {
             assert!(!pressed(lower, modifiers) && !pressed(upper, modifiers | Modifiers::SHIFT));
         }
+    }
+
+    #[test]
+    fn a_plus_that_the_layout_has_with_shift_is_a_plus() {
+        let command = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+        let plus = Chord::Command(Key::Plus);
+        assert!(plus.is_pressed_by(Key::Plus, command));
+        assert!(plus.is_pressed_by(Key::Plus, command | Modifiers::SHIFT));
+        assert!(!Chord::Command(Key::Z).is_pressed_by(Key::Z, command | Modifiers::SHIFT));
     }
 
     #[test]

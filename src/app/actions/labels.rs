@@ -32,6 +32,12 @@ impl Action {
             Self::Delete | Self::Duplicate | Self::Rename | Self::AimAtSelection => {
                 return format!("{} {name}", self.info().label);
             }
+            Self::DropToGround => return format!("Drop {name} to the ground"),
+            Self::ResetPlacement => return format!("Reset the placement of {name}"),
+            Self::ToggleLocked => {
+                let verb = if self.is_on(state) == Some(true) { "Unlock" } else { "Lock" };
+                return format!("{verb} {name}");
+            }
             _ => return self.info().label.to_owned(),
         };
         let letter = ["x", "y", "z"][axis.index()];

@@ -18,9 +18,10 @@ use crate::edit::selection::Selection;
 use crate::edit::several::{self, Others};
 use crate::edit::transform::Sign;
 use crate::edit::{
-    GesturePhase, Refusal, aiming, framing, gizmo, items, lights, selection, shapes, transform,
+    GesturePhase, Refusal, aiming, arrange, framing, gizmo, items, lights, selection, shapes,
+    transform,
 };
-use crate::io::Panels;
+use crate::io::{Helpers, Panels};
 use crate::scene::{
     CameraMode, Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Observer,
     Projection, Scene, Shape, SpotOwner, Subject, Transformation, View,
@@ -71,6 +72,10 @@ pub(crate) enum Intent {
     Gizmo,
     /// Pictures may be coarser while something moves, or not.
     Coarse,
+    /// Files are looked at, or no longer.
+    Watch,
+    /// Other helpers are shown.
+    Helpers(Helpers),
     /// An axis and a number are taken from the keyboard.
     TypeAmount,
     /// These are selected beside the selected item.
@@ -97,6 +102,8 @@ pub(crate) enum FileIntent {
     Export,
     CopyPicture,
     NewAncestor,
+    Reload,
+    Recover,
     Quit,
 }
 
@@ -138,6 +145,10 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::New => file(FileIntent::New),
         Action::Open => file(FileIntent::Open),
         Action::Load => file(FileIntent::Load),
+        Action::RecoverWork if state.recoverable.is_empty() => Err(Refusal::NothingToRecover),
+        Action::RecoverWork => file(FileIntent::Recover),
+        Action::ReloadModels => file(FileIntent::Reload),
+        Action::ToggleWatch => Ok(Intent::Watch),
         Action::Save => file(FileIntent::Save),
         Action::SaveAs => file(FileIntent::SaveAs),
         Action::SavePicture => file(FileIntent::SavePicture),
@@ -176,6 +187,10 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToggleVisible => {
             selected(state)?;
             several::toggle_shown(scene, view, &others).map(Intent::Change)
+        }
+        Action::ToggleLocked => {
+            selected(state)?;
+            several::toggle_locked(scene, view, &others).map(Intent::Change)
         }
         Action::SelectAll => {
             let first = selected(state)?;
@@ -216,6 +231,17 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             Subject::Light => Err(Refusal::NoModeOfLight),
         },
         Action::TypeAmount => gizmo::pivot(scene, view).map(|_| Intent::TypeAmount),
+        Action::DropToGround => {
+            object_subject(view)?;
+            each(&|scene, view| arrange::drop_to_ground(scene, view, phase))
+        }
+        Action::ResetPlacement => {
+            object_subject(view)?;
+            each(&|scene, view| arrange::reset(scene, view, phase))
+        }
+        Action::AlignX => align(state, &others, Axis::X),
+        Action::AlignY => align(state, &others, Axis::Y),
+        Action::AlignZ => align(state, &others, Axis::Z),
         Action::StepXUp => step(Axis::X, Sign::Positive),
         Action::StepXDown => step(Axis::X, Sign::Negative),
         Action::StepYUp => step(Axis::Y, Sign::Positive),
@@ -247,6 +273,9 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToggleOverlays => Ok(Intent::Overlays),
         Action::ToggleGizmo => Ok(Intent::Gizmo),
         Action::ToggleCoarse => Ok(Intent::Coarse),
+        Action::ToggleGrid => helpers(state, |helpers| helpers.grid ^= true),
+        Action::ToggleDimensions => helpers(state, |helpers| helpers.dimensions ^= true),
+        Action::ToggleDirections => helpers(state, |helpers| helpers.directions ^= true),
         Action::ToggleRefine => {
             let refines = !state.drawing.refines;
             Ok(Intent::Drawing(DrawingChoices { refines, ..state.drawing }))
@@ -299,6 +328,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         }
         Action::ApertureUp => aperture(APERTURE_STEP),
         Action::ApertureDown => aperture(-APERTURE_STEP),
+        Action::SoloLight => lights::solo(scene, view, &state.lit_before).map(Intent::Change),
         Action::ToggleAllShadows => lights::toggle_all_shadows(scene).map(Intent::Change),
         Action::ToggleShadows => lights::toggle_selected_shadows(scene, view).map(Intent::Change),
         Action::AimAtSelection => each(&|scene, view| aiming::aim_at_selection(scene, view, phase)),
@@ -360,6 +390,23 @@ fn add_shape(state: &State, shape: Shape) -> Resolved {
 fn add_light(state: &State, kind: LightKind) -> Resolved {
     let command = items::insert_light(&state.scene, kind)?;
     Ok(Intent::Add(command, Subject::Light))
+}
+
+/// Whether the keys act on objects.
+fn object_subject(view: &View) -> Result<(), Refusal> {
+    if view.subject == Subject::Object { Ok(()) } else { Err(Refusal::OnlyObjects) }
+}
+
+fn align(state: &State, others: &[ItemId], axis: Axis) -> Resolved {
+    let (scene, view) = (&state.scene, &state.view);
+    object_subject(view)?;
+    arrange::align(scene, view, others, axis, GesturePhase::First).map(Intent::Change)
+}
+
+fn helpers(state: &State, change: impl FnOnce(&mut Helpers)) -> Resolved {
+    let mut helpers = state.helpers;
+    change(&mut helpers);
+    Ok(Intent::Helpers(helpers))
 }
 
 /// A change of the view that may be refused.
@@ -454,6 +501,7 @@ impl Action {
                 ItemId::Camera(id) => scene.cameras.get(id)?.visible,
                 ItemId::Light(id) => scene.lights.get(id)?.on,
             },
+            Self::ToggleLocked => scene.locked.contains(&state.selected()?),
             Self::ToggleEdges => view.fill == Fill::Edges,
             Self::ToggleEdgesOverFill => view.edges_over_fill,
             Self::TogglePolygons => view.polygons.is_some(),
@@ -468,6 +516,11 @@ impl Action {
             Self::ToggleMarks => view.marks,
             Self::ToggleOverlays => state.overlays,
             Self::ToggleGizmo => state.gizmo,
+            Self::ToggleWatch => state.watches,
+            Self::ToggleGrid => state.helpers.grid,
+            Self::ToggleDimensions => state.helpers.dimensions,
+            Self::ToggleDirections => state.helpers.directions,
+            Self::SoloLight => lights::is_solo(scene, view.light?),
             Self::AimByClick => state.aiming,
             Self::ExplainPixel => state.explaining,
             Self::Palette => state.palette,
@@ -494,6 +547,7 @@ impl Action {
                 return None;
             }
             Self::CopyPicture | Self::PictureOptions | Self::SaveTurntable => return None,
+            Self::ReloadModels | Self::RecoverWork => return None,
             Self::ExportScene | Self::NewAncestor | Self::ToPanelsBack => return None,
             Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
             Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
@@ -503,7 +557,8 @@ impl Action {
                 return None;
             }
             Self::AddPlane | Self::AddCube | Self::AddSphere | Self::AddCylinder => return None,
-            Self::AddTorus => return None,
+            Self::AddTorus | Self::DropToGround | Self::ResetPlacement => return None,
+            Self::AlignX | Self::AlignY | Self::AlignZ => return None,
             Self::SelectAll | Self::SelectNone | Self::TypeAmount => return None,
             Self::NextItem | Self::NextPolygon | Self::NextSubject => return None,
             Self::StepXUp | Self::StepXDown | Self::StepYUp | Self::StepYDown => return None,

@@ -63,6 +63,16 @@ impl Group {
         Self::Window,
     ];
 
+    /// Those of [`Self::Show`] that are drawn over the picture, not in it.
+    pub const OVER_PICTURE: [Action; 6] = [
+        Action::ToggleOverlays,
+        Action::ToggleMarks,
+        Action::ToggleGizmo,
+        Action::ToggleGrid,
+        Action::ToggleDimensions,
+        Action::ToggleDirections,
+    ];
+
     /// Its heading.
     #[must_use]
     pub const fn label(self) -> &'static str {
@@ -135,6 +145,15 @@ actions! {
     Load File ONCE [Lower(Key::F)]
         "Load model..." "Loads an .obj file, asks for its material and places it at the origin."
         "import obj add mesh object insert file";
+    ReloadModels File ONCE [Command(Key::R)]
+        "Reload models" "Reads the files of all models again; one step of undo."
+        "refresh update reread file disk again";
+    ToggleWatch File ONCE []
+        "Reload when files change" "Reads models again as soon as another program saves them."
+        "watch hot live refresh auto update disk";
+    RecoverWork File ONCE [CommandShift(Key::R)]
+        "Recover unsaved work" "Shows the work that a program that ended suddenly has left behind."
+        "crash restore lost backup journal autosave";
     Save File ONCE [Command(Key::S)]
         "Save scene" "Saves the scene to its file."
         "write store keep";
@@ -148,7 +167,7 @@ actions! {
         "Save picture with options..."
         "Asks for size, samples, a transparent ground and overlays, and saves a picture."
         "screenshot render resolution size transparent alpha large print wallpaper";
-    SaveTurntable File ONCE []
+    SaveTurntable File ONCE [Command(Key::F12)]
         "Turntable..." "Draws the scene from all around into a GIF, an APNG or pictures."
         "animation gif apng video movie spin rotate frames orbit";
     ExportScene File ONCE []
@@ -161,10 +180,10 @@ actions! {
         "Quit" "Closes the program; asks first if there are unsaved changes."
         "exit leave close";
 
-    Undo Edit ONCE [Command(Key::Z)]
+    Undo Edit REPEATS [Command(Key::Z)]
         "Undo" "Undoes the last change to the scene."
         "back revert";
-    Redo Edit ONCE [CommandShift(Key::Z), Command(Key::Y)]
+    Redo Edit REPEATS [CommandShift(Key::Z), Command(Key::Y)]
         "Redo" "Redoes the change that was undone last."
         "again forward repeat";
     TakeBack Edit ONCE [Either(Key::U)]
@@ -191,6 +210,9 @@ actions! {
     ToggleVisible Edit ONCE []
         "Visible" "Shows or hides the selected object or camera."
         "hide show eye";
+    ToggleLocked Edit ONCE [Command(Key::L)]
+        "Locked" "Protects the selected item from clicks in the picture, moves and deletion."
+        "lock unlock protect freeze pin fix selectable";
 
     AddPlane Add ONCE []
         "Plane" "Adds a plane as ground, below all objects."
@@ -261,6 +283,21 @@ actions! {
     TypeAmount Transform ONCE []
         "Transform by a number" "Takes an axis and a number from the keyboard: x 12 Enter."
         "type amount exact distance angle factor numeric move rotate scale";
+    DropToGround Transform ONCE []
+        "Drop to the ground" "Moves the selected object until it stands on the ground."
+        "floor land rest snap lowest stand";
+    ResetPlacement Transform ONCE []
+        "Reset the placement" "Puts the selected object back to where its file has it."
+        "origin clear transformation identity zero original";
+    AlignX Transform ONCE []
+        "Align along X" "Brings the other selected objects in line with this one along X."
+        "line up arrange distribute centre center left right";
+    AlignY Transform ONCE []
+        "Align along Y" "Brings the other selected objects in line with this one along Y."
+        "line up arrange distribute centre center height";
+    AlignZ Transform ONCE []
+        "Align along Z" "Brings the other selected objects in line with this one along Z."
+        "line up arrange distribute centre center depth";
     StepXUp Transform REPEATS [Lower(Key::X)]
         "Step along or about +X" "Transforms the selected item one step along or about +X."
         "nudge move turn grow x";
@@ -317,6 +354,15 @@ actions! {
     ToggleGizmo Show ONCE []
         "Gizmo" "Shows handles over the picture that move, rotate and scale the selection."
         "handles manipulator arrows rings widget transform drag move rotate scale";
+    ToggleGrid Show ONCE []
+        "Ground grid" "Draws a grid on the ground, at height 0, behind everything."
+        "floor lines helper helpers plane horizon";
+    ToggleDimensions Show ONCE []
+        "Dimensions" "Draws the boxes around the selected objects, with their sizes."
+        "size measure ruler bounding box extent length width height helper helpers";
+    ToggleDirections Show ONCE []
+        "Directions of lights" "Draws where every sun and every spot shines."
+        "cones arrows sun spot helper helpers aim";
     ToggleCoarse Show ONCE []
         "Coarser while moving" "Draws slow scenes at reduced quality while something moves."
         "quality fast preview performance resolution";
@@ -351,7 +397,7 @@ actions! {
     LookTop Camera ONCE [Command(Key::Num7)]
         "Top view" "Looks from above, along -Y."
         "camera above bird plan down";
-    WhyUnseen Camera ONCE []
+    WhyUnseen Camera ONCE [Either(Key::W)]
         "Why can't I see it?" "Says why nothing of the selected object is seen, and what mends it."
         "invisible missing gone lost hidden vanished black find";
     ExplainPixel Show ONCE [Either(Key::E)]
@@ -404,6 +450,9 @@ actions! {
     ApertureDown Light REPEATS [Text("-")]
         "Narrower spot" "Closes the selected spot by 5 degrees."
         "cone angle smaller tighten";
+    SoloLight Light ONCE []
+        "Only this light" "Leaves the selected light alone on; once more, the others are back."
+        "solo isolate single mute others";
     ToggleAllShadows Light ONCE []
         "Shadows" "Switches the shadows of all lights on or off."
         "shadow cast ray trace occlusion shade";
@@ -529,7 +578,7 @@ mod tests {
             .filter(|action| action.info().repeats)
             .flat_map(|action| action.info().keys.iter().flat_map(|key| key.names()))
             .collect();
-        let expected = "Tab Enter x X y Y z Z + - q Q v V a A";
+        let expected = "Ctrl+Z Ctrl+Shift+Z Ctrl+Y Tab Enter x X y Y z Z + - q Q v V a A";
         assert_eq!(repeating.join(" "), expected);
     }
 

@@ -79,10 +79,8 @@ impl Browser {
         let field = output.response.response.labelled_by(label.id);
         if !self.shown_once {
             field.request_focus();
-            // A name can be typed at once behind the folder.
-            let end = CCursorRange::one(CCursor::new(self.path.chars().count()));
             let mut editing = output.state;
-            editing.cursor.set_char_range(Some(end));
+            editing.cursor.set_char_range(Some(self.proposed()));
             editing.store(ui.ctx(), field.id);
             self.shown_once = true;
         }
@@ -105,6 +103,22 @@ impl Browser {
             }
         });
         choice
+    }
+
+    /// What typing replaces at first: the proposed name without its ending. Without a name, it goes
+    /// on behind the folder.
+    fn proposed(&self) -> CCursorRange {
+        let path = Path::new(&self.path);
+        let end = self.path.chars().count();
+        let count = |text: Option<&std::ffi::OsStr>| {
+            text.map_or(0, |text| text.to_string_lossy().chars().count())
+        };
+        if path.is_dir() {
+            return CCursorRange::one(CCursor::new(end));
+        }
+        let (name, stem) = (count(path.file_name()), count(path.file_stem()));
+        let from = end.saturating_sub(name);
+        CCursorRange::two(CCursor::new(from), CCursor::new(from + stem))
     }
 
     fn list_ui(&mut self, ui: &mut Ui) -> Option<Choice> {
@@ -238,6 +252,18 @@ mod tests {
         let browser = Browser::new("", Mode::Open, vec!["obj"], folder.path(), "");
         let names: Vec<&str> = browser.entries.iter().map(|entry| entry.name.as_str()).collect();
         assert_eq!(names, ["z", "b.OBJ"]);
+    }
+
+    #[test]
+    fn typing_replaces_the_proposed_name_and_keeps_folder_and_ending() {
+        let folder = tempfile::tempdir().unwrap();
+        let proposed = |name| {
+            let browser = Browser::new("", Mode::Save, vec!["png"], folder.path(), name);
+            let [from, to] = browser.proposed().sorted_cursors().map(|it| usize::from(it.index));
+            browser.path.chars().skip(from).take(to - from).collect::<String>()
+        };
+        assert_eq!(proposed("view.png"), "view");
+        assert_eq!(proposed(""), "");
     }
 
     #[test]

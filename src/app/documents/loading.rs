@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::app::tasks::Task;
 use crate::base::Shared;
 use crate::io::{self, Finding, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError};
-use crate::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Texture};
+use crate::scene::{LoadOptions, MaterialChoice, Model, Object, ObjectId, Texture};
 
 /// A file that is being read.
 #[derive(Debug)]
@@ -39,6 +39,8 @@ pub(crate) enum Fetched {
     Texture(ObjectId, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
     /// A scene.
     Scene(Box<Opening>),
+    /// Models that were read again.
+    Again(Vec<Reread>),
     /// Models that are shown together and alone.
     Alone(Vec<Result<Arrived, LoadError>>, Arrival),
 }
@@ -58,6 +60,13 @@ pub(crate) struct Arrived {
     pub(crate) object: Object,
     pub(crate) found: String,
     pub(crate) findings: Vec<String>,
+}
+
+/// A model that was read again, or could not be.
+#[derive(Debug)]
+pub(crate) struct Reread {
+    pub(crate) before: Shared<Model>,
+    pub(crate) result: Result<Loaded, LoadError>,
 }
 
 /// A model that was read, or could not be.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::Ui;
 
 use crate::app::widgets::color_picker::swatch;
-use crate::app::widgets::controls::take_focus;
+use crate::app::widgets::controls::{Switch, take_focus};
 use crate::app::widgets::spheres::{self, Sphere};
 use crate::app::widgets::text::{file_name, grouped};
 use crate::base::color::Color;
@@ -160,7 +160,7 @@ impl MaterialDialog {
                 options.scale = Scale::new(self.scale).unwrap_or_default();
             });
             let mut turned = options.winding == Winding::Turned;
-            ui.checkbox(&mut turned, "Flip faces (they are inside out)");
+            turned ^= Switch::new("Flip faces (they are inside out)", turned).ui(ui).clicked();
             options.winding = if turned { Winding::Turned } else { Winding::Kept };
             ui.horizontal(|ui| {
                 let label = ui.label("Crease angle");

@@ -3,7 +3,7 @@
 use egui::{DragValue, Ui};
 
 use crate::accuracy::Samples;
-use crate::app::widgets::controls::take_focus;
+use crate::app::widgets::controls::{Choice, Switch, choices as choices_ui, take_focus};
 use crate::base::image::Size;
 use crate::edit::turntable::Turn;
 
@@ -83,11 +83,10 @@ impl PictureDialog {
             ui.end_row();
             if is_picture {
                 ui.label("");
-                let overlays = ui.checkbox(&mut self.choices.overlays, "Overlays");
-                overlays.on_hover_text(
-                    "Saves what the window shows: with the outline of the selection, axes and \
-                     marks of lights",
-                );
+                let overlays = Switch::new("Overlays", self.choices.overlays).ui(ui);
+                let hint = "Saves what the window shows: with the outline of the selection, axes \
+                    and marks of lights";
+                self.choices.overlays ^= overlays.on_hover_text(hint).clicked();
                 ui.end_row();
             } else {
                 self.turn_ui(ui);
@@ -95,8 +94,12 @@ impl PictureDialog {
             ui.label("");
             let choices = &mut self.choices;
             ui.add_enabled_ui(!choices.overlays, |ui| {
-                let ground = ui.checkbox(&mut choices.transparent, "Transparent ground");
-                ground.on_hover_text("Leaves the background out; PNG, APNG and WebP have alpha");
+                let ground = Switch {
+                    enabled: !choices.overlays,
+                    ..Switch::new("Transparent ground", choices.transparent)
+                };
+                let hint = "Leaves the background out; PNG, APNG and WebP have alpha";
+                choices.transparent ^= ground.ui(ui).on_hover_text(hint).clicked();
             });
             ui.end_row();
         });
@@ -134,12 +137,17 @@ impl PictureDialog {
     }
 
     fn samples_ui(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            for samples in Samples::ALL {
-                let text = samples.count().to_string();
-                ui.radio_value(&mut self.choices.samples, samples, text);
-            }
-        });
+        let counts = Samples::ALL.map(|samples| samples.count().to_string());
+        let now = self.choices.samples;
+        let hint = "More of them smooth edges, and take longer.";
+        let all: Vec<Choice<'_>> = Samples::ALL
+            .iter()
+            .zip(&counts)
+            .map(|(samples, count)| Choice::new("Samples per pixel", count, now == *samples, hint))
+            .collect();
+        if let Some(clicked) = choices_ui(ui, &all) {
+            self.choices.samples = Samples::ALL[clicked];
+        }
     }
 
     fn turn_ui(&mut self, ui: &mut Ui) {
@@ -152,10 +160,20 @@ impl PictureDialog {
         ui.add(seconds).accessible_name("Seconds a turn");
         ui.end_row();
         ui.label("What turns");
-        ui.horizontal(|ui| {
-            ui.radio_value(&mut choices.turn, Turn::Objects, "Objects");
-            ui.radio_value(&mut choices.turn, Turn::Camera, "Camera");
+        let turns = [
+            (
+                "Objects",
+                Turn::Objects,
+                "The objects turn before the camera, under the same lights.",
+            ),
+            ("Camera", Turn::Camera, "The camera goes around the objects."),
+        ];
+        let all = turns.map(|(label, turn, hint)| {
+            Choice::new("What turns", label, choices.turn == turn, hint)
         });
+        if let Some(clicked) = choices_ui(ui, &all) {
+            choices.turn = turns[clicked].1;
+        }
         ui.end_row();
     }
 }

@@ -229,6 +229,7 @@ impl App {
                     Err(refusal) => self.refuse(refusal.to_string()),
                 }
             }
+            Fetched::Again(all) => self.take_again(all),
             Fetched::Scene(opening) => self.take_scene(ctx, *opening),
             Fetched::Alone(read, arrival) => self.take_alone(ctx, read, arrival),
         }
@@ -361,6 +362,7 @@ impl App {
     /// As [`Self::replace`]; gives what was there.
     pub(crate) fn swap(&mut self, state: State) -> State {
         let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
+        let State { gizmo, helpers, watches, zoom, narrow, .. } = self.state;
         let statistics = self.state.statistics.clone();
         let recent = std::mem::take(&mut self.state.recent);
         let recoverable = std::mem::take(&mut self.state.recoverable);
@@ -372,6 +374,11 @@ impl App {
             drawing,
             layout,
             overlays,
+            gizmo,
+            helpers,
+            watches,
+            zoom,
+            narrow,
             greeting,
             statistics,
             recent,

@@ -58,6 +58,8 @@ impl App {
         self.state.theme = theme;
         self.state.panels = preferences.panels;
         self.state.overlays = preferences.overlays;
+        self.state.helpers = preferences.helpers;
+        self.state.watches = preferences.watches;
         self.state.layout = Layout::of_shares(&preferences.shares);
         Keyboard::set_keymap(ctx, Keymap::of_names(&preferences.keys));
         self.state.gizmo = preferences.gizmo;
@@ -261,6 +263,8 @@ fn preferences_now(ctx: &Context, state: &State, before: &Preferences) -> Prefer
         maximized,
         shares: state.layout.shares(),
         overlays: state.overlays,
+        helpers: state.helpers,
+        watches: state.watches,
         keys: Keyboard::keymap(ctx).names(),
         refines: state.drawing.refines,
         refined: state.drawing.refined,

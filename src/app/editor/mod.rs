@@ -11,6 +11,7 @@ mod keeping;
 mod laboratory;
 mod making;
 mod measuring;
+mod reloading;
 mod requests;
 mod scenes;
 mod selecting;
@@ -44,6 +45,7 @@ use keeping::Keeping;
 use laboratory::Work;
 use making::Making;
 use measuring::Measuring;
+use reloading::Watch;
 use unseen::Search;
 
 /// The editor.
@@ -82,6 +84,8 @@ pub struct App {
     first_steps: Option<Steps>,
     /// The program's own files, if it keeps any.
     keeping: Option<Keeping>,
+    /// The files that are read again when they change.
+    watch: Option<Watch>,
     /// The number of consecutive failed frames.
     faults: u32,
 }
@@ -112,6 +116,7 @@ impl App {
             title: String::new(),
             first_steps: None,
             keeping: None,
+            watch: None,
             faults: 0,
         }
     }
@@ -200,6 +205,7 @@ impl App {
         self.hear_laboratory(&ctx);
         self.compare(&ctx);
         self.take_dropped(&ctx);
+        self.watch_files(&ctx);
         self.close_requested(&ctx);
         self.keep(&ctx);
         self.draw(&ctx);

@@ -16,7 +16,7 @@ use crate::app::input::keymap::Keymap;
 use crate::app::state::{Message, Offer, State, Tone};
 use crate::edit::selection::{self, Selection};
 use crate::edit::several::Others;
-use crate::edit::{Gesture, GesturePhase, aiming, items};
+use crate::edit::{Gesture, GesturePhase, aiming, items, lights};
 use crate::scene::{Command, ItemId, Subject, View};
 
 impl App {
@@ -124,7 +124,11 @@ impl App {
             let framed = self.state.view.object.map(Offer::Frame);
             self.state.notices.retain(|notice| notice.offer.is_none() || notice.offer != framed);
         }
-        match resolve(action, &self.state, self.state.phase(gesture)) {
+        let resolved = resolve(action, &self.state, self.state.phase(gesture));
+        if action == Action::SoloLight && action.is_on(&self.state) == Some(false) {
+            self.state.lit_before = lights::lit(&self.state.scene);
+        }
+        match resolved {
             Err(refusal) => self.refuse(refusal.to_string()),
             Ok(Intent::Change(command)) => self.change(command, gesture, &label),
             Ok(Intent::Add(command, subject)) => self.add_all(command, subject, &label),
@@ -157,6 +161,8 @@ impl App {
             Ok(Intent::Palette) => self.state.palette ^= true,
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
             Ok(Intent::Overlays) => self.state.overlays ^= true,
+            Ok(Intent::Watch) => self.state.watches ^= true,
+            Ok(Intent::Helpers(helpers)) => self.state.helpers = helpers,
             Ok(Intent::Gizmo) => self.state.gizmo ^= true,
             Ok(Intent::Coarse) => self.state.coarse_while_moving ^= true,
             Ok(Intent::TypeAmount) => self.type_amount(ctx),
@@ -202,6 +208,8 @@ impl App {
             FileIntent::PictureOptions => self.ask_picture(Purpose::Picture),
             FileIntent::Turntable => self.ask_picture(Purpose::Turntable),
             FileIntent::Export => self.ask_file(ctx, Wanted::ExportTo, "scene.glb"),
+            FileIntent::Recover => self.unless_unsaved(ctx, After::Recover(0)),
+            FileIntent::Reload => self.reload_models(ctx, None),
             FileIntent::NewAncestor => self.unless_unsaved(ctx, After::NewAncestor),
         }
     }

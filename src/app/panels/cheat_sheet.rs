@@ -61,6 +61,10 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.data_mut(|data| data.insert_temp(id, wanted.clone()));
     let keymap = Keyboard::keymap(ui.ctx());
     let changes = changes_ui(ui, &keymap, requests);
+    if ui.data_mut(|data| data.remove_temp::<bool>(switched_id())).is_some() {
+        // What is typed next is searched for; it presses nothing.
+        response.request_focus();
+    }
     choosing_ui(ui, &keymap, requests);
     ui.add_space(theme::GAP);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -91,12 +95,22 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
+/// Whether the switch was clicked in this frame.
+fn switched_id() -> Id {
+    Id::unique("changing keys was switched")
+}
+
 /// The switch between pressing and changing keys; gives whether they are changed.
 fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) -> bool {
     let id = Id::unique("keys are changed");
     let mut changes = ui.data(|data| data.get_temp(id)).unwrap_or(false);
     ui.horizontal(|ui| {
-        if ui.checkbox(&mut changes, "Change keys").changed() {
+        let size = vec2(KEYS, theme::ROW);
+        let switch = |ui: &mut Ui| controls::Switch::new("Change keys", changes).ui(ui);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        if ui.allocate_ui_with_layout(size, layout, switch).inner.clicked() {
+            changes ^= true;
+            ui.data_mut(|data| data.insert_temp(switched_id(), true));
             ui.data_mut(|data| data.insert_temp(id, changes));
             requests.push(Request::Keys(KeyRequest::Cancel));
         }

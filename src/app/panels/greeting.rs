@@ -33,31 +33,36 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
         Frame::popup(ui.style()).show(ui, |ui| {
             regions::begin(ui, "greeting");
             ui.set_max_width(width);
-            ui.horizontal_wrapped(|ui| contents(ui, state, requests));
+            contents(ui, state, requests);
         });
     });
 }
 
+/// What can be opened, and what can be learned; one row each.
 fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    ui.weak("Drop a model here, or");
-    for action in [Action::Load, Action::Open] {
-        requests.extend(action.button(ui, state).map(Request::from));
-    }
-    for path in state.recent.iter().take(RECENT) {
-        let name = middle_elided(&file_name(path), 24);
-        let button = ui.button(name);
-        if button.on_hover_text(path.display().to_string()).clicked() {
-            requests.push(Request::LoadFiles(vec![path.clone()]));
+    ui.horizontal_wrapped(|ui| {
+        ui.weak("Drop a model here, or");
+        for action in [Action::Load, Action::Open] {
+            requests.extend(action.button(ui, state).map(Request::from));
         }
-    }
-    ui.weak("Lessons:");
-    for (key, about) in LESSONS {
-        let hint = Axis::named(key).map_or("", |axis| axis.lesson.title);
-        if ui.button(about).on_hover_text(hint).clicked() {
-            requests.push(Request::Lab(LabRequest::ShowLesson(key)));
+        for path in state.recent.iter().take(RECENT) {
+            let name = middle_elided(&file_name(path), 24);
+            let button = ui.button(name);
+            if button.on_hover_text(path.display().to_string()).clicked() {
+                requests.push(Request::LoadFiles(vec![path.clone()]));
+            }
         }
-    }
-    if ui.button("Dismiss").on_hover_text("Puts this strip away").clicked() {
-        requests.push(Request::EndGreeting);
-    }
+        if ui.button("Dismiss").on_hover_text("Puts this strip away").clicked() {
+            requests.push(Request::EndGreeting);
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.weak("Or look at a lesson:");
+        for (key, about) in LESSONS {
+            let hint = Axis::named(key).map_or("", |axis| axis.lesson.title);
+            if ui.button(about).on_hover_text(hint).clicked() {
+                requests.push(Request::Lab(LabRequest::ShowLesson(key)));
+            }
+        }
+    });
 }

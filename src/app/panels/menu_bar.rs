@@ -5,6 +5,7 @@ use egui::{Atom, IdSalt, MenuBar, Role, ScrollArea, Ui, WidgetInfo, vec2};
 use crate::accuracy::AXES;
 use crate::app::actions::{Action, Group, LabRequest, Request};
 use crate::app::state::State;
+use crate::app::theme;
 use crate::app::widgets::text::file_name;
 use crate::io::EXAMPLES;
 
@@ -13,6 +14,9 @@ const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::Th
 
 /// Those that stand under Help.
 const HELP: [Action; 3] = [Action::Palette, Action::CheatSheet, Action::ToPanels];
+
+/// How large the interface is.
+const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
@@ -33,13 +37,27 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         menu(ui, "Add", |ui| group_ui(ui, state, requests, Group::Add));
         menu(ui, "View", |ui| {
-            group_ui(ui, state, requests, Group::Show);
+            items(
+                ui,
+                state,
+                requests,
+                Group::Show.actions().filter(|it| !Group::OVER_PICTURE.contains(it)),
+            );
             ui.separator();
+            submenu(ui, "Over the picture", |ui| items(ui, state, requests, Group::OVER_PICTURE));
             submenu(ui, "Camera", |ui| group_ui(ui, state, requests, Group::Camera));
-            submenu(ui, "Light", |ui| group_ui(ui, state, requests, Group::Light));
+            let has_slot = |action: &Action| action.slot().is_some();
+            let (slots, rest): (Vec<Action>, Vec<Action>) =
+                Group::Light.actions().partition(has_slot);
+            submenu(ui, "Light", |ui| items(ui, state, requests, rest));
+            submenu(ui, "Lights on and off", |ui| items(ui, state, requests, slots));
+        });
+        menu(ui, "Window", |ui| {
+            let elsewhere = [&THEMES[..], &HELP, &SIZES].concat();
+            let own = Group::Window.actions().filter(|action| !elsewhere.contains(action));
+            items(ui, state, requests, own);
             ui.separator();
-            let own = |action: &Action| !THEMES.contains(action) && !HELP.contains(action);
-            items(ui, state, requests, Group::Window.actions().filter(own));
+            submenu(ui, "Size", |ui| items(ui, state, requests, SIZES));
             submenu(ui, "Theme", |ui| items(ui, state, requests, THEMES));
         });
         menu(ui, "Help", |ui| {
@@ -51,7 +69,15 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
-    ui.menu_button(name, |ui| {
+    ui.menu_button(name, |ui| within_window(ui, add));
+}
+
+/// The entries of a menu; in a low window they are scrolled.
+fn within_window(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    ui.set_min_width(200.0);
+    let most = (ui.ctx().content_rect().height() - 2.0 * theme::ROW - 16.0).max(80.0);
+    // A menu that is too low where it stands is moved up before it is scrolled.
+    ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
         ui.set_min_width(200.0);
         add(ui);
     });
@@ -60,10 +86,7 @@ fn menu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
 /// A submenu; its name is aligned with those of actions, after the column of ticks.
 fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     let ticks = Atom::custom(IdSalt::new("tick"), vec2(12.0, 12.0));
-    let shown = ui.menu_button((ticks, name), |ui| {
-        ui.set_min_width(200.0);
-        add(ui);
-    });
+    let shown = ui.menu_button((ticks, name), |ui| within_window(ui, add));
     shown.response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, name));
 }
 

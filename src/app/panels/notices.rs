@@ -1,11 +1,13 @@
 //! Notices over the picture: files being loaded, and findings about them.
 
-use egui::{Align2, Area, Context, Frame, Id, Order, Ui, vec2};
+use egui::{Align2, Area, Context, Frame, Id, Order, Rect, Ui, vec2};
 
-use crate::app::actions::Request;
+use crate::app::actions::{Action, Request};
 use crate::app::documents::loading::Loading;
+use crate::app::input::buttons::first_key;
 use crate::app::state::{Notice, Offer, State};
 use crate::app::tasks::Task;
+use crate::app::widgets::regions;
 use crate::edit::Gesture;
 
 /// Shows them at the top of the picture; their requests are added to `requests`.
@@ -28,6 +30,10 @@ pub(crate) fn show<T>(
         .anchor(Align2::CENTER_TOP, vec2(0.0, 40.0));
     corner.show(ctx, |ui| {
         ui.set_max_width(420.0);
+        // They lie over others: only controls among them belong to this region.
+        let column = Rect::from_min_size(ui.cursor().min, ui.available_size());
+        let seen: Option<Rect> = ui.data(|data| data.get_temp(seen_id()));
+        regions::begin_in(ui, "notices", seen.unwrap_or(column));
         for (at, loading) in loading.iter().enumerate() {
             let cancel = Request::CancelLoading(at);
             Frame::popup(ui.style()).show(ui, |ui| task_ui(ui, &loading.task, cancel, requests));
@@ -46,7 +52,13 @@ pub(crate) fn show<T>(
                 Frame::popup(ui.style()).show(ui, |ui| notice_ui(ui, at, notice, state, requests));
             });
         }
+        ui.data_mut(|data| data.insert_temp(seen_id(), ui.min_rect()));
     });
+}
+
+/// The id of the place that they took in the frame before.
+fn seen_id() -> Id {
+    Id::unique("place of the notices")
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
@@ -67,7 +79,10 @@ fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Vec<R
 fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request>) {
     ui.label(work);
     ui.horizontal(|ui| {
-        if ui.button("Recover").on_hover_text("Shows it instead of this scene").clicked() {
+        let key = first_key(ui, Action::RecoverWork).filter(|_| at == 0);
+        let hint = "Shows it instead of this scene";
+        let hint = key.map_or_else(|| hint.to_owned(), |key| format!("{hint}; key {key}"));
+        if ui.button("Recover").on_hover_text(hint).clicked() {
             requests.push(Request::Recover(at));
         }
         if ui.button("Discard").on_hover_text("Removes it for good").clicked() {

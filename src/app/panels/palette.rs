@@ -13,9 +13,12 @@ use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
 use crate::app::state::State;
 use crate::app::theme;
+use crate::app::widgets::color_picker::hexadecimal;
 use crate::app::widgets::controls;
+use crate::base::color::Color;
+use crate::edit::{Gesture, items, several};
 use crate::io::EXAMPLES;
-use crate::scene::ItemId;
+use crate::scene::{Command, ItemId, Material, MaterialChoice, Object, ObjectId, PresetId};
 
 const WIDTH: f32 = 560.0;
 
@@ -119,7 +122,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32
             }
         }
         if entries.is_empty() {
-            ui.weak("Nothing is called so.");
+            ui.weak("Nothing has this name. Try another word, a key, or a colour such as #ff8000.");
         }
     });
     let Some(entry) = clicked.or(enter.then_some(chosen)).and_then(|at| entries.get(at)) else {
@@ -154,6 +157,10 @@ fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
     items(state, &mut search, &mut entries);
     if !search.is_empty() {
         settings(state, &mut search, &mut entries);
+        materials(state, &mut search, &mut entries);
+    }
+    if let Some(color) = hexadecimal(query).filter(|_| query.trim().starts_with('#')) {
+        colors(state, color, &mut entries);
     }
     entries.sort_by_key(|entry| std::cmp::Reverse(entry.score));
     entries.truncate(MOST);
@@ -183,6 +190,81 @@ fn items(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
             request: Request::Select(id),
         });
     }
+}
+
+/// The materials, for the selected objects.
+fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
+    let Some(ItemId::Object(id)) = state.selected() else { return };
+    let Some(object) = state.scene.objects.get(id) else { return };
+    let presets = PresetId::all().map(|id| (id.get().name, MaterialChoice::Preset(id)));
+    for (name, to) in presets.chain([("the file's own", MaterialChoice::File)]) {
+        let label = format!("Material: {name}");
+        let texts = Texts { label: &label, words: "surface shader look", hint: "" };
+        let Some(score) = search.score(texts) else { continue };
+        let on = object.material == to;
+        let hint = "Gives it to the selected object.".to_owned();
+        let what = format!("Material of {}", state.acted_on_name());
+        let request = of_objects(state, id, what, |object| object.material = to.clone());
+        let (kind, key, refused) = ("Material", String::new(), None);
+        entries.push(Entry { label, kind, hint, key, on, refused, score, request });
+    }
+}
+
+/// A change of the selected objects.
+fn of_objects(state: &State, id: ObjectId, label: String, change: impl Fn(&mut Object)) -> Request {
+    let (scene, others) = (&state.scene, state.others());
+    match items::change_object(scene, id, change) {
+        Ok(command) => Request::Change {
+            command: several::spread(scene, command, &others),
+            gesture: Gesture::Whole,
+            label,
+        },
+        Err(refusal) => Request::Refuse(refusal.to_string()),
+    }
+}
+
+/// What can have a colour that was typed: `#ff8000`.
+fn colors(state: &State, color: Color, entries: &mut Vec<Entry>) {
+    let Color([r, g, b]) = color;
+    let written = format!("#{r:02x}{g:02x}{b:02x}");
+    let mut add = |what: String, hint: &str, request: Request| {
+        let (label, hint) = (format!("{what}: {written}"), hint.to_owned());
+        let (kind, key, on, refused, score) = ("Colour", String::new(), false, None, u32::MAX);
+        entries.push(Entry { label, kind, hint, key, on, refused, score, request });
+    };
+    let name = state.acted_on_name();
+    match state.selected() {
+        Some(ItemId::Object(id)) => {
+            let what = format!("Colour of {name}");
+            let request = of_objects(state, id, what.clone(), |object| {
+                let Material { specular, exponent, .. } = object.part_look(0).material;
+                let diffuse = color.factors();
+                let ambient = diffuse.map(|part| 0.2 * part);
+                let emission = [0.0; 3];
+                let own = Material { ambient, diffuse, specular, exponent, emission };
+                object.material = MaterialChoice::Own(own);
+            });
+            add(what, "Gives it a material of its own in this colour.", request);
+        }
+        Some(ItemId::Light(id)) => {
+            let what = format!("Colour of {name}");
+            let command = items::change_light(&state.scene, id, |light| light.color = color);
+            let request = match command {
+                Ok(command) => Request::Change {
+                    command: several::spread(&state.scene, command, &state.others()),
+                    gesture: Gesture::Whole,
+                    label: what.clone(),
+                },
+                Err(refusal) => Request::Refuse(refusal.to_string()),
+            };
+            add(what, "Makes the light shine in this colour.", request);
+        }
+        Some(ItemId::Camera(_)) | None => {}
+    }
+    let command = Command::Background(color);
+    let (gesture, label) = (Gesture::Whole, "Set the background".to_owned());
+    let request = Request::Change { command, gesture, label };
+    add("Background".to_owned(), "Gives the background this colour.", request);
 }
 
 fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {

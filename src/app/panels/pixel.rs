@@ -1,14 +1,15 @@
 //! A pixel explained: what is seen there, what its colour is made of, and the vectors of its light.
 
 use egui::{
-    Align2, Color32, Context, Grid, Label, Painter, Pos2, Rect, RichText, Sense, Stroke, TextStyle,
-    Ui, Vec2, Window, pos2, vec2,
+    Align2, Color32, Context, Grid, Label, Painter, Pos2, Rect, RichText, Role, Sense, Stroke,
+    TextStyle, Ui, Vec2, WidgetInfo, Window, pos2, vec2,
 };
 use glam::DVec3;
 
 use crate::app::actions::Request;
 use crate::app::state::{ExplainedPixel, State};
 use crate::app::theme;
+use crate::app::widgets::controls;
 use crate::base::math;
 use crate::lab::pixel;
 use crate::render::{PixelColor, SurfacePoint, Term};
@@ -31,7 +32,7 @@ pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut V
         .default_pos(place)
         .default_width(360.0)
         .max_height((picture.height() - 60.0).max(160.0))
-        .collapsible(true)
+        .collapsible(false)
         .vscroll(true)
         .show(ctx, |ui| match &pixel.explained {
             Some(explained) => explained_ui(ui, state, pixel, explained, requests),
@@ -50,19 +51,8 @@ fn explained_ui(
     requests: &mut Vec<Request>,
 ) {
     let mono = |text: String| RichText::new(text).monospace();
-    if let Some(point) = &explained.surface {
-        Grid::new("facts").num_columns(2).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
-            for [name, value] in pixel::facts(&pixel.scene, point) {
-                ui.weak(name);
-                ui.add(Label::new(mono(value)).wrap());
-                ui.end_row();
-            }
-        });
-        ui.separator();
-        diagram_ui(ui, pixel, point, explained);
-    }
-    ui.separator();
-    sum_ui(ui, pixel, explained);
+    // The answer first.
+    ui.scope(|ui| sum_ui(ui, pixel, explained));
     if explained.linear {
         ui.weak("Linear light: encoded in sRGB before it is rounded.");
     }
@@ -72,6 +62,18 @@ fn explained_ui(
         ui.weak(format!(
             "The picture has the mean of {count} samples; this is the centre's light."
         ));
+    }
+    if let Some(point) = &explained.surface {
+        ui.separator();
+        diagram_ui(ui, pixel, point, explained);
+        ui.separator();
+        Grid::new("facts").num_columns(2).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
+            for [name, value] in pixel::facts(&pixel.scene, point) {
+                ui.weak(name);
+                ui.add(Label::new(mono(value)).wrap());
+                ui.end_row();
+            }
+        });
     }
     ui.separator();
     ui.horizontal(|ui| {
@@ -93,35 +95,53 @@ fn explained_ui(
     });
 }
 
+/// How wide the name of a term is.
+const TERM: f32 = 140.0;
+
+/// How wide each of its three numbers is.
+const NUMBER: f32 = 58.0;
+
 /// The terms, their sum, and the byte that it is.
 fn sum_ui(ui: &mut Ui, pixel: &ExplainedPixel, explained: &PixelColor) {
-    let mono = |text: String| RichText::new(text).monospace();
-    Grid::new("sum").num_columns(4).striped(true).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
-        let row = |ui: &mut Ui, label: RichText, value: [String; 3]| {
-            ui.add(Label::new(label).truncate());
-            for text in value {
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    ui.label(mono(text));
-                });
-            }
-            ui.end_row();
-        };
-        let numbers = |value: [f64; 3]| value.map(|x| format!("{x:.3}"));
-        row(
-            ui,
-            RichText::new("in steps of a byte").weak(),
-            ["red", "green", "blue"].map(str::to_owned),
-        );
-        for term in pixel::rows(&pixel.scene, explained) {
-            row(ui, RichText::new(term.label), numbers(term.value));
-        }
-        row(ui, RichText::new("sum").strong(), numbers(explained.color.map(|x| x * 255.0)));
-        let bytes = explained.bytes.map(|byte| byte.to_string());
-        row(ui, RichText::new("clamped and rounded").strong(), bytes);
-    });
+    // Without a sign if nothing is left of the number.
+    let number = |x: f64| format!("{:.3}", if x.abs() < 5e-4 { 0.0 } else { x });
+    ui.spacing_mut().item_spacing.y = 1.0;
+    let weak = ui.visuals().weak_text_color();
+    let strong = ui.visuals().strong_text_color();
+    let plain = ui.visuals().text_color();
+    term_ui(ui, "in steps of a byte", ["red", "green", "blue"].map(str::to_owned), weak);
+    for term in pixel::rows(&pixel.scene, explained) {
+        let color = if term.value == [0.0; 3] { weak } else { plain };
+        term_ui(ui, &term.label, term.value.map(number), color);
+    }
+    term_ui(ui, "sum", explained.color.map(|x| number(x * 255.0)), strong);
+    term_ui(ui, "clamped and rounded", explained.bytes.map(|byte| byte.to_string()), strong);
     let [r, g, b] = explained.bytes;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 10.0), Sense::hover());
     ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
+}
+
+/// A row of the sum: a name, and three numbers under one another's.
+fn term_ui(ui: &mut Ui, label: &str, values: [String; 3], color: Color32) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = theme::GAP;
+        let (rect, response) = ui.allocate_exact_size(vec2(TERM, theme::ROW - 4.0), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, label));
+        let text = controls::text(ui, label, TextStyle::Body, TERM);
+        let is_cut = text.elided;
+        controls::put_text(ui, rect, text, color);
+        if is_cut {
+            response.on_hover_text(label);
+        }
+        for value in values {
+            let size = vec2(NUMBER, theme::ROW - 4.0);
+            let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &value));
+            let text = controls::text(ui, value.as_str(), TextStyle::Monospace, NUMBER);
+            let left = rect.right() - text.size().x;
+            controls::put_text(ui, rect.with_min_x(left), text, color);
+        }
+    });
 }
 
 /// N, V, and L and R of the strongest light, seen from the side: N points up.

@@ -168,6 +168,9 @@ fn selected(state: &State) -> String {
 /// What x, y and z do to the selection, or why nothing.
 fn transformation(state: &State) -> Result<Transformation, &'static str> {
     let (scene, view) = (&state.scene, &state.view);
+    if state.selected().is_some_and(|id| scene.locked.contains(&id)) {
+        return Err("locked");
+    }
     let Some(ItemId::Light(id)) = state.selected() else { return Ok(view.transformation) };
     let Some(light) = scene.lights.get(id) else { return Err("from everywhere") };
     transform::transformation_of(light, view.transformation).map_err(|_refusal| {

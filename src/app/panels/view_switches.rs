@@ -30,9 +30,17 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         });
         section(ui, "Display", true, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            // Flat shading is a choice in the section below.
-            let choice = Action::ToggleLightNormals;
-            for action in Group::Show.actions().filter(|action| *action != choice) {
+            // Flat shading is a choice in the section of light.
+            let here = |action: &Action| {
+                *action != Action::ToggleLightNormals && !Group::OVER_PICTURE.contains(action)
+            };
+            for action in Group::Show.actions().filter(here) {
+                action_switch(ui, state, requests, action);
+            }
+        });
+        section(ui, "Over the picture", true, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for action in Group::OVER_PICTURE {
                 action_switch(ui, state, requests, action);
             }
         });

@@ -3,6 +3,7 @@
 pub mod laboratory;
 pub mod layout;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,11 +17,12 @@ use crate::app::drawing::viewport_renderer::Drawn;
 use crate::base::image::Size;
 use crate::edit::several::Others;
 use crate::edit::{Gesture, GesturePhase, History, Refusal, framing, items, selection};
-use crate::io::{Panels, WindowState};
+use crate::io::{Helpers, Panels, WindowState};
 use crate::lab::cost::{Costs, Explained};
 use crate::render::{Damage, PixelColor};
 use crate::scene::{
-    Command, ItemId, Light, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View,
+    Command, ItemId, Light, LightId, LightKind, MaterialChoice, Object, ObjectId, Scene, Sides,
+    Surface, View,
 };
 use laboratory::Laboratory;
 use layout::Layout;
@@ -61,6 +63,12 @@ pub struct State {
     pub overlays: bool,
     /// Whether handles to move, rotate and scale the selection lie over the picture.
     pub gizmo: bool,
+    /// What else is drawn over the picture.
+    pub helpers: Helpers,
+    /// Whether models are read again when their files change.
+    pub watches: bool,
+    /// The lights that were on before one was left alone.
+    pub lit_before: BTreeSet<LightId>,
     /// The items that are selected beside the one that the keys act on.
     pub several: Others,
     /// Whether the next click into the picture aims the selected light.
@@ -343,6 +351,9 @@ impl State {
             palette: false,
             overlays: true,
             gizmo: true,
+            helpers: Helpers::default(),
+            watches: false,
+            lit_before: BTreeSet::new(),
             several: Others::default(),
             aiming: false,
             asking: None,
@@ -425,12 +436,7 @@ impl State {
     /// The name of an item.
     #[must_use]
     pub fn name(&self, id: ItemId) -> Option<&str> {
-        let scene = &self.scene;
-        Some(match id {
-            ItemId::Object(id) => &scene.objects.get(id)?.name,
-            ItemId::Camera(id) => &scene.cameras.get(id)?.name,
-            ItemId::Light(id) => &scene.lights.get(id)?.name,
-        })
+        self.scene.name(id)
     }
 
     /// The file name of the scene, or a placeholder.

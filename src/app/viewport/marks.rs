@@ -54,22 +54,30 @@ impl Projection {
         self.rect.min + part * self.rect.size()
     }
 
+    pub(super) fn rect(&self) -> Rect {
+        self.rect
+    }
+
     /// A line of the world, cut at the near plane.
-    fn line(&self, painter: &Painter, ends: [DVec3; 2], stroke: Stroke) {
+    pub(super) fn line(&self, painter: &Painter, ends: [DVec3; 2], stroke: Stroke) {
+        if let Some(line) = self.segment(ends) {
+            painter.line_segment(line, Stroke::new(stroke.width + 2.0, SHADE));
+            painter.line_segment(line, stroke);
+        }
+    }
+
+    /// The part of a line of the world that lies before the observer.
+    pub(super) fn segment(&self, ends: [DVec3; 2]) -> Option<[Pos2; 2]> {
         let [a, b] = ends.map(|end| self.clip(end));
         // Before the near plane w - z is negative; it is linear along the line.
         let [da, db] = [a, b].map(|clip| clip.w - clip.z);
         let [a, b] = match (da >= 0.0, db >= 0.0) {
             (true, true) => [a, b],
-            (false, false) => return,
+            (false, false) => return None,
             (true, false) => [a, a.lerp(b, da / (da - db))],
             (false, true) => [b.lerp(a, db / (db - da)), b],
         };
-        if a.w > 0.0 && b.w > 0.0 {
-            let line = [self.screen(a), self.screen(b)];
-            painter.line_segment(line, Stroke::new(stroke.width + 2.0, SHADE));
-            painter.line_segment(line, stroke);
-        }
+        (a.w > 0.0 && b.w > 0.0).then(|| [self.screen(a), self.screen(b)])
     }
 
     /// The point of the world that a pixel of this depth shows.
@@ -94,6 +102,8 @@ pub(super) struct Mark {
     distance: f64,
     /// Whether it stands where an object or a camera is, which a click selects first.
     follows: bool,
+    /// Whether clicks pass it.
+    locked: bool,
 }
 
 /// The marks of all lights that stand within the picture, the nearest first.
@@ -103,9 +113,16 @@ pub(super) fn marks(state: &State, projection: &Projection) -> Vec<Mark> {
     let mark = |id: LightId| {
         let light = scene.lights.get(id)?;
         let follows = light.kind.owner().is_some_and(|owner| owner.fixed().is_none());
+        let locked = scene.locked.contains(&ItemId::Light(id));
         let position = aiming::stands(scene, view, id)?.position;
         let (at, distance) = (projection.place(position)?, position.distance(eye));
-        projection.rect.shrink(2.0).contains(at).then_some(Mark { id, at, distance, follows })
+        projection.rect.shrink(2.0).contains(at).then_some(Mark {
+            id,
+            at,
+            distance,
+            follows,
+            locked,
+        })
     };
     if !state.shows_overlays() {
         return Vec::new();
@@ -116,11 +133,16 @@ pub(super) fn marks(state: &State, projection: &Projection) -> Vec<Mark> {
 }
 
 /// The lights whose marks are at a place of the window: those that stand free, then those that
-/// follow something.
+/// follow something. Locked ones are passed.
 pub(super) fn lights_at(marks: &[Mark], at: Pos2) -> [Vec<ItemId>; 2] {
     [false, true].map(|follows| {
         let here = |mark: &&Mark| mark.follows == follows && mark.at.distance(at) <= RADIUS + 1.0;
-        marks.iter().filter(here).map(|mark| ItemId::Light(mark.id)).collect()
+        marks
+            .iter()
+            .filter(|mark| !mark.locked)
+            .filter(here)
+            .map(|mark| ItemId::Light(mark.id))
+            .collect()
     })
 }
 
@@ -128,6 +150,15 @@ pub(super) fn lights_at(marks: &[Mark], at: Pos2) -> [Vec<ItemId>; 2] {
 pub(super) fn show(ui: &Ui, state: &State, projection: &Projection, marks: &[Mark]) {
     let painter = ui.painter().with_clip_rect(projection.rect);
     let accent = theme::accent(ui.visuals());
+    if state.helpers.directions && state.shows_overlays() {
+        for id in state.scene.lights.ids().filter(|id| !state.is_selected(ItemId::Light(*id))) {
+            let light = state.scene.lights.get(id).filter(|light| light.on);
+            if let Some([r, g, b, _]) = light.map(|light| light.color.opaque()) {
+                let stroke = Stroke::new(1.0, Color32::from_rgb(r, g, b).gamma_multiply(0.8));
+                cone_ui(&painter, state, projection, id, stroke);
+            }
+        }
+    }
     if let Some(ItemId::Light(id)) = state.selected().filter(|_| state.shows_overlays()) {
         cone_ui(&painter, state, projection, id, Stroke::new(1.5, accent));
     }

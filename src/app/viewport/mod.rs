@@ -6,6 +6,7 @@
 mod axes;
 pub(crate) mod comparison;
 pub(crate) mod gizmo;
+mod helpers;
 mod marks;
 mod menu;
 mod mouse;
@@ -28,6 +29,7 @@ use crate::app::input::keyboard::{Keyboard, Letters};
 use crate::app::state::State;
 use crate::app::widgets::plate::plate_ui;
 use crate::base::image::Size;
+use crate::edit::Refusal;
 use crate::render::Hit;
 use crate::scene::ItemId;
 use gizmo::{Gizmo, Grab};
@@ -243,7 +245,9 @@ impl Viewport {
             }
             Purpose::Select => requests.extend(hit.map(|hit| self.selecting(state, pick.at, hit))),
             Purpose::SelectAlso => {
-                requests.extend(item.map(|item| Request::SelectAlso(vec![item], Also::Toggle)));
+                let also = |item| Request::SelectAlso(vec![item], Also::Toggle);
+                let found = item.map(|item| self.unlocked(state, pick.at, item));
+                requests.extend(found.map(|item| item.map_or_else(Request::Refuse, also)));
             }
             // It is answered without a picture.
             Purpose::Box(_) => {}
@@ -285,6 +289,11 @@ impl Viewport {
     /// The request of a click on `hit`: selects the polygon in polygon mode, otherwise the item; a
     /// second click on the same pixel selects the object behind the selected one.
     fn selecting(&mut self, state: &State, at: [usize; 2], hit: Hit) -> Request {
+        match self.unlocked(state, at, hit.item) {
+            Ok(item) if item == hit.item => {}
+            Ok(item) => return Request::Select(item),
+            Err(why) => return Request::Refuse(why),
+        }
         let click = (at, state.scene.observer_frame(&state.view));
         let again = self.clicked.replace(click) == Some(click);
         match hit.item {
@@ -301,6 +310,20 @@ impl Viewport {
             }
             item => Request::Select(item),
         }
+    }
+
+    /// The item that a click here selects: `item`, or the nearest behind it if that is locked.
+    fn unlocked(&self, state: &State, at: [usize; 2], item: ItemId) -> Result<ItemId, String> {
+        let is_locked = |item: &ItemId| state.scene.locked.contains(item);
+        if !is_locked(&item) {
+            return Ok(item);
+        }
+        let size = self.size().unwrap_or(Size::new(0, 0));
+        let mut objects = picking::objects_at(state, at, size).into_iter().map(ItemId::Object);
+        objects.find(|item| !is_locked(item)).ok_or_else(|| {
+            let locked = Refusal::Locked(state.name(item).unwrap_or_default().to_owned());
+            locked.to_string()
+        })
     }
 
     /// Outlines the item under the pointer.
@@ -361,10 +384,13 @@ impl Viewport {
     /// Shows the name of the item under the pointer, or the speed of flight.
     fn overlay(&self, ui: &Ui, state: &State) {
         let name = self.hovered.and_then(|(_, hit)| hit).and_then(|hit| state.name(hit.item));
+        let item = self.hovered.and_then(|(_, hit)| hit).map(|hit| hit.item);
+        let locked = item.is_some_and(|item| state.scene.locked.contains(&item));
         let text = match (self.mouse.flight(), name) {
             (Some(speed), _) => {
                 format!("Fly: W A S D Q E, Shift fast, Alt slow, wheel: speed x {speed:.2}")
             }
+            (None, Some(name)) if locked => format!("{name} (locked)"),
             (None, Some(name)) => name.to_owned(),
             (None, None) => return,
         };

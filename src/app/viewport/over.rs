@@ -4,7 +4,7 @@ use egui::{Pos2, Rect, Response, Ui};
 
 use super::gizmo::{Gizmo, Grab};
 use super::marks::Projection;
-use super::{Purpose, Viewport, axes, marks, overlay, picking};
+use super::{Purpose, Viewport, axes, helpers, marks, overlay, picking};
 use crate::app::actions::{Also, Request};
 use crate::app::state::State;
 use crate::app::theme;
@@ -118,6 +118,7 @@ impl Viewport {
         items.extend(cameras.map(|(id, _)| ItemId::Camera(id)));
         let marks = over.marks.iter().filter(|mark| area.contains(mark.at));
         items.extend(marks.map(|mark| ItemId::Light(mark.id)));
+        items.retain(|item| !state.scene.locked.contains(item));
         items
     }
 
@@ -138,6 +139,7 @@ impl Viewport {
         let objects = self.size().map(|size| picking::objects_at(state, pixel, size));
         all.extend(objects.unwrap_or_default().into_iter().map(ItemId::Object));
         all.extend(following);
+        all.retain(|item| !state.scene.locked.contains(item));
         let here = all.iter().position(|item| state.selected() == Some(*item));
         here.and_then(|here| all.get((here + 1) % all.len())).copied().unwrap_or(first)
     }
@@ -152,6 +154,8 @@ impl Viewport {
         over: &Over,
     ) {
         let Some((rect, _)) = self.place else { return };
+        helpers::grid_ui(ui, state, projection, self.image.as_deref());
+        helpers::dimensions_ui(ui, state, projection);
         let first = state.outlined().first().copied();
         let [own, others] = &self.outline;
         let accent = theme::accent(ui.visuals());

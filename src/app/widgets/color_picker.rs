@@ -152,7 +152,7 @@ fn hex_ui(ui: &mut Ui, name: &str, color: Color) -> Option<Color> {
 }
 
 /// `#7db8f7` or `7db8f7`; of three digits each counts twice.
-fn hexadecimal(text: &str) -> Option<Color> {
+pub(crate) fn hexadecimal(text: &str) -> Option<Color> {
     let digits = text.trim().trim_start_matches('#');
     let digit = |c: char| c.to_digit(16).and_then(|digit| u8::try_from(digit).ok());
     let digits: Vec<u8> = digits.chars().map(digit).collect::<Option<_>>()?;

@@ -20,6 +20,10 @@ pub(crate) enum Icon {
     Eye,
     /// Hidden.
     EyeClosed,
+    /// Locked.
+    Lock,
+    /// Not locked.
+    LockOpen,
     /// A light that is on.
     On,
     /// A light that is off.
@@ -81,6 +85,8 @@ impl Icon {
             Self::Light(code_point) => MaterialIcon::new(code_point),
             Self::Eye => icons::ICON_VISIBILITY,
             Self::EyeClosed => icons::ICON_VISIBILITY_OFF,
+            Self::Lock => icons::ICON_LOCK,
+            Self::LockOpen => icons::ICON_LOCK_OPEN,
             Self::On => icons::ICON_RADIO_BUTTON_CHECKED,
             Self::Off => icons::ICON_RADIO_BUTTON_UNCHECKED,
             Self::Plus => icons::ICON_ADD,

@@ -34,8 +34,13 @@ fn key() -> Id {
 
 /// Begins a region at the place where `ui` goes on.
 pub(crate) fn begin(ui: &Ui, name: impl Hash + std::fmt::Debug) {
+    begin_in(ui, name, ui.clip_rect());
+}
+
+/// Begins a region that is seen within `column` alone.
+pub(crate) fn begin_in(ui: &Ui, name: impl Hash + std::fmt::Debug, column: Rect) {
     let id = Id::unique("region").with(name);
-    let region = Region { id, column: ui.clip_rect(), top: ui.cursor().top() };
+    let region = Region { id, column, top: ui.cursor().top() };
     let pass = ui.ctx().cumulative_pass_nr();
     let is_target = ui.data_mut(|data| {
         let regions: &mut Regions = data.get_temp_mut_or_default(key());

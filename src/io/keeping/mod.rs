@@ -16,7 +16,7 @@ mod preferences;
 
 pub use abandoned::Abandoned;
 pub use journal::{Journal, Unsaved};
-pub use preferences::{MOST_RECENT, Preferences, Theme};
+pub use preferences::{Helpers, MOST_RECENT, Preferences, Theme};
 
 use std::fs::{self, File, OpenOptions};
 use std::path::{Path, PathBuf};

@@ -40,6 +40,10 @@ pub struct Preferences {
     pub shares: BTreeMap<String, f32>,
     /// Whether the selection's outline, axes and marks of lights are drawn over the picture.
     pub overlays: bool,
+    /// What helps to see where things stand.
+    pub helpers: Helpers,
+    /// Whether models are read again when their files change.
+    pub watches: bool,
     /// Keys that the user has chosen: those of each action, by its name.
     pub keys: BTreeMap<String, Vec<String>>,
     /// Whether the window refines its picture while nothing happens.
@@ -50,6 +54,18 @@ pub struct Preferences {
     pub budget_ms: u16,
     /// The models and scenes opened or saved last, the latest first.
     pub recent: Vec<PathBuf>,
+}
+
+/// What is drawn over the picture to show where things stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Helpers {
+    /// A grid on the ground.
+    pub grid: bool,
+    /// The boxes around the selected objects, with their sizes.
+    pub dimensions: bool,
+    /// Where every sun and every spot shines, not only the selected one.
+    pub directions: bool,
 }
 
 /// Whether the window is light or dark.
@@ -75,6 +91,8 @@ impl Default for Preferences {
             maximized: false,
             shares: BTreeMap::new(),
             overlays: true,
+            helpers: Helpers::default(),
+            watches: false,
             keys: BTreeMap::new(),
             refines: true,
             refined: Samples::Sixteen,

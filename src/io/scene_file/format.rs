@@ -10,7 +10,9 @@ use super::fields::{Numbers, white, yes};
 use super::light::FileLight;
 use super::view::FileView;
 use crate::accuracy::Settings;
-use crate::scene::{Lens, MaterialChoice, Sides, Spin, Surface, UpAxis, Winding, Wrap};
+use crate::scene::{
+    ItemId, Lens, MaterialChoice, Scene, Sides, Spin, Surface, UpAxis, Winding, Wrap,
+};
 
 /// The version that is written, and the latest that is read.
 pub(super) const VERSION: u32 = 1;
@@ -34,10 +36,49 @@ pub(super) struct FileScene {
     pub(super) cameras: Vec<FileCamera>,
     #[serde(default)]
     pub(super) lights: Vec<FileLight>,
+    #[serde(default, skip_serializing_if = "FileLocked::is_empty")]
+    pub(super) locked: FileLocked,
     #[serde(default)]
     pub(super) view: FileView,
     #[serde(default)]
     pub(super) settings: Settings,
+}
+
+/// The items that are locked, by their ids.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct FileLocked {
+    pub(super) objects: Numbers,
+    pub(super) cameras: Numbers,
+    pub(super) lights: Numbers,
+}
+
+impl FileLocked {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The locked ones of a scene.
+    pub(super) fn of(scene: &Scene) -> Self {
+        let mut ids: [BTreeSet<u32>; 3] = Default::default();
+        for id in scene.locked.iter().filter(|id| scene.contains(**id)) {
+            match *id {
+                ItemId::Object(id) => ids[0].insert(id.0),
+                ItemId::Camera(id) => ids[1].insert(id.0),
+                ItemId::Light(id) => ids[2].insert(id.0),
+            };
+        }
+        let [objects, cameras, lights] = ids.map(|ids| Numbers::of(&ids));
+        Self { objects, cameras, lights }
+    }
+
+    /// Those of a scene's items that are locked.
+    pub(super) fn within(&self, scene: &Scene) -> BTreeSet<ItemId> {
+        let objects = scene.objects.ids().filter(|id| self.objects.has(id.0)).map(ItemId::Object);
+        let cameras = scene.cameras.ids().filter(|id| self.cameras.has(id.0)).map(ItemId::Camera);
+        let lights = scene.lights.ids().filter(|id| self.lights.has(id.0)).map(ItemId::Light);
+        objects.chain(cameras).chain(lights).collect()
+    }
 }
 
 /// The source of a model.
@@ -155,7 +196,7 @@ fn ones() -> [f64; 2] {
 }
 
 fn background() -> [u8; 3] {
-    crate::scene::Scene::BACKGROUND.0
+    Scene::BACKGROUND.0
 }
 
 fn silver() -> MaterialChoice {

@@ -62,6 +62,7 @@ pub(super) fn scene(
         lights: List::default(),
         background: Color(file.background),
         next_id: 0,
+        locked: BTreeSet::new(),
     };
     let mut largest = 0;
     let mut insert = |at: usize, item: Item, id: u32, what: String| {
@@ -96,6 +97,7 @@ pub(super) fn scene(
     }
     let after = largest.checked_add(1).ok_or("an id is too large for another to follow")?;
     scene.next_id = file.next_id.max(after);
+    scene.locked = file.locked.within(&scene);
     note_missing_owners(&scene, findings);
     let view = read_view(&file.view, &scene, findings)?;
     Ok((scene, view))

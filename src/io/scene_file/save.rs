@@ -5,7 +5,9 @@
 use std::path::Path;
 
 use super::fields::Numbers;
-use super::format::{FileCamera, FileMode, FileModel, FileObject, FileScene, FileTexture, VERSION};
+use super::format::{
+    FileCamera, FileLocked, FileMode, FileModel, FileObject, FileScene, FileTexture, VERSION,
+};
 use super::light::file_light;
 use super::paths::relative;
 use super::view::FileView;
@@ -25,7 +27,7 @@ pub(super) fn file_scene(
     settings: &Settings,
     folder: &Path,
 ) -> Result<FileScene, String> {
-    let Scene { objects, cameras, lights, background, next_id } = scene;
+    let Scene { objects, cameras, lights, background, next_id, locked: _ } = scene;
     let objects: Result<_, String> =
         objects.iter().map(|(id, item)| file_object(id.0, item, folder)).collect();
     let cameras: Result<_, String> =
@@ -37,6 +39,7 @@ pub(super) fn file_scene(
         objects: objects?,
         cameras: cameras?,
         lights: lights.iter().map(|(id, item)| file_light(id.0, item)).collect(),
+        locked: FileLocked::of(scene),
         view: FileView::of(view, window),
         settings: *settings,
     })

@@ -131,6 +131,7 @@ fn thing(outer: Option<&str>) -> &str {
         "FileTexture" => "the texture",
         "Spin" => "the spin",
         "Orbit" | "Bulb" => "the bulb",
+        "FileLocked" => "the list of locked items",
         "FilePolygons" => "the list of polygons",
         "File" => "the model's file",
         "Sun" => "the sun",

@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use super::vertices;
 use crate::accuracy::{Subpixels, VertexArithmetic};
 use crate::render::frame::variants::Variants;
-use crate::render::screen::clip::{Screen, ScreenVertex};
+use crate::render::screen::clip::{Screen, ScreenVertex, snapped};
 use crate::render::screen::coverage::{SUBPIXELS, Snapped};
 use crate::scene::DrawOrder;
 
@@ -128,7 +128,6 @@ impl Screen32 {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the guard band holds it")]
     fn vertex(&self, place: [f32; 3]) -> ScreenVertex {
         let clip = self.clip(place);
         let [x, y, z, w] = clip;
@@ -144,8 +143,8 @@ impl Screen32 {
         let depth = if depth > 0.0 { depth } else { 0.0 };
         let depth = if depth < 1.0 { depth } else { 1.0 };
         let [x, y] = self.pixels(clip);
-        let snap = |pixels: f32| (pixels * self.parts).round_ties_even() as i32;
-        let at = Snapped { x: if inside { snap(x) } else { ScreenVertex::BEYOND }, y: snap(y) };
+        let [x, y] = [x, y].map(|pixels| snapped(f64::from(pixels * self.parts)));
+        let at = Snapped { x: if inside { x } else { ScreenVertex::BEYOND }, y };
         ScreenVertex::placed(at, depth, inverse_w)
     }
 }

@@ -94,6 +94,14 @@ pub(crate) struct Screen {
 /// The guard band of the fine grid, in pixels: edge functions stay below 2^62.
 const FINE_GUARD: f64 = 131_072.0;
 
+/// The integer nearest to a number below 2^31, of two the even one: the lowest bits of a sum with
+/// [`ROUND`]. Unlike a conversion, it is done in lanes.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "the lowest bits are the integer")]
+pub(crate) fn snapped(number: f64) -> i32 {
+    ((number + ROUND).to_bits() as u32).cast_signed()
+}
+
 impl Screen {
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
     pub(crate) fn new(clip_from_object: DMat4, size: Size) -> Self {
@@ -187,10 +195,10 @@ impl Screen {
 
     /// Projects and snaps a position that is inside, up to rounding.
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the lowest bits and the nearest f32")]
+    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     fn project(&self, [x, y, z, w]: Clip) -> ScreenVertex {
         let inverse_w = 1.0 / w;
-        let snap = |pixels: f64| ((pixels * self.parts + ROUND).to_bits() as u32).cast_signed();
+        let snap = |pixels: f64| snapped(pixels * self.parts);
         let depth = z * inverse_w;
         let depth = if depth > 0.0 { depth } else { 0.0 };
         let depth = if depth < 1.0 { depth } else { 1.0 };

@@ -20,7 +20,7 @@ use crate::app::{actions::LabRequest, state::laboratory::Side, theme};
 const ASKED: f32 = 264.0;
 
 /// In less width than this, one part is shown at a time.
-const WIDE: f32 = 840.0;
+const WIDE: f32 = 1100.0;
 
 /// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
@@ -75,7 +75,11 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.data_mut(|data| data.insert_temp(id, part));
     match part {
         0 => controls_ui::show(ui, state, requests),
-        1 => within(ui, ui.available_rect_before_wrap(), |ui| plots::show(ui, state, requests)),
+        1 => {
+            let rest = ui.available_rect_before_wrap();
+            let rest = rest.with_max_x(rest.right() - f32::from(theme::MARGIN));
+            within(ui, rest, |ui| plots::show(ui, state, requests));
+        }
         2 => table::show(ui, state, requests),
         _ => lessons::show(ui, state, requests),
     }

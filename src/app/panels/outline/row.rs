@@ -37,7 +37,8 @@ pub(crate) fn id(ui: &Ui, item: ItemId) -> Id {
 pub(crate) fn busy(ui: &Ui, items: &[ItemId]) -> Option<usize> {
     let focused = ui.memory(egui::Memory::focused)?;
     let scope = ui.scope_id();
-    let buttons = |item: &ItemId| [scope.with(("shown", *item)), scope.with(("parts", *item))];
+    let buttons =
+        |item: &ItemId| ["shown", "parts", "locked"].map(|button| scope.with((button, *item)));
     items.iter().position(|item| buttons(item).contains(&focused))
 }
 
@@ -57,6 +58,7 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, r
     let icon = Rect::from_min_size(rect.min + vec2(INDENT, 0.0), vec2(16.0, rect.height()));
     Icon::of(&state.scene, item).paint(ui.painter(), icon, 13.0, color);
     let mut right = shown_ui(ui, state, requests, row, shown);
+    right = lock_ui(ui, state, requests, row, (right, response.hovered()));
     if let ItemId::Light(id) = item
         && let Some(light) = state.scene.lights.get(id)
     {
@@ -137,14 +139,61 @@ fn shown_ui(ui: &Ui, state: &State, requests: &mut Vec<Request>, row: &Row, show
         ItemId::Object(_) | ItemId::Camera(_) => None,
     };
     let clicked = response.clicked();
+    let alone = clicked && response.ctx.input(|input| input.modifiers.alt);
     response.on_hover_ui(|ui| {
         ui.label(&label);
+        match item {
+            ItemId::Light(_) => drop(ui.weak("Alt + click: only this light, or all again")),
+            ItemId::Object(_) => drop(ui.weak("Alt + click: only this object, or all again")),
+            ItemId::Camera(_) => {}
+        }
         if let Some(key) = key.filter(|key| *key < 10) {
             ui.weak(format!("Key: {key}"));
         }
     });
-    if clicked {
-        change(requests, label, Gesture::Whole, items::toggle_shown(&state.scene, item));
+    match item {
+        ItemId::Light(_) if alone => {
+            requests.extend([Request::Select(item), Request::Do(Action::SoloLight)]);
+        }
+        ItemId::Object(_) if alone => {
+            requests.extend([Request::Select(item), Request::Do(Action::ToggleOthers)]);
+        }
+        ItemId::Object(_) | ItemId::Camera(_) | ItemId::Light(_) if clicked => {
+            change(requests, label, Gesture::Whole, items::toggle_shown(&state.scene, item));
+        }
+        ItemId::Object(_) | ItemId::Camera(_) | ItemId::Light(_) => {}
+    }
+    rect.left()
+}
+
+/// How wide the lock is.
+const LOCK: f32 = 16.0;
+
+/// The lock, its right end at `right`: a closed one is always seen, an open one while the pointer
+/// or the keyboard is on the line. Gives where its left end is.
+fn lock_ui(
+    ui: &Ui,
+    state: &State,
+    requests: &mut Vec<Request>,
+    row: &Row,
+    (right, hovered): (f32, bool),
+) -> f32 {
+    let Row { item, rect, is_stop, .. } = *row;
+    let locked = state.scene.locked.contains(&item);
+    let verb = if locked { "Unlock" } else { "Lock" };
+    let label = format!("{verb} {}", state.name(item).unwrap_or_default());
+    let rect = Rect::from_x_y_ranges(right - LOCK..=right, rect.y_range());
+    let sense = regions::sense(Sense::click(), is_stop);
+    let response = ui.interact(rect, ui.scope_id().with(("locked", item)), sense);
+    if locked || hovered || response.hovered() || response.has_focus() {
+        let icon = if locked { Icon::Lock } else { Icon::LockOpen };
+        icon_at(ui, rect, &response, icon, &label, true);
+    } else {
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    }
+    let hint = "Locked: not clicked in the picture, not moved, not deleted";
+    if response.on_hover_text(format!("{label}\n{hint}")).clicked() {
+        change(requests, label, Gesture::Whole, items::toggle_locked(&state.scene, item));
     }
     rect.left()
 }
@@ -224,18 +273,25 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
     }
     Popup::context_menu(response).show(|ui| {
         ui.set_min_width(160.0);
-        let mut actions = vec![Action::Rename, Action::Duplicate, Action::Delete];
+        let mut actions =
+            vec![Action::Rename, Action::Duplicate, Action::Delete, Action::ToggleLocked];
         if !matches!(item, ItemId::Light(_)) {
             actions.push(Action::ToggleVisible);
         }
         if matches!(item, ItemId::Light(_)) {
-            actions.extend([Action::ToggleShadows, Action::AimAtSelection, Action::AimByClick]);
+            actions.extend([
+                Action::SoloLight,
+                Action::ToggleShadows,
+                Action::AimAtSelection,
+                Action::AimByClick,
+            ]);
         }
         if matches!(item, ItemId::Object(_)) {
             actions.extend([
                 Action::FrameSelection,
                 Action::ToggleOthers,
                 Action::WhyUnseen,
+                Action::DropToGround,
                 Action::Split,
             ]);
         }

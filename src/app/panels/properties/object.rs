@@ -1,7 +1,7 @@
 //! The properties of an object.
 
-use egui::{Button, Ui};
-use glam::{DMat3, DVec3};
+use egui::{Button, Id, Ui};
+use glam::{DMat3, DMat4, DVec3};
 
 use super::{crease, material, number_row, steps_ui, surface};
 use crate::app::actions::{Request, change};
@@ -10,9 +10,10 @@ use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Choice, Switch, choices, fact, row, section};
 use crate::app::widgets::number::{Number, keep_angles, kept_angles, short, vector};
 use crate::app::widgets::text::grouped;
+use crate::base::Shared;
 use crate::base::math::{self, Axis};
-use crate::edit::{Gesture, items, motion, placement, transform};
-use crate::scene::{Frame, Object, ObjectId, Sides, Spin};
+use crate::edit::{Gesture, arrange, items, motion, placement, transform};
+use crate::scene::{Frame, Model, Object, ObjectId, Sides, Spin};
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
@@ -72,6 +73,32 @@ fn placement_ui(
         change(requests, format!("Scale {}", object.name), gesture, command);
     }
     stretch_ui(ui, state, requests, object);
+    if let Some(size) = size(ui, id, object) {
+        let [x, y, z] = size.to_array().map(short);
+        fact(ui, "Size", &format!("{x} x {y} x {z}"));
+    }
+}
+
+/// The size of a mesh with more vertices is measured again when a drag has ended.
+const MOST_WHILE_DRAGGED: usize = 200_000;
+
+/// The sizes of the box around an object in the world, as it is placed; measured when it changes.
+fn size(ui: &Ui, id: ObjectId, object: &Object) -> Option<DVec3> {
+    type Measured = (ObjectId, DMat4, Shared<Model>, Option<DVec3>);
+    let key = Id::unique("size of an object");
+    let (now, model) = (*object.placement.now(), &object.model);
+    let known: Option<Measured> = ui.data(|data| data.get_temp(key));
+    if let Some((of, placement, mesh, size)) = known {
+        let many = model.mesh.positions().len() > MOST_WHILE_DRAGGED;
+        let waits = many && ui.input(|input| input.pointer.any_down());
+        if of == id && Shared::same(&mesh, model) && (placement == now || waits) {
+            return size;
+        }
+    }
+    let still = Object { spin: Spin::default(), ..object.clone() };
+    let size = arrange::world_box(&still, 0.0).map(|bounds| bounds.extent());
+    ui.data_mut(|data| data.insert_temp::<Measured>(key, (id, now, model.clone(), size)));
+    size
 }
 
 /// Factors along the axes of the chosen frame, and the button that multiplies by them.

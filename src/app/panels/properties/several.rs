@@ -7,7 +7,7 @@ use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::widgets::number::set_mixed;
 use crate::edit::{placement, several as together};
-use crate::scene::{ItemId, Light, Scene};
+use crate::scene::{Attenuation, ItemId, Light, LightKind, Scene, SpotOwner};
 
 /// Says how many items a change sets, and in which properties they differ. Gives those of the
 /// selected one's kind.
@@ -51,42 +51,93 @@ pub(super) fn spread(ui: &Ui, state: &State, others: &[ItemId], requests: &mut [
 
 /// The names of the fields whose numbers differ between two items of a kind.
 fn numbers(scene: &Scene, first: ItemId, other: ItemId) -> Vec<String> {
-    let mut names = Vec::new();
-    let mut vector = |name: &str, a: glam::DVec3, b: glam::DVec3| {
-        for (i, letter) in ["X", "Y", "Z"].into_iter().enumerate() {
-            if (a[i] - b[i]).abs() > 1e-9 * a[i].abs().max(1.0) {
-                names.push(format!("{name} {letter}"));
-            }
-        }
+    let (Some(a), Some(b)) = (fields(scene, first), fields(scene, other)) else {
+        return Vec::new();
     };
-    match (first, other) {
-        (ItemId::Object(a), ItemId::Object(b)) => {
-            let at = |id| scene.objects.get(id).map(|object| *object.placement.now());
-            if let (Some(a), Some(b)) = (at(a), at(b)) {
-                vector("Position", placement::translation(&a), placement::translation(&b));
-                vector("Rotation", placement::turn_degrees(&a), placement::turn_degrees(&b));
-                vector("Scale", placement::scale(&a), placement::scale(&b));
+    let differs = |(name, a): &(String, f64)| {
+        let b = b.iter().find(|(other, _)| other == name);
+        b.is_some_and(|(_, b)| (a - b).abs() > 1e-9 * a.abs().max(1.0))
+    };
+    a.into_iter().filter(differs).map(|(name, _)| name).collect()
+}
+
+/// The number fields of an item, by their names in the panel.
+fn fields(scene: &Scene, id: ItemId) -> Option<Vec<(String, f64)>> {
+    let mut all = Fields(Vec::new());
+    match id {
+        ItemId::Object(id) => {
+            let object = scene.objects.get(id)?;
+            let m = object.placement.now();
+            all.vector("Position", placement::translation(m));
+            all.vector("Rotation", placement::turn_degrees(m));
+            all.vector("Scale", placement::scale(m));
+            all.number("Opacity", object.opacity);
+            all.number("Spin speed", object.spin.speed);
+            all.number("Crease angle", object.model.options.crease.get());
+        }
+        ItemId::Camera(id) => {
+            let camera = scene.cameras.get(id)?;
+            let (pose, lens) = (camera.pose.now(), camera.lens);
+            all.vector("Position", pose.eye);
+            let [yaw, pitch, roll] = placement::camera_degrees(pose).to_array();
+            for (name, value) in [
+                ("Yaw", yaw),
+                ("Pitch", pitch),
+                ("Roll", roll),
+                ("Field of view", 2.0 * lens.half_angle),
+                ("Near", lens.near),
+                ("Far", lens.far),
+                ("Half-size", lens.half_size),
+                ("Orthographic near", lens.parallel_near),
+                ("Orthographic far", lens.parallel_far),
+            ] {
+                all.number(name, value);
             }
         }
-        (ItemId::Camera(a), ItemId::Camera(b)) => {
-            let at = |id| scene.cameras.get(id).map(|camera| camera.pose.now().eye);
-            if let (Some(a), Some(b)) = (at(a), at(b)) {
-                vector("Position", a, b);
-            }
+        ItemId::Light(id) => all.light(scene.lights.get(id)?),
+    }
+    Some(all.0)
+}
+
+struct Fields(Vec<(String, f64)>);
+
+impl Fields {
+    fn number(&mut self, name: &str, value: f64) {
+        self.0.push((name.to_owned(), value));
+    }
+
+    fn vector(&mut self, name: &str, v: glam::DVec3) {
+        for (letter, value) in ["X", "Y", "Z"].into_iter().zip(v.to_array()) {
+            self.0.push((format!("{name} {letter}"), value));
         }
-        (ItemId::Light(a), ItemId::Light(b)) => {
-            let (Some(a), Some(b)) = (scene.lights.get(a), scene.lights.get(b)) else {
-                return names;
-            };
-            for (i, name) in ["Red", "Green", "Blue"].into_iter().enumerate() {
-                if a.color.0[i] != b.color.0[i] {
-                    names.push(format!("{name} as a number"));
+    }
+
+    fn light(&mut self, light: &Light) {
+        for (name, value) in ["Red", "Green", "Blue"].into_iter().zip(light.color.0) {
+            self.number(&format!("{name} as a number"), f64::from(value));
+        }
+        let Attenuation { constant, linear, quadratic } = light.attenuation;
+        for (name, value) in [("Constant", constant), ("Linear", linear), ("Quadratic", quadratic)]
+        {
+            self.number(name, value);
+        }
+        match &light.kind {
+            LightKind::Ambient => {}
+            LightKind::Sun { direction } => self.vector("Direction", *direction.now()),
+            LightKind::Bulb { position, orbit } => {
+                self.vector("Position", *position.now());
+                self.number("Circling speed", orbit.speed);
+            }
+            LightKind::Spot { owner, half_aperture, exponent } => {
+                self.number("Half-aperture", *half_aperture);
+                self.number("Concentration", *exponent);
+                if let SpotOwner::Fixed(aim) = owner {
+                    self.vector("Position", aim.now().position);
+                    self.vector("Direction", aim.now().direction);
                 }
             }
         }
-        _ => {}
     }
-    names
 }
 
 /// The properties in which items differ from the first, by their names in the panel.
@@ -120,6 +171,7 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
                 (a.surface != b.surface, "surface"),
                 (a.texture != b.texture, "texture"),
                 (a.tint != b.tint, "tint"),
+                (a.opacity != b.opacity, "opacity"),
                 (a.spin != b.spin, "spin"),
                 (a.sides != b.sides, "sides"),
                 (a.file_normals != b.file_normals, "normals"),
@@ -147,6 +199,7 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
             };
             vec![
                 (a.on != b.on, "on"),
+                (a.shadows != b.shadows, "shadows"),
                 (a.color != b.color, "colour"),
                 (a.attenuation != b.attenuation, "fading"),
                 (cone(a) != cone(b), "cone"),

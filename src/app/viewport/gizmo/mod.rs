@@ -23,6 +23,9 @@ use sight::Sight;
 /// From the middle to the end of an axis, in points.
 const LENGTH: f32 = 84.0;
 
+/// An axis is at most this part of the smaller side of the picture.
+const MOST: f32 = 0.28;
+
 /// A press this near to a line is on it.
 const REACH: f32 = 6.0;
 
@@ -112,14 +115,15 @@ impl Gizmo {
         let mut gizmo = Self { pivot, sight, parts: Vec::new() };
         let place = sight.place(middle).filter(|at| rect.expand(OUTSIDE).contains(*at));
         if let Some(place) = place {
-            gizmo.build(middle, place);
+            gizmo.build(middle, place, LENGTH.min(rect.size().min_elem() * MOST));
         }
         Some(gizmo)
     }
 
-    fn build(&mut self, middle: DVec3, place: Pos2) {
+    fn build(&mut self, middle: DVec3, place: Pos2, length: f32) {
+        let outer = length * OUTER;
         // Not so long that an end comes behind the observer.
-        let length = f64::from(LENGTH) * self.sight.unit_at(middle);
+        let length = f64::from(length) * self.sight.unit_at(middle);
         let length = if length.is_finite() { length.min(middle.length() * 0.5) } else { return };
         let add = |parts: &mut Vec<Part>, handle, shape: Option<Shape>| {
             parts.extend(shape.map(|shape| Part { handle, shape }));
@@ -127,7 +131,7 @@ impl Gizmo {
         let mut parts = Vec::new();
         match self.pivot.kind {
             Transformation::Rotation => {
-                add(&mut parts, Handle::Outer, Some(Shape::Circle(place, LENGTH * OUTER)));
+                add(&mut parts, Handle::Outer, Some(Shape::Circle(place, outer)));
                 for axis in Axis::ALL {
                     add(&mut parts, Handle::Ring(axis), self.ring(middle, axis, length));
                 }

@@ -1,0 +1,221 @@
+//! Reads models again, on request or when their files have changed.
+//!
+//! A thread looks at the files twice a second while the user wants it, and wakes the window if one
+//! has changed: nothing else does anything for it. A file is read once it stays as it is from one
+//! look to the next, since other programs write in pieces.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::{Duration, SystemTime};
+
+use egui::Context;
+
+use super::App;
+use crate::app::documents::loading::{Fetched, Reread};
+use crate::app::state::Notice;
+use crate::app::widgets::text::file_name;
+use crate::base::Shared;
+use crate::edit::Gesture;
+use crate::io::{self, LoadError, is_example};
+use crate::scene::{Command, Item, Model, Object, Scene};
+
+/// Between two looks at the files.
+const PAUSE: Duration = Duration::from_millis(500);
+
+impl App {
+    /// Reads the models of the scene again: all of them, or those of these files.
+    pub(crate) fn reload_models(&mut self, ctx: &Context, only: Option<&BTreeSet<PathBuf>>) {
+        let mut wanted: Vec<(PathBuf, Shared<Model>)> = Vec::new();
+        for (_, object) in self.state.scene.objects.iter() {
+            let Some(path) = file_of(&object.model) else { continue };
+            let is_known = wanted.iter().any(|(_, model)| Shared::same(model, &object.model));
+            if !is_known && only.is_none_or(|only| only.contains(path)) {
+                wanted.push((path.clone(), object.model.clone()));
+            }
+        }
+        if wanted.is_empty() {
+            if only.is_none() {
+                self.refuse("no object of the scene comes from a file".to_owned());
+            }
+            return;
+        }
+        let label = match wanted.as_slice() {
+            [(path, _)] => format!("Reading {} again", file_name(path)),
+            all => format!("Reading {} models again", all.len()),
+        };
+        self.begin_loading(ctx, label, false, move |progress| {
+            let read = |(path, before): (PathBuf, Shared<Model>)| Reread {
+                result: io::load(&path, &before.options, progress),
+                before,
+            };
+            Fetched::Again(wanted.into_iter().map(read).collect())
+        });
+    }
+
+    /// Puts the models that were read again into the place of the old ones, in one step.
+    pub(crate) fn take_again(&mut self, all: Vec<Reread>) {
+        let (mut models, mut names) = (Vec::new(), Vec::new());
+        for Reread { before, result } in all {
+            match result {
+                Ok(loaded) => {
+                    names.push(loaded.model.name.clone());
+                    models.push((before, Shared::new(loaded.model)));
+                }
+                Err(LoadError::Cancelled) => {}
+                Err(error) => {
+                    let text = format!("{error}. The model stays as it was.");
+                    self.state.notices.push(Notice { text, details: Vec::new(), offer: None });
+                }
+            }
+        }
+        let commands = replaced(&self.state.scene, &models);
+        if commands.is_empty() {
+            return;
+        }
+        let label = match names.as_slice() {
+            [name] => format!("Read {name} again"),
+            names => format!("Read {} models again", names.len()),
+        };
+        self.change(Command::Batch(commands), Gesture::Whole, &label);
+        self.state.tell(Some(label));
+    }
+
+    /// Begins or ends to look at the files, and reads those again that have changed.
+    pub(crate) fn watch_files(&mut self, ctx: &Context) {
+        if !self.state.watches {
+            self.watch = None;
+            return;
+        }
+        let watch = self.watch.get_or_insert_with(|| Watch::begin(ctx));
+        watch.look_at(&self.state.scene);
+        let changed = watch.take_changed();
+        if !changed.is_empty() {
+            self.reload_models(ctx, Some(&changed));
+        }
+    }
+}
+
+/// The commands that give objects other models.
+fn replaced(scene: &Scene, models: &[(Shared<Model>, Shared<Model>)]) -> Vec<Command> {
+    let again = |object: &Object| {
+        let (_, model) = models.iter().find(|(old, _)| Shared::same(old, &object.model))?;
+        let parts = u32::try_from(model.mesh.parts().len()).unwrap_or(u32::MAX);
+        let mut object = object.clone();
+        object.model = model.clone();
+        object.hidden_parts.retain(|part| *part < parts);
+        Some(object)
+    };
+    let changed = scene.objects.iter().filter_map(|(id, object)| Some((id, again(object)?)));
+    changed.map(|(id, object)| Command::Replace(Item::Object(id, Box::new(object)))).collect()
+}
+
+/// The file of a model; `None` for the program's own.
+fn file_of(model: &Model) -> Option<&PathBuf> {
+    model.source.as_ref().filter(|path| !is_example(path))
+}
+
+/// Files that are looked at.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    files: Arc<Mutex<Files>>,
+    /// The scene whose files they are.
+    of: Option<Scene>,
+}
+
+#[derive(Debug, Default)]
+struct Files {
+    /// When each was written, and how long it is: as it was read, and at the last look.
+    seen: BTreeMap<PathBuf, [Option<Stamp>; 2]>,
+    changed: BTreeSet<PathBuf>,
+}
+
+type Stamp = (SystemTime, u64);
+
+fn stamp(path: &PathBuf) -> Option<Stamp> {
+    let data = std::fs::metadata(path).ok()?;
+    Some((data.modified().ok()?, data.len()))
+}
+
+impl Watch {
+    fn begin(ctx: &Context) -> Self {
+        let files = Arc::new(Mutex::new(Files::default()));
+        let (theirs, ctx) = (Arc::downgrade(&files), ctx.clone());
+        let thread = std::thread::Builder::new().name("files".to_owned());
+        // Without a thread nothing is read by itself; it can still be asked for.
+        let _ = thread.spawn(move || look(&theirs, &ctx));
+        Self { files, of: None }
+    }
+
+    /// Looks at the files of this scene from now on.
+    fn look_at(&mut self, scene: &Scene) {
+        if self.of.as_ref() == Some(scene) {
+            return;
+        }
+        let paths: BTreeSet<&PathBuf> =
+            scene.objects.iter().filter_map(|(_, object)| file_of(&object.model)).collect();
+        let mut files = lock(&self.files);
+        files.seen.retain(|path, _| paths.contains(path));
+        for path in paths {
+            files.seen.entry(path.clone()).or_insert_with(|| [stamp(path); 2]);
+        }
+        drop(files);
+        self.of = Some(scene.clone());
+    }
+
+    fn take_changed(&self) -> BTreeSet<PathBuf> {
+        std::mem::take(&mut lock(&self.files).changed)
+    }
+}
+
+fn lock(files: &Mutex<Files>) -> MutexGuard<'_, Files> {
+    files.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn look(files: &Weak<Mutex<Files>>, ctx: &Context) {
+    loop {
+        std::thread::sleep(PAUSE);
+        let Some(files) = files.upgrade() else { return };
+        if lock(&files).look() {
+            ctx.request_repaint();
+        }
+    }
+}
+
+impl Files {
+    /// Looks at all files. Says whether one has changed and rests since.
+    fn look(&mut self) -> bool {
+        let before = self.changed.len();
+        for (path, [read, last]) in &mut self.seen {
+            let now = stamp(path);
+            if now.is_some() && now == *last && now != *read {
+                *read = now;
+                self.changed.insert(path.clone());
+            }
+            *last = now;
+        }
+        self.changed.len() > before
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_has_changed_once_it_rests_and_only_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("model.obj");
+        std::fs::write(&path, "v 0 0 0\n").unwrap();
+        let mut files = Files::default();
+        files.seen.insert(path.clone(), [stamp(&path); 2]);
+        assert!(!files.look());
+        std::fs::write(&path, "v 0 0 0\nv 1 0 0\n").unwrap();
+        assert!(!files.look(), "it may still be written");
+        assert!(files.look());
+        assert_eq!(files.changed, BTreeSet::from([path.clone()]));
+        assert!(!files.look());
+        std::fs::remove_file(&path).unwrap();
+        assert!(!files.look() && !files.look(), "a file that is gone is not read");
+    }
+}

@@ -1,0 +1,195 @@
+//! Helpers over the picture: the ground's grid, and the sizes of the selected objects.
+//!
+//! The grid lies behind everything: its lines are drawn over those pixels alone that show the
+//! background.
+
+use egui::{Color32, ColorImage, Painter, Pos2, Rect, Stroke, TextStyle, Ui, vec2};
+use glam::DVec3;
+
+use super::marks::Projection;
+use crate::app::state::State;
+use crate::app::theme;
+use crate::app::widgets::number::short;
+use crate::base::math::Axis;
+use crate::edit::{arrange, steps};
+use crate::scene::{Bounds, ItemId};
+
+/// The lines of the grid to each side of its middle.
+const LINES: i32 = 10;
+
+/// Each line is cut into this many pieces, since one that passes the observer is cut at near.
+const PIECES: i32 = 20;
+
+/// The grid on the ground, seen where `image` shows the background.
+pub(super) fn grid_ui(ui: &Ui, state: &State, onto: &Projection, image: Option<&ColorImage>) {
+    let Some(image) = image.filter(|_| state.helpers.grid && state.shows_overlays()) else {
+        return;
+    };
+    let [r, g, b] = state.scene.background.0;
+    let rect = onto.rect();
+    let ground = Ground { image, rect, background: Color32::from_rgb(r, g, b) };
+    let painter = ui.painter().with_clip_rect(rect);
+    let spacing = steps::of_grid(&state.scene);
+    let at = |x: i32, z: i32| DVec3::new(f64::from(x), 0.0, f64::from(z)) * spacing;
+    let is_bright = u32::from(r) + u32::from(g) + u32::from(b) > 3 * 128;
+    let plain =
+        if is_bright { Color32::from_black_alpha(70) } else { Color32::from_white_alpha(60) };
+    for i in -LINES..=LINES {
+        let (along_x, along_z) = match i {
+            0 => (theme::axis_on_dark(Axis::X), theme::axis_on_dark(Axis::Z)),
+            _ => (plain, plain),
+        };
+        for piece in 0..PIECES {
+            let part = |piece: i32| -LINES + piece * (2 * LINES / PIECES);
+            let (from, to) = (part(piece), part(piece + 1));
+            for (ends, color) in
+                [([at(from, i), at(to, i)], along_x), ([at(i, from), at(i, to)], along_z)]
+            {
+                if let Some(ends) = onto.segment(ends) {
+                    ground.line(&painter, ends, Stroke::new(1.0, color));
+                }
+            }
+        }
+    }
+}
+
+/// The pixels that show the background.
+struct Ground<'a> {
+    image: &'a ColorImage,
+    rect: Rect,
+    background: Color32,
+}
+
+impl Ground<'_> {
+    /// Draws those parts of a line at which the picture shows the background.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within a line")]
+    fn line(&self, painter: &Painter, ends: [Pos2; 2], stroke: Stroke) {
+        let Some([from, to]) = within(self.rect, ends) else { return };
+        let count = (to - from).length().ceil().max(1.0) as u16;
+        let at = |i: u16| from + (to - from) * (f32::from(i) / f32::from(count));
+        let mut begun = None;
+        for i in 0..=count {
+            match (self.shows(at(i)), begun) {
+                (true, None) => begun = Some(i),
+                (false, Some(first)) => {
+                    painter.line_segment([at(first), at(i)], stroke);
+                    begun = None;
+                }
+                (true, Some(_)) | (false, None) => {}
+            }
+        }
+        if let Some(first) = begun {
+            painter.line_segment([at(first), to], stroke);
+        }
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "brought to the picture's borders, which are small"
+    )]
+    fn shows(&self, at: Pos2) -> bool {
+        let [width, height] = self.image.size;
+        let part = (at - self.rect.min) / self.rect.size();
+        let place = |part: f32, count: usize| {
+            ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
+        };
+        let (x, y) = (place(part.x, width), place(part.y, height));
+        self.image.pixels.get(y * width + x) == Some(&self.background)
+    }
+}
+
+/// The part of a line within a rectangle (Liang and Barsky, "A New Concept and Method for Line
+/// Clipping", 1984).
+fn within(rect: Rect, [a, b]: [Pos2; 2]) -> Option<[Pos2; 2]> {
+    let way = b - a;
+    let (mut from, mut to) = (0.0_f32, 1.0_f32);
+    for (speed, room) in [
+        (-way.x, a.x - rect.left()),
+        (way.x, rect.right() - a.x),
+        (-way.y, a.y - rect.top()),
+        (way.y, rect.bottom() - a.y),
+    ] {
+        if speed == 0.0 {
+            if room < 0.0 {
+                return None;
+            }
+        } else if speed < 0.0 {
+            from = from.max(room / speed);
+        } else {
+            to = to.min(room / speed);
+        }
+    }
+    (from < to).then(|| [a + way * from, a + way * to])
+}
+
+/// The boxes around the selected objects, and how large they are.
+pub(super) fn dimensions_ui(ui: &Ui, state: &State, onto: &Projection) {
+    if !state.helpers.dimensions || !state.shows_overlays() {
+        return;
+    }
+    let painter = ui.painter().with_clip_rect(onto.rect());
+    let stroke = Stroke::new(1.0, theme::accent(ui.visuals()));
+    let mut ids: Vec<ItemId> = state.selected().into_iter().chain(state.others()).collect();
+    if !ids.iter().any(|id| matches!(id, ItemId::Object(_))) {
+        ids.extend(state.view.object.map(ItemId::Object));
+    }
+    for id in ids {
+        let ItemId::Object(id) = id else { continue };
+        let object = state.scene.objects.get(id).filter(|object| object.visible);
+        if let Some(bounds) = object.and_then(|it| arrange::world_box(it, state.view.time)) {
+            box_ui(ui, &painter, onto, &bounds, stroke);
+        }
+    }
+}
+
+fn box_ui(ui: &Ui, painter: &Painter, onto: &Projection, bounds: &Bounds, stroke: Stroke) {
+    let corners = bounds.corners();
+    let size = bounds.extent();
+    for axis in Axis::ALL {
+        let bit = 1 << axis.index();
+        let edges = (0..8).filter(|corner| corner & bit == 0);
+        let edges: Vec<[DVec3; 2]> = edges.map(|i| [corners[i], corners[i | bit]]).collect();
+        for ends in &edges {
+            onto.line(painter, *ends, stroke);
+        }
+        let middles = edges.iter().filter_map(|[a, b]| onto.place((*a + *b) * 0.5));
+        // Height stands at the left, the others at the bottom.
+        let outer = |at: &Pos2| if axis == Axis::Y { -at.x } else { at.y };
+        if let Some(at) = middles.max_by(|a, b| outer(a).total_cmp(&outer(b))) {
+            let text = format!("{} {}", LETTERS[axis.index()], short(size[axis.index()]));
+            label_ui(ui, painter, at, text, theme::axis_on_dark(axis));
+        }
+    }
+}
+
+const LETTERS: [&str; 3] = ["x", "y", "z"];
+
+/// A text on a dark plate, its middle at `at`.
+fn label_ui(ui: &Ui, painter: &Painter, at: Pos2, text: String, color: Color32) {
+    let font = TextStyle::Small.resolve(ui.style());
+    let galley = painter.layout_no_wrap(text, font, color);
+    let size = galley.size() + vec2(8.0, 4.0);
+    let room = painter.clip_rect().shrink2(size / 2.0 + vec2(2.0, 2.0));
+    let plate = Rect::from_center_size(room.clamp(at), size);
+    painter.rect_filled(plate, 3.0, Color32::from_black_alpha(190));
+    painter.galley(plate.center() - galley.size() / 2.0, galley, color);
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+
+    use super::*;
+
+    #[test]
+    fn of_a_line_the_part_within_the_picture_is_left() {
+        let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(10.0, 10.0));
+        let line = |a: (f32, f32), b: (f32, f32)| within(rect, [a.into(), b.into()]);
+        assert_eq!(line((-5.0, 5.0), (15.0, 5.0)), Some([pos2(0.0, 5.0), pos2(10.0, 5.0)]));
+        assert_eq!(line((2.0, 2.0), (3.0, 4.0)), Some([pos2(2.0, 2.0), pos2(3.0, 4.0)]));
+        assert_eq!(line((-5.0, 12.0), (15.0, 12.0)), None);
+        assert_eq!(line((-4.0, 5.0), (5.0, -4.0)), Some([pos2(0.0, 1.0), pos2(1.0, 0.0)]));
+    }
+}

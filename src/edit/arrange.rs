@@ -1,0 +1,96 @@
+//! Arranges objects: on the ground, in line with another, back to where their files put them.
+
+use glam::{DMat4, DVec3};
+
+use super::{GesturePhase, Refusal, set_transform, steps};
+use crate::base::math::Axis;
+use crate::scene::{Bounds, Command, ItemId, Object, ObjectId, Scene, View, dvec3};
+
+/// The box around an object in the world.
+#[must_use]
+pub fn world_box(object: &Object, time: f64) -> Option<Bounds> {
+    let world_from_object = object.world_from_object(time);
+    let positions = object.model.mesh.positions();
+    Bounds::of(positions.iter().map(|p| world_from_object.transform_point3(dvec3(*p))))
+}
+
+/// The height of the ground: of the highest level plane of the menu of shapes that is shown, else
+/// 0. `id` itself is no ground.
+#[must_use]
+pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
+    let planes = scene.objects.iter().filter(|(other, object)| {
+        let up = object.placement.now().y_axis.truncate();
+        let is_level = up.x.abs().max(up.z.abs()) <= 1e-9 * up.y.abs();
+        *other != id && object.visible && steps::is_ground(object) && is_level
+    });
+    planes.map(|(_, plane)| plane.placement.now().w_axis.y).reduce(f64::max).unwrap_or(0.0)
+}
+
+/// Moves the selected object up or down until its lowest point is at the height of the ground.
+///
+/// # Errors
+/// If it stands there already, is empty or locked, or there is none.
+pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command, Refusal> {
+    let (id, object) = set_transform::selected_object(scene, view)?;
+    let bounds = world_box(object, view.time).ok_or(Refusal::NoPolygons)?;
+    let by = ground(scene, id) - bounds.min.y;
+    if by.abs() <= 1e-12 * bounds.max.abs().max(bounds.min.abs()).max_element() {
+        return Err(Refusal::OnGround);
+    }
+    moved(scene, view, id, DVec3::Y * by, phase)
+}
+
+/// Puts the selected object back to where its file has it.
+///
+/// # Errors
+/// If it is there, or is locked, or there is none.
+pub fn reset(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command, Refusal> {
+    let (id, object) = set_transform::selected_object(scene, view)?;
+    if *object.placement.now() == DMat4::IDENTITY {
+        return Err(Refusal::NotTransformed);
+    }
+    set_transform::object(scene, view, id, DMat4::IDENTITY, phase)
+}
+
+/// Moves the objects among `others` along an axis of the world until the middles of their boxes
+/// are in line with that of the selected object.
+///
+/// # Errors
+/// If there are none, or all of them are locked or in line already.
+pub fn align(
+    scene: &Scene,
+    view: &View,
+    others: &[ItemId],
+    axis: Axis,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let (_, object) = set_transform::selected_object(scene, view)?;
+    let middle = |object: &Object| Some(world_box(object, view.time)?.centre()[axis.index()]);
+    let to = middle(object).ok_or(Refusal::NoPolygons)?;
+    let (mut commands, mut refused) = (Vec::new(), Refusal::NothingToAlign);
+    for other in others {
+        let ItemId::Object(id) = *other else { continue };
+        let from = scene.objects.get(id).and_then(middle);
+        let Some(by) = from.map(|from| to - from).filter(|by| *by != 0.0) else {
+            continue;
+        };
+        match moved(scene, view, id, axis.unit() * by, phase) {
+            Ok(command) => commands.push(command),
+            Err(why) => refused = why,
+        }
+    }
+    if commands.is_empty() { Err(refused) } else { Ok(Command::Batch(commands)) }
+}
+
+/// An object moved along the world's axes.
+fn moved(
+    scene: &Scene,
+    view: &View,
+    id: ObjectId,
+    by: DVec3,
+    phase: GesturePhase,
+) -> Result<Command, Refusal> {
+    let placement = *scene.objects.get(id).ok_or(Refusal::Gone)?.placement.now();
+    let to = DMat4::from_translation(by) * placement;
+    set_transform::object(scene, view, id, to, phase)
+}

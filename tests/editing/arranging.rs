@@ -1,0 +1,79 @@
+//! Objects on the ground, in line, and back where their files have them.
+//!
+//! Catches: an object that hangs above the ground or in it, a plane on its edge that counts as
+//! ground, an object that moves along another axis, too.
+
+use glam::{DMat4, DVec3};
+use marraztu::base::math::Axis;
+use marraztu::edit::arrange::{align, drop_to_ground, ground, reset, world_box};
+use marraztu::edit::{GesturePhase, Refusal, items, shapes, transform};
+use marraztu::io;
+use marraztu::scene::{ItemId, Object, ObjectId, Scene, Shape, Subject, View};
+
+fn lowest(scene: &Scene, id: ObjectId) -> f64 {
+    world_box(scene.objects.get(id).unwrap(), 0.0).unwrap().min.y
+}
+
+#[test]
+fn an_object_comes_to_stand_on_the_ground_and_on_a_plane_that_is_one() {
+    let (mut scene, view) = io::default_scene();
+    let id = view.object.unwrap();
+    let first = GesturePhase::First;
+    drop_to_ground(&scene, &view, first).unwrap().apply(&mut scene).unwrap();
+    assert!(lowest(&scene, id).abs() < 1e-12);
+    assert_eq!(drop_to_ground(&scene, &view, first), Err(Refusal::OnGround));
+    let plane = scene.next_id;
+    shapes::insert(&scene, &view, Shape::Plane).apply(&mut scene).unwrap();
+    let up = DMat4::from_translation(DVec3::Y * 70.0);
+    let of_plane = |object: &mut Object| {
+        object.placement = object.placement.replaced(up * *object.placement.now());
+    };
+    let raise = items::change_object(&scene, ObjectId(plane), of_plane).unwrap();
+    raise.apply(&mut scene).unwrap();
+    let height = scene.objects.get(ObjectId(plane)).unwrap().placement.now().w_axis.y;
+    drop_to_ground(&scene, &view, first).unwrap().apply(&mut scene).unwrap();
+    assert!((lowest(&scene, id) - height).abs() < 1e-9, "{height}");
+    // A plane that stands on its edge is no ground.
+    let turn = DMat4::from_rotation_x(1.0);
+    let tilt = |object: &mut Object| {
+        object.placement = object.placement.replaced(*object.placement.now() * turn);
+    };
+    items::change_object(&scene, ObjectId(plane), tilt).unwrap().apply(&mut scene).unwrap();
+    assert_eq!(ground(&scene, id), 0.0);
+}
+
+#[test]
+fn others_come_in_line_with_the_selected_object_along_one_axis_alone() {
+    let (mut scene, view) = io::default_scene();
+    let first = GesturePhase::First;
+    let ids: Vec<ObjectId> = scene.objects.ids().collect();
+    let others: Vec<ItemId> = ids.iter().copied().map(ItemId::Object).collect();
+    let middles = |scene: &Scene| -> Vec<DVec3> {
+        let middle = |id: &ObjectId| world_box(scene.objects.get(*id).unwrap(), 0.0);
+        ids.iter().map(|id| middle(id).unwrap().centre()).collect()
+    };
+    let before = middles(&scene);
+    let middle_x = |at: usize| before[at].x;
+    align(&scene, &view, &others, Axis::X, first).unwrap().apply(&mut scene).unwrap();
+    let after = middles(&scene);
+    let own = ids.iter().position(|id| view.object == Some(*id)).unwrap();
+    for (before, after) in before.iter().zip(&after) {
+        assert!((after.x - middle_x(own)).abs() < 1e-9);
+        assert!((after.y - before.y).abs() < 1e-9 && (after.z - before.z).abs() < 1e-9);
+    }
+    assert_eq!(align(&scene, &view, &[], Axis::X, first), Err(Refusal::NothingToAlign));
+}
+
+#[test]
+fn a_reset_object_is_where_its_file_has_it() {
+    let (mut scene, view) = io::default_scene();
+    let first = GesturePhase::First;
+    let id = view.object.unwrap();
+    let before = *scene.objects.get(id).unwrap().placement.now();
+    reset(&scene, &view, first).unwrap().apply(&mut scene).unwrap();
+    assert_eq!(*scene.objects.get(id).unwrap().placement.now(), DMat4::IDENTITY);
+    assert_eq!(reset(&scene, &view, first), Err(Refusal::NotTransformed));
+    let back = transform::take_back(&scene, &View { subject: Subject::Object, ..view });
+    back.unwrap().apply(&mut scene).unwrap();
+    assert_eq!(*scene.objects.get(id).unwrap().placement.now(), before);
+}

@@ -1,0 +1,217 @@
+//! Helpers over the picture, arranging, and models that are read again.
+//!
+//! Catches: a grid that lies over objects or gets into files, sizes that are wrong, a change of
+//! several that leaves some, a model that stays old or comes back half.
+
+use egui::Shape;
+use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
+use glam::DVec3;
+use marraztu::app::actions::{Action, Also, Request};
+use marraztu::base::Shared;
+use marraztu::edit::{Gesture, arrange, items};
+use marraztu::io;
+use marraztu::scene::{ItemId, LightKind, LoadOptions, MaterialChoice, Object, PresetId, Scene};
+
+use crate::editor::Editor;
+
+/// The thin lines that lie over the picture.
+fn lines(editor: &Editor) -> Vec<[egui::Pos2; 2]> {
+    let rect = editor.picture();
+    let mut lines = Vec::new();
+    for clipped in &editor.harness.output().shapes {
+        if let Shape::LineSegment { points, stroke } = &clipped.shape
+            && stroke.width <= 1.0
+            && clipped.clip_rect == rect
+        {
+            lines.push(*points);
+        }
+    }
+    lines
+}
+
+#[test]
+fn the_grid_lies_behind_everything_and_in_no_file() {
+    let mut editor = Editor::new();
+    // From above, so that the ships stand before the ground.
+    editor.perform_all(&[Action::ToggleGizmo, Action::LookTop, Action::FrameAll]);
+    let (before, picture) = (lines(&editor).len(), editor.harness.state().shown_picture().unwrap());
+    editor.perform(Action::ToggleGrid);
+    let all = lines(&editor);
+    assert!(all.len() > before + 40, "{} lines", all.len());
+    let shown = editor.harness.state().shown_picture().unwrap();
+    assert!(shown.pixels() == picture.pixels(), "the picture itself has no grid");
+    let (rect, size) = (editor.picture(), shown.size());
+    let mut covered = 0;
+    for [a, b] in &all {
+        let part = (*a + (*b - *a) * 0.5 - rect.min) / rect.size();
+        let x = ((part.x * size.width as f32) as usize).min(size.width - 1);
+        let y = ((part.y * size.height as f32) as usize).min(size.height - 1);
+        let [r, g, b, _] = shown.pixels()[y * size.width + x];
+        covered += usize::from([r, g, b] != editor.scene().background.0);
+    }
+    assert_eq!(covered, 0, "lines over objects");
+    assert_eq!(editor.steps(), 2, "helpers are no steps");
+}
+
+fn texts(editor: &Editor) -> Vec<String> {
+    fn collect(shape: &Shape, texts: &mut Vec<String>) {
+        match shape {
+            Shape::Vec(all) => all.iter().for_each(|shape| collect(shape, texts)),
+            Shape::Text(text) => texts.push(text.galley.text().to_owned()),
+            _ => {}
+        }
+    }
+    let mut texts = Vec::new();
+    editor.harness.output().shapes.iter().for_each(|it| collect(&it.shape, &mut texts));
+    texts
+}
+
+#[test]
+fn sizes_are_those_of_the_box_in_the_world() {
+    let mut editor = Editor::tall();
+    editor.perform_all(&[Action::AddCube, Action::ToggleDimensions]);
+    let size = {
+        let scene = editor.scene();
+        let object = scene.objects.get(editor.view().object.unwrap()).unwrap();
+        arrange::world_box(object, 0.0).unwrap().extent()
+    };
+    assert_eq!(size, DVec3::splat(size.x));
+    for letter in ["x", "y", "z"] {
+        let text = format!("{letter} {}", size.x);
+        assert!(texts(&editor).contains(&text), "{text}");
+    }
+    let whole = format!("{0} x {0} x {0}", size.x);
+    assert!(editor.shows(&whole), "in the properties, too");
+}
+
+#[test]
+fn directions_of_all_lights_are_drawn_on_request() {
+    let mut editor = Editor::new();
+    editor.perform_all(&[Action::AddSun, Action::AddSpot, Action::SubjectCamera]);
+    let before = lines(&editor).len();
+    editor.perform(Action::ToggleDirections);
+    assert!(lines(&editor).len() > before + 32, "a cone has 32 sides");
+}
+
+#[test]
+fn objects_are_dropped_and_brought_in_line_in_one_step() {
+    let mut editor = Editor::new();
+    editor.perform(Action::SubjectObject);
+    editor.perform(Action::SelectAll);
+    let steps = editor.steps();
+    editor.perform(Action::DropToGround);
+    let boxes = |editor: &Editor| -> Vec<marraztu::scene::Bounds> {
+        let scene = editor.scene();
+        scene.objects.iter().map(|(_, it)| arrange::world_box(it, 0.0).unwrap()).collect()
+    };
+    assert!(boxes(&editor).iter().all(|it| it.min.y.abs() < 1e-9), "{:?}", boxes(&editor));
+    editor.perform(Action::AlignZ);
+    let middles: Vec<f64> = boxes(&editor).iter().map(|it| it.centre().z).collect();
+    assert!(middles.iter().all(|z| (z - middles[0]).abs() < 1e-9), "{middles:?}");
+    assert_eq!(editor.steps(), steps + 2);
+}
+
+#[test]
+fn several_cameras_and_lights_show_mixed_numbers_and_are_set_together() {
+    let mut editor = Editor::tall();
+    editor.perform_all(&[Action::AddSpot, Action::AddSpot]);
+    let spots: Vec<_> = {
+        let scene = editor.scene();
+        let own = scene.lights.iter().filter(|(_, it)| it.name.starts_with("spot"));
+        own.map(|(id, _)| id).collect()
+    };
+    let [first, second] = spots[spots.len() - 2..] else { panic!("{spots:?}") };
+    let narrow = marraztu::edit::lights::set_aperture(&editor.scene(), second, 10.0).unwrap();
+    change(&mut editor, narrow);
+    let both = vec![ItemId::Light(first), ItemId::Light(second)];
+    editor.ask(Request::SelectAlso(both, Also::Only));
+    let field = editor.harness.query_all(By::new().label("Half-aperture")).next().unwrap();
+    assert_eq!(field.value().as_deref().map(|it| it.contains("mixed")), Some(true));
+    // Shadows of one are the shadows of both.
+    let on = marraztu::edit::lights::toggle_shadows(&editor.scene(), second).unwrap();
+    let all = marraztu::edit::several::spread(&editor.scene(), on, &[ItemId::Light(first)]);
+    change(&mut editor, all);
+    let scene = editor.scene();
+    let casts = |id| scene.lights.get(id).unwrap().shadows;
+    assert!(casts(first) && casts(second));
+    assert!(matches!(scene.lights.get(second).unwrap().kind, LightKind::Spot { .. }));
+    // So is the opacity of objects.
+    let ids: Vec<_> = scene.objects.ids().collect();
+    let half = items::change_object(&scene, ids[0], |object| object.opacity = 0.5).unwrap();
+    let all = marraztu::edit::several::spread(&scene, half, &[ItemId::Object(ids[1])]);
+    change(&mut editor, all);
+    let scene = editor.scene();
+    assert!(ids[..2].iter().all(|id| scene.objects.get(*id).unwrap().opacity == 0.5));
+}
+
+fn change(editor: &mut Editor, command: marraztu::scene::Command) {
+    let (gesture, label) = (Gesture::Whole, "Change".to_owned());
+    editor.ask(Request::Change { command, gesture, label });
+}
+
+const ONE: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nf 1 2 3\n";
+const TWO: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 60 60 0\nf 1 2 3\nf 2 4 3\n";
+
+/// An editor with a model of a file of one triangle.
+fn with_file(path: &std::path::Path) -> Editor {
+    std::fs::write(path, ONE).unwrap();
+    let loaded = io::load(path, &LoadOptions::default(), &io::Progress::new()).unwrap();
+    let silver = MaterialChoice::Preset(PresetId::SILVER);
+    let object = Object::new(Shared::new(loaded.model), silver);
+    let mut editor = Editor::new();
+    let command = items::insert_object(&editor.scene(), object);
+    change(&mut editor, command);
+    assert_eq!(polygons(&editor.scene()), 1);
+    editor
+}
+
+/// The polygons of the object that is first in the list.
+fn polygons(scene: &Scene) -> usize {
+    scene.objects.iter().next().unwrap().1.model.mesh.polygon_count()
+}
+
+fn until(editor: &mut Editor, is_done: impl Fn(&Editor) -> bool) {
+    for _ in 0..400 {
+        if is_done(editor) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        editor.settle();
+    }
+    panic!("it does not come");
+}
+
+#[test]
+fn models_are_read_again_in_one_step_and_a_broken_file_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sail.obj");
+    let mut editor = with_file(&path);
+    let before = editor.scene();
+    std::fs::write(&path, TWO).unwrap();
+    editor.perform(Action::ReloadModels);
+    until(&mut editor, |editor| polygons(&editor.scene()) == 2);
+    assert_eq!(editor.state().history.steps().last(), Some("Read sail again"));
+    editor.perform(Action::Undo);
+    assert!(editor.scene() == before);
+    std::fs::remove_file(&path).unwrap();
+    editor.perform(Action::ReloadModels);
+    until(&mut editor, |editor| editor.shows("The model stays as it was"));
+    assert!(editor.scene() == before);
+    // Without files there is nothing to read.
+    let mut editor = Editor::new();
+    editor.perform(Action::ReloadModels);
+    let told = editor.harness.get_by_role(egui::accesskit::Role::Alert).accesskit_node().label();
+    assert_eq!(told.as_deref(), Some("no object of the scene comes from a file"));
+}
+
+#[test]
+fn a_file_that_another_program_saves_is_read_by_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sail.obj");
+    let mut editor = with_file(&path);
+    editor.perform(Action::ToggleWatch);
+    std::fs::write(&path, TWO).unwrap();
+    until(&mut editor, |editor| polygons(&editor.scene()) == 2);
+    editor.perform(Action::ToggleWatch);
+    assert_eq!(Action::ToggleWatch.is_on(editor.state()), Some(false));
+}

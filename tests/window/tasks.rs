@@ -1,0 +1,297 @@
+//! The ten tasks of `docs/tasks.md`, by keyboard alone and by mouse alone.
+//!
+//! Catches: a way that takes more steps than the page says, or does not lead there.
+//!
+//! A step is a key, a word that is typed, a click, or a drag.
+
+use std::path::Path;
+
+use egui::accesskit::Role;
+use egui::{Key, PointerButton, Pos2};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::{self, Command, CommandShift, Either, Lower, Named};
+use marraztu::io;
+use marraztu::scene::{LightKind, MaterialChoice, Normals, Scene, SpotOwner};
+
+use crate::dialogs::{CUBE, folder_with};
+use crate::editor::Editor;
+use crate::panels::{click, middle, type_text};
+
+/// An editor, and the steps that were taken in it.
+struct Hand {
+    editor: Editor,
+    steps: usize,
+}
+
+impl Hand {
+    fn at(editor: Editor) -> Self {
+        Self { editor, steps: 0 }
+    }
+
+    fn after(actions: &[Action]) -> Self {
+        let mut editor = Editor::of_size(1280.0, 800.0);
+        editor.perform_all(actions);
+        Self::at(editor)
+    }
+
+    fn press(&mut self, chord: Chord) {
+        self.editor.press(chord);
+        self.steps += 1;
+    }
+
+    fn write(&mut self, text: &str) {
+        type_text(&mut self.editor, text);
+        self.steps += 1;
+    }
+
+    /// Chooses an entry of the palette by the words that are typed.
+    fn find(&mut self, words: &str) {
+        self.press(Command(Key::K));
+        self.write(words);
+        self.press(Named(Key::Enter));
+    }
+
+    fn click(&mut self, role: Role, label: &str) {
+        click(&mut self.editor, role, label);
+        // Menus inside of menus open a little later.
+        self.editor.harness.run_steps(30);
+        self.steps += 1;
+    }
+
+    fn click_at(&mut self, at: Pos2, button: PointerButton) {
+        self.editor.harness.run_steps(60);
+        self.editor.click(at, button);
+        self.steps += 1;
+    }
+
+    /// Writes the path of a file over the one that is proposed. A user takes the proposed one; a
+    /// test has a folder of its own.
+    fn elsewhere(&mut self, path: &Path) {
+        self.editor.press(Command(Key::A));
+        type_text(&mut self.editor, &path.display().to_string());
+    }
+}
+
+/// What stands in the table of the page for a task: steps by keyboard and by mouse.
+fn promised(task: &str) -> [usize; 2] {
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/tasks.md"));
+    let page = page.unwrap();
+    let row = page.lines().find(|line| line.starts_with(&format!("| {task} |")));
+    let row = row.unwrap_or_else(|| panic!("the page has no {task:?}"));
+    let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+    [cells[2], cells[3]].map(|cell| cell.parse().unwrap())
+}
+
+fn holds(task: &str, keys: &Hand, mouse: &Hand) {
+    assert_eq!([keys.steps, mouse.steps], promised(task), "{task}");
+}
+
+#[test]
+fn a_model_is_opened_and_lit() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut keys = Hand::after(&[]);
+    keys.press(Lower(Key::F));
+    keys.elsewhere(&path);
+    keys.steps += 1;
+    keys.press(Named(Key::Enter));
+    keys.editor.wait_until(|editor| editor.shows("Material of cube.obj"));
+    keys.press(Named(Key::Enter));
+    keys.editor.wait_until(|editor| editor.scene().objects.len() == 4);
+    keys.press(Chord::Text("."));
+    let mut mouse = Hand::after(&[]);
+    mouse.editor.drop_files(&[&path]);
+    mouse.steps += 1;
+    mouse.editor.wait_until(|editor| editor.scene().objects.len() == 1);
+    holds("Open a model and light it", &keys, &mouse);
+}
+
+#[test]
+fn three_objects_are_added() {
+    let mut keys = Hand::after(&[Action::New]);
+    let before = keys.editor.scene().objects.len();
+    keys.find("cube");
+    keys.press(Command(Key::D));
+    keys.press(Command(Key::D));
+    assert_eq!(keys.editor.scene().objects.len(), before + 3);
+    let mut mouse = Hand::after(&[]);
+    for shape in ["Cube", "Sphere", "Torus"] {
+        mouse.click(Role::Button, "Add");
+        mouse.click(Role::MenuItem, shape);
+    }
+    assert_eq!(mouse.editor.scene().objects.len(), before + 3);
+    holds("Add three objects", &keys, &mouse);
+}
+
+#[test]
+fn why_an_object_is_not_seen_is_found() {
+    let hidden = || Hand::after(&[Action::SubjectObject, Action::ToggleVisible]);
+    let mut keys = hidden();
+    keys.press(Either(Key::W));
+    assert!(keys.editor.shows("r_falke is hidden"));
+    let mut mouse = hidden();
+    let row = middle(&mouse.editor, Role::ListBoxOption, "r_falke");
+    mouse.click_at(row, PointerButton::Secondary);
+    mouse.click(Role::MenuItem, Action::WhyUnseen.info().label);
+    assert!(mouse.editor.shows("r_falke is hidden"));
+    holds("Find out why an object is not seen", &keys, &mouse);
+}
+
+fn aim(scene: &Scene) -> glam::DVec3 {
+    let aim = scene.lights.iter().find_map(|(_, light)| match &light.kind {
+        LightKind::Spot { owner: SpotOwner::Fixed(aim), .. } => Some(aim.now().direction),
+        _ => None,
+    });
+    aim.unwrap()
+}
+
+#[test]
+fn a_spot_is_aimed() {
+    let mut keys = Hand::after(&[Action::AddSpot]);
+    keys.find("aim at");
+    assert!(aim(&keys.editor.scene()).x < -0.99);
+    let mut mouse = Hand::after(&[Action::AddSpot, Action::SubjectCamera]);
+    let scene = mouse.editor.scene();
+    let name = scene.lights.get(mouse.editor.view().light.unwrap()).unwrap().name.clone();
+    mouse.click(Role::ListBoxOption, &name);
+    mouse.click(Role::CheckBox, "Aim by a click");
+    let rect = mouse.editor.picture();
+    let ship = rect.center() - egui::vec2(0.6, 0.0) * rect.size().min_elem() / 2.0;
+    mouse.click_at(ship, PointerButton::Primary);
+    assert!(aim(&mouse.editor.scene()).x < -0.8);
+    holds("Aim a spot", &keys, &mouse);
+}
+
+#[test]
+fn shading_is_flat_or_smooth() {
+    let mut keys = Hand::after(&[]);
+    keys.press(Either(Key::I));
+    let mut mouse = Hand::at(Editor::tall());
+    mouse.click(Role::RadioButton, "Normals: Face");
+    for hand in [&keys, &mouse] {
+        assert_eq!(hand.editor.view().normals, Normals::Face);
+    }
+    holds("Switch between flat and smooth", &keys, &mouse);
+}
+
+#[test]
+fn ten_steps_are_undone() {
+    let moved = || {
+        let mut hand = Hand::after(&[Action::SubjectObject]);
+        let before = hand.editor.scene();
+        hand.editor.perform_all(&[Action::StepXUp; 10]);
+        assert_eq!(hand.editor.steps(), 10);
+        (before, hand)
+    };
+    let (before, mut keys) = moved();
+    keys.editor.hold(Command(Key::Z), 9);
+    keys.steps += 1;
+    let (_, mut mouse) = moved();
+    mouse.click(Role::Button, "Edit");
+    mouse.click(Role::MenuItem, "History");
+    mouse.click(Role::Button, "0  Beginning");
+    for hand in [&keys, &mouse] {
+        assert!(hand.editor.scene() == before);
+    }
+    holds("Undo ten steps", &keys, &mouse);
+}
+
+#[test]
+fn a_scene_is_saved_and_opened_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.marraztu");
+    let mut keys = Hand::after(&[Action::SubjectObject, Action::StepXUp]);
+    let scene = keys.editor.scene();
+    keys.press(Command(Key::Q));
+    assert!(keys.editor.shows("Save the scene?"));
+    keys.press(Named(Key::Enter));
+    keys.elsewhere(&path);
+    keys.press(Named(Key::Enter));
+    keys.editor.wait_until(|_| path.exists());
+    let opened = || io::open(&path, &io::Progress::new()).unwrap().scene;
+    let places = |scene: &Scene| -> Vec<glam::DMat4> {
+        scene.objects.iter().map(|(_, object)| *object.placement.now()).collect()
+    };
+    assert_eq!(places(&opened()), places(&scene));
+    // It is opened by its name on the command line, or from the strip.
+    keys.steps += 1;
+    std::fs::remove_file(&path).unwrap();
+    let mut mouse = Hand::after(&[Action::SubjectObject, Action::StepXUp]);
+    // The cross of the window asks as the key does.
+    mouse.editor.perform(Action::Quit);
+    mouse.steps += 1;
+    mouse.click(Role::Button, "Save");
+    mouse.elsewhere(&path);
+    mouse.click(Role::Button, "Save");
+    mouse.editor.wait_until(|_| path.exists());
+    assert_eq!(places(&opened()), places(&scene));
+    mouse.steps += 1;
+    holds("Save, quit, and open it again", &keys, &mouse);
+}
+
+#[test]
+fn work_is_recovered() {
+    let folder = tempfile::tempdir().unwrap();
+    {
+        let mut editor = Editor::keeping(folder.path());
+        editor.press(Lower(Key::Z));
+        editor.harness.state().wait_for_journal();
+    }
+    let mut keys = Hand::at(Editor::keeping(folder.path()));
+    keys.press(CommandShift(Key::R));
+    keys.editor.wait_until(|editor| editor.is_offered() == 0);
+    let scene = keys.editor.scene();
+    keys.editor.harness.state().wait_for_journal();
+    let steps = keys.steps;
+    drop(keys);
+    let mut mouse = Hand::at(Editor::keeping(folder.path()));
+    mouse.click(Role::Button, "Recover");
+    mouse.editor.wait_until(|editor| editor.is_offered() == 0);
+    assert!(mouse.editor.scene().cameras == scene.cameras);
+    let keys = Hand { steps, editor: Editor::small() };
+    holds("Recover after a crash", &keys, &mouse);
+}
+
+#[test]
+fn an_object_gets_a_colour_of_ones_own() {
+    let own = |hand: &Hand| -> [f64; 3] {
+        let scene = hand.editor.scene();
+        match scene.objects.get(hand.editor.view().object.unwrap()).unwrap().material {
+            MaterialChoice::Own(material) => material.diffuse,
+            ref other => panic!("{other:?}"),
+        }
+    };
+    let mut keys = Hand::after(&[Action::SubjectObject]);
+    keys.find("#ff8000");
+    assert_eq!(own(&keys), [1.0, f64::from(0x80_u8) / 255.0, 0.0]);
+    assert_eq!(keys.editor.steps(), 1);
+    let mut mouse = Hand::after(&[Action::SubjectObject]);
+    mouse.click(Role::RadioButton, "Material: your own");
+    let before = own(&mouse);
+    mouse.click(Role::ColorWell, "Diffuse colour");
+    let shade = middle(&mouse.editor, Role::ColorWell, "Diffuse colour: shade");
+    mouse.click_at(shade, PointerButton::Primary);
+    assert_ne!(own(&mouse), before);
+    holds("Give an object a colour of your own", &keys, &mouse);
+}
+
+#[test]
+fn a_turntable_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turn.gif");
+    let small = || Hand::at(Editor::of_size(700.0, 480.0));
+    let mut keys = small();
+    keys.press(Command(Key::F12));
+    keys.press(Named(Key::Enter));
+    keys.elsewhere(&path);
+    keys.press(Named(Key::Enter));
+    keys.editor.wait_until(|_| path.exists());
+    std::fs::remove_file(&path).unwrap();
+    let mut mouse = small();
+    mouse.click(Role::Button, "File");
+    mouse.click(Role::MenuItem, Action::SaveTurntable.info().label);
+    mouse.click(Role::Button, "Save...");
+    mouse.elsewhere(&path);
+    mouse.click(Role::Button, "Save");
+    mouse.editor.wait_until(|_| path.exists());
+    holds("Save a turntable", &keys, &mouse);
+}

@@ -1,0 +1,148 @@
+//! Every action is reached by a menu and by the palette, and does there what it does anywhere.
+//!
+//! Catches: an action without a way to it, an entry that does another thing than it says, a menu
+//! that is taller than the window.
+
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
+use marraztu::app::actions::Action;
+use marraztu::app::actions::Chord::{Command, Named};
+
+use crate::editor::Editor;
+use crate::palette::listed;
+use crate::panels::{click, type_text};
+
+/// Every menu and every menu within one.
+const PATHS: [&[&str]; 15] = [
+    &["File"],
+    &["Edit"],
+    &["Edit", "Select"],
+    &["Edit", "Transform"],
+    &["Edit", "History"],
+    &["Add"],
+    &["View"],
+    &["View", "Over the picture"],
+    &["View", "Camera"],
+    &["View", "Light"],
+    &["View", "Lights on and off"],
+    &["Window"],
+    &["Window", "Size"],
+    &["Window", "Theme"],
+    &["Help"],
+];
+
+/// What each action is tried on: cameras, objects, lights.
+const SUBJECTS: [Action; 3] = [Action::SubjectCamera, Action::SubjectObject, Action::SubjectLight];
+
+fn open(editor: &mut Editor, path: &[&str]) {
+    for (depth, name) in path.iter().enumerate() {
+        click(editor, if depth == 0 { Role::Button } else { Role::MenuItem }, name);
+        // Menus inside of menus open a little later.
+        editor.harness.run_steps(30);
+    }
+}
+
+/// The entries of the menus that are open.
+fn entries(editor: &Editor) -> Vec<(String, egui::Rect)> {
+    let all = [Role::MenuItem, Role::MenuItemCheckBox]
+        .into_iter()
+        .flat_map(|role| editor.harness.query_all(By::new().role(role)));
+    all.filter_map(|it| Some((it.accesskit_node().label()?, it.rect()))).collect()
+}
+
+/// What an action has done.
+fn done(editor: &Editor) -> impl PartialEq + std::fmt::Debug + use<> {
+    let state = editor.state();
+    let shown = (state.panels, state.theme, state.overlays, state.gizmo, state.helpers);
+    let modes = (state.aiming, state.explaining, state.renaming, state.others());
+    // A search on a thread tells of itself when it has ended.
+    let told = state.message.clone().filter(|it| !it.text.contains("is in the picture"));
+    (editor.view(), editor.steps(), shown, modes, told, state.zoom, state.settings)
+}
+
+/// Leaves the program, or opens a dialog of the system's in a window that has none.
+const LEFT_OUT: [Action; 2] = [Action::Quit, Action::CopyPicture];
+
+#[test]
+fn every_action_is_in_a_menu_and_does_there_what_it_does_anywhere() {
+    let mut missing: Vec<Action> = Action::ALL.to_vec();
+    for path in PATHS {
+        let mut editor = Editor::of_size(1200.0, 900.0);
+        open(&mut editor, path);
+        let here = entries(&editor);
+        let is_menu = |label: &str| {
+            PATHS.iter().any(|it| it.len() > 1 && it[0] == path[0] && it.last() == Some(&label))
+        };
+        let is_here = |action: &&Action| {
+            let label = action.info().label;
+            here.iter().any(|(other, _)| other == label) && !is_menu(label)
+        };
+        missing.retain(|action| !is_here(&action));
+        for action in Action::ALL.iter().filter(is_here).filter(|it| !LEFT_OUT.contains(it)) {
+            let subject = SUBJECTS[1];
+            let mut asked = Editor::of_size(1200.0, 900.0);
+            asked.perform(subject);
+            if action.availability(asked.state()).is_err() {
+                continue;
+            }
+            asked.perform(*action);
+            let mut clicked = Editor::of_size(1200.0, 900.0);
+            clicked.perform(subject);
+            open(&mut clicked, path);
+            let label = action.info().label;
+            let is_it = |node: &egui_kittest::Node<'_>| {
+                let role = node.accesskit_node().role();
+                matches!(role, Role::MenuItem | Role::MenuItemCheckBox)
+            };
+            let entry = clicked.harness.query_all_by_label(label).find(is_it).unwrap();
+            entry.click();
+            clicked.settle();
+            assert_eq!(done(&clicked), done(&asked), "{action:?} in {path:?}");
+            assert!(clicked.scene() == asked.scene(), "{action:?} in {path:?}");
+        }
+    }
+    assert!(missing.is_empty(), "in no menu: {missing:?}");
+}
+
+#[test]
+fn every_action_is_in_the_palette_and_does_there_what_it_does_anywhere() {
+    for subject in SUBJECTS {
+        let tried = |it: &&Action| **it != Action::Palette && !LEFT_OUT.contains(it);
+        for action in Action::ALL.iter().filter(tried) {
+            let mut asked = Editor::small();
+            asked.perform_all(&[subject, *action]);
+            let mut chosen = Editor::small();
+            chosen.perform(subject);
+            chosen.press(Command(Key::K));
+            type_text(&mut chosen, action.info().label);
+            let place = listed(&chosen).iter().position(|label| label == action.info().label);
+            let place = place.unwrap_or_else(|| panic!("{action:?} is not found by its label"));
+            assert!(place < 4, "{action:?} is the {place}th for its own label");
+            for _ in 0..place {
+                chosen.press(Named(Key::ArrowDown));
+            }
+            chosen.press(Named(Key::Enter));
+            assert_eq!(done(&chosen), done(&asked), "{action:?} with {subject:?}");
+            assert!(chosen.scene() == asked.scene(), "{action:?} with {subject:?}");
+        }
+    }
+}
+
+#[test]
+fn every_menu_fits_into_a_low_window() {
+    for size in [[1024.0, 640.0], [640.0, 400.0]] {
+        for path in PATHS {
+            let mut editor = Editor::of_size(size[0], size[1]);
+            open(&mut editor, path);
+            let last = entries(&editor)
+                .into_iter()
+                .max_by(|(_, a), (_, b)| a.bottom().total_cmp(&b.bottom()));
+            if let Some((label, rect)) = last {
+                // What is scrolled out of sight is cut off by its menu, which is in the window.
+                let limit = if size[1] < 500.0 { f32::INFINITY } else { size[1] };
+                assert!(rect.bottom() <= limit, "{label} of {path:?} at {rect:?} in {size:?}");
+            }
+        }
+    }
+}
