@@ -6,6 +6,8 @@
 
 pub(crate) mod shapes;
 
+use std::collections::BTreeSet;
+
 use glam::{DMat3, DMat4, DVec3};
 
 use marraztu::accuracy::Shot;
@@ -60,6 +62,7 @@ pub(crate) fn random_scene(seed: u64) -> RandomScene {
         (FIRST_OBJECT..).map(ObjectId).zip((0..count).map(|_| object(rng))).collect();
     let lights = lights(rng, &objects);
     let mut scene = Scene {
+        locked: BTreeSet::new(),
         objects: objects.into_iter().collect(),
         cameras,
         lights,

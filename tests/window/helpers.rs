@@ -121,7 +121,13 @@ fn several_cameras_and_lights_show_mixed_numbers_and_are_set_together() {
         own.map(|(id, _)| id).collect()
     };
     let [first, second] = spots[spots.len() - 2..] else { panic!("{spots:?}") };
-    let narrow = marraztu::edit::lights::set_aperture(&editor.scene(), second, 10.0).unwrap();
+    let narrow = marraztu::edit::lights::set_number(
+        &editor.scene(),
+        second,
+        &marraztu::scene::HALF_APERTURE,
+        10.0,
+    )
+    .unwrap();
     change(&mut editor, narrow);
     let both = vec![ItemId::Light(first), ItemId::Light(second)];
     editor.ask(Request::SelectAlso(both, Also::Only));

@@ -21,8 +21,7 @@ use crate::io::{Helpers, Panels, WindowState};
 use crate::lab::cost::{Costs, Explained};
 use crate::render::{Damage, PixelColor};
 use crate::scene::{
-    Command, ItemId, Light, LightId, LightKind, MaterialChoice, Object, ObjectId, Scene, Sides,
-    Surface, View,
+    Command, ItemId, Light, LightId, MaterialChoice, Object, ObjectId, Scene, Sides, Surface, View,
 };
 use laboratory::Laboratory;
 use layout::Layout;

@@ -44,6 +44,11 @@ impl Numbers {
         Self(runs)
     }
 
+    /// Whether a number is among them.
+    pub(super) fn has(&self, number: u32) -> bool {
+        self.0.iter().any(|(first, last)| (*first..=*last).contains(&number))
+    }
+
     /// Those of the numbers that are below `count`.
     pub(super) fn below(&self, count: usize) -> BTreeSet<u32> {
         let mut runs = self.0.clone();

@@ -4,6 +4,8 @@
 //! missing field has the value that a new scene gives it; an unknown field is an error, since it
 //! may be a typing error that would be lost on saving.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 
 use super::fields::{Numbers, white, yes};

@@ -5,7 +5,7 @@
 //! would compute the same colour of a triangle in a pixel. It is kept, and only what earlier passes
 //! did not show is lit.
 
-use fearless_simd::{Level, SimdBase as _, SimdInt as _, SimdMask as _, dispatch, u32x16};
+use fearless_simd::{Level, SimdBase as _, SimdMask as _, dispatch, u32x16};
 
 use super::colors::Colors;
 use crate::render::screen::tiles::BLOCK_PIXELS;
